@@ -10,6 +10,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+layout(constant_id = 0) const int kVisibilityChannel = 0;
+
 layout(set = 0, binding = 0) uniform Parameters { MultiBounceParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D visibility_image;
 layout(set = 0, binding = 2) uniform texture2D albedo_image;
@@ -20,7 +22,7 @@ void main() {
   if (any(greaterThanEqual(pixel, ivec2(parameters.size_px)))) {
     return;
   }
-  float visibility = texelFetch(visibility_image, pixel, 0).r;
+  float visibility = texelFetch(visibility_image, pixel, 0)[kVisibilityChannel];
   vec3 albedo = texelFetch(albedo_image, pixel, 0).rgb;
   imageStore(result_image, pixel, vec4(multi_bounce(visibility, albedo), 1.0));
 }

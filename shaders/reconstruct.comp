@@ -46,6 +46,9 @@ layout(constant_id = 10) const bool kVisibility = true;   // whether visibility_
 layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
 layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
 layout(constant_id = 13) const bool kReversed = false;    // raw depth is 1 at the near plane
+// Writes visibility to the channel kVisibilityChannel alone and keeps the others.
+layout(constant_id = 14) const bool kKeepsChannels = false;
+layout(constant_id = 15) const int kVisibilityChannel = 0;
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -81,6 +84,9 @@ layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 const int kFirstHistoryBinding = 7;
+// The image of visibility_image. Without kKeepsChannels it is never read, and another image is
+// bound in its place.
+layout(set = 0, binding = 16) uniform texture2D kept_image;
 #endif
 #ifdef HISTORY
 // The samplers are nearest and clamp to the edge.
@@ -407,6 +413,8 @@ void add_ring(inout Sums sums, Surface surface, float inverse_squared_width, int
 
 #ifndef HALF
 
+#include "store_visibility.h"
+
 // Returns the unit normal in view space, as the search uses it.
 vec3 traced_normal(Surface surface) {
   vec2 slope =
@@ -473,7 +481,7 @@ void store(Surface surface, Result result) {
   float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    imageStore(visibility_image, surface.texel, vec4(kShaped ? shaped : visibility));
+    store_visibility(surface.texel, kShaped ? shaped : visibility);
   }
   if (kBentNormal) {
     vec3 residual = surface.sky ? vec3(0.0) : result.residual;

@@ -29,6 +29,9 @@ layout(constant_id = 2) const bool kShaped = false;     // power or intensity is
 layout(constant_id = 3) const bool kBentNormal = false;
 layout(constant_id = 4) const uint kNormalEncoding = 0;  // as NormalEncoding has them
 layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at the near plane
+// Writes visibility to the channel kVisibilityChannel alone and keeps the others.
+layout(constant_id = 6) const bool kKeepsChannels = false;
+layout(constant_id = 7) const int kVisibilityChannel = 0;
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
 // The samplers are nearest and clamp to the edge.
@@ -42,9 +45,12 @@ layout(set = 0, binding = 5) uniform sampler2D residual_image;
 layout(set = 0, binding = 6) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 7) uniform writeonly image2D bent_normal_image;
+// The image of visibility_image. Without kKeepsChannels it is never read, and another image is
+// bound in its place.
+layout(set = 0, binding = 8) uniform texture2D kept_image;
 #ifdef SPECULAR
-layout(set = 0, binding = 8) uniform usampler2D lobe_image;  // LobeTexel
-layout(set = 0, binding = 9) uniform writeonly image2D specular_image;
+layout(set = 0, binding = 9) uniform usampler2D lobe_image;  // LobeTexel
+layout(set = 0, binding = 10) uniform writeonly image2D specular_image;
 #endif
 
 ivec2 size_px() { return textureSize(depth_image, 0); }
@@ -56,6 +62,7 @@ float load_inverse_depth(ivec2 pixel) {
 }
 
 #include "depth_normal.h"
+#include "store_visibility.h"
 
 // Texels and pixels are numbered in the order of textureGather: lower left, lower right, upper
 // right, upper left. right_of() is 1 for those on the right and -1 for the others; below_of() is 1
@@ -172,7 +179,7 @@ void main() {
     float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
     if (kVisibility && inside) {
       float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-      imageStore(visibility_image, pixel, vec4(kShaped ? shaped : visibility));
+      store_visibility(pixel, kShaped ? shaped : visibility);
     }
     if (kBentNormal && inside) {
       vec3 stored =

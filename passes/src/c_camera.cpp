@@ -83,7 +83,8 @@ AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* 
   const double near = p.near_plane;
   const double at_near = p.reversed != VK_FALSE ? 1.0 : 0.0;
   const double at_far = 1.0 - at_near;
-  // depth = (a z + b) / -z is at_near at z = -near and at_far at z = -far.
+  // Depth is (a z + b) / -z. The two coefficients are such that it is at_near at z = -near and
+  // at_far at z = -far.
   const double far = p.far_plane;
   const double a = infinite ? -at_far : -(at_far * far - at_near * near) / (far - near);
   mat4 clip(0.0f);

@@ -25,8 +25,8 @@ struct Features {
   bool write_without_format = false;
 };
 
-// Reads the needed features from a chain as vkCreateDevice and vkGetPhysicalDeviceFeatures2 take
-// it.
+// Returns which of the needed features are enabled in a chain of feature structs, the kind of chain
+// that vkCreateDevice takes and vkGetPhysicalDeviceFeatures2 fills.
 Features features_in(const VkPhysicalDeviceFeatures2& chain) {
   Features found;
   found.write_without_format = chain.features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
@@ -81,7 +81,8 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
     return unsupported(name + " has Vulkan " + version_text(properties.apiVersion) +
                        ", and at least 1.2 is needed; choose another or update its driver.");
   }
-  // A device that knows neither Vulkan 1.3 nor the extension leaves the structure as it is.
+  // A device without Vulkan 1.3 and without VK_KHR_synchronization2 does not write this struct,
+  // whose feature then stays false.
   VkPhysicalDeviceSynchronization2Features synchronization2{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
   VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,

@@ -25,8 +25,8 @@ struct Failure {
 [[nodiscard]] Failure failure_of(const Error& error, std::string_view where);
 
 // Checks that `given`, the struct_size of a struct of the C interface, is its size in this version
-// of the header. The message names `type`. Sizes of earlier versions are to be accepted here once
-// there are any.
+// of the header. The message names `type`. When a later
+// version of the header enlarges a struct, this function is the place to accept the earlier size.
 [[nodiscard]] inline tl::expected<void, Failure> check_size(std::uint32_t given, std::size_t known,
                                                             std::string_view type) {
   if (given == known) {

@@ -10,7 +10,8 @@ namespace alcove::passes {
 // Returns an error if the allocators of AlcoveContextInfo are incomplete.
 [[nodiscard]] tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info);
 
-// Must not move, and must outlive every user of services().
+// Calls the engine's allocators and log from the hooks of the C++ libraries. The object must not
+// move and must outlive every user of services().
 class HostAdapter {
  public:
   explicit HostAdapter(const AlcoveContextInfo& info);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "format_name.h"
+#include "kept_channels.h"
 
 namespace alcove::passes {
 namespace {
@@ -106,7 +107,13 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
   if (image.width == 0 || image.height == 0) {
     return fail("is " + size(image) + " pixels; each side must be at least 1.");
   }
-  if (image.width != depth.width || image.height != depth.height) {
+  if (role.half_size) {
+    const AlcoveImage half{.width = (depth.width + 1) / 2, .height = (depth.height + 1) / 2};
+    if (image.width != half.width || image.height != half.height) {
+      return fail("is " + size(image) + " pixels; with half_size_outputs it must be " + size(half) +
+                  ", half of depth's " + size(depth) + " rounded up.");
+    }
+  } else if (image.width != depth.width || image.height != depth.height) {
     return fail("is " + size(image) + " pixels and that of depth " + size(depth) +
                 "; make them equal.");
   }
@@ -114,6 +121,10 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
     return fail("has " + std::to_string(image.samples) +
                 " samples a pixel; resolve it first, depth and normals to sample 0 "
                 "(VK_RESOLVE_MODE_SAMPLE_ZERO_BIT).");
+  }
+  if (role.keeps_channels && kept_channels(image.format) < role.channels) {
+    return fail("has the format " + format_name(image.format) +
+                ", of which visibility_channel cannot be written alone; " + kKeptFormats + ".");
   }
   if (!suits(role, image.format)) {
     return fail("has the format " + format_name(image.format) + "; it must be " +
@@ -123,16 +134,18 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
       image.final_state.layout == VK_IMAGE_LAYOUT_PREINITIALIZED) {
     return fail("has no layout to be left in; set AlcoveImage::final_state.");
   }
-  if (!role.output && image.initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
+  if ((!role.output || role.keeps_channels) &&
+      image.initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
     return fail(
         "arrives in VK_IMAGE_LAYOUT_UNDEFINED, without contents; set AlcoveImage::initial_state to "
         "how it was left.");
   }
-  const VkImageUsageFlags needed =
-      role.output ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
-  if ((image.usage & needed) == 0) {
+  const bool lacks_storage = role.output && (image.usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
+  const bool lacks_sampled =
+      (!role.output || role.keeps_channels) && (image.usage & VK_IMAGE_USAGE_SAMPLED_BIT) == 0;
+  if (lacks_storage || lacks_sampled) {
     return fail(std::string("was made without ") +
-                (role.output ? "VK_IMAGE_USAGE_STORAGE_BIT" : "VK_IMAGE_USAGE_SAMPLED_BIT") +
+                (lacks_storage ? "VK_IMAGE_USAGE_STORAGE_BIT" : "VK_IMAGE_USAGE_SAMPLED_BIT") +
                 ", or AlcoveImage::usage does not say so.");
   }
   return {};

@@ -17,6 +17,8 @@ struct ImageRole {
   enum class Kind : std::uint8_t { depth, colour, signed_colour } kind = Kind::colour;
   std::uint32_t channels = 1;  // that the format has at least
   bool output = false;
+  bool keeps_channels = false;  // one channel of the output is written, the others are kept
+  bool half_size = false;       // it has half of depth's size, rounded up
 };
 
 // The images of one frame. An image that serves as several inputs becomes one texture of the graph.
@@ -27,7 +29,7 @@ class ImageTable {
   void reset() { count_ = 0; }
 
   // Imports an image of the view with the id `view`. Returns a null texture if there is no image.
-  // The image must have the size of `depth`.
+  // The size of the image must be that of `depth`, or with ImageRole::half_size half of it.
   [[nodiscard]] tl::expected<framegraph::Texture, Failure> import(framegraph::Graph& graph,
                                                                   const ImageRole& role,
                                                                   const AlcoveImage& image,

@@ -89,8 +89,9 @@ tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveV
     context.vk.vkCmdCopyImageToBuffer(context.commands, context.image(samples),
                                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(buffer),
                                       1, &region);
-    // The number lies in the command buffer, and not in memory that the next frame of a slot
-    // overwrites. It tells which frame the device has really finished.
+    // The command buffer itself holds the serial number, so that recording the next frame of the
+    // slot does not overwrite it. The number in the buffer is therefore that of the last frame that
+    // the device has finished.
     context.vk.vkCmdUpdateBuffer(context.commands, context.buffer(buffer), kTexelBytes,
                                  sizeof serial, &serial);
   });

@@ -22,7 +22,8 @@ class PixelObserver {
   PixelObserver(const PixelObserver&) = delete;
   PixelObserver& operator=(const PixelObserver&) = delete;
 
-  // Reads the samples of the last frame with this slot, which should have finished on the device.
+  // Reads the samples of the last frame that was recorded with this slot. If that frame has not
+  // finished on the device, counts it as a slot that was reused too early.
   void collect(std::uint32_t slot);
   // Adds the passes that sample a view. Its samples are read only if recorded() is called.
   [[nodiscard]] tl::expected<void, Failure> add(const Frame& frame, const AlcoveView& view,

@@ -101,7 +101,7 @@ AlcoveAdvancedSettings from_advanced(const AdvancedSettings& settings) {
   return result;
 }
 
-// The target of AlcoveSettings::advanced in the preset REFERENCE.
+// Returns the constants that AlcoveSettings::advanced points to in the preset REFERENCE.
 const AlcoveAdvancedSettings* reference_advanced() {
   static const AlcoveAdvancedSettings settings =
       from_advanced(quality_settings(Quality::reference, 1.0f).advanced);

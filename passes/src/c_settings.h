@@ -21,12 +21,13 @@ template <typename Theirs>
   return number;
 }
 
-// Settings that validate() accepts. `visibility` and `bent_normal` have their defaults, and
-// `specular` is the model, as if an image of it were given. `given` may be null, which is a
-// failure.
+// Converts settings and checks them with validate(). `visibility` and `bent_normal` of the result
+// have their defaults, and `specular` is the model of `given`, because only the images of a view
+// say which outputs are requested. Returns a failure if `given` is null.
 [[nodiscard]] tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given);
 
-// The result's `advanced` points to `advanced`.
+// Converts settings to those of the C interface. `advanced` receives the advanced settings, and the
+// result points to it.
 [[nodiscard]] AlcoveSettings from_settings(const OcclusionSettings& settings,
                                            AlcoveAdvancedSettings& advanced);
 

@@ -21,9 +21,6 @@ constexpr ImageRole kMotion{"motion vectors", Kind::signed_colour, 2};
 constexpr ImageRole kBackDepth{"back-face depth", Kind::depth};
 constexpr ImageRole kSecondDepth{"second depth", Kind::depth};
 constexpr ImageRole kAlbedo{"albedo", Kind::colour, 3};
-constexpr ImageRole kVisibility{"visibility", Kind::colour, 1, true};
-constexpr ImageRole kBentNormal{"bent normals", Kind::signed_colour, 3, true};
-constexpr ImageRole kSpecular{"specular occlusion", Kind::colour, 1, true};
 constexpr ImageRole kMultiBounce{"multi-bounce", Kind::colour, 3, true};
 
 struct Textures {
@@ -91,6 +88,42 @@ ImageRole normals_role(NormalEncoding encoding) {
   return {"normals", packed ? Kind::colour : Kind::signed_colour, two ? 2u : 3u};
 }
 
+ImageRole visibility_role(VisibilityChannel channel, bool half_size) {
+  return {"visibility",
+          Kind::colour,
+          channel_index(channel) + 1,
+          true,
+          channel != VisibilityChannel::all,
+          half_size};
+}
+
+tl::expected<VisibilityChannel, Failure> visibility_channel(const AlcoveView& view) {
+  const std::uint32_t number = number_of(view.visibility_channel);
+  if (number > static_cast<std::uint32_t>(VisibilityChannel::alpha)) {
+    return invalid(sentence_begin(view) + ": AlcoveView::visibility_channel is " +
+                   std::to_string(number) + ", which is none of its values.");
+  }
+  return static_cast<VisibilityChannel>(number);
+}
+
+// Checks what outputs of half size need.
+tl::expected<void, Failure> check_half_size(const AlcoveView& view,
+                                            const OcclusionSettings& settings) {
+  if (view.half_size_outputs == VK_FALSE) {
+    return {};
+  }
+  if (!settings.half_resolution) {
+    return invalid(sentence_begin(view) +
+                   " has half_size_outputs, which needs half_resolution in its settings.");
+  }
+  if (view.multi_bounce.image != VK_NULL_HANDLE) {
+    return invalid(sentence_begin(view) +
+                   " has half_size_outputs and an image of multi-bounce, which is made from "
+                   "visibility of full size; leave one of them out.");
+  }
+  return {};
+}
+
 MotionConvention motion_convention(const AlcoveView& view) {
   MotionConvention result{{view.motion_scale[0], view.motion_scale[1]},
                           {view.motion_offset[0], view.motion_offset[1]}};
@@ -110,12 +143,22 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
   if (!encoding) {
     return tl::unexpected(encoding.error());
   }
+  const auto channel = visibility_channel(view);
+  if (!channel) {
+    return tl::unexpected(channel.error());
+  }
+  const bool half_size = view.half_size_outputs != VK_FALSE;
   const ImageRole normals = normals_role(*encoding);
+  const ImageRole visibility = visibility_role(*channel, half_size);
+  const ImageRole bent_normal{"bent normals", Kind::signed_colour, 3, true, false, half_size};
+  const ImageRole specular{"specular occlusion", Kind::colour, 1, true, false, half_size};
   Textures textures;
   textures.inputs.normals_in_view_space = view.normals_in_view_space != VK_FALSE;
   textures.inputs.normal_encoding = *encoding;
   textures.inputs.normals_forward_z = view.normals_forward_z != VK_FALSE;
   textures.inputs.motion_convention = motion_convention(view);
+  textures.inputs.visibility_channel = *channel;
+  textures.inputs.half_size_outputs = half_size;
   struct Import {
     const ImageRole& role;
     const AlcoveImage& image;
@@ -130,9 +173,9 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
       {kBackDepth, view.back_depth, textures.inputs.back_depth_ndc},
       {kSecondDepth, view.second_depth, textures.inputs.second_depth_ndc},
       {kAlbedo, view.albedo, textures.albedo},
-      {kVisibility, view.visibility, textures.inputs.into.visibility},
-      {kBentNormal, view.bent_normal, textures.inputs.into.bent_normal},
-      {kSpecular, view.specular, textures.inputs.into.specular},
+      {visibility, view.visibility, textures.inputs.into.visibility},
+      {bent_normal, view.bent_normal, textures.inputs.into.bent_normal},
+      {specular, view.specular, textures.inputs.into.specular},
       {kMultiBounce, view.multi_bounce, textures.multi_bounce}};
   for (const Import& import : imports) {
     auto texture = images.import(graph, import.role, import.image, view.depth, view.id);
@@ -153,8 +196,12 @@ tl::expected<void, Failure> add_passes(const Frame& frame, const Textures& textu
   if (!textures.multi_bounce) {
     return {};
   }
-  const auto multi_bounce = add_multi_bounce(
-      frame, {outputs->visibility, textures.albedo, textures.multi_bounce}, settings.precision);
+  const auto multi_bounce =
+      add_multi_bounce(frame,
+                       {outputs->visibility, textures.albedo, textures.multi_bounce,
+                        textures.inputs.into.visibility ? textures.inputs.visibility_channel
+                                                        : VisibilityChannel::all},
+                       settings.precision);
   if (!multi_bounce) {
     return tl::unexpected(failure_of(multi_bounce.error(), sentence_begin(view)));
   }
@@ -176,7 +223,10 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   }
   OcclusionSettings& settings = *given;
   const bool reset = view.reset_history != VK_FALSE;
-  auto right = check_given(view).and_then([&] { return check_hidden(view, settings); });
+  auto right =
+      check_given(view).and_then([&] { return check_hidden(view, settings); }).and_then([&] {
+        return check_half_size(view, settings);
+      });
   if (!right) {
     return right;
   }

@@ -6,6 +6,7 @@
 
 #include "check_inputs.h"
 #include "format_name.h"
+#include "kept_channels.h"
 #include "number_text.h"
 #include "output_format.h"
 
@@ -28,15 +29,50 @@ tl::expected<void, Error> check_motion(const MotionConvention& motion) {
 
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
   const auto or_depth = [&](Texture texture) { return texture ? texture : inputs.depth_ndc; };
-  const std::array<NamedInput, 7> needed{
-      {{"depth", inputs.depth_ndc},
-       {"normals", inputs.normals},
-       {"motion vectors", or_depth(inputs.motion)},
-       {"roughness", or_depth(inputs.roughness)},
-       {"a texture for visibility", or_depth(inputs.into.visibility)},
-       {"a texture for bent normals", or_depth(inputs.into.bent_normal)},
-       {"a texture for specular occlusion", or_depth(inputs.into.specular)}}};
+  const std::array<NamedInput, 4> needed{{{"depth", inputs.depth_ndc},
+                                          {"normals", inputs.normals},
+                                          {"motion vectors", or_depth(inputs.motion)},
+                                          {"roughness", or_depth(inputs.roughness)}}};
   return check_inputs(frame.graph, "reconstruct", needed);
+}
+
+// Checks the sizes of the caller's textures for results.
+tl::expected<void, Error> check_result_sizes(const Frame& frame, const ReconstructInputs& inputs) {
+  const VkExtent3D depth = frame.graph.extent(inputs.depth_ndc);
+  const bool half = inputs.half_size_results;
+  const VkExtent2D wanted{half ? (depth.width + 1) / 2 : depth.width,
+                          half ? (depth.height + 1) / 2 : depth.height};
+  const std::array<NamedInput, 3> given{{{"visibility", inputs.into.visibility},
+                                         {"bent normals", inputs.into.bent_normal},
+                                         {"specular occlusion", inputs.into.specular}}};
+  for (const NamedInput& texture : given) {
+    if (!texture.texture) {
+      continue;
+    }
+    const VkExtent3D found = frame.graph.extent(texture.texture);
+    if (found.width != wanted.width || found.height != wanted.height) {
+      return tl::unexpected(
+          Error{"The pass reconstruct was given a texture for " + std::string(texture.name) +
+                " of " + std::to_string(found.width) + "x" + std::to_string(found.height) +
+                " pixels; it needs one of " + std::to_string(wanted.width) + "x" +
+                std::to_string(wanted.height) +
+                (half ? ", half the depth's size rounded up." : ", the depth's size.")});
+    }
+  }
+  return {};
+}
+
+// Checks that the channels beside that of visibility can be read and written back.
+tl::expected<void, Error> check_channel(const Frame& frame, const ReconstructInputs& inputs) {
+  if (inputs.visibility_channel == VisibilityChannel::all) {
+    return {};
+  }
+  const VkFormat format = frame.graph.format(inputs.into.visibility);
+  if (channel_index(inputs.visibility_channel) >= kept_channels(format)) {
+    return tl::unexpected(Error{"Visibility cannot be written to a channel of the format " +
+                                format_name(format) + "; " + kKeptFormats + "."});
+  }
+  return {};
 }
 
 // Checks size and format of a texture of the raw occlusion, which the caller may have made.
@@ -100,7 +136,16 @@ tl::expected<void, Error> check_reconstruct(const Frame& frame, const Reconstruc
   }
   return validate(settings)
       .and_then([&] { return check_motion(inputs.motion_convention); })
+      .and_then([&]() -> tl::expected<void, Error> {
+        if (inputs.half_size_results && !settings.half_resolution) {
+          return tl::unexpected(
+              Error{"Outputs of half size need the setting half_resolution; it is off."});
+        }
+        return {};
+      })
       .and_then([&] { return check_textures(frame, inputs); })
+      .and_then([&] { return check_result_sizes(frame, inputs); })
+      .and_then([&] { return check_channel(frame, inputs); })
       .and_then([&] { return check_raw_occlusion(frame, inputs, settings.half_resolution); });
 }
 

@@ -166,6 +166,21 @@ DescriptorSets::Claim DescriptorSets::claim(framegraph::RecordContext& context,
   return {dispatches_++, replaced.set, false};
 }
 
+// Returns true if the dispatch binds `view` as a storage image.
+bool DescriptorSets::is_stored_to(const DispatchBindings& bound, VkImageView view) {
+  std::size_t image = 0;
+  for (const ShaderBinding& binding : bound.interface->bindings) {
+    const bool stored = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    const bool is_image = stored || binding.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE ||
+                          binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    if (stored && bound.views[image] == view) {
+      return true;
+    }
+    image += is_image ? 1 : 0;
+  }
+  return false;
+}
+
 void DescriptorSets::write(VkDescriptorSet set, const DispatchBindings& bound,
                            VkDeviceSize offset) {
   const VkDescriptorBufferInfo parameters{parameters_->buffer(), offset, bound.parameters.size()};
@@ -186,10 +201,11 @@ void DescriptorSets::write(VkDescriptorSet set, const DispatchBindings& bound,
     } else if (binding.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) {
       write.pBufferInfo = &table;
     } else {
-      const bool is_stored = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-      images.at(image_count) = {
-          VK_NULL_HANDLE, bound.views[image_count],
-          is_stored ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      const VkImageView view = bound.views[image_count];
+      images.at(image_count) = {VK_NULL_HANDLE, view,
+                                is_stored_to(bound, view)
+                                    ? VK_IMAGE_LAYOUT_GENERAL
+                                    : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.pImageInfo = &images.at(image_count++);
     }
   }

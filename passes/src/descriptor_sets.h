@@ -16,7 +16,7 @@
 
 namespace alcove::passes {
 
-inline constexpr std::size_t kMaxBindings = 16;  // of a shader, with its parameters
+inline constexpr std::size_t kMaxBindings = 17;  // of a shader, with its parameters
 
 // One dispatch: its shader, and the objects that its descriptor set points to.
 struct DispatchBindings {
@@ -92,6 +92,7 @@ class DescriptorSets {
   VkResult create_pools(std::span<const ShaderInterface> interfaces, std::uint32_t slot_count);
   VkResult allocate(Set& set, const DispatchBindings& bound);
   Claim claim(framegraph::RecordContext& context, const DispatchBindings& bound);
+  static bool is_stored_to(const DispatchBindings& bound, VkImageView view);
   void write(VkDescriptorSet set, const DispatchBindings& bound, VkDeviceSize offset);
 
   const framegraph::VulkanFunctions& vk_;

@@ -66,7 +66,8 @@ tl::expected<Texture, Error> add_gtso(const Frame& frame, const GtsoInputs& inpu
   const auto constants = std::to_array<NamedConstant>(
       {{"kRoughnessTexture", flag(textured)},
        {"kRoughnessChannel", channel_if(textured, settings.roughness_channel)},
-       {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)}});
+       {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+       {"kVisibilityChannel", channel_index(inputs.visibility_channel)}});
   const auto kernel = frame.kernels.get(
       settings.specular == Specular::table ? Shader::gtso_by_table : Shader::gtso, constants);
   if (!kernel) {

@@ -20,6 +20,14 @@ constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 // The least number of samples from which a mistake is concluded.
 constexpr std::size_t kEnoughSamples = 100;
 
+// Limits for the comparison of slants.
+constexpr double kSameTurn = 0.966;     // cosine of 15 degrees about the view axis
+constexpr double kStoredError = 0.002;  // of stored normals, radians: that of 10 bits a channel
+constexpr double kRatioError = 0.05;    // of the tangents' ratio at one sample
+constexpr double kOblique = 0.3;        // half the sine of twice the slant: 18 to 72 degrees
+constexpr double kLeastScale = 0.14;    // logarithm of 1.15, below which a scale is not reported
+constexpr double kLargestSpread = 0.5;  // between the quartiles of the ratios' logarithms
+
 // A sample on a smooth surface: its position, the differences between the positions of opposite
 // neighbours, and the stored normal.
 struct SmoothSample {
@@ -27,6 +35,7 @@ struct SmoothSample {
   dvec3 along_x;
   dvec3 along_y;
   maths::vec3 stored;
+  double tilt_error = 0.0;  // of the normal of depth, by the step of the format, radians
 };
 
 // A hypothesis of how the normals are stored and which projection drew the depth.
@@ -76,10 +85,9 @@ class Inspector {
       found.at(static_cast<std::size_t>(mistake)) = is;
     };
     set(Mistake::image_too_small, is_too_small());
-    const bool reversed = is_depth_reversed();
-    set(Mistake::depth_reversed, reversed);
-    if (reversed) {
-      return found;  // the other checks would fail because of it
+    set(Mistake::depth_reversed, is_depth_reversed());
+    if (is_too_small() || is_depth_reversed()) {
+      return found;  // other checks would find mistakes that are consequences of this one
     }
     const bool from_minus_one = is_depth_from_minus_one();
     set(Mistake::depth_from_minus_one, from_minus_one);
@@ -204,6 +212,7 @@ class Inspector {
     result.stored = {s.normal[0], s.normal[1], s.normal[2]};
     const double error = maths::distance(at(0, 0, s.depth + step), result.position);
     const double width = maths::distance(at(1, 0, s.depth), at(-1, 0, s.depth));
+    result.tilt_error = error / width;
     if (!(error <= 0.02 * width) || !maths::has_direction(result.stored)) {
       return std::nullopt;
     }
@@ -369,7 +378,69 @@ class Inspector {
     }
   }
 
+  // Compares the slants of normals from depth with those of given normals, where slant is the angle
+  // to the view axis. Another angle of view multiplies the tangent of every slant by one number.
+  // Surfaces along or across the view axis do not change their slant and are left out.
+  bool has_other_slants(const Reading& given) const {
+    std::vector<double> exact, oblique;  // logarithms of the ratio of the tangents
+    for (const SmoothSample& s : smooth_) {
+      const dvec3 own = maths::normalize(own_normal(s, given));
+      const dvec3 stored = maths::normalize(given_normal(s, given));
+      const double own_across = std::hypot(own.x, own.y);
+      const double stored_across = std::hypot(stored.x, stored.y);
+      const double side = own.z * stored.z < 0.0 ? -1.0 : 1.0;  // either may face away
+      // An angle of view does not turn a surface about the view axis.
+      const double turn = side * (own.x * stored.x + own.y * stored.y);
+      if (!(turn > kSameTurn * own_across * stored_across)) {
+        continue;
+      }
+      const double ratio =
+          std::log(own_across * std::abs(stored.z) / (stored_across * std::abs(own.z)));
+      // Half the sine of twice the slant: the inverse of it is how much an error of the angle
+      // changes the logarithm.
+      const double sensitivity =
+          std::min(own_across * std::abs(own.z), stored_across * std::abs(stored.z));
+      if (sensitivity * kRatioError > std::max(s.tilt_error, kStoredError)) {
+        exact.push_back(ratio);
+      }
+      if (sensitivity > kOblique) {
+        oblique.push_back(ratio);
+      }
+    }
+    return is_another_scale(exact, kRatioError) || is_another_scale_with_noise(oblique);
+  }
+
+  // Returns true if more than half of the logarithms agree on a number that is not near 0.
+  static bool is_another_scale(const std::vector<double>& logarithms, double tolerance) {
+    if (logarithms.size() < kEnoughSamples) {
+      return false;
+    }
+    const double median = quantile(logarithms, 0.5);
+    const auto share_near = [&](double value) {
+      const auto near = std::ranges::count_if(
+          logarithms, [&](double log) { return std::abs(log - value) <= tolerance; });
+      return static_cast<double>(near) / static_cast<double>(logarithms.size());
+    };
+    return std::abs(median) > kLeastScale && share_near(median) > 0.5 && share_near(0.0) < 0.1;
+  }
+
+  // Shading normals and normal maps make each logarithm uncertain, but not their median.
+  static bool is_another_scale_with_noise(const std::vector<double>& logarithms) {
+    if (logarithms.size() < kEnoughSamples) {
+      return false;
+    }
+    const double median = quantile(logarithms, 0.5);
+    const double spread = quantile(logarithms, 0.75) - quantile(logarithms, 0.25);
+    // The standard error of the median of normally distributed numbers with this spread between
+    // their quartiles.
+    const double error = 0.93 * spread / std::sqrt(static_cast<double>(logarithms.size()));
+    return spread < kLargestSpread && std::abs(median) > kLeastScale + 4.0 * error;
+  }
+
   bool has_other_angle_of_view(const Reading& given) const {
+    if (has_other_slants(given)) {
+      return true;
+    }
     const std::vector<SmoothSample> samples = samples_that_tell_angle_of_view(given);
     if (samples.size() < kEnoughSamples) {
       return false;

@@ -22,7 +22,9 @@ tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBou
   if (auto good = check_inputs(frame.graph, "multi-bounce", named); !good) {
     return tl::unexpected(std::move(good.error()));
   }
-  const auto kernel = frame.kernels.get(Shader::multi_bounce);
+  const auto constants = std::to_array<NamedConstant>(
+      {{"kVisibilityChannel", channel_index(inputs.visibility_channel)}});
+  const auto kernel = frame.kernels.get(Shader::multi_bounce, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }

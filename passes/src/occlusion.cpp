@@ -1,6 +1,9 @@
 #include "alcove/passes/occlusion.h"
 
+#include <string>
 #include <utility>
+
+#include "alcove/passes/setting_names.h"
 
 namespace alcove::passes {
 namespace {
@@ -29,7 +32,9 @@ tl::expected<OcclusionOutputs, Error> add_model(const Frame& frame, OcclusionOut
                    .normal_encoding =
                        inputs.normals ? inputs.normal_encoding : NormalEncoding::signed_xyz,
                    .normals_forward_z = inputs.normals && inputs.normals_forward_z,
-                   .into = inputs.into.specular},
+                   .into = inputs.into.specular,
+                   .visibility_channel =
+                       inputs.into.visibility ? inputs.visibility_channel : VisibilityChannel::all},
                   settings)
       .map([&](framegraph::Texture specular) {
         outputs.specular = specular;
@@ -45,6 +50,11 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                                     std::string_view history_name) {
   if (auto good = validate(settings); !good) {
     return tl::unexpected(std::move(good.error()));
+  }
+  if (inputs.half_size_outputs && specular_reads_bent_normal(settings)) {
+    return tl::unexpected(Error{
+        "The setting 'specular' is " + std::string(name_of(settings.specular)) +
+        "; outputs of half size need slices, because that model reads outputs of full size."});
   }
   const auto depth = add_linear(frame, inputs, settings);
   if (!depth) {
@@ -85,7 +95,9 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                          .into = inputs.into,
                                          .normal_encoding = encoding,
                                          .normals_forward_z = forward_z,
-                                         .motion_convention = inputs.motion_convention},
+                                         .motion_convention = inputs.motion_convention,
+                                         .visibility_channel = inputs.visibility_channel,
+                                         .half_size_results = inputs.half_size_outputs},
                                         settings, history_name);
   if (!filtered) {
     return tl::unexpected(filtered.error());

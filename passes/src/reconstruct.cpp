@@ -53,7 +53,7 @@ Past past_of(const Frame& frame, const ReconstructSizes& sizes, bool history_val
   return Past::unchanged;
 }
 
-std::array<NamedConstant, 14> constants_of(const ReconstructInputs& inputs,
+std::array<NamedConstant, 16> constants_of(const ReconstructInputs& inputs,
                                            const OcclusionSettings& settings,
                                            const maths::Projection& projection, Past past) {
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
@@ -70,7 +70,9 @@ std::array<NamedConstant, 14> constants_of(const ReconstructInputs& inputs,
            {"kVisibility", flag(needs_visibility(settings))},
            {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
            {"kShaped", flag(!settings.half_resolution && shaped)},
-           {"kReversed", flag(is_reversed(projection))}}};
+           {"kReversed", flag(is_reversed(projection))},
+           {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
+           {"kVisibilityChannel", channel_index(inputs.visibility_channel)}}};
 }
 
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInputs& inputs,
@@ -114,6 +116,9 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   }
   if (!inputs.raw_occlusion.lobe) {
     inputs.roughness = {};
+  }
+  if (!inputs.into.visibility || !needs_visibility(settings)) {
+    inputs.visibility_channel = VisibilityChannel::all;
   }
   if (auto good = check_reconstruct(frame, inputs, settings); !good) {
     return tl::unexpected(good.error());
@@ -179,7 +184,9 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
                        .normals = inputs.normals,
                        .normals_in_view_space = inputs.normals_in_view_space,
                        .normal_encoding = inputs.normal_encoding,
-                       .normals_forward_z = inputs.normals_forward_z},
+                       .normals_forward_z = inputs.normals_forward_z,
+                       .visibility_channel = inputs.visibility_channel,
+                       .half_size_results = inputs.half_size_results},
                       textures.result, settings);
 }
 

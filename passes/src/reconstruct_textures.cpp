@@ -117,7 +117,9 @@ ReconstructTextures create_reconstruct_textures(const Frame& frame, const Recons
                                                 const ReconstructSizes& sizes,
                                                 std::string_view history_name, bool& valid) {
   Graph& graph = frame.graph;
-  const auto size = framegraph::Extent::absolute(sizes.now.width, sizes.now.height);
+  const auto size = inputs.half_size_results
+                        ? texels(sizes.now, settings)
+                        : framegraph::Extent::absolute(sizes.now.width, sizes.now.height);
   const auto largest = texels(sizes.largest, settings);
   ReconstructTextures textures{.inputs = inputs};
   if (needs_visibility(settings)) {
@@ -162,7 +164,9 @@ void declare_reconstruct_accesses(const Graph& graph, framegraph::PassBuilder& p
   read(textures.inputs.motion, sampled);
   read(textures.inputs.roughness, sampled);
   if (!is_half(textures)) {
-    write(textures.result.visibility);
+    if (Texture& visibility = textures.result.visibility) {
+      visibility = write_channel(graph, pass, visibility, textures.inputs.visibility_channel);
+    }
     write(textures.result.bent_normal);
     write(textures.result.specular);
   }
@@ -185,6 +189,7 @@ ReconstructViews reconstruct_views(RecordContext& context, const ReconstructText
   const Texture written = any_of(out);
   // At half resolution the normals may be null.
   const Texture sampled = half ? in.depth_ndc : in.normals;
+  const bool keeps = in.visibility_channel != VisibilityChannel::all;
   const HistoryTextures& history = textures.history;
   return {{{"raw_image", view(in.raw_occlusion.raw_occlusion)},
            {"bent_image", view(in.raw_occlusion.bent, in.raw_occlusion.raw_occlusion)},
@@ -194,6 +199,7 @@ ReconstructViews reconstruct_views(RecordContext& context, const ReconstructText
            {"half_depth_image", view(textures.depth_history.next)},
            {"visibility_image", view(out.visibility, written)},
            {"bent_normal_image", view(out.bent_normal, written)},
+           {"kept_image", view(keeps ? out.visibility : sampled)},
            {"history_image", view(history.previous)},
            {"history_depth_image", view(textures.depth_history.previous)},
            {"next_history_image", view(history.next)},

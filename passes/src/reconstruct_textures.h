@@ -46,7 +46,7 @@ void declare_reconstruct_accesses(const framegraph::Graph& graph, framegraph::Pa
                                   ReconstructTextures& textures);
 
 // A view for each image binding that a variant of the shader can have.
-using ReconstructViews = std::array<NamedView, 18>;
+using ReconstructViews = std::array<NamedView, 19>;
 
 // Returns the image views of a dispatch. An image that the shader variant does not use is replaced
 // by another image of the same type, because every binding needs a view. The view may be null if

@@ -10,6 +10,8 @@
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
 #include "spirv/gtso_by_table.h"
+#include "spirv/half_output.h"
+#include "spirv/half_output_specular.h"
 #include "spirv/inspect.h"
 #include "spirv/linear_depth.h"
 #include "spirv/multi_bounce.h"
@@ -59,6 +61,10 @@ ShaderSource shader_source(Shader shader) {
       return {"upsample", kUpsample};
     case Shader::upsample_specular:
       return {"upsample_specular", kUpsampleSpecular};
+    case Shader::half_output:
+      return {"half_output", kHalfOutput};
+    case Shader::half_output_specular:
+      return {"half_output_specular", kHalfOutputSpecular};
     case Shader::multi_bounce:
       return {"multi_bounce", kMultiBounce};
     case Shader::gtso:

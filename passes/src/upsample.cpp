@@ -20,6 +20,13 @@ namespace {
 // `alcove compare --set half_resolution=true` over the development views.
 constexpr float kTolerancePx = 1.0f;
 
+Shader shader_of(const UpsampleInputs& inputs, const Occlusion& result) {
+  if (inputs.half_size_results) {
+    return result.specular ? Shader::half_output_specular : Shader::half_output;
+  }
+  return result.specular ? Shader::upsample_specular : Shader::upsample;
+}
+
 tl::expected<Kernel, Error> get_kernel(const Frame& frame, const UpsampleInputs& inputs,
                                        const Occlusion& result, const OcclusionSettings& settings,
                                        const maths::Projection& projection) {
@@ -31,16 +38,19 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const UpsampleInputs&
        {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
        {"kBentNormal", flag(bool(result.bent_normal))},
        {"kNormalEncoding", encoding},
-       {"kReversed", flag(is_reversed(projection))}});
-  return frame.kernels.get(result.specular ? Shader::upsample_specular : Shader::upsample,
-                           constants);
+       {"kReversed", flag(is_reversed(projection))},
+       {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
+       {"kVisibilityChannel", channel_index(inputs.visibility_channel)}});
+  return frame.kernels.get(shader_of(inputs, result), constants);
 }
 
 void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
                       const UpsampleInputs& inputs, Occlusion& result) {
   const auto& sampled = framegraph::access::sampled_compute;
   pass.read(inputs.half, sampled);
-  pass.read(inputs.half_depth, sampled);
+  if (!inputs.half_size_results) {
+    pass.read(inputs.half_depth, sampled);
+  }
   pass.read(inputs.depth_ndc, sampled);
   if (result.bent_normal) {
     pass.read(inputs.normals, sampled);
@@ -49,7 +59,11 @@ void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
   if (result.specular) {
     pass.read(inputs.lobes, sampled);
   }
-  for (Texture* const written : {&result.visibility, &result.bent_normal, &result.specular}) {
+  if (result.visibility) {
+    result.visibility =
+        write_channel(frame.graph, pass, result.visibility, inputs.visibility_channel);
+  }
+  for (Texture* const written : {&result.bent_normal, &result.specular}) {
     if (*written) {
       *written = write_result(frame.graph, pass, *written);
     }
@@ -91,7 +105,8 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
     return tl::unexpected(kernel.error());
   }
   Occlusion out = result;
-  auto pass = frame.graph.add_pass("upsample");
+  auto pass =
+      frame.graph.add_pass(inputs.half_size_results ? "half-resolution output" : "upsample");
   declare_accesses(frame, pass, inputs, out);
   pass.record(
       [&kernels = frame.kernels, kernel = *kernel, inputs, out,
@@ -99,9 +114,11 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
         const Texture written = out.visibility    ? out.visibility
                                 : out.bent_normal ? out.bent_normal
                                                   : out.specular;
+        const bool keeps = inputs.visibility_channel != VisibilityChannel::all;
         const auto views = std::to_array<NamedView>(
             {{"half_image", context.view(inputs.half)},
-             {"half_depth_image", context.view(inputs.half_depth)},
+             {"half_depth_image",
+              context.view(inputs.half_size_results ? inputs.half : inputs.half_depth)},
              {"depth_image", context.view(inputs.depth_ndc)},
              {"normal_image",
               view_or(context, out.bent_normal ? inputs.normals : Texture{}, inputs.depth_ndc)},
@@ -109,12 +126,14 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
               view_or(context, out.bent_normal ? inputs.residuals : Texture{}, inputs.half)},
              {"visibility_image", view_or(context, out.visibility, written)},
              {"bent_normal_image", view_or(context, out.bent_normal, written)},
+             {"kept_image", context.view(keeps ? out.visibility : inputs.depth_ndc)},
              {"lobe_image", view_or(context, inputs.lobes, inputs.half)},
              {"specular_image", view_or(context, out.specular, written)}});
-        // Each invocation handles the pixels between four texels, so that one more row and column
-        // are needed.
+        // Each invocation of the upsampling handles the pixels between four texels, so that one
+        // more row and column are needed.
+        const std::uint32_t more = inputs.half_size_results ? 0 : 1;
         kernels.dispatch(context, kernel, views, bytes_of(parameters),
-                         {inputs.half_size.width + 1, inputs.half_size.height + 1, 1});
+                         {inputs.half_size.width + more, inputs.half_size.height + more, 1});
       });
   return out;
 }

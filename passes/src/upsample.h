@@ -16,10 +16,12 @@ struct UpsampleInputs {
   bool normals_in_view_space = false;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;
+  VisibilityChannel visibility_channel = VisibilityChannel::all;  // as ReconstructInputs has it
+  bool half_size_results = false;  // as ReconstructInputs has it: nothing is upsampled
 };
 
-// Adds the pass that writes `result`. Its textures have the size of the depth and were created but
-// not yet written. A texture of `result` that is null is not written.
+// Adds the pass that writes `result`. Its textures have the size of the results and were created
+// but not yet written. A texture of `result` that is null is not written.
 //
 // Errors: a view that cannot be used, or a pipeline that cannot be created.
 [[nodiscard]] tl::expected<Occlusion, Error> add_upsample(const Frame& frame,

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "alcove/framegraph/graph.h"
+#include "alcove/passes/frame.h"
 
 namespace alcove::passes {
 
@@ -30,6 +30,21 @@ namespace alcove::passes {
   }
   return pass.write(texture, framegraph::access::storage_write_compute, {},
                     keeps ? framegraph::Contents::keep : framegraph::Contents::discard);
+}
+
+// Declares that a shader of `pass` writes `channel` of every texel of `texture`. If that is one
+// channel, the shader also samples the texture, to write the others back.
+[[nodiscard]] inline framegraph::Texture write_channel(const framegraph::Graph& graph,
+                                                       framegraph::PassBuilder& pass,
+                                                       framegraph::Texture texture,
+                                                       VisibilityChannel channel) {
+  if (channel == VisibilityChannel::all) {
+    return write_result(graph, pass, texture);
+  }
+  return pass.write(
+      texture,
+      framegraph::access::sampled_general_compute | framegraph::access::storage_write_compute, {},
+      framegraph::Contents::keep);
 }
 
 }  // namespace alcove::passes

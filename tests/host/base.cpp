@@ -40,14 +40,16 @@ void Base::open(const VkPhysicalDeviceFeatures2& features, bool async) {
   if (!async || compute_family == count) {
     compute_family = graphics_family;
   }
-  const float priority = 1.0f;
+  const bool second =
+      async && compute_family == graphics_family && families[graphics_family].queueCount > 1;
+  const std::array priorities{1.0f, 1.0f};
   std::vector<VkDeviceQueueCreateInfo> queues;
   for (const std::uint32_t family : {graphics_family, compute_family}) {
     if (queues.empty() || family != graphics_family) {
       queues.push_back({.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                         .queueFamilyIndex = family,
-                        .queueCount = 1,
-                        .pQueuePriorities = &priority});
+                        .queueCount = second ? 2u : 1u,
+                        .pQueuePriorities = priorities.data()});
     }
   }
   const VkDeviceCreateInfo device_info{
@@ -58,7 +60,7 @@ void Base::open(const VkPhysicalDeviceFeatures2& features, bool async) {
   require(vkCreateDevice(physical_device, &device_info, nullptr, &device),
           "the device cannot be opened");
   vkGetDeviceQueue(device, graphics_family, 0, &graphics_queue);
-  vkGetDeviceQueue(device, compute_family, 0, &compute_queue);
+  vkGetDeviceQueue(device, compute_family, second ? 1 : 0, &compute_queue);
   pools_.resize(count);
   for (const VkDeviceQueueCreateInfo& queue : queues) {
     const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
@@ -179,6 +181,8 @@ VkShaderModule Base::create_module(const ShaderCode& code) const {
 }
 
 VkPipeline Base::create_pipeline(const PipelineDescription& description) const {
+  const VkSpecializationMapEntry entry{0, 0, sizeof description.packed};
+  const VkSpecializationInfo constants{1, &entry, sizeof description.packed, &description.packed};
   const std::array<VkPipelineShaderStageCreateInfo, 2> stages{
       {{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
         .stage = VK_SHADER_STAGE_VERTEX_BIT,
@@ -187,7 +191,8 @@ VkPipeline Base::create_pipeline(const PipelineDescription& description) const {
        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
         .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
         .module = create_module(description.fragment),
-        .pName = "main"}}};
+        .pName = "main",
+        .pSpecializationInfo = &constants}}};
   const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
   const std::array<VkVertexInputAttributeDescription, 2> attributes{
       {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},

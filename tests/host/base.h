@@ -42,12 +42,14 @@ struct PipelineDescription {
   VkPipelineLayout layout;
   VkRenderPass render_pass;
   bool has_vertices;  // position and normal, and a depth test; else a triangle without a buffer
+  VkBool32 packed;    // the specialisation constant kPacked of the fragment shader
 };
 
 class Base {
  public:
-  // Opens the first device with a graphics queue. With `async`, also a queue of another family
-  // without graphics, if the device has one; else both queues are the same.
+  // Opens the first device with a graphics queue. With `async`, also a second queue: of another
+  // family without graphics if the device has one, else of the same family if that has two, else
+  // both queues are the same.
   void open(const VkPhysicalDeviceFeatures2& features, bool async);
   void close();
 

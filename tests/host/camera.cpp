@@ -8,9 +8,9 @@
 
 namespace host {
 
-CameraMatrices camera_matrices(float angle, float aspect) {
+CameraMatrices camera_matrices(glm::vec3 start, float angle, float aspect) {
   const glm::quat orbit = glm::angleAxis(angle, glm::vec3(0.0f, 1.0f, 0.0f));
-  const glm::vec3 eye = kTarget + orbit * (kEye - kTarget);
+  const glm::vec3 eye = kTarget + orbit * (start - kTarget);
   const glm::quat rotation = glm::quatLookAt(glm::normalize(kTarget - eye), glm::vec3(0, 1, 0));
   const glm::mat4 world_from_camera =
       glm::translate(glm::mat4(1.0f), eye) * glm::mat4_cast(rotation);

@@ -12,7 +12,7 @@ struct CameraMatrices {
   glm::mat4 view;
 };
 
-// The camera at `angle` radians about the vertical axis through the target.
-[[nodiscard]] CameraMatrices camera_matrices(float angle, float aspect);
+// The camera at `eye`, turned by `angle` radians about the vertical axis through the target.
+[[nodiscard]] CameraMatrices camera_matrices(glm::vec3 eye, float angle, float aspect);
 
 }  // namespace host

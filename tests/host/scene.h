@@ -11,12 +11,10 @@ namespace host {
 
 struct Vertex {
   glm::vec3 position;  // world space
-  glm::vec3 normal;    // nearly unit: 10 bits a channel hold it exactly
+  glm::vec3 normal;    // world space, unit
 };
 
-// The nearest vector that A2B10G10R10_UNORM holds, whose length is nearly 1. The comparison of
-// pictures is then one of the integration: with normals that are rounded by up to 0.05 degrees, 14
-// of 72,720 pixels differed by 2 to 4 steps of 8 bits.
+// The nearest vector that A2B10G10R10_UNORM holds. Its length is nearly 1.
 inline glm::vec3 in_ten_bits(glm::vec3 normal) {
   return glm::round((0.5f + 0.5f * normal) * 1023.0f) * (2.0f / 1023.0f) - 1.0f;
 }
@@ -46,8 +44,8 @@ inline void add_box(std::vector<Vertex>& vertices, glm::vec3 centre, glm::vec3 h
       constexpr std::array<glm::vec2, 6> kCorners{
           {{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}}};
       for (const glm::vec2 corner : kCorners) {
-        vertices.push_back({centre + turned(half * (normal + corner.x * u + corner.y * v)),
-                            in_ten_bits(turned(normal))});
+        vertices.push_back(
+            {centre + turned(half * (normal + corner.x * u + corner.y * v)), turned(normal)});
       }
     }
   }

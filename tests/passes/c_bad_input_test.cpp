@@ -1,5 +1,5 @@
-// Bad input of any kind is an error value and a sentence; nothing is recorded, and the next frame
-// is as if it had never been.
+// Invalid input of any kind gives an error value and a sentence. Nothing is recorded then, and the
+// next frame is the same as without the invalid call.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -24,7 +24,7 @@ bool is_a_sentence(const std::string& text) {
   return !text.empty() && text.back() == '.' && std::isupper(static_cast<unsigned char>(text[0]));
 }
 
-// A value that an enum does not have.
+// Sets an enum of the C interface to a number that need not be one of its enumerators.
 template <typename Enum>
 void set_number(Enum& value, std::uint32_t number) {
   std::memcpy(&value, &number, sizeof number);
@@ -59,7 +59,8 @@ class CBadInput : public CInterface {
     AlcoveSettings settings;
     AlcoveAdvancedSettings advanced;
   };
-  // What alcoveRecordFrame says of a frame that `spoil` changed, and alcovePrepareFrame too.
+  // Makes a valid frame invalid with `spoil` and gives it to alcovePrepareFrame and to
+  // alcoveRecordFrame. Expects the same error from both and returns its message.
   std::string error_of(const std::function<void(Spoilt&)>& spoil) {
     Spoilt spoilt{};
     spoilt.settings = settings_;
@@ -190,7 +191,7 @@ TEST_F(CBadInput, InvalidCameraIsReported) {
        [](AlcoveView& v) { v.camera.view_from_world[0] = kNaN; }},
       {"The view cannot be used: view_from_world",
        [](AlcoveView& v) { v.camera.view_from_world[0] = 2.0f; }},
-      // Row-major: the translation lies in the last row.
+      // In a row-major matrix the translation lies where this matrix has its last row.
       {"column-major", [](AlcoveView& v) { v.camera.view_from_world[3] = 5.0f; }},
       {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[0] = kNaN; }},
       {"The view cannot be used", [](AlcoveView& v) { v.camera.clip_from_view[11] = 1.0f; }},
@@ -203,7 +204,7 @@ TEST_F(CBadInput, InvalidCameraIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, PreviousCameraIsReadOnlyWhereItsViewHasAHistory) {
+TEST_F(CBadInput, PreviousCameraIsReadOnlyIfTheViewHasAHistory) {
   view().previous_camera = {};
   const AlcoveFrame frame{
       .struct_size = sizeof(AlcoveFrame), .index = 0, .view_count = 1, .views = &view()};
@@ -220,7 +221,7 @@ TEST_F(CBadInput, PreviousCameraIsReadOnlyWhereItsViewHasAHistory) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, PreviousFrameIsNotReadWithoutAHistory) {
+TEST_F(CBadInput, PreviousCameraAndSizesAreIgnoredWithoutHistory) {
   AlcoveSettings settings = *view().settings;
   settings.history_frames = 0;
   AlcoveView alone = view();
@@ -274,7 +275,8 @@ TEST_F(CBadInput, UnusableImageIsReported) {
       {"without VK_IMAGE_USAGE_SAMPLED_BIT", [](AlcoveView& v) { v.albedo.usage = 0; }},
       {"without VK_IMAGE_USAGE_STORAGE_BIT",
        [](AlcoveView& v) { v.bent_normal.usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
-      // Multi-bounce reads it.
+      // The multi-bounce pass samples the image of visibility, which therefore needs the usage
+      // SAMPLED.
       {"visibility of view 0",
        [](AlcoveView& v) { v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT; }},
       {"no layout to be left in",
@@ -300,7 +302,7 @@ TEST_F(CBadInput, UnusableImageIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, MissingBackFacesAreReported) {
+TEST_F(CBadInput, MissingImageOfBackFaceDepthIsReported) {
   const std::string said = error_of([](Spoilt& s) {
     s.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
     s.views[0].back_depth = {};
@@ -309,7 +311,7 @@ TEST_F(CBadInput, MissingBackFacesAreReported) {
   EXPECT_PRED1(is_a_sentence, said);
 }
 
-TEST_F(CBadInput, MissingSecondLayerIsReported) {
+TEST_F(CBadInput, MissingImageOfTheSecondDepthLayerIsReported) {
   const std::string said = error_of([](Spoilt& s) {
     s.settings.depth_layers = 2;
     s.views[0].second_depth = {};
@@ -398,8 +400,9 @@ TEST_F(CBadInput, UnknownQualityIsAnError) {
   EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
 }
 
-// Whatever the numbers of settings and cameras are, a frame is recorded or refused in a sentence.
-TEST_F(CBadInput, RandomNumbersAreEitherRecordedOrRefused) {
+// Random numbers in settings and cameras never crash: either the frame is recorded, or it is
+// refused with a sentence.
+TEST_F(CBadInput, FramesWithRandomNumbersAreRecordedOrRefusedWithASentence) {
   const std::uint32_t seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);

@@ -1,4 +1,5 @@
-// Cameras of other conventions, and cameras from plain numbers.
+// Tests of alcoveConvertCamera, which converts the matrices of engines with other conventions, and
+// of alcoveMakePerspective, which makes a projection from plain numbers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +20,8 @@ constexpr float kAspect = 1.5f;
 
 glm::mat4 matrix_of(const float* values) { return glm::make_mat4(values); }
 
-// glm::lookAtRH, and a projection with depth 0 to 1 and y down on the image.
+// The camera of all tests. In the library's convention its view matrix is that of glm::lookAtRH,
+// and its projection has depth 0 to 1 and y pointing down.
 const glm::vec3 kEye(1.0f, 2.0f, 3.0f);
 const glm::vec3 kTarget(-0.5f, 0.3f, -2.0f);
 const glm::vec3 kUp(0.0f, 1.0f, 0.0f);
@@ -60,7 +62,8 @@ TEST(CCamera, OpenGlMatricesAreConverted) {
                    ALCOVE_CAMERA_CONVENTION_OPENGL);
 }
 
-// The camera looks along +Z of its own space, x to the right and y up, in the same world.
+// In Direct3D's view space the camera looks along +Z, x points to the right and y up. World space
+// is the same as in the other tests.
 TEST(CCamera, Direct3dMatricesAreConverted) {
   glm::mat4 view = expected_view();
   for (int column = 0; column < 4; ++column) {
@@ -100,7 +103,7 @@ TEST(CCamera, PerspectiveFromNumbersEqualsGlm) {
   expect_near(matrix_of(clip), expected_clip());
 }
 
-TEST(CCamera, NearAndFarPlanesHaveTheirDepths) {
+TEST(CCamera, NearAndFarPlanesAreProjectedToDepthsZeroAndOne) {
   for (const bool reversed : {false, true}) {
     for (const float far : {kFar, 0.0f, std::numeric_limits<float>::infinity()}) {
       AlcovePerspective given = perspective();
@@ -118,7 +121,7 @@ TEST(CCamera, NearAndFarPlanesHaveTheirDepths) {
   }
 }
 
-TEST(CCamera, JitterShiftsTheImageByItsPixels) {
+TEST(CCamera, JitterShiftsTheImageByThatManyPixels) {
   AlcovePerspective given = perspective();
   float still[16], moved[16];
   ASSERT_EQ(alcoveMakePerspective(&given, still), ALCOVE_SUCCESS);

@@ -1,7 +1,9 @@
-// Where frames of the C interface are recorded: secondary command buffers, and command buffers of a
-// queue for compute.
+// Frames that are recorded into secondary command buffers, and frames for a queue family without
+// graphics.
 #include <gmock/gmock.h>
 
+#include "alcove/framegraph/verify.h"
+#include "c_context.h"
 #include "c_interface_fixture.h"
 #include "gtao_scenes.h"
 
@@ -58,9 +60,11 @@ TEST_F(CCommands, FrameInASecondaryCommandBufferHasTheSameContents) {
   expect_equal(results_of(view), run_by_cpp(given, 0));
 }
 
-// A queue family without graphics has no stages but these. The images come from and go to other
-// queues, ordered by semaphores, as INTEGRATION.md says.
-TEST_F(CCommands, FrameForAQueueOfComputeNamesNoStageOfGraphics) {
+// A queue family without graphics supports only the pipeline stages of compute and transfer, so the
+// plan must name no others. The states of the images are those that INTEGRATION.md gives for images
+// that other queues use before and after, ordered by semaphores. The plan is checked by the
+// verifier, and the contents are those of a frame on a queue with graphics.
+TEST_F(CCommands, FrameForAComputeQueueIsVerifiedAndNamesNoGraphicsStage) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 32, 24, ball_on_floor());
   given.settings.bent_normal = true;
@@ -87,8 +91,12 @@ TEST_F(CCommands, FrameForAQueueOfComputeNamesNoStageOfGraphics) {
     for (const char* stage : {"graphics", "vertex", "fragment", "attachment", "draw", "blit"}) {
       EXPECT_THAT(plan, Not(HasSubstr(stage)));
     }
+    const auto right = framegraph::verify(context->graph.description(), context->executor.limits(),
+                                          *context->report.plan);
+    EXPECT_TRUE(right) << right.error().front().message;
+    engine().wait();
+    expect_equal(results_of(view), run_by_cpp(given, i));
   }
-  engine().wait();
 }
 
 TEST_F(CCommands, ImageOfSeveralSamplesIsRefused) {

@@ -1,4 +1,5 @@
-// Mistakes that show in the calls, each planted, and none where the calls are right.
+// Mistakes that alcoveDiagnose finds in the arguments of calls. Each is made on purpose and must be
+// reported; correct calls must not be.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -25,7 +26,8 @@ AlcoveCamera camera_at(float x, float jitter) {
   return camera;
 }
 
-// What is said after 20 frames of a camera in motion, of which `spoil` changes each.
+// Returns the report on 20 frames with a moving camera. `spoil` changes every frame before it is
+// observed. `speed` is the distance that the camera moves from frame to frame.
 std::string said_of(const std::function<void(AlcoveFrame&, AlcoveView&)>& spoil,
                     float speed = 0.1f) {
   CallObserver observer;
@@ -49,7 +51,8 @@ TEST(CDiagnose, CorrectCallsAreNotReported) {
   for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f}) {
     EXPECT_EQ(said_of([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
   }
-  // A cut now and then, a pause, two frames of one index (a second eye's).
+  // Correct as well: a reset of the history in every fifth frame, and pairs of frames with the same
+  // index, as for two eyes.
   EXPECT_EQ(said_of([](AlcoveFrame& frame, AlcoveView& view) {
               view.reset_history = frame.index % 5 == 0 ? VK_TRUE : VK_FALSE;
               frame.index /= 2;
@@ -67,7 +70,7 @@ TEST(CDiagnose, PreviousCameraEqualToThisCameraIsReported) {
               HasSubstr("View 3: previous_camera is this frame's camera"));
 }
 
-TEST(CDiagnose, PreviousCameraThatIsNeverTheLastFramesIsReported) {
+TEST(CDiagnose, PreviousCameraThatNeverEqualsTheLastFramesCameraIsReported) {
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) {
                 view.previous_camera = camera_at(-5.0f, 0.0f);
               }),
@@ -80,7 +83,7 @@ TEST(CDiagnose, JitterInOnlyOneOfTheTwoCamerasIsReported) {
       HasSubstr("jitter included"));
 }
 
-TEST(CDiagnose, StaticFramesInMotionAndConstantResetsAreReported) {
+TEST(CDiagnose, StaticFramesWhileTheCameraMovesAndResetsInEveryFrameAreReported) {
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.static_frames = 1; }),
               HasSubstr("View 3: static_frames"));
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.reset_history = VK_TRUE; }),
@@ -89,7 +92,7 @@ TEST(CDiagnose, StaticFramesInMotionAndConstantResetsAreReported) {
 
 class CDiagnoseFrames : public CInterface {};
 
-TEST_F(CDiagnoseFrames, TextIsTruncatedLikeOtherTextsAndCoversRecordedFramesOnly) {
+TEST_F(CDiagnoseFrames, TextIsTruncatedToTheBufferAndCoversRecordedFramesOnly) {
   const Context context = create_context();
   EXPECT_EQ(alcoveDiagnose(context.get(), nullptr, 0), 0u);
   EXPECT_EQ(alcoveDiagnose(nullptr, nullptr, 0), 0u);

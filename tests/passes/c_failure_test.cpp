@@ -1,5 +1,5 @@
-// A device that lacks something, and memory that gives out anywhere: an error value and a sentence,
-// nothing thrown and nothing leaked.
+// If the device lacks a feature or a function, or if memory runs out at any allocation, the call
+// returns an error value and a sentence. Nothing is thrown and nothing is leaked.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -122,8 +122,8 @@ TEST_F(CFailure, FeatureThatWasNotEnabledIsReported) {
               HasSubstr("shaderStorageImageWriteWithoutFormat"));
 }
 
-// Makes a context, prepares a frame and records two; the first thing that fails, and what is said
-// of it.
+// The first failure while a context is created, a frame is prepared and two frames are recorded:
+// the result of the failing call and its message.
 struct Outcome {
   AlcoveResult result = ALCOVE_SUCCESS;
   std::string message;
@@ -154,7 +154,7 @@ Outcome run_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine
   return outcome;
 }
 
-TEST_F(CFailure, OutOfDeviceMemoryAnywhereIsAnErrorWithoutLeaks) {
+TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorWithoutLeaks) {
   GivenView given = given_view(test_views()[2], 8, 6, groove(0.8));
   given.settings.advanced.estimator = Estimator::horizons;
   AlcoveSettings settings;
@@ -191,7 +191,8 @@ TEST(CResult, NamesMatchTheEnumerators) {
   }
 }
 
-// Calls `call` of the library with its allocation number `which` failing; whether there was one.
+// Calls a function of the library while the allocation number `which`, counted from the beginning
+// of the call, fails. Returns whether the call made that many allocations.
 template <typename Call>
 bool call_without_memory(std::size_t which, const Call& call) {
   framegraph::fail_allocation(which);
@@ -222,7 +223,7 @@ TEST_F(CFailure, OutOfHostMemoryInCreateContextIsAnErrorWithoutLeaks) {
   EXPECT_GT(which, 20u) << "hardly any of them failed";
 }
 
-TEST_F(CFailure, PrepareFrameSucceedsAfterRunningOutOfHostMemory) {
+TEST_F(CFailure, PrepareFrameSucceedsAfterItFailedForLackOfHostMemory) {
   GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
   AlcoveSettings settings;
   const AlcoveView view = view_of(given, settings);
@@ -243,8 +244,9 @@ TEST_F(CFailure, PrepareFrameSucceedsAfterRunningOutOfHostMemory) {
   EXPECT_GT(which, 20u) << "hardly any of them failed";
 }
 
-// Frames of ever other sizes, so that each is compiled and gets memory anew.
-TEST_F(CFailure, RecordFrameSucceedsAfterRunningOutOfHostMemory) {
+// Each frame has another size than the one before, so that its plan is compiled and its memory is
+// allocated again.
+TEST_F(CFailure, RecordFrameSucceedsAfterItFailedForLackOfHostMemory) {
   GivenView given = given_view(test_views()[2], 64, 48, groove(0.8));
   given.settings.bent_normal = true;
   AlcoveSettings settings;

@@ -1,5 +1,6 @@
-// The engine's own allocators and log: everything that is allocated through them is freed, what
-// they refuse is an error with a sentence, and results do not depend on them.
+// The engine's own allocators and log callback. Everything that is allocated through an allocator
+// is freed, a refused allocation is an error with a sentence, and images do not depend on the
+// allocator.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -23,7 +24,7 @@ using testing::IsEmpty;
 using testing::Pair;
 using testing::StartsWith;
 
-// Host memory by malloc, counted.
+// VkAllocationCallbacks that call malloc and count allocations and frees.
 struct HostMemory {
   std::size_t allocated = 0;
   std::size_t freed = 0;
@@ -64,7 +65,8 @@ struct HostMemory {
   }
 };
 
-// Device memory, each range in a device memory object of its own but not at its beginning.
+// AlcoveMemoryFunctions that allocate a device memory object for each range and place the range
+// behind its beginning, so that a forgotten offset shows.
 struct DeviceMemory {
   const sample::VulkanDevice& device;
   int fails_at = 0;  // the allocation, counted from 1, that fails; 0: none
@@ -121,7 +123,7 @@ struct Said {
   }
 };
 
-// A block of device memory as an engine allocates it.
+// A device memory object that an engine allocates and gives as AlcoveMemoryBlock.
 class Block {
  public:
   Block(const sample::VulkanDevice& device, VkDeviceSize size) : device_(device) {
@@ -152,7 +154,7 @@ class CHost : public CInterface {
     EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_SUCCESS) << message;
     return Context(made);
   }
-  // A view whose outputs need histories and a table.
+  // A view with outputs that need every kind of memory: histories, transients and a table.
   static GivenView given_of(std::uint32_t width, std::uint32_t height) {
     GivenView given = given_view(test_views()[2], width, height, ball_on_floor());
     given.settings.bent_normal = true;
@@ -212,7 +214,7 @@ TEST_F(CHost, MemoryBlockOfTheEngineHoldsEveryImageThroughSizeChanges) {
         expect_same_both_ways(*context, {&given, 1}, index++);
       }
     }
-    // Host-visible memory cannot lie in the block.
+    // The block is not host-visible, so only host-visible memory was asked of the functions.
     for (const VkMemoryPropertyFlags required : memory.required) {
       EXPECT_NE(required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 0u);
     }
@@ -220,7 +222,7 @@ TEST_F(CHost, MemoryBlockOfTheEngineHoldsEveryImageThroughSizeChanges) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, TooSmallBlockIsReportedAndSmallerFramesStillWork) {
+TEST_F(CHost, FrameThatDoesNotFitIntoTheBlockIsReportedAndASmallerOneStillWorks) {
   const Block block(gpu().device(), 200000);
   Said said;
   AlcoveContextInfo info = engine().context_info();

@@ -1,5 +1,5 @@
-// The engine's images as the C interface takes them: layers, formats and layouts, one image for
-// several inputs, images that go.
+// Images that the engine gives to the C interface: layers of an array, formats, layouts, one image
+// for several inputs, and images that the engine destroys.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,8 @@ namespace {
 
 using CImages = CInterface;
 
-// Both layers of an image that rests, one after the other.
+// Records a copy of both layers of an image, which is in the state kResting, to a buffer. The
+// second layer follows the first.
 void copy(VkCommandBuffer commands, const AlcoveImage& image, const sample::HostBuffer& buffer) {
   const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
                                       .srcStageMask = kResting.stages,
@@ -34,7 +35,8 @@ void copy(VkCommandBuffer commands, const AlcoveImage& image, const sample::Host
                          buffer.buffer(), 1, &region);
 }
 
-// Both eyes in the layers of one array, each with an image view of the library's.
+// The two eyes of a stereo view are two layers of one array image. The library makes an image view
+// for each.
 TEST_F(CImages, LayersOfAnArrayAreIndependentImages) {
   const Context context = create_context();
   constexpr VkImageUsageFlags kStored =
@@ -66,7 +68,7 @@ TEST_F(CImages, LayersOfAnArrayAreIndependentImages) {
   }
 }
 
-TEST_F(CImages, DepthFormatsAndAllLayoutsAreAccepted) {
+TEST_F(CImages, DepthFormatAndLayoutsOfAttachmentsAreAccepted) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   AlcoveSettings settings;
@@ -88,7 +90,7 @@ TEST_F(CImages, DepthFormatsAndAllLayoutsAreAccepted) {
   expect_equal(results_of(view), run_by_cpp(given, 0));
 }
 
-TEST_F(CImages, OneImageMayBeSeveralInputs) {
+TEST_F(CImages, OneImageMayServeAsSeveralInputs) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   given.roughness = given.albedo;  // packed: roughness is its green

@@ -1,4 +1,5 @@
-// Normals and motion vectors in the conventions of engines, and the shape of the output.
+// Normals and motion vectors in the conventions of different engines, and the settings `power` and
+// `intensity` of the output.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -24,7 +25,8 @@ double rms(const HostImage& a, const HostImage& b) {
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
-// `image` of `channels`, each texel made from one of `image`.
+// Returns an image of the same size with `channels` channels. `map` makes each texel from the texel
+// of `image` at the same place.
 HostImage mapped(const HostImage& image, std::uint32_t channels,
                  const std::function<void(const float* from, float* to)>& map) {
   HostImage result{image.width, image.height, {}, channels};
@@ -60,7 +62,8 @@ class CInputs : public CInterface {
     return view;
   }
 
-  // The results of `frames` frames of a view that `change` adapts to a convention.
+  // Records `frames` frames of a view and returns the results of the last. `change` sets the fields
+  // of AlcoveView that describe the convention of the inputs.
   Results results(const GivenView& given, std::uint32_t frames,
                   const std::function<void(AlcoveView&)>& change) {
     const Context context = create_context();
@@ -116,8 +119,9 @@ TEST_F(CInputs, NormalsOfAForwardZCameraAreMirroredInAndOut) {
 }
 
 TEST_F(CInputs, MotionVectorsOfAnyUnitGiveTheSameResult) {
-  // Planes that face the eye: a history that is read in the wrong place is not rejected by its
-  // depth.
+  // All planes face the eye, so that the history has the same depth everywhere. If motion vectors
+  // were misread, history from the wrong place would therefore be used, and the images would
+  // differ.
   GivenView moving = given_view(test_views()[2], kWidth, kHeight, step(0.31, 0.6));
   moving.settings.bent_normal = true;
   moving.settings.advanced.estimator = Estimator::horizons;
@@ -140,7 +144,8 @@ TEST_F(CInputs, MotionVectorsOfAnyUnitGiveTheSameResult) {
       view.motion_offset[1] = y;
     });
   };
-  // In pixels, from this frame to the last, without jitter, and in OpenGL's device coordinates.
+  // The four conventions are: pixels; from this frame to the last instead of the reverse; without
+  // jitter; and normalised device coordinates with y up.
   for (const Results& found :
        {with(1.0f / kWidth, 1.0f / kHeight, 0.0f, 0.0f), with(-1.0f, -1.0f, 0.0f, 0.0f),
         with(1.0f, 1.0f, 0.004f, -0.006f), with(0.5f, -0.5f, 0.0f, 0.0f)}) {
@@ -152,7 +157,7 @@ TEST_F(CInputs, MotionVectorsOfAnyUnitGiveTheSameResult) {
   EXPECT_GT(rms(wrong.visibility, expected.visibility), 1e-3) << "the sign makes no difference";
 }
 
-TEST_F(CInputs, PowerAndIntensityChangeOnlyWrittenVisibility) {
+TEST_F(CInputs, PowerAndIntensityChangeWrittenVisibilityAlone) {
   GivenView plain = given();
   plain.settings.specular = Specular::slices;
   const Results open = results(plain, 3, [](AlcoveView&) {});

@@ -1,5 +1,6 @@
-// Mistakes that show in the pixels: each planted one is named by its sentence, and right inputs of
-// every kind of view are not reported.
+// Mistakes that alcoveDiagnose finds in the pixels of depth and normals. Each is made on purpose
+// and must be reported by its own sentence alone. Correct inputs of every kind of view must not be
+// reported.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,13 +21,15 @@ using testing::Not;
 
 constexpr std::uint32_t kWidth = 96, kHeight = 64;
 
-// A rotation about an oblique axis: no two axes of world and view space are the same.
+// Returns a view_from_world with a rotation that maps no axis of world space to an axis of view
+// space, so that a mix-up of the two spaces changes every normal.
 Matrix turned() {
   return {0.36f, 0.48f, -0.8f, 0.0f, -0.8f, 0.6f,  0.0f, 0.0f,
           0.48f, 0.64f, 0.6f,  0.0f, 0.3f,  -1.0f, 2.0f, 1.0f};
 }
 
-// A corner of a room and a ball, before a sky. No surface lies along an axis of the view.
+// Returns a floor, a wall and a ball in front of the sky. Neither floor nor wall is parallel to an
+// axis of view space.
 Scene corner() {
   Surface floor = plane({0.0, -1.5, 0.0}, glm::normalize(glm::dvec3(0.2, 0.9, 0.3)));
   floor.keep = [](const glm::dvec3& p) { return p.z > -9.0; };
@@ -48,7 +51,8 @@ class CInspect : public CInterface {
     return given;
   }
 
-  // The text of alcoveDiagnose after some equal frames.
+  // Records six equal frames of a view, to which `change` was applied, and returns the text of
+  // alcoveDiagnose.
   std::string said_of(
       const GivenView& given, const std::function<void(AlcoveView&)>& change = [](AlcoveView&) {}) {
     const Context context = create_context();
@@ -98,7 +102,7 @@ HostImage in_world(const HostImage& normals, const Matrix& view_from_world) {
   return result;
 }
 
-TEST_F(CInspect, RightInputsAreNotReported) {
+TEST_F(CInspect, CorrectInputsAreNotReported) {
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(view.name + ", " + scene.name);
@@ -119,7 +123,7 @@ TEST_F(CInspect, RightInputsAreNotReported) {
   EXPECT_EQ(said_of(without), "");
 }
 
-TEST_F(CInspect, EveryPlantedMistakeIsNamedAndNoOther) {
+TEST_F(CInspect, EachMistakeIsReportedByItsOwnSentenceAlone) {
   struct Planted {
     const char* name;
     std::function<void(GivenView&)> plant;
@@ -208,7 +212,7 @@ TEST_F(CInspect, EveryPlantedMistakeIsNamedAndNoOther) {
   }
 }
 
-TEST_F(CInspect, ASlotThatIsRecordedBeforeItsFrameHasFinishedIsNamed) {
+TEST_F(CInspect, SlotThatIsReusedBeforeItsFrameHasFinishedIsReported) {
   const Context context = create_context();
   AlcoveSettings settings;
   AlcoveView view = view_of(right_view(), settings);
@@ -219,7 +223,7 @@ TEST_F(CInspect, ASlotThatIsRecordedBeforeItsFrameHasFinishedIsNamed) {
   EXPECT_THAT(text_of(*context), HasSubstr("AlcoveFrame::slot was recorded again before"));
 }
 
-TEST_F(CInspect, ADiscardedFrameIsNotCounted) {
+TEST_F(CInspect, DiscardedFramesAreNotCounted) {
   const Context context = create_context();
   AlcoveSettings settings;
   AlcoveView view = view_of(right_view(), settings);

@@ -164,8 +164,13 @@ AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings)
   const bool bytes = given.settings.precision == Precision::unorm8;
   const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
   const VkFormat direction = bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
+  view.half_size_outputs = given.half_size_outputs ? VK_TRUE : VK_FALSE;
+  const auto output_size = [&](std::uint32_t pixels) {
+    return given.half_size_outputs ? (pixels + 1) / 2 : pixels;
+  };
   const auto wanted = [&](bool is_wanted, VkFormat format) {
-    return is_wanted ? output(format, given.depth_ndc.width, given.depth_ndc.height)
+    return is_wanted ? output(format, output_size(given.depth_ndc.width),
+                              output_size(given.depth_ndc.height))
                      : AlcoveImage{};
   };
   view.visibility = wanted(given.settings.visibility, scalar);
@@ -248,7 +253,8 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
                                         .motion = upload_of(given.motion),
                                         .roughness = upload_of(given.roughness),
                                         .back_depth_ndc = upload_of(given.back_depth_ndc),
-                                        .second_depth_ndc = upload_of(given.second_depth_ndc)},
+                                        .second_depth_ndc = upload_of(given.second_depth_ndc),
+                                        .half_size_outputs = given.half_size_outputs},
                                        settings, name);
     ASSERT_TRUE(outputs) << outputs.error().message;
     if (given.settings.visibility) {

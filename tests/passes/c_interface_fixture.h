@@ -1,4 +1,4 @@
-// Frames by the C interface, and the same by the C++ functions.
+// A fixture that runs the same frame by the C interface and by the C++ functions.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace alcove::passes {
 
-// What a view of a frame is given. Empty images are not given.
+// The inputs of a view for both interfaces. An image without texels stands for one that is not
+// given.
 struct GivenView {
   std::uint32_t id = 0;
   View view;
@@ -32,8 +33,9 @@ struct GivenView {
   HostImage back_depth_ndc;
   HostImage second_depth_ndc;
   HostImage albedo;
-  OcclusionSettings settings;  // their flags tell the outputs that are wanted
+  OcclusionSettings settings;  // their flags say which outputs are requested
   bool multi_bounce = false;
+  bool half_size_outputs = false;
 };
 
 struct Results {
@@ -43,12 +45,12 @@ struct Results {
   HostImage multi_bounce;
 };
 
-// A view with every input, of a scene; its settings and camera are the tests' to change.
+// Returns a view of a scene with every input. Tests change its settings and its camera.
 GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t height,
                      const Scene& scene);
 
-// An image of `larger` pixels that holds `contents` from the first pixel on, and numbers that must
-// not be read around it.
+// Returns an image of `larger` pixels with `contents` in its upper left corner. The other pixels
+// are NaN, so that a pass which reads them is noticed.
 HostImage in_corner_of(const HostImage& contents, VkExtent2D larger);
 
 class CInterface : public PassTest {
@@ -58,26 +60,28 @@ class CInterface : public PassTest {
 
   Context create_context();
 
-  // An image that holds `contents`.
+  // Creates an image that holds `contents`.
   AlcoveImage input(const HostImage& contents);
-  // Fills an image that rests, and leaves it in `final_state`.
+  // Fills an image, which is in the state kResting, and leaves it in `final_state`.
   void fill_image(const AlcoveImage& image, const HostImage& contents, AlcoveState final_state);
   AlcoveImage output(VkFormat format, std::uint32_t width, std::uint32_t height);
   HostImage read(const AlcoveImage& image);
 
-  // The images of a view, made for it; `settings` must live as long as the view is used.
+  // Creates the images of a view and returns it. The view points to `settings`, which receives
+  // those of `given` and must live as long as the view is used.
   AlcoveView view_of(const GivenView& given, AlcoveSettings& settings);
-  // Records, submits and waits for a frame, which has to succeed.
+  // Records a frame of these views, which must succeed, and submits it. Does not wait.
   void run_frame(AlcoveContext& context, std::span<const AlcoveView> views, std::uint32_t index);
-  // The same, but of the frame nothing is submitted.
+  // Records a frame of one view, which must succeed, and does not submit it.
   void record_and_throw_away(AlcoveContext& context, const AlcoveView& view, std::uint32_t index);
   Results results_of(const AlcoveView& view);
 
   std::vector<Results> run_by_c(AlcoveContext& context, std::span<const GivenView> views,
                                 std::uint32_t index);
-  // Its history is the fixture's, by the view's id.
+  // Runs the frame by the C++ functions and waits for it. The history belongs to the fixture and to
+  // the id of the view.
   Results run_by_cpp(const GivenView& given, std::uint32_t index);
-  // Runs the frame both ways: each view's results have to be equal.
+  // Runs the frame by both interfaces and expects equal results for each view.
   void expect_same_both_ways(AlcoveContext& context, std::span<const GivenView> views,
                              std::uint32_t index);
 
@@ -88,7 +92,7 @@ class CInterface : public PassTest {
 
  private:
   std::unique_ptr<Engine> engine_;
-  std::deque<AlcoveAdvancedSettings> advanced_;  // of view_of()'s settings
+  std::deque<AlcoveAdvancedSettings> advanced_;  // that the settings of view_of() point to
 };
 
 void expect_equal(const Results& found, const Results& expected);

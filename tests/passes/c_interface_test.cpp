@@ -1,4 +1,4 @@
-// The C interface gives what the C++ functions give, bit for bit.
+// Frames by the C interface have the same results as those by the C++ functions, bit for bit.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,8 @@ TestView moved(TestView view, std::uint32_t frame) {
   return view;
 }
 
-// A frame of a camera that moves, or cuts in frame `cut`.
+// Returns the inputs of frame number `frame` of a moving camera. The history is reset in frame
+// `cut`.
 GivenView frame_of(std::uint32_t frame, std::uint32_t width, std::uint32_t height,
                    std::uint32_t cut = ~0u) {
   GivenView given = given_view(moved(test_views()[2], frame), width, height, ball_on_floor());
@@ -143,7 +144,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
   }
 }
 
-TEST_F(CInterface, EachOutputAloneEqualsThatOfTheCppInterface) {
+TEST_F(CInterface, EachOutputRequestedAloneEqualsThatOfTheCppInterface) {
   const std::array<void (*)(GivenView&), 4> only{
       [](GivenView& g) { g.settings.visibility = true; },
       [](GivenView& g) { g.settings.bent_normal = true; },
@@ -193,7 +194,8 @@ TEST_F(CInterface, ViewsOfAFrameEqualThoseRecordedAlone) {
   }
 }
 
-// Its world looks the same in a mirror, and so do its normals.
+// The world of a left-handed engine is the mirror image of a right-handed one. If positions,
+// normals and the view matrix are all mirrored, the image must be the same.
 TEST_F(CInterface, LeftHandedWorldGivesTheSameImage) {
   const Context context = create_context();
   const auto mirror = [](HostImage& image) {
@@ -249,8 +251,9 @@ TEST_F(CInterface, EveryImageOfEightViewsIsAccepted) {
   expect_same_both_ways(*context, views, 0);
 }
 
-// An output that others are made from is read by the library and then by the engine, for which
-// alone the next frame waits.
+// Visibility is an output that the library itself reads to make other outputs, and that the engine
+// reads after the frame. The next frame writes the same image while the previous one is still in
+// flight; synchronisation validation reports an error if it does not wait.
 TEST_F(CInterface, FramesInFlightMayUseTheSameImages) {
   const Context context = create_context();
   GivenView given = frame_of(0, 33, 17);
@@ -265,8 +268,9 @@ TEST_F(CInterface, FramesInFlightMayUseTheSameImages) {
   engine().wait();
 }
 
-// As where the window is gone once all has been recorded: what was recorded is never submitted.
-TEST_F(CInterface, DiscardedFrameLeavesNoTrace) {
+// An engine discards a frame that it recorded and does not submit, for example because the window
+// was closed.
+TEST_F(CInterface, DiscardedFrameDoesNotAffectLaterFrames) {
   const Context context = create_context();
   EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "before there is one";
   std::uint32_t index = 0;
@@ -291,8 +295,9 @@ TEST_F(CInterface, DiscardedFrameLeavesNoTrace) {
   }
 }
 
-// Such a frame differs from those before and after in what a history depends on. Whether it is
-// thrown away or refused, the next one is as by C++, which never hears of it.
+// In the middle of a sequence, one frame is recorded with other settings, outputs or sizes, and
+// then discarded, or refused as invalid. The next frame must equal that of the C++ functions, which
+// were never given the frame in between.
 TEST_F(CInterface, FrameThatIsNotSubmittedDoesNotChangeTheHistory) {
   struct Case {
     const char* name;
@@ -330,7 +335,7 @@ TEST_F(CInterface, FrameThatIsNotSubmittedDoesNotChangeTheHistory) {
     record_and_throw_away(*context, view, index);
     EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
     good_frame(id);
-    // The first view is good, the second is not.
+    // A frame whose first view is valid and whose second view is not is refused as a whole.
     std::array<AlcoveView, 2> views{view, view};
     views[1].id = 99;
     views[1].depth = {};

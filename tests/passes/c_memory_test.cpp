@@ -1,4 +1,5 @@
-// Memory that is estimated from settings alone, against what frames take.
+// Compares the memory that alcoveEstimateMemory returns for settings and a size with the memory
+// that recorded frames take.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -12,7 +13,7 @@ namespace {
 
 class CMemory : public CInterface {};
 
-TEST_F(CMemory, EstimatesEqualTheMemoryOfFrames) {
+TEST_F(CMemory, EstimatedMemoryEqualsThatOfRecordedFrames) {
   constexpr std::uint32_t kWidth = 256, kHeight = 128;
   struct Case {
     const char* name;

@@ -1,4 +1,5 @@
-// When pipelines are made, how many, and from which cache.
+// Counts the pipelines that are created by preparing and recording frames, and checks from which
+// pipeline cache they come.
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -10,7 +11,8 @@
 namespace alcove::passes {
 namespace {
 
-// What was made since a test began.
+// Number of pipelines created since the test began, and the pipeline caches that they were created
+// with.
 std::uint32_t pipelines = 0;
 std::set<VkPipelineCache> caches;
 
@@ -45,7 +47,7 @@ class CPipelines : public CInterface {
     caches.clear();
   }
 
-  // A context whose pipelines are counted.
+  // Creates a context whose calls of vkCreateComputePipelines are counted.
   Context create_counted(VkPipelineCache cache = VK_NULL_HANDLE) {
     AlcoveContextInfo info = engine().context_info();
     info.get_instance_proc_addr = get_instance_proc_addr;
@@ -61,8 +63,9 @@ class CPipelines : public CInterface {
     EXPECT_EQ(alcovePrepareFrame(&context, &frame), ALCOVE_SUCCESS) << alcoveGetMessage(&context);
   }
 
-  // A view's life: it begins, moves, stands, is cut, moves and stands uncounted, and shrinks within
-  // its largest size and beyond.
+  // Records frames of every kind that a view has: its first frame, frames in motion, static frames,
+  // a cut, motion again, a static camera with static_frames 0, a smaller size within largest_width
+  // and largest_height, and a change of the largest size.
   void run_life(AlcoveContext& context, AlcoveView view) {
     std::uint32_t index = 0;
     const auto run_at = [&](float x) {
@@ -95,7 +98,7 @@ class CPipelines : public CInterface {
   }
 };
 
-TEST_F(CPipelines, PipelinesComeFromTheEnginesCacheWhichOutlivesTheContext) {
+TEST_F(CPipelines, PipelinesComeFromTheCacheOfTheEngineWhichOutlivesTheContext) {
   GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
   (void)run_by_c(*create_counted(), {&given, 1}, 0);
   EXPECT_THAT(caches, testing::ElementsAre(VkPipelineCache{VK_NULL_HANDLE})) << "by default";
@@ -112,7 +115,8 @@ TEST_F(CPipelines, PipelinesComeFromTheEnginesCacheWhichOutlivesTheContext) {
   vkDestroyPipelineCache(device, cache, nullptr);
 }
 
-// As many as the frames of an unprepared view make: all that they need, and no more.
+// The number of pipelines that alcovePrepareFrame creates equals the number that recording creates
+// for a view that was not prepared. Recording a prepared view creates none.
 TEST_F(CPipelines, PrepareFrameCreatesAllPipelinesOfAView) {
   struct Case {
     const char* name;
@@ -152,7 +156,7 @@ TEST_F(CPipelines, PrepareFrameCreatesAllPipelinesOfAView) {
     pipelines = 0;
     run_life(*create_counted(), view);
     const std::uint32_t needed = pipelines;
-    // Whichever of its frames it is prepared by.
+    // A moving and a static frame prepare the same pipelines.
     for (const std::uint32_t static_frames : {0u, 20u}) {
       const Context context = create_counted();
       view.static_frames = static_frames;

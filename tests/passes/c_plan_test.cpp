@@ -1,5 +1,5 @@
-// What a frame by the C interface costs: nothing for what was not asked for, no allocation for a
-// frame like the one before, and no memory for what was dropped.
+// The passes and the memory of frames by the C interface. Outputs that are not requested cost
+// nothing, a frame like the one before allocates nothing, and dropped views have no memory.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -68,7 +68,8 @@ TEST_F(CPlan, SingleOutputNeedsNoPassOrMemoryOfTheOthers) {
   EXPECT_THAT(plan, Not(HasSubstr("visibility")));
   EXPECT_THAT(plan, Not(HasSubstr("bent")));
 
-  // Multi-bounce is made from visibility, which is a transient where no image is given.
+  // Multi-bounce is made from visibility. Because the engine gives no image for visibility, the
+  // library makes a transient, which takes memory.
   GivenView multi_bounce = least();
   multi_bounce.multi_bounce = true;
   EXPECT_GT(memory_of_frame(context, multi_bounce).transients_unshared, bytes);
@@ -77,8 +78,8 @@ TEST_F(CPlan, SingleOutputNeedsNoPassOrMemoryOfTheOthers) {
   EXPECT_EQ(memory_of_frame(context, multi_bounce).transients_unshared, bytes);
 }
 
-// Of an image of which a part is in use the rest is its contents too, and a driver may throw away
-// what changes its layout from undefined.
+// If only a part of an output image is written, the library must not begin with a transition from
+// VK_IMAGE_LAYOUT_UNDEFINED, because the driver may then discard the other pixels.
 TEST_F(CPlan, PixelsOutsideTheWrittenPartKeepTheirContents) {
   const Context context = create_context();
   for (const Specular specular : {Specular::slices, Specular::table}) {
@@ -132,7 +133,7 @@ TEST_F(CPlan, HistoryTakesMemoryOnlyWhileItIsOn) {
   EXPECT_EQ(alcoveDropView(context.get(), 99), ALCOVE_SUCCESS) << "never recorded";
   const AlcoveMemory dropped = memory_of_frame(context, given);
   EXPECT_EQ(dropped.history, 0u);
-  // One that comes back begins anew, as do others in its place.
+  // A view with the dropped id, or with a new one, begins a new history.
   for (const std::uint32_t id : {0u, 5u}) {
     given.id = id;
     given.settings.history_frames = 8;
@@ -157,7 +158,7 @@ TEST_F(CPlan, FailedFrameHasNoMemoryReportAndNoPlan) {
   engine().wait();
 }
 
-TEST_F(CPlan, DroppedViewStartsAnew) {
+TEST_F(CPlan, DroppedViewBeginsANewHistory) {
   const Context context = create_context();
   GivenView given = least();
   given.settings.visibility = true;
@@ -240,7 +241,7 @@ TEST(CSettings, SettingsCanBeFilledPrintedAndPassedBack) {
   EXPECT_EQ(alcoveGetVersion(), static_cast<std::uint32_t>(ALCOVE_VERSION));
 }
 
-// A line of them that is written down can be set again.
+// Each printed value reads back as the same number.
 TEST(CSettings, SettingsArePrintedShortAndExactInEveryLocale) {
   const CommaLocale comma;
   AlcoveSettings settings{.struct_size = sizeof settings};
@@ -259,13 +260,13 @@ TEST(CSettings, SettingsArePrintedShortAndExactInEveryLocale) {
   EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));
 }
 
-// Each frame has two views with every output. The device has no validation layers, because these
-// allocate memory. With an odd number of frames in flight a slot uses both images of a history in
-// turn.
+// The parameter is the number of frames in flight. With an odd number, each frame slot uses both
+// images of a history in turn. Each frame has two views with every output. The device has no
+// validation layers, because the layers allocate memory.
 class CSteadyFrame : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(FramesInFlight, CSteadyFrame, testing::Values(1u, 2u, 3u));
 
-TEST_P(CSteadyFrame, AllocatesAndCreatesNothingAndUpdatesNoDescriptor) {
+TEST_P(CSteadyFrame, AllocatesNothingCreatesNothingAndUpdatesNoDescriptor) {
   const auto device = sample::VulkanDevice::create();
   ASSERT_TRUE(device) << device.error();
   Engine engine(**device);

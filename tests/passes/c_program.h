@@ -1,4 +1,4 @@
-// What c_program.c, compiled as C99, does.
+// The function of c_program.c, which is compiled as C99 to show that the C interface works from C.
 #pragma once
 
 #include "alcove/alcove.h"
@@ -7,8 +7,9 @@
 extern "C" {
 #endif
 
-// Records one frame of visibility from depth into `commands`, prints what it costs into `text` (of
-// `size` bytes) and gives the context back.
+// Creates a context and records one frame of visibility into `commands`. Writes the memory of the
+// frame, or the error message, to `text`, which has room for `size` bytes. `context` receives the
+// context, which the caller destroys.
 AlcoveResult run_c_program(const AlcoveContextInfo* info, const AlcoveCamera* camera,
                            const AlcoveImage* depth, const AlcoveImage* visibility,
                            VkCommandBuffer commands, AlcoveContext** context, char* text,

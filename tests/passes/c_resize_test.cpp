@@ -1,5 +1,6 @@
-// Frames whose sizes, settings, images and number of views change at random: for a few seconds, or
-// as long as ALCOVE_RESIZE_SECONDS says, an hour in the soak test.
+// Records frames whose sizes, settings, images and number of views change at random. The test runs
+// for a few seconds, or for as many as the environment variable ALCOVE_RESIZE_SECONDS says, which
+// is an hour in the soak test.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kMostViews = 3;
 constexpr std::uint32_t kMostSide = 40;
-constexpr std::uint32_t kRound = 200;  // frames from rest to rest
+constexpr std::uint32_t kRound = 200;  // frames between two calls of CResize::rest()
 constexpr std::chrono::seconds kProgress(30);
 
 std::chrono::seconds wanted_time() {
@@ -31,16 +32,16 @@ std::chrono::seconds wanted_time() {
   return std::chrono::seconds(given != nullptr ? std::strtol(given, nullptr, 10) : 4);
 }
 
-// What a view asks for. There are few of them, since each needs pipelines of its own, which take a
-// software device longer than the frames.
+// Settings and optional images of a view. The test makes only a few kinds, because each needs
+// pipelines of its own, and a software device takes longer to create pipelines than to run frames.
 struct Kind {
   OcclusionSettings settings;
-  // Which images it goes without: bits, by inputs_of and outputs_of.
+  // The images that are not given: bit i stands for element i of inputs_of() or outputs_of().
   std::uint32_t without_inputs = 0;
   std::uint32_t without_outputs = 0;
 };
 
-// A view of the frames, and its images.
+// A view that frames may show, with its images.
 struct Shown {
   std::uint32_t id = 0;
   bool is_shown = false;
@@ -63,7 +64,7 @@ std::array<AlcoveImage*, 4> outputs_of(AlcoveView& view) {
   return {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce};
 }
 
-// The view as it is recorded.
+// Returns the AlcoveView to record: `shown.view` without the images that its kind leaves out.
 AlcoveView recorded_view(Shown& shown) {
   AlcoveView view = shown.view;
   view.settings = &shown.settings;
@@ -156,7 +157,7 @@ Kind CResize::any_kind() {
   return {settings, below(128) & kOptionalInputs, below(15)};  // never without all outputs
 }
 
-// Images of `size`, all of it used; what is seen in them is new as well.
+// Makes new images of `size` pixels that are used completely, with another random camera and scene.
 void CResize::make_images(Shown& shown, VkExtent2D size) {
   const std::vector<TestView> views = test_views();
   shown.seen = views[below(static_cast<std::uint32_t>(views.size()))];
@@ -168,7 +169,8 @@ void CResize::make_images(Shown& shown, VkExtent2D size) {
   given.settings.precision = chance(3) ? Precision::unorm8 : Precision::float32;
   shown.view = view_of(given, shown.settings);
   shown.largest = size;
-  // Dynamic resolution; else history begins anew with each part.
+  // Half of the views use dynamic resolution. In the others, a change of the used part of the
+  // images begins a new history.
   if (chance(2)) {
     shown.view.largest_width = size.width;
     shown.view.largest_height = size.height;
@@ -236,7 +238,7 @@ void CResize::drop(Shown& shown) {
   shown.view.previous_width = shown.view.previous_height = shown.view.static_frames = 0;
 }
 
-// What changes is not still; most frames are like the one before.
+// Changes a view at random in five of twelve cases. A view that changes has static_frames 0.
 void CResize::change(Shown& shown) {
   const std::uint32_t what = below(12);
   if (what > 4) {
@@ -258,7 +260,7 @@ void CResize::change(Shown& shown) {
   }
 }
 
-// What the next frame needs to know of this one.
+// Stores the camera and the size of this frame as the previous ones of the next frame.
 void remember(Shown& shown) {
   shown.view.previous_camera = shown.view.camera;
   if (shown.view.largest_width != 0) {
@@ -301,7 +303,7 @@ void CResize::draw_frame(std::span<Shown> all, bool discards) {
   }
 }
 
-// Finite and within [low, 1].
+// Expects every value of the image to be finite and within [low, 1].
 void expect_within(const HostImage& image, float low, const char* what) {
   const auto wrong = std::ranges::find_if_not(
       image.texels, [low](float value) { return value >= low && value <= 1.0f; });
@@ -329,7 +331,8 @@ void CResize::run_round(Clock::time_point end) {
     std::ranges::for_each(views_, [&](Shown& shown) { change(shown); });
     const bool discards = chance(20);
     draw_frame(views_, discards);
-    // Now and then: the frames between are in flight together.
+    // Reading results waits for the device. It is done in a quarter of the frames only, so that the
+    // others are in flight together.
     if (!discards && chance(4)) {
       std::ranges::for_each(views_, [&](Shown& shown) { expect_right(shown); });
     }
@@ -337,14 +340,16 @@ void CResize::run_round(Clock::time_point end) {
   }
 }
 
-// The memory while nothing but one view of always the same is left, and what has gone is freed.
+// Drops all views, records some frames of one small view that is always the same, and returns the
+// memory of the context. If anything leaks, that memory grows from call to call.
 AlcoveMemory CResize::rest() {
   for (Shown& shown : views_) {
     drop(shown);
   }
   resting_[0].is_shown = true;
   AlcoveMemory memory{};
-  // The tables of both that have one are there after the first rest.
+  // Both specular models are recorded, so that the tables of their shaders are loaded from the
+  // first call on.
   for (const Specular specular : {Specular::table, Specular::slices}) {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
     settings.specular = specular;
@@ -366,7 +371,7 @@ void CResize::run_for(std::chrono::seconds time) {
     run_round(begin + time);
     const AlcoveMemory now = rest();
     EXPECT_EQ(now.history, first.history);
-    // What transients share stays as large as the largest frame.
+    // The memory of transients does not shrink: it is that of the largest frame so far.
     EXPECT_LE(now.allocated, first.allocated + most_transients_);
     if (Clock::now() - told > kProgress) {
       told = Clock::now();
@@ -376,7 +381,9 @@ void CResize::run_for(std::chrono::seconds time) {
   }
 }
 
-TEST_F(CResize, ResultsAreInRangeAndMemoryIsBoundedAfterAnyChange) { run_for(wanted_time()); }
+TEST_F(CResize, ResultsStayInRangeAndMemoryBoundedWhileEverythingChanges) {
+  run_for(wanted_time());
+}
 
 }  // namespace
 }  // namespace alcove::passes

@@ -1,4 +1,5 @@
-// Images of which a part is used, and histories that go on while that part changes.
+// Dynamic resolution: only a part of each image is used, and the history continues while the size
+// of that part changes.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -14,7 +15,7 @@ using testing::HasSubstr;
 
 class CSize : public CInterface {
  protected:
-  // An image of `larger` pixels of which `contents` are used.
+  // Makes an image of `larger` pixels. The part that is used holds `contents`.
   AlcoveImage part(const HostImage& contents, VkExtent2D larger) {
     AlcoveImage image = input(in_corner_of(contents, larger));
     image.width = contents.width;
@@ -71,12 +72,12 @@ double rms(const HostImage& a, const HostImage& b) {
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
-// A view whose size is another in each frame gathers as one of a constant size does, by the camera
-// and by motion vectors.
+// A view whose size changes in every frame accumulates history like a view of constant size, both
+// if history is found by the camera alone and if it is found by motion vectors.
 TEST_F(CSize, HistoryContinuesWhileTheSizeChanges) {
   constexpr std::array<VkExtent2D, 4> kSizes{{{48, 36}, {40, 30}, {56, 42}, {44, 33}}};
   constexpr VkExtent2D kLargest{56, 42};
-  constexpr std::uint32_t kFrames = 17;  // ends with the first size
+  constexpr std::uint32_t kFrames = 17;  // the last frame has the first of the sizes
   const Context context = create_context();
   const auto given_of = [](VkExtent2D size) {
     GivenView given = given_view(test_views()[2], size.width, size.height, ball_on_floor());
@@ -111,7 +112,7 @@ TEST_F(CSize, HistoryContinuesWhileTheSizeChanges) {
       history = i == 0 ? memory_of(*context).history : history;
       EXPECT_EQ(memory_of(*context).history, history);
     }
-    // Both are near the step of 8 bits, 0.0011 in the mean square.
+    // The difference includes the rounding of both images to 8 bits, a root mean square of 0.0011.
     EXPECT_LT(rms(found.visibility, expected.visibility), 0.8 * fresh) << motion;
     EXPECT_EQ(alcoveDropView(context.get(), 2), ALCOVE_SUCCESS);
   }
@@ -143,7 +144,7 @@ TEST_F(CSize, SizesAboveTheLargestAreRefused) {
   view.largest_width = view.largest_height = 0;
   view.previous_height = 14;
   expect_refused("within 21x14");
-  view.reset_history = VK_TRUE;  // then it is not read
+  view.reset_history = VK_TRUE;  // the previous size is then not read
   run_frame(*context, {&view, 1}, 1);
   engine().wait();
 }

@@ -25,15 +25,15 @@ class Engine {
 
   AlcoveContextInfo context_info() const;
 
-  // Creates an image in the state kResting, with undefined contents.
+  // Creates an image in the state kResting with undefined contents.
   AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                          VkImageUsageFlags usage, std::uint32_t layers = 1);
 
-  // Destroys an image. The device must have finished using it.
+  // Destroys an image that make_image() returned. The device must have finished using it.
   void destroy_image(const AlcoveImage& image);
 
-  // Lets `record` record into the command buffer of `slot`, whose previous frame must have
-  // finished. Submits the command buffer, even if recording failed, and does not wait for it.
+  // Waits for the previous frame of `slot`, calls `record` with the command buffer of the slot, and
+  // submits it even if `record` fails. Does not wait for the new frame.
   void submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record);
   void wait();
 
@@ -48,10 +48,10 @@ class Engine {
   std::vector<std::unique_ptr<sample::GpuImage>> images_;
 };
 
-// Discards the recorded commands, so that none of them is submitted.
+// Resets a command buffer and begins it again, so that nothing that was recorded is submitted.
 void throw_away(VkCommandBuffer commands);
 
-// The state of the engine's images between frames: readable by fragment shaders.
+// The state of an engine's images between frames: fragment shaders sample them.
 inline constexpr AlcoveState kResting{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};

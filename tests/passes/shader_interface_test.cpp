@@ -47,8 +47,8 @@ TEST(ShaderInterface, BindingNamesNumbersAndTypesAreThoseOfTheGlslFile) {
                           "5 roughness_image " + sampled,
                           "6 result_image " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE),
                           "7  " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)));
-  EXPECT_THAT(constants,
-              ElementsAre("0 kRoughnessTexture", "1 kRoughnessChannel", "2 kNormalEncoding"));
+  EXPECT_THAT(constants, ElementsAre("0 kRoughnessTexture", "1 kRoughnessChannel",
+                                     "2 kNormalEncoding", "3 kVisibilityChannel"));
 }
 
 TEST(ShaderInterface, CombinedImageSamplersAreDistinguishedFromSampledImages) {
@@ -99,12 +99,14 @@ TEST_F(KernelsByName, ConstantWithoutAValueIsReportedByName) {
 }
 
 TEST_F(KernelsByName, ConstantsMayBeGivenInAnyOrderWithAdditionalNames) {
-  const auto ordered = gpu().kernels().get(
-      Shader::gtso,
-      std::to_array<NamedConstant>(
-          {{"kRoughnessTexture", 1}, {"kRoughnessChannel", 2}, {"kNormalEncoding", 3}}));
+  const auto ordered =
+      gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kRoughnessTexture", 1},
+                                                                      {"kRoughnessChannel", 2},
+                                                                      {"kNormalEncoding", 3},
+                                                                      {"kVisibilityChannel", 1}}));
   const auto shuffled =
       gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kOther", 9},
+                                                                      {"kVisibilityChannel", 1},
                                                                       {"kNormalEncoding", 3},
                                                                       {"kRoughnessTexture", 1},
                                                                       {"kRoughnessChannel", 2}}));

@@ -83,6 +83,17 @@ typedef enum AlcoveNormalEncoding {
   ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
 } AlcoveNormalEncoding;
 
+// The channels of AlcoveView::visibility that visibility is written to.
+typedef enum AlcoveChannel {
+  ALCOVE_CHANNEL_ALL = 0,  // every channel: the image holds visibility alone
+  // One channel. The others keep their contents.
+  ALCOVE_CHANNEL_R = 1,
+  ALCOVE_CHANNEL_G = 2,
+  ALCOVE_CHANNEL_B = 3,
+  ALCOVE_CHANNEL_A = 4,
+  ALCOVE_CHANNEL_MAX_ENUM = 0x7fffffff
+} AlcoveChannel;
+
 // The precision of intermediate results that have no image of the engine. Images have their own.
 typedef enum AlcovePrecision {
   ALCOVE_PRECISION_UNORM8 = 0,   // 8 bits a channel
@@ -232,14 +243,15 @@ typedef struct AlcoveImage {
   VkImageView view;
   VkFormat format;
   // The size in pixels of the part that is read or written, from the top left corner: the whole
-  // image, or less with dynamic resolution. All images of a view have the same. The other pixels of
-  // an output keep their contents, unless it comes in VK_IMAGE_LAYOUT_UNDEFINED.
+  // image, or less with dynamic resolution. All images of a view have the same, except with
+  // AlcoveView::half_size_outputs. The other pixels of an output keep their contents, unless it
+  // comes in VK_IMAGE_LAYOUT_UNDEFINED.
   uint32_t width;
   uint32_t height;
   uint32_t layer;  // of an array image, such as one layer for each eye
   // The usage that the image was created with. Inputs need SAMPLED. Outputs need STORAGE;
-  // visibility also needs SAMPLED with multi-bounce or a specular model other than SLICES, and bent
-  // normals with the models that read them.
+  // visibility also needs SAMPLED with visibility_channel, with multi-bounce and with a specular
+  // model other than SLICES, and bent normals with the models that read them.
   VkImageUsageFlags usage;
   // The samples of a pixel that the image was created with; 0 stands for 1. Images of several
   // samples are refused in a sentence: the engine resolves them first, depth and normals to sample
@@ -248,7 +260,8 @@ typedef struct AlcoveImage {
   uint32_t samples;
   // The last use before the frame (of an input the last write, of an output the last read or write)
   // and the layout at that time. The first barrier waits for these stages. An output may come in
-  // VK_IMAGE_LAYOUT_UNDEFINED, because all of its pixels are overwritten.
+  // VK_IMAGE_LAYOUT_UNDEFINED, because all of its pixels are overwritten, unless only one channel
+  // is.
   AlcoveState initial_state;
   // The next use, and its layout: the last barrier changes the layout and makes the image visible
   // to these stages, even if no pass reads it. Required.
@@ -335,6 +348,20 @@ typedef struct AlcoveView {
   // Outputs, in any format that the device can store to and that has enough channels. The sky
   // (depth at the far plane, or not a number) is open, and its bent normal is the normal.
   AlcoveImage visibility;  // one channel, [0,1], 1 is open; R8_UNORM is enough
+  // One channel of `visibility` to write, if that is an image of the engine that holds something
+  // else in its other channels, such as a g-buffer with occlusion in alpha. They keep their
+  // contents. The image then comes with contents, in a layout other than UNDEFINED, has the usages
+  // STORAGE and SAMPLED, and an unsigned normalised or float format with the channel, without sRGB
+  // and without a shared exponent. It must not be an input of the frame. It costs a read of the
+  // image. [ALCOVE_CHANNEL_ALL]
+  AlcoveChannel visibility_channel;
+  // The outputs have half of depth's size, rounded up, and no upsampling pass is run: for engines
+  // that upsample themselves. Needs AlcoveSettings::half_resolution. Texel (x, y) belongs to one of
+  // the 2x2 pixels whose first is (2x, 2y): to the nearest of them if x + y is even, and otherwise
+  // to the farthest that is not the sky. Where 2x2 pixels are one surface, it is the mean of that
+  // surface around their common corner. Specular occlusion then needs the model SLICES, and
+  // multi-bounce is refused. [VK_FALSE]
+  VkBool32 half_size_outputs;
   // Three channels, signed: the mean visible direction, a unit vector in the space of the normals.
   // R8G8B8A8_SNORM is enough.
   AlcoveImage bent_normal;

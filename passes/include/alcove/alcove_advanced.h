@@ -1,7 +1,7 @@
-// Settings of Alcove that most engines never change: alternatives from the literature to compare
-// with, filter tuning, and parts of the search that can be switched off to measure what they do.
-// The defaults suit every scene. Use: alcoveGetAdvancedSettings, change a field, and let
-// AlcoveSettings::advanced point to the struct.
+// Settings of Alcove that most engines never change: other estimators from the literature, filter
+// parameters, and switches that turn off parts of the search, so that their effect can be measured.
+// The defaults suit every scene. To use them, fill a struct with alcoveGetAdvancedSettings, change
+// fields, and let AlcoveSettings::advanced point to it.
 #ifndef ALCOVE_ALCOVE_ADVANCED_H_
 #define ALCOVE_ALCOVE_ADVANCED_H_
 
@@ -11,80 +11,98 @@
 extern "C" {
 #endif
 
-// How thick occluders are taken to be. A depth buffer shows only their front faces.
+// Estimators of occlusion. A depth buffer holds only the front faces of occluders, so each
+// estimator assumes how thick occluders are.
 typedef enum AlcoveEstimator {
-  // Infinitely thick: the horizons of [Jimenez 2016].
+  // Occluders are infinitely thick. The horizon search of [Jimenez 2016].
   ALCOVE_ESTIMATOR_HORIZONS = 0,
-  // The paper's thickness heuristic: lower samples further out lower a horizon.
+  // HORIZONS with the thickness heuristic of [Jimenez 2016]: samples below the horizon lower it, by
+  // the fraction `blend`.
   ALCOVE_ESTIMATOR_HEURISTIC = 1,
-  // A visibility bitmask: each sample is an occluder of its own, as thick as `thickness` says.
+  // A visibility bitmask. Each sample is a separate occluder with the thickness
+  // AlcoveSettings::thickness.
   ALCOVE_ESTIMATOR_BITMASK = 2,
-  // A bitmask in which neighbouring samples of one surface are connected without gaps. The default.
-  // Suits thin objects and walls alike.
+  // A visibility bitmask in which neighbouring samples of one surface are connected, so that no
+  // light
+  // passes between them. The default; it suits both thin objects and walls.
   ALCOVE_ESTIMATOR_CONNECTED = 3,
   ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
 } AlcoveEstimator;
 
-// The weight of a visible direction in visibility. Bent normals always have the cosine's.
+// How visibility weights the directions of the hemisphere. Bent normals always use COSINE.
 typedef enum AlcoveWeighting {
-  ALCOVE_WEIGHTING_COSINE = 0,  // the cosine of its angle to the normal, as diffuse light needs it
-  ALCOVE_WEIGHTING_UNIFORM =
-      1,  // 1: visibility is the visible part of the hemisphere's solid angle
+  // By the cosine of the angle to the normal, as diffuse lighting needs it.
+  ALCOVE_WEIGHTING_COSINE = 0,
+  // All alike: visibility is the visible fraction of the hemisphere's solid angle.
+  ALCOVE_WEIGHTING_UNIFORM = 1,
   ALCOVE_WEIGHTING_MAX_ENUM = 0x7fffffff
 } AlcoveWeighting;
 
+// The unit of AlcoveSettings::thickness.
 typedef enum AlcoveThicknessUnit {
-  ALCOVE_THICKNESS_UNIT_RADIUS = 0,    // a fraction of the radius: constant in scene units
-  ALCOVE_THICKNESS_UNIT_DISTANCE = 1,  // a fraction of the occluder's distance from the eye
-  // Occluders end at AlcoveView::back_depth. At pixels where it has no face, RADIUS applies.
+  // The radius: the thickness of occluders is constant in scene units.
+  ALCOVE_THICKNESS_UNIT_RADIUS = 0,
+  // The occluder's distance from the eye: distant occluders are thicker.
+  ALCOVE_THICKNESS_UNIT_DISTANCE = 1,
+  // Occluders end at the back faces in AlcoveView::back_depth. At pixels without a back face the
+  // thickness is that of RADIUS.
   ALCOVE_THICKNESS_UNIT_BACK_FACES = 2,
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
 } AlcoveThicknessUnit;
 
-// How slice directions are distributed over pixels and frames.
+// How the directions of slices differ between neighbouring pixels and successive frames.
 typedef enum AlcovePattern {
-  ALCOVE_PATTERN_GOLDEN = 0,   // lattices without a period, rotated by the golden ratio
-  ALCOVE_PATTERN_HILBERT = 1,  // the R2 sequence along a Hilbert curve
-  ALCOVE_PATTERN_PAPER = 2,    // the 4x4 pixels and six rotations of [Jimenez 2016]
+  // A lattice over the image that never repeats; the next frame adds the golden ratio.
+  ALCOVE_PATTERN_GOLDEN = 0,
+  // The R2 sequence, in which pixels are numbered along a Hilbert curve.
+  ALCOVE_PATTERN_HILBERT = 1,
+  // The pattern of [Jimenez 2016], which repeats after 4x4 pixels and after six frames.
+  ALCOVE_PATTERN_PAPER = 2,
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
 } AlcovePattern;
 
-// Brackets hold the default of every quality but REFERENCE. A field that the estimator or the
-// history does not use is not read, but it has to be in range.
+// Square brackets hold the defaults, which are those of every quality except REFERENCE. Fields that
+// the chosen estimator does not use have no effect, but must be in range all the same.
 typedef struct AlcoveAdvancedSettings {
   uint32_t struct_size;                // sizeof(AlcoveAdvancedSettings)
   AlcoveEstimator estimator;           // [CONNECTED]
   AlcoveWeighting weighting;           // [COSINE]
-  AlcoveThicknessUnit thickness_unit;  // for BITMASK and CONNECTED [RADIUS]
-  // How far a sample below the horizon lowers it: 0 not at all, 1 down to the sample. For
-  // HEURISTIC. [0.05]
+  AlcoveThicknessUnit thickness_unit;  // read by BITMASK and CONNECTED [RADIUS]
+  // How much a sample that lies below the horizon lowers it: 0 does not lower the horizon, 1 lowers
+  // it to the sample. Read by HEURISTIC. [0.05]
   float blend;
-  // The last fraction of the radius, over which occluders fade out, 0 to 1, for HORIZONS and
-  // HEURISTIC. Must be 0 with BITMASK and CONNECTED, whose sectors are either occluded or open. [0]
+  // Occluders fade out over the outermost part of the radius; `falloff` is that part as a fraction
+  // of the radius, 0 to 1. Read by HORIZONS and HEURISTIC. It must be 0 with BITMASK and CONNECTED,
+  // whose bits cannot be partly occluded. [0]
   float falloff;
   AlcovePattern pattern;  // [GOLDEN]
-  // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
-  // more history use 1. 0 turns the filter off. [2]
+  // Radius of the spatial filter in tiles, 0 to 3, for pixels with fewer than two frames of
+  // history. Pixels with more history use a radius of 1. 0 turns the filter off for all pixels. [2]
   uint32_t filter_radius;
-  // Distance from the pixel's tangent plane, in pixels, at which a neighbour's weight falls to
-  // 0.25; above 0. It holds for one slice and no history, and shrinks with more samples. [1.5]
+  // The distance of a neighbour from the pixel's tangent plane at which the filter gives it a
+  // quarter of the full weight, in units of a pixel's width at its depth; above 0. The value is for
+  // one slice and no history; more slices and more history reduce the distance. [1.5]
   float filter_tolerance_px;
-  // The history is clamped to the mean of this frame's neighbourhood plus or minus so many standard
-  // deviations, at least 0. 0 does not clamp. [0]
+  // Clamps the history of a pixel to the mean of this frame's values around it, plus or minus
+  // clamp_width standard deviations of these values; at least 0. 0 does not clamp. [0]
   float clamp_width;
 
-  // Parts of the search that can be switched off to measure what they do.
+  // Parts of the search that can be switched off, so that their effect can be measured.
 
-  // Snaps samples to texel centres. Without it, tilted planes occlude themselves. [true]
+  // Moves each sample to the centre of its depth texel. If off, tilted planes occlude themselves.
+  // [true]
   VkBool32 snap_to_texels;
-  VkBool32 extrapolation;  // extrapolates surfaces beyond the image's border, for CONNECTED [true]
-  // Leaves directions that the depth buffer does not show (behind a foreground, or beyond the
-  // image's border) partly out of the average. If off, they count as open. For CONNECTED. [true]
+  // Extrapolates surfaces beyond the border of the image. If off, nothing beyond it occludes. Read
+  // by CONNECTED. [true]
+  VkBool32 extrapolation;
+  // Partly leaves directions out of the average that the depth buffer does not show, because they
+  // are hidden behind a foreground or lie beyond the border of the image. If off, they count as
+  // open. Read by CONNECTED. [true]
   VkBool32 unobserved;
 } AlcoveAdvancedSettings;
 
-// Fills `settings`, whose struct_size is set, with the advanced settings of a preset: the defaults,
-// except for REFERENCE. ALCOVE_ERROR_INVALID_INPUT if an argument is invalid.
+// Fills `settings`, whose struct_size must be set, with the advanced settings of a preset. They are
+// the defaults, except for REFERENCE. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid.
 AlcoveResult alcoveGetAdvancedSettings(AlcoveQuality quality, AlcoveAdvancedSettings* settings);
 
 #ifdef __cplusplus

@@ -8,16 +8,17 @@
 extern "C" {
 #endif
 
-// The camera that depth was drawn with, jitter included. Where the viewport has a negative height,
-// change the sign of the second row of the engine's clip_from_view. Where the engine's view space
-// looks along +Z, change the sign of the third column of clip_from_view, of the third row of
+// The camera that depth was drawn with, including its jitter. alcoveConvertCamera makes it from the
+// matrices of other conventions; by hand, it is done as follows. If the viewport has a negative
+// height, change the sign of the second row of clip_from_view. If the camera looks along +Z of view
+// space, change the sign of the third column of clip_from_view, of the third row of
 // view_from_world, and of z of normals in view space.
 //
-// Rounding errors are accepted and removed: elements that should be 0 or 1 may be off by what float
-// products and inverses leave there, with fused multiply-adds or without.
+// Rounding errors of matrix products and inverses are accepted: elements that should be exactly 0
+// or 1 may deviate by that much, and the library corrects them.
 typedef struct AlcoveCamera {
   // Any projection: finite, infinite, reversed, off-centre, jittered, flipped in Y, orthographic.
-  // In perspective w must be 0 at the eye.
+  // A perspective must have a clip-space w of 0 at the eye.
   float clip_from_view[16];
   // A rotation and a translation, without scale; or a reflection and a translation, for left-handed
   // worlds.
@@ -27,20 +28,21 @@ typedef struct AlcoveCamera {
 // How an engine's matrices differ from those of AlcoveCamera, for alcoveConvertCamera. Bits to be
 // combined.
 typedef enum AlcoveCameraConvention {
-  // Clip space has y up: the viewport has a negative height, or the API's y points up.
+  // Clip-space y points up: the viewport has a negative height, or the API defines it so.
   ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP = 1,
-  // Clip space has depth -1 to 1, which is stored as 0.5 + 0.5 * depth.
+  // Clip-space depth runs from -1 to 1, and the depth buffer holds 0.5 + 0.5 * depth.
   ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE = 2,
   // The camera looks along +Z of view space.
   ALCOVE_CAMERA_CONVENTION_FORWARD_Z = 4,
-  // Matrices of column vectors lie in memory row by row. (Matrices of row vectors that lie row by
-  // row, as those of DirectXMath and Unreal, need no bit: in memory they are the same.)
+  // The matrices transform column vectors and are stored row by row. DirectXMath and Unreal store
+  // matrices row by row too, but theirs transform row vectors; in memory these equal matrices of
+  // column vectors that are stored column by column, so they do not need this bit.
   ALCOVE_CAMERA_CONVENTION_ROW_MAJOR = 8,
 
-  // glm::perspectiveRH_ZO and glm::lookAtRH, drawn with a viewport of negative height. Where the
-  // engine changes the sign of the projection's [1][1] instead, no conversion is needed.
+  // glm::perspectiveRH_ZO and glm::lookAtRH, drawn with a viewport of negative height. Engines that
+  // change the sign of the projection's [1][1] instead need no conversion.
   ALCOVE_CAMERA_CONVENTION_GLM = 1,
-  // gluPerspective, glFrustum.
+  // The matrices of gluPerspective and glFrustum.
   ALCOVE_CAMERA_CONVENTION_OPENGL = 3,
   // Direct3D, DirectXMath's ...LH functions and Unreal's view and projection matrices.
   ALCOVE_CAMERA_CONVENTION_DIRECT3D = 5,
@@ -50,12 +52,12 @@ typedef enum AlcoveCameraConvention {
 
 // Fills `camera` with an engine's matrices of 16 floats each. `conventions` is any combination of
 // AlcoveCameraConvention, 0 for none. Returns ALCOVE_ERROR_INVALID_INPUT if a pointer is null or a
-// bit is unknown; what the matrices hold is checked when a frame is recorded. Normals in view space
-// of a camera that looks along +Z need AlcoveView::normals_forward_z too.
+// bit is unknown. The values of the matrices are checked when a frame is recorded. If the camera
+// looks along +Z and normals are in view space, set AlcoveView::normals_forward_z too.
 AlcoveResult alcoveConvertCamera(const float* clip_from_view, const float* view_from_world,
                                  uint32_t conventions, AlcoveCamera* camera);
 
-// A perspective in plain numbers.
+// The numbers from which alcoveMakePerspective makes a projection.
 typedef struct AlcovePerspective {
   uint32_t struct_size;
   float fov_y;        // vertical angle of view in radians, above 0 and below pi
@@ -64,11 +66,11 @@ typedef struct AlcovePerspective {
   VkBool32 reversed;  // near at depth 1, far at depth 0
   uint32_t width;     // of the image in pixels
   uint32_t height;
-  float jitter_px[2];  // by which the image is shifted, in pixels, x right and y down
+  float jitter_px[2];  // the shift of the image in pixels, x to the right and y down
 } AlcovePerspective;
 
-// Fills AlcoveCamera::clip_from_view. Returns ALCOVE_ERROR_INVALID_INPUT if a number is out of
-// range.
+// Fills the 16 floats of AlcoveCamera::clip_from_view. Returns ALCOVE_ERROR_INVALID_INPUT if a
+// number is out of range.
 AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* clip_from_view);
 
 #ifdef __cplusplus

@@ -47,7 +47,9 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 // has finished.
 //
 // Mistakes that do not show: an infinite projection with a wrong near plane, which scales the whole
-// scene; jitter that is in neither camera; and motion vectors of the wrong sign or unit.
+// scene; another angle of view if almost every surface is parallel or perpendicular to the view
+// axis, because the scene is then only stretched across that axis, and its normals stay as they
+// are; jitter that is in neither camera; and motion vectors of the wrong sign or unit.
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 #ifdef __cplusplus

@@ -12,8 +12,8 @@ extern "C" {
 #define ALCOVE_VERSION VK_MAKE_API_VERSION(0, 0, 1, 0)  // the version of this header
 #define ALCOVE_MAX_VIEWS 8                              // the most views in a frame
 #define ALCOVE_MAX_FRAMES_IN_FLIGHT 8
-#define ALCOVE_MAX_NAME 32      // bytes of a pass's name, terminating zero included
-#define ALCOVE_MAX_MESSAGE 512  // bytes of a message, the same way; longer messages are cut
+#define ALCOVE_MAX_NAME 32      // bytes of a pass's name with its terminating zero
+#define ALCOVE_MAX_MESSAGE 512  // bytes of a message with its zero; longer messages are cut
 
 typedef enum AlcoveResult {
   ALCOVE_SUCCESS = 0,
@@ -21,8 +21,8 @@ typedef enum AlcoveResult {
   ALCOVE_ERROR_UNSUPPORTED = -2,    // the device lacks something
   ALCOVE_ERROR_OUT_OF_HOST_MEMORY = -3,
   ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY = -4,
-  ALCOVE_ERROR_DEVICE_LOST = -5,  // the context is of no more use: destroy it
-  ALCOVE_ERROR_VULKAN = -6,       // another error of Vulkan; the message has its number
+  ALCOVE_ERROR_DEVICE_LOST = -5,  // the context can no longer be used: destroy it
+  ALCOVE_ERROR_VULKAN = -6,       // another Vulkan error; the message has its VkResult
   ALCOVE_ERROR_INTERNAL = -7,     // an error of the library itself
   ALCOVE_RESULT_MAX_ENUM = 0x7fffffff
 } AlcoveResult;

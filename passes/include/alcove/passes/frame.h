@@ -46,6 +46,17 @@ enum class NormalEncoding : std::uint8_t {
   unsigned_octahedral,  // the same packed into [0,1]
 };
 
+// The channels of a texture that visibility is written to: all of them, or one, and the others keep
+// their contents. A texture with one channel used in this way needs VK_IMAGE_USAGE_SAMPLED_BIT too,
+// and a format from which every other channel can be read and written back unchanged: unsigned
+// normalised or float, without a shared exponent and without sRGB.
+enum class VisibilityChannel : std::uint8_t { all, red, green, blue, alpha };
+
+// Returns the index of the channel that visibility is read from, 0 to 3.
+[[nodiscard]] constexpr std::uint32_t channel_index(VisibilityChannel channel) {
+  return channel == VisibilityChannel::all ? 0u : static_cast<std::uint32_t>(channel) - 1u;
+}
+
 // The arguments of every function that adds a pass to a frame: the graph, the kernels and the view.
 // The referenced objects must stay alive until the frame is recorded.
 struct Frame {

@@ -11,7 +11,7 @@ namespace alcove::passes {
 
 // The inputs of add_gtso(). All textures must have the same size.
 struct GtsoInputs {
-  framegraph::Texture visibility;   // one channel, [0,1], 1 open
+  framegraph::Texture visibility;   // [0,1], 1 open
   framegraph::Texture bent_normal;  // xyz unit, in the space of the normals
   framegraph::Texture normals;      // xyz unit, in world space unless `normals_in_view_space`
   framegraph::Texture depth;        // linear, as add_linear_depth makes it
@@ -21,6 +21,7 @@ struct GtsoInputs {
   bool normals_forward_z = false;                               // see OcclusionInputs
   framegraph::Texture
       into;  // the texture to write completely; null: a transient of OcclusionSettings::precision
+  VisibilityChannel visibility_channel = VisibilityChannel::all;  // that holds it; `all`: red
 };
 
 // Adds a pass that computes specular occlusion from visibility and bent normals. Returns a texture

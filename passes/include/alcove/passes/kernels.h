@@ -39,6 +39,8 @@ enum class Shader : std::uint8_t {
   reconstruct_half_specular_history,
   upsample,
   upsample_specular,
+  half_output,
+  half_output_specular,
   multi_bounce,
   gtso,
   gtso_by_table,
@@ -93,7 +95,7 @@ class Kernels {
   // may use it while passes are added.
   //
   // Errors: a null handle, frames in flight out of range, a Vulkan function that the device lacks,
-  // a limit maxPerStageDescriptorStorageImages below 9, or no more memory.
+  // a limit maxPerStageDescriptorStorageImages below 8, or no more memory.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight,
                                                            VkPipelineCache cache = VK_NULL_HANDLE);
@@ -125,7 +127,8 @@ class Kernels {
   // Records a dispatch that covers `size` pixels (and layers) with groups of 8x8 invocations.
   // `parameters` are the contents of the shader's uniform buffer. Each image binding of the shader
   // gets the view of its name: sampled images in the layout SHADER_READ_ONLY_OPTIMAL, storage
-  // images in GENERAL. Views with other names are ignored, so that all variants of a shader can be
+  // images in GENERAL. A view that is bound both as a sampled and as a storage image is in GENERAL.
+  // Views with other names are ignored, so that all variants of a shader can be
   // given the same list. Executor::record() returns an error if a binding has no view in the list,
   // if memory runs out, if begin_frame() was given no valid slot, or if the frame already has
   // kMaxDispatches.

@@ -39,6 +39,10 @@ struct OcclusionInputs {
   // camera looks along +Z. Bent normals then have the same convention.
   bool normals_forward_z = false;
   MotionConvention motion_convention;
+  VisibilityChannel visibility_channel = VisibilityChannel::all;  // see ReconstructInputs
+  // The outputs have half the depth's size: see ReconstructInputs::half_size_results. The models
+  // `table` and `cone` of specular occlusion are then not available.
+  bool half_size_outputs = false;
 };
 
 struct OcclusionOutputs {

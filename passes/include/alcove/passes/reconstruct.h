@@ -23,7 +23,7 @@ struct MotionConvention {
 };
 
 struct Occlusion {
-  // One channel, [0,1], 1 is open, of the depth's size. Null if it was not requested.
+  // One channel, [0,1], 1 is open. Null if it was not requested.
   framegraph::Texture visibility;
   // Unit vectors in xyz, in the space of the normals. Null without bent normals.
   framegraph::Texture bent_normal;
@@ -42,13 +42,19 @@ struct ReconstructInputs {
   // the last four frames by more than noise.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
-  // Textures of the caller, of the depth's size, to which the results are written completely. If a
+  // Textures of the caller, of the results' size, to which the results are written completely. If a
   // texture is null, its result is a transient with OcclusionSettings::precision. A texture whose
   // result was not requested is ignored.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
   bool normals_forward_z = false;  // see OcclusionInputs
   MotionConvention motion_convention;
+  // The channel of `into.visibility` that is written; `all` if that is null.
+  VisibilityChannel visibility_channel = VisibilityChannel::all;
+  // Results have half the depth's size, rounded up, and are not upsampled. Needs half_resolution.
+  // The texel at (x, y) belongs to one of the 2x2 pixels from (2x, 2y) on: to the nearest of them
+  // if x + y is even, and otherwise to the farthest that is not the sky.
+  bool half_size_results = false;
 };
 
 // Adds the reconstruction. Each view of a graph needs its own `history_name`. A history starts
@@ -57,8 +63,9 @@ struct ReconstructInputs {
 // Graph::reset_history(history_name).
 //
 // Errors: an input that is missing or whose size differs from the depth's, raw occlusion whose size
-// does not fit the number of tiles, a view or previous view that cannot be used, a size above
-// Frame::largest_size, settings that validate() refuses, or no output that was requested.
+// does not fit the number of tiles, a texture for visibility whose other channels cannot be kept,
+// results of half size without half_resolution, a view or previous view that cannot be used, a size
+// above Frame::largest_size, settings that validate() refuses, or no output that was requested.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const OcclusionSettings& settings,
     std::string_view history_name = "occlusion");
