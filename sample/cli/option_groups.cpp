@@ -290,6 +290,10 @@ void add_cost(CLI::App& app, Options& options) {
             });
   group.add_flag("--motion-vectors", "give the passes motion vectors, as a scene in motion does",
                  options.cost.motion_vectors);
+  group.add_flag("--outputs",
+                 "also model the settings with bent normals and with specular occlusion, and print "
+                 "the ratio of each frame's time to its time without this output",
+                 options.cost.outputs);
   group.add_flag("--loops",
                  "also print the instructions of a wave by kind, and the loops that the compiler "
                  "left with their iterations",

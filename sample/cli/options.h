@@ -66,6 +66,7 @@ struct CostOptions {
   std::string family;            // of the modelled GPU; empty for all that the model knows
   bool motion_vectors = false;   // gives motion vectors to the passes
   bool loops = false;            // also prints the loops of the shaders
+  bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none
   std::filesystem::path budget;  // file for the budget of the presets; empty for none
   std::filesystem::path chart;   // an SVG image; empty for none
