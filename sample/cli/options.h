@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "evaluate/clock.h"
 #include "evaluate/motion_kind.h"
 #include "render/normal_source.h"
 #include "scene/load_scene.h"
@@ -86,6 +87,7 @@ struct Options {
   // Limits for the command `recommend`, of which one is given: GPU time in milliseconds, or RMSE of
   // visibility.
   std::optional<double> budget_ms, tolerance;
+  std::optional<Clock> clock;      // bench, recommend: empty for the clock that fits the device
   std::optional<MotionKind> path;  // motion: empty for all paths
   CostOptions cost;
   bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes

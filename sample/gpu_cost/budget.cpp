@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 using Failure = tl::unexpected<std::string>;
 using passes::Quality;
 
-constexpr double kTolerance = 0.01;  // relative, for instructions per pixel
+constexpr double kTolerance = 0.01;  // fraction by which instructions per pixel may exceed a budget
 constexpr float kRadius = 0.5f;      // scene units; the instructions do not depend on it
 
 LabelledSettings preset(Quality quality) {

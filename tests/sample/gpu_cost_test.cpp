@@ -153,7 +153,7 @@ TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
 
 // Rows of 8 texels of 4 or 8 bytes lie in one line each. A gather of adjacent texels reads 9 rows
 // of 9 texels, and one of every second texel 16 rows of 16.
-TEST(GpuCost, CacheLinesOfALoadAreThoseOfItsAddresses) {
+TEST(GpuCost, CacheLinesOfALoadFollowFromItsAddressPattern) {
   using passes::cost::cache_lines;
   EXPECT_EQ(cache_lines({}), 8);
   EXPECT_EQ(cache_lines({.texel_bytes = 8}), 8);
