@@ -195,7 +195,7 @@ std::string table_of(const Trade& trade, const std::string& clock_title) {
       clock_title, "  RMSE of visibility against");
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
-    out += fmt::format("{} {:46}{:9.4f}{:15.4f}{:10.3f}{:9.3f}{:15.1f}{:8.1f}\n",
+    out += fmt::format("{} {:46}{:9.4f}{:15.4f}{:10.4f}{:9.4f}{:15.1f}{:8.1f}\n",
                        trade.on_pareto_front[i] ? '*' : ' ', point.name, point.rmse,
                        point.height_field_rmse, point.time_ms, point.spread_ms, point.processor_ms,
                        mib(point.bytes));
