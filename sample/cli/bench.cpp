@@ -90,11 +90,12 @@ Done run_bench(const Options& options) {
       }
       continue;
     }
-    auto trade = measure_trade(*session, setup, truth_options(one));
+    auto trade = measure_trade(*session, setup, truth_options(one), one.clock);
     if (!trade) {
       return Failure(std::move(trade.error()));
     }
     report["time"] = clock = trade->clock_title;
+    std::cout << trade->note;
     print_trade(trade_of(trade->points), title_of(options, scene), clock, report);
     measured.push_back(std::move(trade->points));
   }

@@ -18,7 +18,7 @@ namespace {
 struct Errors {
   ErrorSummary scene;
   ErrorSummary height_field;
-  ErrorSummary limit;  // height-field truth against scene truth: the limit of one depth layer
+  ErrorSummary limit;  // error of the height-field truth against scene truth
   AngleSummary bent_normal;
   AngleSummary surface_normal;  // the surface normal as the bent normal
   OpenSurfaceSummary open;

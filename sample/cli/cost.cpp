@@ -24,7 +24,9 @@ std::vector<passes::Quality> qualities_of(const Options& options) {
           passes::Quality::high};
 }
 
-tl::expected<CostInputs, std::string> inputs_of(const Options& options, passes::Quality quality) {
+// The preset with the changes of --set. With --outputs, also with each further output.
+tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Options& options,
+                                                                     passes::Quality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
   one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
@@ -32,9 +34,24 @@ tl::expected<CostInputs, std::string> inputs_of(const Options& options, passes::
   if (!settings) {
     return Failure(settings.error());
   }
-  return CostInputs{options.view.width, options.view.height,
-                    options.occlusion.normals != NormalSource::kDepth, options.cost.motion_vectors,
-                    *settings};
+  LabelledSettings given{
+      std::string(passes::name_of(quality)),
+      {options.view.width, options.view.height, options.occlusion.normals != NormalSource::kDepth,
+       options.cost.motion_vectors, *settings},
+      ""};
+  for (const auto& [name, value] : options.occlusion.set) {
+    given.label += " " + name + "=" + value;
+  }
+  if (!options.cost.outputs) {
+    return std::vector{std::move(given)};
+  }
+  if (settings->bent_normal || settings->specular != passes::Specular::none) {
+    return Failure(
+        "--outputs compares settings with and without bent normals and specular occlusion; leave "
+        "bent_normal and specular out of --set.");
+  }
+  auto [bent, specular] = with_each_output(given);
+  return std::vector{std::move(given), std::move(bent), std::move(specular)};
 }
 
 tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& options) {
@@ -48,19 +65,17 @@ tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& opti
       return Failure(device.error());
     }
     for (const passes::Quality quality : qualities_of(options)) {
-      const auto inputs = inputs_of(options, quality);
-      if (!inputs) {
-        return Failure(inputs.error());
+      const auto all = settings_of(options, quality);
+      if (!all) {
+        return Failure(all.error());
       }
-      auto frames = modelled_frames(part, *device, *inputs);
-      if (!frames) {
-        return Failure(std::move(frames.error()));
+      for (const LabelledSettings& settings : *all) {
+        auto cost = cost_of(part, *device, settings);
+        if (!cost) {
+          return Failure(std::move(cost.error()));
+        }
+        costs.push_back(std::move(*cost));
       }
-      std::string label(passes::name_of(quality));
-      for (const auto& [name, value] : options.occlusion.set) {
-        label += " " + name + "=" + value;
-      }
-      costs.push_back({std::move(label), std::string(part.family), std::move(*frames)});
     }
   }
   return costs;

@@ -91,7 +91,7 @@ tl::expected<void, std::string> print_mistakes(const Options& options, const Ses
   return {};
 }
 
-// Prints what alcoveDiagnose says of right frames of a scene, which should be nothing.
+// Prints the output of alcoveDiagnose for frames of a scene without mistakes. It should be empty.
 tl::expected<void, std::string> check_scene(const Options& options, const Session& session) {
   auto run = create_run(options, session);
   if (!run) {
@@ -148,8 +148,8 @@ tl::expected<void, std::string> run_doctor(const Options& options) {
   if (options.mistakes) {
     of_scene.scene.clear();
     if (options.view.camera.empty() && !options.view.eye && !options.view.target) {
-      // It looks down at surfaces of many directions. A level view of walls and floors along its
-      // axes does not tell its angle of view.
+      // This camera looks down at surfaces of many directions. In a level view of walls and floors
+      // that are parallel to its axes, a wrong angle of view cannot be detected.
       of_scene.view.camera = "plant";
     }
   }

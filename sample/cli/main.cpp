@@ -43,14 +43,15 @@ tl::expected<void, std::string> run(const Options& options) {
   }
 }
 
-// Messages repeat arguments and file names, which may contain any bytes.
+// Prints an error sentence. It is shortened, and bytes that are not printable are replaced, because
+// it may repeat arguments and file names, which may contain any bytes.
 int fail(const std::string& sentence) {
   constexpr std::size_t kLongest = 600;  // bytes
   std::cerr << "alcove: " << alcove::sample::shortened(sentence, kLongest) << "\n";
   return 1;
 }
 
-// Reports output that could not be written; a full disk shows only when the stream is flushed.
+// Flushes stdout and reports if it could not be written. A full disk causes an error only here.
 int flush_output() {
   errno = 0;
   if (std::cout.flush()) return 0;

@@ -16,7 +16,7 @@ using Failure = tl::unexpected<std::string>;
 
 namespace {
 
-// Prints the first notes only, because a file may cause any number of them.
+// Prints the notes about a scene, at most the first twenty, because a file may cause any number.
 void print_notes(const std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 20;
   for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) {

@@ -23,8 +23,8 @@ class Group {
       : app_(app), heading_(std::move(heading)) {}
 
   using Read = std::function<void(const OptionValue& given)>;
-  // Adds an option with a value. --help calls the value `type`. `read` receives the value, and the
-  // last one if the option is given several times.
+  // Adds an option with a value, which --help names `type`. `read` receives the value. If the
+  // option is given several times, it receives the last value only.
   void add(const std::string& option, const std::string& type, const std::string& help,
            const Read& read) const {
     const auto typed = [option, read](const std::string& text) { read({option, text}); };
@@ -74,7 +74,8 @@ void add_frames(const Group& group, ViewOptions& view, std::int64_t fewest,
   });
 }
 
-// Reports a plane at the eye or behind it, which only an orthographic view may have.
+// Throws a Mistake if a near or far plane is at the eye or behind it. Only orthographic views may
+// have such planes.
 void check_plane(const std::string& option, const std::optional<float>& plane,
                  const ViewOptions& view) {
   if (plane && !(*plane > 0.0f) && !view.ortho_height) {
@@ -100,67 +101,73 @@ void check_view(const ViewOptions& view) {
 }  // namespace
 
 void add_scene(CLI::App& app, std::string& scene) {
-  app.add_option("SCENE", scene,
-                 "a .gltf or .glb file, or one that is made: builtin (the default), plane:60, "
-                 "groove:90, corner, sphere, pit, step")
+  app.add_option(
+         "SCENE", scene,
+         "a .gltf or .glb file, or a scene that the program generates: builtin (the default), "
+         "plane:60, groove:90, corner, sphere, pit or step")
       ->type_name("");
 }
 
 void add_scenes(CLI::App& app, std::vector<std::string>& scenes) {
-  app.add_option("SCENE", scenes, "any number of scenes, each seen by its own camera")
+  app.add_option("SCENE", scenes, "any number of scenes; each is rendered with its own camera")
       ->type_name("");
 }
 
 void add_view(CLI::App& app, ViewOptions& view) {
   const Group group(app, "View");
-  group.add("--camera", "NAME",
-            "a camera of the scene, by name; else its first, else a view of all of it",
-            [&](const OptionValue& given) { view.camera = given.text; });
-  group.add("--eye", "X,Y,Z", "where the camera stands, scene units",
-            [&](const OptionValue& given) { view.eye = given.vector(); });
-  group.add("--target", "X,Y,Z", "what it looks at",
-            [&](const OptionValue& given) { view.target = given.vector(); });
-  group.add("--up", "X,Y,Z", "what is up; 0,1,0", [&](const OptionValue& given) {
-    view.up_ws = given.vector();
-    if (*view.up_ws == glm::vec3(0.0f)) given.refuse("a direction, not zero");
-  });
   group.add(
-      "--fov-y", "DEGREES", "vertical angle of view; the camera's", [&](const OptionValue& given) {
-        // The range of a camera in a scene file.
-        view.fov_y = glm::radians(static_cast<float>(
-            given.number(0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
-      });
-  group.add("--ortho-height", "LENGTH", "orthographic, so many units high",
+      "--camera", "NAME",
+      "name of a camera of the scene. Default: the first one, or a view of the whole scene if "
+      "it has none",
+      [&](const OptionValue& given) { view.camera = given.text; });
+  group.add("--eye", "X,Y,Z", "position of the camera, scene units",
+            [&](const OptionValue& given) { view.eye = given.vector(); });
+  group.add("--target", "X,Y,Z", "point that the camera looks at, scene units",
+            [&](const OptionValue& given) { view.target = given.vector(); });
+  group.add("--up", "X,Y,Z", "direction that is upwards in the image. Default: 0,1,0",
+            [&](const OptionValue& given) {
+              view.up_ws = given.vector();
+              if (*view.up_ws == glm::vec3(0.0f)) given.refuse("a direction, not zero");
+            });
+  group.add("--fov-y", "DEGREES", "vertical angle of view. Default: that of the camera",
+            [&](const OptionValue& given) {
+              // Cameras of scene files may have the same angles.
+              view.fov_y = glm::radians(static_cast<float>(given.number(
+                  0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
+            });
+  group.add("--ortho-height", "LENGTH",
+            "makes the view orthographic; height of the image in scene units",
             [&](const OptionValue& given) { view.ortho_height = given.length(); });
   constexpr double kLargest = std::numeric_limits<float>::max();
   group.add("--near", "LENGTH",
-            "near plane; that of the scene's camera, or fitted to the geometry in view. That of an "
-            "orthographic view may lie behind the eye",
+            "distance of the near plane. Default: that of the scene's camera, or fitted to the "
+            "geometry in view. In an orthographic view it may be negative (behind the eye)",
             [&](const OptionValue& given) {
               view.near_plane = static_cast<float>(
                   given.number(-kLargest, kLargest, "a length above 0, in the scene's units"));
             });
-  group.add("--far", "LENGTH", "far plane, or inf; as --near", [&](const OptionValue& given) {
-    const bool infinite = given.text == "inf" || given.text == "infinity";
-    view.far_plane =
-        infinite
-            ? std::numeric_limits<float>::infinity()
-            : static_cast<float>(given.number(-kLargest, kLargest, "a length above 0, or inf"));
-  });
+  group.add("--far", "LENGTH", "distance of the far plane, or inf. Default: as for --near",
+            [&](const OptionValue& given) {
+              const bool infinite = given.text == "inf" || given.text == "infinity";
+              view.far_plane = infinite ? std::numeric_limits<float>::infinity()
+                                        : static_cast<float>(given.number(
+                                              -kLargest, kLargest, "a length above 0, or inf"));
+            });
   group.add_optional_flag("--reversed-z",
-                          "near plane at depth 1, far plane at 0; the default in perspective",
+                          "near plane at depth 1, far plane at 0. Default in perspective views",
                           view.reversed_z, true);
-  group.add_optional_flag(
-      "--standard-z", "near plane at depth 0, far plane at 1; the default in orthographic views",
-      view.reversed_z, false);
-  group.add("--size", "WxH", "of the image in pixels; 960x540",
+  group.add_optional_flag("--standard-z",
+                          "near plane at depth 0, far plane at 1. Default in orthographic views",
+                          view.reversed_z, false);
+  group.add("--size", "WxH", "size of the image in pixels. Default: 960x540",
             [&](const OptionValue& given) { std::tie(view.width, view.height) = given.size(); });
 }
 
 void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help) {
   const Group group(app, "View");
   add_frames(group, view, 1, frames_help);
-  group.add("--orbit", "DEGREES", "turn about the target by so much per frame",
+  group.add("--orbit", "DEGREES",
+            "angle by which the camera orbits its target from frame to frame. Default: 0",
             [&](const OptionValue& given) {
               view.orbit = glm::radians(static_cast<float>(
                   given.number(-360.0, 360.0, "an angle in degrees, -360 to 360")));
@@ -169,16 +176,18 @@ void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help
 
 void add_standing(CLI::App& app, ViewOptions& view) {
   view.frames = 32;  // the number of frames that the history averages
-  add_frames(Group(app, "View"), view, 1,
-             "how many are drawn with each setting, the camera standing; the last is compared; 32");
+  add_frames(
+      Group(app, "View"), view, 1,
+      "number of frames of a static camera that are rendered with each setting; the last one is "
+      "compared. Default: 32");
 }
 
 void add_motion(CLI::App& app, Options& options) {
   const Group group(app, "Motion");
   group.add("--path", "NAME",
-            "orbit (about the middle of the view), dolly (towards it), strafe (past a column that "
-            "is put near the eye), object (the camera stands, a block slides over the ground), "
-            "cut (to elsewhere) or all of them; all",
+            "orbit (around the middle of the view), dolly (towards it), strafe (past a column that "
+            "is added near the eye), object (static camera, a block slides over the ground), cut "
+            "(the camera jumps to another place) or all. Default: all",
             [&](const OptionValue& given) {
               std::vector<std::string_view> names(kMotionKindNames.begin(), kMotionKindNames.end());
               names.emplace_back("all");
@@ -189,13 +198,13 @@ void add_motion(CLI::App& app, Options& options) {
   constexpr std::int64_t kFewest = 12;  // with fewer frames there is nothing to compare
   options.view.frames = 48;
   add_frames(group, options.view, kFewest,
-             "how long each path is, from the view given on; three of its frames are compared with "
-             "the ray-traced truth; 48");
+             "number of frames of each path, which begins at the given view. Three of them are "
+             "compared with the ray-traced truth. Default: 48");
 }
 
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
-  group.add("--quality", "NAME", "console, low, medium, high or reference; medium",
+  group.add("--quality", "NAME", "preset: console, low, medium, high or reference. Default: medium",
             [&](const OptionValue& given) {
               occlusion.quality_given = true;
               occlusion.quality =
@@ -203,11 +212,12 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
             });
   group.add(
       "--radius", "LENGTH",
-      "distance up to which occluders count, scene units; a twentieth of the scene's diagonal, "
-      "without what only surrounds it",
+      "distance up to which occluders count, scene units. Default: a twentieth of the diagonal of "
+      "the scene, without sky domes, ground planes and stray triangles far away",
       [&](const OptionValue& given) { occlusion.radius = given.length(); });
   group.add_repeatable(
-      "--set", "NAME=VALUE", "one of the settings below over the preset; may be repeated",
+      "--set", "NAME=VALUE",
+      "changes one setting of the preset; the settings are listed below. May be repeated",
       [&](const OptionValue& given) {
         const std::size_t equals = given.text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == given.text.size()) {
@@ -219,8 +229,9 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
         occlusion.set.emplace_back(name, value);
       });
   group.add("--normals", "NAME",
-            "that the pass is given, and the truth with it: shading (of vertices and normal maps), "
-            "geometric (of the triangles) or depth (made from the depth buffer); shading",
+            "normals that the occlusion pass and the truths use: shading (from vertices and normal "
+            "maps), geometric (of the triangles) or depth (reconstructed from the depth buffer). "
+            "Default: shading",
             [&](const OptionValue& given) {
               occlusion.normals = static_cast<NormalSource>(given.one_of(kNormalSourceNames));
             });
@@ -230,8 +241,8 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
 void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
   Group(app, "Occlusion")
       .add("--roughness", "R,...",
-           "perceptual roughness for specular occlusion over that of the materials; several give "
-           "several images",
+           "perceptual roughness for specular occlusion, instead of that of the materials. Each of "
+           "several values gives an image of its own",
            [&](const OptionValue& given) {
              const std::string wanted =
                  "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
@@ -247,59 +258,78 @@ void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
 
 void add_rays(CLI::App& app, OcclusionOptions& occlusion) {
   Group(app, "Occlusion")
-      .add("--spp", "N", "rays per pixel of the truth; 256", [&](const OptionValue& given) {
-        occlusion.spp =
-            static_cast<std::uint32_t>(given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
-      });
+      .add("--spp", "N", "rays per pixel of the ray-traced truth. Default: 256",
+           [&](const OptionValue& given) {
+             occlusion.spp = static_cast<std::uint32_t>(
+                 given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
+           });
 }
 
 void add_no_cache(CLI::App& app, bool& use_cache) {
-  Group(app).add_flag("--no-cache", "compute the truths anew", use_cache, false);
+  Group(app).add_flag("--no-cache",
+                      "compute the truths again instead of reading them from the cache on disk",
+                      use_cache, false);
 }
 
 void add_limits(CLI::App& app, Options& options) {
   const Group group(app);
-  group.add("--budget-ms", "MS",
-            "the most GPU time that the occlusion passes may take: the least error in it",
-            [&](const OptionValue& given) {
-              options.budget_ms = given.positive("a time above 0 in milliseconds");
-            });
   group.add(
-      "--tolerance", "E", "the most error, RMSE of visibility: the least time for it",
+      "--budget-ms", "MS",
+      "find the setting with the smallest error whose occlusion passes take at most this time",
+      [&](const OptionValue& given) {
+        options.budget_ms = given.positive("a time above 0 in milliseconds");
+      });
+  group.add(
+      "--tolerance", "E", "find the fastest setting whose RMSE of visibility is at most this error",
       [&](const OptionValue& given) { options.tolerance = given.positive("an error above 0"); });
 }
 
 void add_grid(CLI::App& app, bool& grid) {
   Group(app).add_flag(
       "--grid",
-      "instead, a table of the error with 8 to 64 steps and 1 to 8 slices, all else "
-      "as --quality and --set give it; nothing is timed",
+      "print a table of the error with 8 to 64 steps and 1 to 8 slices instead, with all other "
+      "settings as --quality and --set give them. Times are not measured",
       grid);
+}
+
+void add_clock(CLI::App& app, std::optional<Clock>& clock) {
+  Group(app).add(
+      "--clock", "NAME",
+      "which time is compared: modelled (GPU time of an RDNA2 part by the cost model, "
+      "the same in every run), timestamps (GPU time of the device) or processor (time "
+      "of all threads); timestamps on a GPU, modelled on a software device",
+      [&](const OptionValue& given) { clock = static_cast<Clock>(given.one_of(kClockNames)); });
 }
 
 void add_cost(CLI::App& app, Options& options) {
   const Group group(app, "Cost");
-  group.add("--family", "NAME", "the modelled GPU: bonaire (PS4-like) or navi21 (RDNA2); both",
+  group.add("--family", "NAME", "modelled GPU: bonaire (PS4-like) or navi21 (RDNA2). Default: both",
             [&](const OptionValue& given) {
               constexpr std::array<std::string_view, 2> kFamilies{"bonaire", "navi21"};
               options.cost.family = kFamilies[given.one_of(kFamilies)];
             });
-  group.add("--size", "WxH", "size of the image in pixels; 1920x1080",
+  group.add("--size", "WxH", "size of the image in pixels. Default: 1920x1080",
             [&](const OptionValue& given) {
               std::tie(options.view.width, options.view.height) = given.size();
             });
-  group.add_flag("--motion-vectors", "give the passes motion vectors, as a scene in motion does",
+  group.add_flag("--motion-vectors",
+                 "model the passes with motion vectors as an input, which moving objects need",
                  options.cost.motion_vectors);
-  group.add_flag("--loops",
-                 "also print the instructions of a wave by kind, and the loops that the compiler "
-                 "left with their iterations",
-                 options.cost.loops);
+  group.add_flag("--outputs",
+                 "also model the settings with bent normals and with specular occlusion, and print "
+                 "the ratio of each frame's time to its time without this output",
+                 options.cost.outputs);
+  group.add_flag(
+      "--loops",
+      "also print the instructions of a wave by kind, and each loop that the compiler did "
+      "not unroll with its iterations",
+      options.cost.loops);
   group.add("--json", "FILE", "also write all figures as JSON",
             [&](const OptionValue& given) { options.cost.json = given.text; });
   group.add("--write-budget", "FILE",
-            "only write the costs of all presets, as the budget that the tests hold them to",
+            "only write the costs of all presets into the file of limits that the tests check",
             [&](const OptionValue& given) { options.cost.budget = given.text; });
-  group.add("--chart", "FILE", "also draw an SVG chart of where the time goes",
+  group.add("--chart", "FILE", "also write an SVG chart of the time of each pass",
             [&](const OptionValue& given) { options.cost.chart = given.text; });
 }
 
@@ -307,10 +337,11 @@ void add_doctor(CLI::App& app, Options& options) {
   const Group group(app);
   group.add_flag(
       "--mistakes",
-      "plant each mistake of integration in frames of the built-in scene, and print what "
-      "alcoveDiagnose says of it",
+      "draw the built-in scene with each of the usual mistakes of integration, and print what "
+      "alcoveDiagnose reports",
       options.mistakes);
-  group.add("--pictures", "FOLDER", "write a picture without and with each mistake; as --mistakes",
+  group.add("--pictures", "FOLDER",
+            "implies --mistakes; write a picture without mistakes and one with each mistake",
             [&](const OptionValue& given) {
               options.pictures = given.text;
               options.mistakes = true;
@@ -320,45 +351,49 @@ void add_doctor(CLI::App& app, Options& options) {
 void add_light(CLI::App& app, Options& options) {
   Group(app, "Light")
       .add("--environment", "FILE",
-           "light all around, an equirectangular .hdr or .exr; a sky that is made",
+           "equirectangular image of the light, .hdr or .exr. Default: a generated sky",
            [&](const OptionValue& given) { options.environment = given.text; });
 }
 
 void add_materials(CLI::App& app, MaterialTreatment& materials) {
   const Group group(app);
-  group.add_flag("--cut-blends",
-                 "cut alpha-blended materials out where their alpha is below a half, as foliage "
-                 "needs it; without it they are rendered opaque",
-                 materials.cut_blends);
+  group.add_flag(
+      "--cut-blends",
+      "render alpha-blended materials as masks with a cutoff of 0.5, which suits foliage. "
+      "Default: they are rendered opaque",
+      materials.cut_blends);
   group.add_flag("--both-sides",
-                 "draw single-sided materials from behind too; without it their back faces are "
-                 "culled, as glTF asks for",
+                 "draw the back faces of single-sided materials. Default: they are culled, as glTF "
+                 "specifies",
                  materials.both_sides);
 }
 
 void add_lit(CLI::App& app, bool& lit, std::uint32_t& points) {
-  Group(app).add_flag("--lit",
-                      "also path trace the picture lit by the environment, and print the error of "
-                      "the lit picture without occlusion and with each part of it; takes minutes",
-                      lit);
-  Group(app).add("--lit-points", "N",
-                 "pixels at which multi-bounce, specular occlusion and the lit picture are traced, "
-                 "one in each square block; 32000",
-                 [&](const OptionValue& given) {
-                   points = static_cast<std::uint32_t>(
-                       given.whole_number(1, 100'000'000, "pixels, 1 to 100000000"));
-                 });
+  Group(app).add_flag(
+      "--lit",
+      "also path trace the scene lit by the environment, and print the error of the lit "
+      "picture without occlusion and with each part of the occlusion. Takes minutes",
+      lit);
+  Group(app).add(
+      "--lit-points", "N",
+      "approximate number of pixels at which multi-bounce, specular occlusion and the lit "
+      "picture are traced, one per square block of the image. Default: 32000",
+      [&](const OptionValue& given) {
+        points = static_cast<std::uint32_t>(
+            given.whole_number(1, 100'000'000, "pixels, 1 to 100000000"));
+      });
 }
 
 void add_format(CLI::App& app, GraphFormat& format) {
-  Group(app).add("--format", "NAME", "text or dot (Graphviz); text", [&](const OptionValue& given) {
-    format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
-  });
+  Group(app).add("--format", "NAME", "text or dot (Graphviz). Default: text",
+                 [&](const OptionValue& given) {
+                   format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
+                 });
 }
 
 void add_device(CLI::App& app, Options& options) {
   const Group group(app);
-  group.add("--device", "N", "which Vulkan device, as `alcove doctor` numbers them",
+  group.add("--device", "N", "number of the Vulkan device in the list of `alcove doctor`",
             [&](const OptionValue& given) {
               options.device =
                   static_cast<int>(given.whole_number(0, 255, "a number from 0 to 255"));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,9 @@ namespace alcove::sample {
 void add_scene(CLI::App& app, std::string& scene);
 void add_scenes(CLI::App& app, std::vector<std::string>& scenes);
 void add_view(CLI::App& app, ViewOptions& view);
-// Adds the options for the frames of a camera that may orbit.
+// Adds --frames and --orbit, for commands whose camera may orbit from frame to frame.
 void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help);
-// Adds the option for the number of frames of a static camera.
+// Adds --frames, for commands whose camera is static.
 void add_standing(CLI::App& app, ViewOptions& view);
 void add_motion(CLI::App& app, Options& options);
 // Adds the options of the occlusion, and the list of settings for --set at the end of the help.
@@ -33,11 +34,13 @@ void add_rays(CLI::App& app, OcclusionOptions& occlusion);
 void add_no_cache(CLI::App& app, bool& use_cache);
 // Adds the limits of the command `recommend`.
 void add_limits(CLI::App& app, Options& options);
+// Adds --clock, which selects the times that `bench` and `recommend` compare.
+void add_clock(CLI::App& app, std::optional<Clock>& clock);
 // Adds the options of `cost`: the GPU, the image size, and the output files.
 void add_cost(CLI::App& app, Options& options);
 // Adds the option of `bench` that measures the grid of steps and slices.
 void add_grid(CLI::App& app, bool& grid);
-// For `doctor`: planted mistakes and their pictures.
+// Adds the options of `doctor`: --mistakes and --pictures.
 void add_doctor(CLI::App& app, Options& options);
 void add_light(CLI::App& app, Options& options);
 void add_materials(CLI::App& app, MaterialTreatment& materials);

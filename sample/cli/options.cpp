@@ -11,17 +11,17 @@ namespace {
 
 // Each of these functions adds the options of one command.
 void add_output(CLI::App& app, Options& options) {
-  add_out(app, options, "folder for images and report.json; out");
+  add_out(app, options, "folder for images and report.json. Default: out");
   add_device(app, options);
 }
 
-// `render` also accepts --spp, without effect, so that the arguments of `compare` can be reused. So
-// does `graph`.
+// `render` and `graph` accept --spp without effect, so that the arguments of a `compare` command
+// can be reused with them.
 void add_render(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_materials(app, options.materials);
   add_view(app, options.view);
-  add_course(app, options.view, "how many to render; 1. The last is written");
+  add_course(app, options.view, "number of frames to render; the last one is written. Default: 1");
   add_occlusion(app, options.occlusion);
   add_rays(app, options.occlusion);
   add_roughness(app, options.occlusion);
@@ -65,6 +65,7 @@ void add_ablate(CLI::App& app, Options& options) {
 void add_bench(CLI::App& app, Options& options) {
   add_scenes(app, options.scenes);
   add_grid(app, options.grid);
+  add_clock(app, options.clock);
   add_materials(app, options.materials);
   add_comparison(app, options);
   add_output(app, options);
@@ -74,6 +75,7 @@ void add_recommend(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_materials(app, options.materials);
   add_limits(app, options);
+  add_clock(app, options.clock);
   add_comparison(app, options);
   add_device(app, options);
 }
@@ -102,13 +104,15 @@ void add_window(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_materials(app, options.materials);
   add_view(app, options.view);
-  add_course(app, options.view, "how many to draw; else until the window is closed");
+  add_course(app, options.view,
+             "number of frames after which the window closes. Default: it stays open");
   add_occlusion(app, options.occlusion);
   add_roughness(app, options.occlusion);
   add_light(app, options);
-  add_out(app, options,
-          "folder for screenshots, else where alcove was started; with it, the last of --frames is "
-          "written too");
+  add_out(
+      app, options,
+      "folder for screenshots. Default: the current folder. If given, the last frame of --frames "
+      "is written there too");
   add_device(app, options);
 }
 
@@ -129,30 +133,28 @@ struct Entry {
   void (*add_options)(CLI::App& app, Options& options);
 };
 constexpr std::array<Entry, 10> kCommands{{
-    {Command::kRender, "render", "a scene to occlusion images and timings", add_render},
+    {Command::kRender, "render", "render a scene to occlusion images and print timings",
+     add_render},
     {Command::kCompare, "compare",
-     "the same, and how far it is from the ray-traced and the height-field truth", add_compare},
-    {Command::kMotion, "motion",
-     "how far it is from the truth while camera or things move, beside standing still",
+     "render a scene and print the errors against ray-traced and height-field truth", add_compare},
+    {Command::kMotion, "motion", "measure errors and flicker while the camera or an object moves",
      add_motion_command},
     {Command::kAblate, "ablate",
-     "what each part of the occlusion costs and what it buys, one row for each", add_ablate},
+     "change one part of the occlusion at a time and print its cost and error", add_ablate},
     {Command::kBench, "bench",
-     "the trade of speed for accuracy: time and error of many settings, as a table, a plot and "
-     "JSON",
-     add_bench},
+     "measure time and error of many settings, and write a table, a plot and JSON", add_bench},
     {Command::kRecommend, "recommend",
-     "the least settings that hold: within a time, or within an error", add_recommend},
+     "find the most accurate setting within a time, or the fastest within an error", add_recommend},
     {Command::kCost, "cost",
-     "what the GPU passes cost by the compiler's account: registers, instructions, modelled time, "
-     "without a GPU",
+     "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
      add_cost_command},
-    {Command::kGraph, "graph", "the compiled plan of a frame: passes, barriers, memory", add_graph},
-    {Command::kView, "view",
-     "a window to orbit a scene in and see what each setting does and costs", add_window},
+    {Command::kGraph, "graph", "print the compiled plan of a frame: passes, barriers, memory",
+     add_graph},
+    {Command::kView, "view", "open a window to orbit a scene, change settings and see their cost",
+     add_window},
     {Command::kDoctor, "doctor",
-     "the Vulkan devices here and what they lack; what alcoveDiagnose says of a scene or of "
-     "mistakes",
+     "list the Vulkan devices and the features that they lack, or check a scene with "
+     "alcoveDiagnose",
      add_doctor_command},
 }};
 
@@ -202,7 +204,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
   }
   app.require_subcommand(1);
   app.set_version_flag("--version", "alcove " ALCOVE_VERSION);
-  app.footer("`alcove COMMAND --help` has the options of each.");
+  app.footer("`alcove COMMAND --help` lists the options of a command.");
   if (argc < 2) return tl::unexpected(no_command("name a command"));
   if (argv[1][0] != '-' && !is_command(argv[1])) {
     return tl::unexpected(no_command("there is no command " + std::string(argv[1])));

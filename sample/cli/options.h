@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "evaluate/clock.h"
 #include "evaluate/motion_kind.h"
 #include "render/normal_source.h"
 #include "scene/load_scene.h"
@@ -66,6 +67,7 @@ struct CostOptions {
   std::string family;            // of the modelled GPU; empty for all that the model knows
   bool motion_vectors = false;   // gives motion vectors to the passes
   bool loops = false;            // also prints the loops of the shaders
+  bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none
   std::filesystem::path budget;  // file for the budget of the presets; empty for none
   std::filesystem::path chart;   // an SVG image; empty for none
@@ -85,6 +87,7 @@ struct Options {
   // Limits for the command `recommend`, of which one is given: GPU time in milliseconds, or RMSE of
   // visibility.
   std::optional<double> budget_ms, tolerance;
+  std::optional<Clock> clock;      // bench, recommend: empty for the clock that fits the device
   std::optional<MotionKind> path;  // motion: empty for all paths
   CostOptions cost;
   bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes

@@ -60,8 +60,8 @@ Done run_recommend(const Options& options) {
   if (!session) {
     return Failure(session.error());
   }
-  auto measured =
-      measure_trade(*session, static_setup(options, session->camera), truth_options(options));
+  auto measured = measure_trade(*session, static_setup(options, session->camera),
+                                truth_options(options), options.clock);
   if (!measured) {
     return Failure(std::move(measured.error()));
   }
@@ -70,7 +70,7 @@ Done run_recommend(const Options& options) {
   if (chosen == nullptr) {
     return Failure(no_choice_message(trade, options));
   }
-  std::cout << shown(*chosen) << "\n";
+  std::cout << measured->note << shown(*chosen) << "\n";
   print_neighbours(trade, *chosen);
   const Shot shot{session->camera,    chosen->settings,    std::nullopt,
                   options.view.width, options.view.height, options.view.frames};

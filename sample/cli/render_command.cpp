@@ -74,7 +74,8 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
   }
 }
 
-// Uses the quality that needs the fewest --set options.
+// Appends --quality and --set options that give `settings`, with the quality that needs the fewest
+// --set options.
 void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
   Quality closest = Quality::console;
   std::vector<std::string> fewest = changes(closest, settings);

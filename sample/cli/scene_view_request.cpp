@@ -23,7 +23,7 @@ SceneViewRequest scene_view_request(const Options& options) {
   request.open_session = [options](const std::vector<const char*>& surface_extensions) {
     return open_session(options, surface_extensions);
   };
-  // The options of the scene that is shown now, which a dropped file changes.
+  // The options of the scene that the window shows. Dropping a file on the window changes them.
   const auto shown = std::make_shared<Options>(options);
   request.load_session = [shown](const std::string& file) {
     Options other = *shown;

@@ -21,8 +21,9 @@ struct InvariancePair {
   Camera first;
   Camera second;
   std::uint32_t scale = 1;  // width and height of the second image over those of the first
-  float further = 0.0f;     // how much further away the second camera is, scene units
-  // Pixels are compared if their depths, less `further`, differ by at most this; scene units.
+  float further = 0.0f;     // distance that the second camera is moved back, scene units
+  // A pixel is compared if its depth in the second image, less `further`, differs by at most this
+  // from its depth in the first image; scene units.
   float tolerance = INFINITY;
 };
 

@@ -15,8 +15,8 @@
 
 namespace alcove::sample {
 
-// A frame as an engine hands it to the C interface, and other values that an engine may confuse
-// with the right ones.
+// A frame as an engine hands it to the C interface, and wrong values that engines hand over by
+// mistake instead of the right ones.
 struct EngineFrame {
   AlcoveFrame frame{};  // `views` points to `view`
   AlcoveView view{};
@@ -30,7 +30,7 @@ struct EngineFrame {
 // Changes a frame before it is recorded.
 using ChangeFrame = std::function<void(EngineFrame& frame)>;
 
-// How the camera moves and what is recorded.
+// The motion of the camera over the frames, and how the frames are recorded.
 struct EngineCourse {
   std::uint32_t frames = 16;
   float orbit = 0.0f;        // radians per frame about the camera's target
@@ -42,7 +42,7 @@ struct EngineCourse {
 
 struct EngineResult {
   Image<float> visibility;  // of the last frame
-  std::string said;         // by alcoveDiagnose with pixels: a line for each mistake
+  std::string said;         // text of alcoveDiagnose, which looks at pixels too: a line per mistake
 };
 
 // Draws g-buffers of a scene and records their occlusion through the C interface, as an engine
@@ -56,7 +56,7 @@ class EngineRun {
   EngineRun(const EngineRun&) = delete;
   EngineRun& operator=(const EngineRun&) = delete;
 
-  // Draws the frames with a context of their own. `radius` is in scene units.
+  // Draws all frames with a new AlcoveContext. `radius` is in scene units.
   [[nodiscard]] tl::expected<EngineResult, std::string> draw(const Camera& camera, float radius,
                                                              const EngineCourse& course);
 

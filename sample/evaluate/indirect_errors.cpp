@@ -61,8 +61,8 @@ Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth&
   return result;
 }
 
-// The smallest RMSE that a function of visibility and albedo can have: the spread of the truth
-// among pixels and channels with equal visibility and albedo, up to a quantisation step.
+// The smallest RMSE that any function of visibility and albedo can have. It is the spread of the
+// truth among values (a channel of a pixel) whose visibility and albedo are equal when quantised.
 double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
                  const Image<glm::vec3>& truth, const Mask& mask) {
   constexpr int kVisibilities = 64;
@@ -84,7 +84,8 @@ double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
   }
   double squares = 0, count = 0;
   for (const Cell& cell : cells) {
-    // One value has no spread. Bessel's correction makes up for the mean of few values.
+    // A single value has no spread. Bessel's correction, n - 1 for n, removes the bias that arises
+    // because the mean is computed from the same few values.
     if (cell.count > 1) {
       const double own = cell.squares - cell.sum * cell.sum / cell.count;
       squares += own * cell.count / (cell.count - 1);

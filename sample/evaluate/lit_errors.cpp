@@ -63,7 +63,8 @@ void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
   }
 }
 
-// The signed error relative to `mean`, added to grey.
+// An image of the signed error relative to `mean`: grey where there is none, brighter where the
+// result is too bright.
 Image<glm::vec3> error_colours(const Image<glm::vec3>& result, const Image<glm::vec3>& truth,
                                double mean) {
   Image<glm::vec3> colours = result;

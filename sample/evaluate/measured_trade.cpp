@@ -19,17 +19,13 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr const GpuPart& kModelledPart = kGpuParts[1];
 
-// Gives the times of variants by one clock, which depends on the device.
+// Gives the times of variants by one clock.
 class TradeClock {
  public:
-  TradeClock(const VkPhysicalDeviceProperties& device, const StaticSetup& setup) : setup_(setup) {
-    if (device.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
-      clock_ = Clock::timestamps;
-    } else if (auto made = create_null_device(kModelledPart.family)) {
-      clock_ = Clock::modelled;
-      null_device_ = *made;
-    }
-  }
+  // Without `wanted`, the clock depends on the device, as measure_trade() says.
+  static tl::expected<TradeClock, std::string> create(const VkPhysicalDeviceProperties& device,
+                                                      const StaticSetup& setup,
+                                                      std::optional<Clock> wanted);
 
   Clock clock() const { return clock_; }
   std::string title() const;
@@ -37,12 +33,31 @@ class TradeClock {
                                                  const BaseTimes& base) const;
 
  private:
+  explicit TradeClock(const StaticSetup& setup) : setup_(setup) {}
   tl::expected<double, std::string> modelled_ms(const passes::OcclusionSettings& settings) const;
 
   StaticSetup setup_;
   Clock clock_ = Clock::processor;
   NullDevice null_device_;
 };
+
+tl::expected<TradeClock, std::string> TradeClock::create(const VkPhysicalDeviceProperties& device,
+                                                         const StaticSetup& setup,
+                                                         std::optional<Clock> wanted) {
+  const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  TradeClock made(setup);
+  made.clock_ = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
+  if (made.clock_ == Clock::modelled) {
+    if (auto null_device = create_null_device(kModelledPart.family)) {
+      made.null_device_ = *null_device;
+    } else if (wanted) {
+      return Failure(std::move(null_device.error()));
+    } else {
+      made.clock_ = Clock::processor;
+    }
+  }
+  return made;
+}
 
 std::string TradeClock::title() const {
   switch (clock_) {
@@ -91,12 +106,29 @@ tl::expected<TradePoint, std::string> TradeClock::point_of(const VariantErrors& 
   return point;
 }
 
+// The filtered occlusion of half resolution is stored in this format (kHalfFormat of the passes).
+// A device need not support it.
+bool can_store_half_resolution(VkPhysicalDevice device) {
+  VkFormatProperties properties;
+  vkGetPhysicalDeviceFormatProperties(device, VK_FORMAT_R16G16B16A16_SNORM, &properties);
+  return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) != 0;
+}
+
 }  // namespace
 
 tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
                                                        const StaticSetup& setup,
-                                                       const TruthOptions& truth_options) {
+                                                       const TruthOptions& truth_options,
+                                                       std::optional<Clock> wanted) {
   std::vector<Variant> variants = preset_sweep(session.settings);
+  MeasuredTrade trade;
+  const VulkanDevice& device = session.gpu->device();
+  if (!can_store_half_resolution(device.physical_device())) {
+    std::erase_if(variants, [](const Variant& v) { return v.settings.half_resolution; });
+    trade.note =
+        "Settings of half resolution are left out, because the device cannot store images of the "
+        "format R16G16B16A16_SNORM.\n";
+  }
   // The session's own settings are rendered as the baseline of the others.
   std::string own_name = "as given";
   if (const auto own = std::ranges::find(variants, session.settings, &Variant::settings);
@@ -104,15 +136,20 @@ tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
     own_name = own->name;
     variants.erase(own);
   }
-  const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
-  const TradeClock clock(device, setup);
-  const auto report = run_variants(session, setup, truth_options, variants, "trade");
+  const auto clock = TradeClock::create(device.properties(), setup, wanted);
+  if (!clock) {
+    return Failure(clock.error());
+  }
+  trade.clock = clock->clock();
+  trade.clock_title = clock->title();
+  const auto report =
+      run_variants(session, setup, truth_options, variants, "trade",
+                   trade.clock == Clock::modelled ? kInformativePairs : kDecidingPairs);
   if (!report) {
     return tl::unexpected(report.error());
   }
-  MeasuredTrade trade{{}, clock.clock(), clock.title()};
   for (const VariantErrors& errors : report->rows) {
-    auto point = clock.point_of(errors, report->base_times);
+    auto point = clock->point_of(errors, report->base_times);
     if (!point) {
       return Failure(std::move(point.error()));
     }
@@ -120,7 +157,7 @@ tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
   }
   trade.points.front().name = own_name;
   if (!std::ranges::all_of(trade.points, [](const TradePoint& p) { return p.time_ms > 0; })) {
-    return Failure("The device " + std::string(device.deviceName) +
+    return Failure("The device " + std::string(device.properties().deviceName) +
                    " does not time its passes; choose another with --device.");
   }
   return trade;
@@ -130,7 +167,7 @@ tl::expected<std::vector<double>, std::string> measure_grid(const Session& sessi
                                                             const StaticSetup& setup,
                                                             const TruthOptions& truth_options) {
   const auto report =
-      run_variants(session, setup, truth_options, sampling_grid(session.settings), "grid", false);
+      run_variants(session, setup, truth_options, sampling_grid(session.settings), "grid", 0);
   if (!report) {
     return Failure(report.error());
   }
@@ -154,11 +191,11 @@ std::string grid_table(const std::vector<double>& rmse) {
 std::string table_of(const Trade& trade, const std::string& clock_title) {
   std::string out = fmt::format(
       "Time: {}\n"
-      "{:34}scene truth   height field   time ms   spread   processor ms     MiB\n",
+      "{:46}scene truth   height field   time ms   spread   processor ms     MiB\n",
       clock_title, "  RMSE of visibility against");
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     const TradePoint& point = trade.points[i];
-    out += fmt::format("{} {:34}{:9.4f}{:15.4f}{:10.3f}{:9.3f}{:15.1f}{:8.1f}\n",
+    out += fmt::format("{} {:46}{:9.4f}{:15.4f}{:10.4f}{:9.4f}{:15.1f}{:8.1f}\n",
                        trade.on_pareto_front[i] ? '*' : ' ', point.name, point.rmse,
                        point.height_field_rmse, point.time_ms, point.spread_ms, point.processor_ms,
                        mib(point.bytes));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -17,13 +18,17 @@ struct MeasuredTrade {
   std::vector<TradePoint> points;
   Clock clock = Clock::processor;
   std::string clock_title;  // for headings, such as "modelled time on ..."
+  std::string note;         // a line about settings that were left out; empty: none were
 };
 
 // Renders the session's view with every variant of preset_sweep() and compares each with the
-// truths. Times are GPU timestamps. On a software device, whose timestamps are noise, they are the
-// modelled times of an RDNA2 part, or processor times if Mesa's AMD driver is not installed.
+// truths. Without `clock`, times are GPU timestamps on a GPU. On a software device, whose
+// timestamps are noise, they are the modelled times of an RDNA2 part, or processor times if Mesa's
+// AMD driver is not installed. Leaves out half resolution if the device cannot store its format.
+// Errors: `clock` is `modelled` and the driver is not installed, or a rendering fails.
 [[nodiscard]] tl::expected<MeasuredTrade, std::string> measure_trade(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options);
+    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
+    std::optional<Clock> clock);
 
 // The errors of sampling_grid() against scene truth, in its order. Nothing is timed.
 [[nodiscard]] tl::expected<std::vector<double>, std::string> measure_grid(

@@ -14,8 +14,8 @@ namespace alcove::sample {
 struct PlantedMistake {
   const char* name;      // for the table
   const char* file;      // of its picture, without the ending
-  const char* sentence;  // part of what alcoveDiagnose promises to say; empty: nothing is promised
-  ChangeFrame plant;     // null for a late submission
+  const char* sentence;  // part of the sentence of alcoveDiagnose; empty: it need not say anything
+  ChangeFrame plant;     // makes the mistake in a frame; null for a late submission
   bool submit_late = false;
 };
 
@@ -26,8 +26,8 @@ struct PlantedMistake {
 struct MistakeResult {
   const PlantedMistake* mistake = nullptr;
   double rmse = 0.0;   // of visibility against the picture without the mistake, all pixels
-  std::string said;    // by alcoveDiagnose; lines
-  bool named = false;  // `said` has the sentence and no other line
+  std::string said;    // lines of alcoveDiagnose
+  bool named = false;  // `said` is one line, which contains PlantedMistake::sentence
 };
 
 struct MistakeReport {

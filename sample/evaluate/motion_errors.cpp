@@ -75,7 +75,7 @@ glm::vec2 project(const Eye& eye, const glm::vec3& position_ws) {
   }
   const glm::vec2 px = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) *
                        glm::vec2(static_cast<float>(eye.width), static_cast<float>(eye.height));
-  // Positions far outside the image are unified, so that they fit an integer.
+  // Positions are clamped to a little outside the image, so that their coordinates fit an integer.
   return glm::all(glm::lessThan(glm::abs(px), glm::vec2(1e6f))) ? px : kNowhere;
 }
 
@@ -141,7 +141,8 @@ Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
         continue;
       }
       const glm::vec3 position = eye.position(x, y, depth);
-      // The normal is moved as two points. They are close, so that both belong to one object.
+      // The normal is reprojected as the difference of two points, because `position_before` moves
+      // points. They are close together, so that both belong to one object.
       const float length = 1e-3f * depth;
       const glm::vec3 was = position_before(position);
       const glm::vec3 tip = position_before(position - now.normal_ws.at(x, y) * length);

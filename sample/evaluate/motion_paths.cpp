@@ -14,7 +14,8 @@
 namespace alcove::sample {
 namespace {
 
-// Steps per frame. A height is the length that the image's height spans at a depth.
+// Distances that camera and object move per frame. One "height" is the length that the image's
+// height spans at a given depth.
 const float kOrbitAngle = glm::radians(0.4f);
 constexpr float kDollyStep = 0.006f;    // depths
 constexpr float kStrafeStep = 0.004f;   // heights at that depth: 2.2 pixels at 540

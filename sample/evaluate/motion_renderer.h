@@ -36,13 +36,13 @@ class MotionRenderer {
                                                                         const MotionPath& path,
                                                                         const MotionSetup& setup);
 
-  // The filter of raw occlusion: none, among neighbours, or also over time.
+  // How raw occlusion is filtered: not at all, over neighbouring pixels, or also over frames.
   enum class Filtering : std::uint8_t { none, spatial, spatial_and_temporal };
 
-  // How a frame is rendered.
+  // The parameters of one rendered frame.
   struct Step {
-    std::uint32_t frame = 0;   // frame of the path
-    std::uint32_t before = 0;  // frame of the path that was rendered before
+    std::uint32_t frame = 0;   // frame of the path whose camera and object positions are used
+    std::uint32_t before = 0;  // frame of the path that was rendered last; motion is relative to it
     std::uint32_t index = 0;   // frame index that selects the sampling pattern
     bool restart = false;      // whether the history is discarded
     Filtering filtering = Filtering::spatial_and_temporal;

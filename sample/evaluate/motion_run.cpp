@@ -74,7 +74,7 @@ tl::expected<PathResult, std::string> render_path(MotionRenderer& renderer,
   const MotionPath& path = renderer.path();
   const Progress progress =
       renderer.progress(std::string(name_of(path.kind())) + std::string(name_of(filtering)));
-  // Frames before the first measured one only matter to a history.
+  // Frames before the first measured one are rendered only if there is a history to fill.
   const std::uint32_t first = history ? 0 : first_converged(path) - 1;
   RenderedFrame before;
   Image<Age> ages;

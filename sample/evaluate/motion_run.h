@@ -15,10 +15,12 @@
 
 namespace alcove::sample {
 
-// Frames after which an uncovered surface should have nearly the error of any other.
+// The errors of surfaces that were uncovered this many frames ago are measured. After so many
+// frames they should be nearly as small as those of other surfaces.
 inline constexpr std::uint32_t kUncoveredFrames = 4;
 
-// Frames for which a trail behind a moving object would be visible.
+// Surfaces that a moving object passed in the last so many frames are measured separately, because
+// a history could leave a trail of the object there for that long.
 inline constexpr std::uint32_t kTrailFrames = 32;
 
 // RMSE of visibility against the ray-traced truth; the noise of the truth is subtracted.

@@ -19,9 +19,16 @@ struct SweepPoint {
   std::uint32_t tile_size;
   std::uint32_t slices;
   std::uint32_t steps;
+  bool half_resolution = false;
 };
 
-constexpr std::array<SweepPoint, 13> kSweepPoints{{{4, 1, 4},
+constexpr std::array<SweepPoint, 19> kSweepPoints{{{8, 1, 4, true},
+                                                   {8, 1, 16, true},
+                                                   {4, 1, 8, true},
+                                                   {4, 1, 16, true},
+                                                   {2, 1, 10, true},
+                                                   {8, 1, 8},
+                                                   {4, 1, 4},
                                                    {4, 1, 12},
                                                    {4, 1, 24},
                                                    {2, 1, 4},
@@ -36,9 +43,10 @@ constexpr std::array<SweepPoint, 13> kSweepPoints{{{4, 1, 4},
                                                    {1, 4, 32}}};
 
 std::string name_of(const SweepPoint& s) {
-  return fmt::format("{}, {} {} of {}",
+  return fmt::format("{}, {} {} of {}{}",
                      s.tile_size == 1 ? "every pixel" : fmt::format("one in {0}x{0}", s.tile_size),
-                     s.slices, s.slices == 1 ? "slice" : "slices", s.steps);
+                     s.slices, s.slices == 1 ? "slice" : "slices", s.steps,
+                     s.half_resolution ? ", half resolution" : "");
 }
 
 class SweepList {
@@ -50,6 +58,7 @@ class SweepList {
     settings.tile_size = point.tile_size;
     settings.slices = point.slices;
     settings.steps = point.steps;
+    settings.half_resolution = point.half_resolution;
     const bool known = std::ranges::any_of(
         variants_, [&](const Variant& variant) { return variant.settings == settings; });
     if (!known) {
@@ -79,10 +88,10 @@ const TradePoint* smallest_within(std::span<const TradePoint> points, double Tra
 
 std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   SweepList list(base);
-  for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
+  for (const Quality quality : {Quality::console, Quality::low, Quality::medium, Quality::high}) {
     const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
     list.add(std::string(passes::name_of(quality)),
-             {preset.tile_size, preset.slices, preset.steps});
+             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution});
   }
   for (const SweepPoint& point : kSweepPoints) {
     list.add(name_of(point), point);

@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "evaluate/clock.h"
 #include "evaluate/variant.h"
 
 namespace alcove::sample {
 
-// The presets and settings between and beyond them: tile size, slices and steps vary, everything
-// else is as in `base`. No setting appears twice. `base` itself is among them if it equals one of
-// them.
+// The presets and settings between and beyond them: tile size, slices, steps and half resolution
+// vary, everything else is as in `base`. No setting appears twice. `base` itself is among them if
+// it equals one of them.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
 // `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, ordered by steps. Shows whether the
@@ -23,13 +24,6 @@ namespace alcove::sample {
 inline constexpr std::array<std::uint32_t, 4> kGridSteps{8, 16, 32, 64};
 inline constexpr std::array<std::uint32_t, 4> kGridSlices{1, 2, 4, 8};
 [[nodiscard]] std::vector<Variant> sampling_grid(const passes::OcclusionSettings& base);
-
-// The clock of a trade's times.
-enum class Clock : std::uint8_t {
-  modelled,    // GPU time of a frame with a moving camera by the cost model (gpu_cost)
-  timestamps,  // GPU time by the device's timestamps
-  processor,   // processor time of all threads, for software devices
-};
 
 // Settings, what they cost, and the error of their visibility.
 struct TradePoint {

@@ -35,9 +35,9 @@ struct Truths {
   Mask surfaces;                  // pixels that are not sky
 };
 
-// Computes the truths, or reads them from the cache on disk. The points are where primary rays
-// through the pixel centres hit the scene, and the normals are those that the occlusion pass was
-// given. Prints progress on stderr. Error: the view shows nothing but sky.
+// Computes the truths, or reads them from the cache on disk. They are computed at the points where
+// primary rays through the pixel centres hit the scene, with the normals that the occlusion pass
+// was given. Prints progress on stderr. Error: the view shows nothing but sky.
 [[nodiscard]] tl::expected<Truths, std::string> truths_of(const TruthFrame& frame,
                                                           const TruthOptions& options);
 

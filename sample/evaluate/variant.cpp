@@ -10,9 +10,6 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 using passes::OcclusionSettings;
 
-// Timed pairs of frames. One pair before them is not timed, because it compiles shaders.
-constexpr std::uint32_t kTimedPairs = 11;
-
 FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& settings,
                         std::uint32_t frame) {
   const CameraMatrices m = camera_matrices(setup.camera, setup.width, setup.height);
@@ -44,6 +41,24 @@ std::uint64_t bytes_of(const FrameRenderer& renderer) {
 }
 
 }  // namespace
+
+VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes) {
+  VariantCost cost{.bytes = bytes};
+  if (pairs.empty()) {
+    return cost;
+  }
+  std::vector<double> gpu;
+  std::vector<double> processor;
+  for (const TimedPair& pair : pairs) {
+    gpu.push_back(pair.variant.gpu_ms / pair.base.gpu_ms);
+    processor.push_back(pair.variant.processor_ms / pair.base.processor_ms);
+  }
+  cost.gpu = median(gpu);
+  cost.processor = median(processor);
+  cost.gpu_spread = quartile_spread(gpu);
+  cost.processor_spread = quartile_spread(processor);
+  return cost;
+}
 
 tl::expected<FrameImages, std::string> draw_static(Gpu& gpu, const Scene& scene,
                                                    const StaticSetup& setup,
@@ -81,7 +96,7 @@ BaseTimes VariantRunner::base_times() const {
 }
 
 tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Variant& variant,
-                                                            bool timed) {
+                                                            std::uint32_t timed_pairs) {
   const auto renderer =
       FrameRenderer::create(gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
   if (!renderer) {
@@ -92,12 +107,12 @@ tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Vari
     return Failure(std::move(images.error()));
   }
   VariantResult result{std::move(images->visibility), {.bytes = bytes_of(**renderer)}};
-  if (!timed) {
+  if (timed_pairs == 0) {
     return result;
   }
-  std::vector<double> gpu_ratios;
-  std::vector<double> processor_ratios;
-  for (std::uint32_t i = 0; i <= kTimedPairs; ++i) {
+  std::vector<TimedPair> pairs;
+  // One pair before the timed ones is not counted, because it compiles shaders.
+  for (std::uint32_t i = 0; i <= timed_pairs; ++i) {
     const auto base = renderer_->draw(request_of(setup_, settings_, next_frame_++));
     if (!base) {
       return Failure(base.error());
@@ -109,12 +124,10 @@ tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Vari
     if (i > 0) {
       base_gpu_ms_.push_back(base->occlusion_ms);
       base_processor_ms_.push_back(base->cpu_ms);
-      gpu_ratios.push_back(other->occlusion_ms / base->occlusion_ms);
-      processor_ratios.push_back(other->cpu_ms / base->cpu_ms);
+      pairs.push_back({{base->occlusion_ms, base->cpu_ms}, {other->occlusion_ms, other->cpu_ms}});
     }
   }
-  result.cost = {median(gpu_ratios), median(processor_ratios), bytes_of(**renderer),
-                 quartile_spread(gpu_ratios), quartile_spread(processor_ratios)};
+  result.cost = cost_of(pairs, bytes_of(**renderer));
   return result;
 }
 

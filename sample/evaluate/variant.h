@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -38,16 +39,37 @@ struct StaticSetup {
     Gpu& gpu, const Scene& scene, const StaticSetup& setup,
     const passes::OcclusionSettings& settings);
 
-// The cost of a variant. A frame of the base and a frame of the variant are drawn in turn and make
-// a pair. The times are medians of the pairs' ratios, variant to base. A spread is half of the
-// interquartile range of these ratios. `bytes` is absolute.
+// The cost of a variant. Times are relative to the base settings.
 struct VariantCost {
   double gpu = 1;           // ratio of the GPU times of the occlusion
   double processor = 1;     // ratio of the processor times of all threads
   std::uint64_t bytes = 0;  // transient images at their peak, and histories
-  double gpu_spread = 0;
+  double gpu_spread = 0;    // of the ratios, as cost_of() defines it
   double processor_spread = 0;
 };
+
+// The times of the occlusion passes of a frame in milliseconds.
+struct FrameTimes {
+  double gpu_ms = 0;        // by the device's timestamps
+  double processor_ms = 0;  // of all threads
+};
+
+// A frame of the base settings and a frame of a variant, drawn one after the other, so that other
+// work on the machine slows both down alike.
+struct TimedPair {
+  FrameTimes base;
+  FrameTimes variant;
+};
+
+// The cost over timed pairs of frames: the median of the pairs' ratios, variant to base, and as the
+// spread half the distance between the quartiles of these ratios. Without pairs, the ratios are 1
+// and the spreads 0.
+[[nodiscard]] VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes);
+
+// The number of pairs for times that decide between settings: with 21 pairs the quartiles are a
+// confidence interval of 97 % for the median. Times that are only printed need fewer pairs.
+inline constexpr std::uint32_t kDecidingPairs = 21;
+inline constexpr std::uint32_t kInformativePairs = 11;
 
 struct VariantResult {
   Image<float> visibility;
@@ -72,9 +94,10 @@ class VariantRunner {
   // Medians over all variants so far; zero before the first.
   BaseTimes base_times() const;
   // `gpu` is another device on which nothing was rendered yet, so that the histories are the
-  // variant's own. Without `timed`, only the image and the bytes are measured.
-  [[nodiscard]] tl::expected<VariantResult, std::string> run(Gpu& gpu, const Variant& variant,
-                                                             bool timed = true);
+  // variant's own. `timed_pairs`: the number of timed pairs of frames; 0 measures only the image
+  // and the bytes.
+  [[nodiscard]] tl::expected<VariantResult, std::string> run(
+      Gpu& gpu, const Variant& variant, std::uint32_t timed_pairs = kInformativePairs);
 
  private:
   VariantRunner(const Scene& scene, const StaticSetup& setup, const passes::OcclusionSettings& base)

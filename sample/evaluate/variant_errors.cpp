@@ -19,12 +19,13 @@ VariantErrors errors_of(const Variant& variant, const VariantResult& result, con
 // Runs a variant on a device of its own, so that its histories start empty.
 tl::expected<VariantResult, std::string> run_variant(VariantRunner& runner,
                                                      const DeviceRequest& device,
-                                                     const Variant& variant, bool timed) {
+                                                     const Variant& variant,
+                                                     std::uint32_t timed_pairs) {
   const auto gpu = open_gpu(device);
   if (!gpu) {
     return Failure(gpu.error());
   }
-  auto result = runner.run(**gpu, variant, timed);
+  auto result = runner.run(**gpu, variant, timed_pairs);
   if (!result) {
     return result;
   }
@@ -36,11 +37,9 @@ tl::expected<VariantResult, std::string> run_variant(VariantRunner& runner,
 
 }  // namespace
 
-tl::expected<VariantReport, std::string> run_variants(const Session& session,
-                                                      const StaticSetup& setup,
-                                                      const TruthOptions& truth_options,
-                                                      const std::vector<Variant>& variants,
-                                                      const std::string& progress, bool timed) {
+tl::expected<VariantReport, std::string> run_variants(
+    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
+    const std::vector<Variant>& variants, const std::string& progress, std::uint32_t timed_pairs) {
   auto runner = VariantRunner::create(*session.gpu, session.scene, setup, session.settings);
   if (!runner) {
     return Failure(std::move(runner.error()));
@@ -57,7 +56,7 @@ tl::expected<VariantReport, std::string> run_variants(const Session& session,
                                   {base.visibility, {.bytes = runner->base_bytes()}}, *truths));
   const Progress print = print_progress(progress);
   for (const Variant& variant : variants) {
-    const auto result = run_variant(*runner, session.device, variant, timed);
+    const auto result = run_variant(*runner, session.device, variant, timed_pairs);
     if (!result) {
       return Failure(result.error());
     }

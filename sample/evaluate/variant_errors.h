@@ -25,9 +25,10 @@ struct VariantReport {
 };
 
 // Measures the session's own settings and the variants. `progress` is the name in progress
-// messages; without `timed` no times are measured, which is faster.
+// messages. `timed_pairs` is that of VariantRunner::run(); 0 measures no times.
 [[nodiscard]] tl::expected<VariantReport, std::string> run_variants(
     const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
-    const std::vector<Variant>& variants, const std::string& progress, bool timed = true);
+    const std::vector<Variant>& variants, const std::string& progress,
+    std::uint32_t timed_pairs = kInformativePairs);
 
 }  // namespace alcove::sample

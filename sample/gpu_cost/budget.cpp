@@ -13,11 +13,11 @@ using Json = nlohmann::ordered_json;
 using Failure = tl::unexpected<std::string>;
 using passes::Quality;
 
-constexpr double kTolerance = 0.01;  // relative, for instructions per pixel
+constexpr double kTolerance = 0.01;  // fraction by which instructions per pixel may exceed a budget
 constexpr float kRadius = 0.5f;      // scene units; the instructions do not depend on it
 
-BudgetedSettings preset(Quality quality) {
-  BudgetedSettings settings;
+LabelledSettings preset(Quality quality) {
+  LabelledSettings settings;
   settings.label = passes::name_of(quality);
   settings.inputs.settings = passes::quality_settings(quality, kRadius);
   return settings;
@@ -72,20 +72,38 @@ const Json& at(const Json& json, std::initializer_list<std::string> keys) {
 
 }  // namespace
 
-std::vector<BudgetedSettings> budgeted_settings() {
-  std::vector<BudgetedSettings> all;
+std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) {
+  LabelledSettings bent = plain;
+  bent.label += " with bent normals";
+  bent.inputs.settings.bent_normal = true;
+  bent.label_without = plain.label;
+  LabelledSettings specular = plain;
+  specular.label += " with specular occlusion";
+  specular.inputs.settings.specular = passes::Specular::slices;
+  specular.label_without = plain.label;
+  return {std::move(bent), std::move(specular)};
+}
+
+tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part, const NullDevice& device,
+                                                const LabelledSettings& settings) {
+  auto frames = modelled_frames(part, device, settings.inputs);
+  if (!frames) {
+    return Failure(std::move(frames.error()));
+  }
+  return SettingsCost{settings.label, std::string(part.family), std::move(*frames),
+                      settings.label_without};
+}
+
+std::vector<LabelledSettings> budgeted_settings() {
+  std::vector<LabelledSettings> all;
   for (std::size_t i = 0; i < std::size(passes::kNames<Quality>); ++i) {
     if (const auto quality = static_cast<Quality>(i); quality != Quality::reference) {
       all.push_back(preset(quality));
     }
   }
-  BudgetedSettings bent = preset(Quality::medium);
-  bent.label += " with bent normals";
-  bent.inputs.settings.bent_normal = true;
-  BudgetedSettings specular = preset(Quality::medium);
-  specular.label += " with specular occlusion";
-  specular.inputs.settings.specular = passes::Specular::slices;
-  all.insert(all.end(), {std::move(bent), std::move(specular)});
+  for (LabelledSettings& settings : with_each_output(preset(Quality::medium))) {
+    all.push_back(std::move(settings));
+  }
   return all;
 }
 
@@ -96,12 +114,12 @@ tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs() {
     if (!device) {
       return Failure(device.error());
     }
-    for (const BudgetedSettings& settings : budgeted_settings()) {
-      auto frames = modelled_frames(part, *device, settings.inputs);
-      if (!frames) {
-        return Failure(std::move(frames.error()));
+    for (const LabelledSettings& settings : budgeted_settings()) {
+      auto cost = cost_of(part, *device, settings);
+      if (!cost) {
+        return Failure(std::move(cost.error()));
       }
-      costs.push_back({settings.label, std::string(part.family), std::move(*frames)});
+      costs.push_back(std::move(*cost));
     }
   }
   return costs;

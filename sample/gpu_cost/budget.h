@@ -5,6 +5,7 @@
 // rewrites the file of limits. A change that makes a pass slower must do so in the same commit.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <tl/expected.hpp>
@@ -14,13 +15,25 @@
 
 namespace alcove::sample {
 
-struct BudgetedSettings {
+// Settings whose cost is modelled, and their name in tables and files.
+struct LabelledSettings {
   std::string label;
   CostInputs inputs;
+  std::string label_without;  // as SettingsCost::label_without
 };
+
+// `plain` with bent normals, and `plain` with specular occlusion from the slices. Each names
+// `plain` as the settings without its output.
+[[nodiscard]] std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain);
+
+// The costs of `settings` on a GPU. Errors: those of modelled_frames().
+[[nodiscard]] tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part,
+                                                              const NullDevice& device,
+                                                              const LabelledSettings& settings);
+
 // The settings that a budget covers: every preset except `reference`, and `medium` with bent
 // normals and with specular occlusion.
-[[nodiscard]] std::vector<BudgetedSettings> budgeted_settings();
+[[nodiscard]] std::vector<LabelledSettings> budgeted_settings();
 
 // The costs of these settings on all GPUs. Errors: those of create_null_device() and
 // modelled_frames().

@@ -63,7 +63,7 @@ tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
   }
   get_texts(device, &executable, &count, texts.data());
   for (std::uint32_t i = 0; i < count; ++i) {
-    shader.texts[texts[i].name] = contents[i].c_str();  // up to the terminator
+    shader.texts[texts[i].name] = contents[i].c_str();  // up to the null terminator
   }
   return shader;
 }

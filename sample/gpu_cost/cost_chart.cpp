@@ -88,7 +88,7 @@ void Chart::draw_part(const GpuPart& part) {
   const double line = kLeft + peer.milliseconds * scale;
   svg_.text({line, top - 6}, "middle", fmt::format("{} {:.3g}", peer.name, peer.milliseconds));
   y_ = top;
-  // The line is drawn first, so that the bars and their texts cover it.
+  // The line of the reference time is drawn first, so that bars and texts cover it.
   const double height = kRow * static_cast<double>(rows) + kGap * static_cast<double>(labels);
   svg_.line({line, top - 2}, {line, top + height}, "stroke=\"black\" stroke-dasharray=\"4 3\"");
   for (const SettingsCost& cost : costs_) {

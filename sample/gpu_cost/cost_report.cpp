@@ -62,6 +62,28 @@ std::string settings_rows(const SettingsCost& cost, bool loops) {
   return out;
 }
 
+// A line for each choice of settings on `family` that has an output more than another one.
+std::string ratio_rows(std::span<const SettingsCost> costs, std::string_view family) {
+  std::string rows;
+  for (const SettingsCost& cost : costs) {
+    if (cost.family != family) {
+      continue;
+    }
+    if (const std::vector<double> ratios = output_ratios(cost, costs); !ratios.empty()) {
+      rows += fmt::format("    {:36}{:11.3f}\n", cost.label, fmt::join(ratios, ""));
+    }
+  }
+  if (rows.empty()) {
+    return rows;
+  }
+  std::string heading =
+      "  Time of a frame over its time without the output:\n" + std::string(40, ' ');
+  for (const ModelledFrame& frame : costs.front().frames) {
+    heading += fmt::format("{:>11}", name_of(frame.state));
+  }
+  return heading + "\n" + rows;
+}
+
 Json to_json(const ModelledPass& pass) {
   return {{"pass", pass.pass},
           {"ms", pass.milliseconds()},
@@ -98,6 +120,21 @@ Json to_json(const ModelledPass& pass) {
 
 }  // namespace
 
+std::vector<double> output_ratios(const SettingsCost& cost, std::span<const SettingsCost> costs) {
+  const auto without = std::ranges::find_if(costs, [&](const SettingsCost& other) {
+    return other.family == cost.family && other.label == cost.label_without;
+  });
+  std::vector<double> ratios;
+  if (cost.label_without.empty() || without == costs.end()) {
+    return ratios;
+  }
+  for (const ModelledFrame& frame : cost.frames) {
+    const auto same = std::ranges::find(without->frames, frame.state, &ModelledFrame::state);
+    ratios.push_back(frame.milliseconds() / same->milliseconds());
+  }
+  return ratios;
+}
+
 std::string table_of(std::span<const SettingsCost> costs, bool loops) {
   std::string out;
   for (const GpuPart& part : kGpuParts) {
@@ -118,6 +155,7 @@ std::string table_of(std::span<const SettingsCost> costs, bool loops) {
         out += settings_rows(cost, loops);
       }
     }
+    out += ratio_rows(costs, part.family);
   }
   return out;
 }
@@ -131,6 +169,7 @@ Json to_json(std::span<const SettingsCost> costs) {
         continue;
       }
       Json frames = Json::array();
+      const std::vector<double> ratios = output_ratios(cost, costs);
       for (const ModelledFrame& frame : cost.frames) {
         Json passes = Json::array();
         for (const ModelledPass& pass : frame.passes) {
@@ -140,6 +179,9 @@ Json to_json(std::span<const SettingsCost> costs) {
                           {"ms", frame.milliseconds()},
                           {"of_xegtao_high", frame.milliseconds() / reference_ms(part)},
                           {"passes", std::move(passes)}});
+        if (!ratios.empty()) {
+          frames.back()["of_time_without_output"] = ratios[frames.size() - 1];
+        }
       }
       settings.push_back({{"label", cost.label}, {"frames", std::move(frames)}});
     }

@@ -14,7 +14,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Where Linux distributions install the manifests of Vulkan drivers.
+// The folders in which Linux distributions install the manifests of Vulkan drivers.
 constexpr std::array<const char*, 3> kManifestFolders{
     "/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d"};
 
@@ -98,7 +98,7 @@ tl::expected<NullDevice, std::string> create_null_device(std::string_view family
         "Mesa's AMD driver (RADV) is not installed; on Debian, install the package "
         "mesa-vulkan-drivers.");
   }
-  // Two names of one variable: loaders before 1.3.207 only read the second.
+  // Vulkan loaders read VK_DRIVER_FILES; loaders before 1.3.207 read VK_ICD_FILENAMES instead.
   const ScopedVariable files("VK_DRIVER_FILES", *manifest);
   const ScopedVariable old_files("VK_ICD_FILENAMES", *manifest);
   const ScopedVariable forced("RADV_FORCE_FAMILY", std::string(family));

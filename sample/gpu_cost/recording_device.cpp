@@ -9,8 +9,8 @@
 
 namespace alcove::sample {
 
-// The functions of the device. A VkDevice and a VkCommandBuffer here are the RecordingDevice
-// itself.
+// The Vulkan functions that the RecordingDevice implements. The handles VkDevice and
+// VkCommandBuffer that they receive are pointers to the RecordingDevice.
 struct RecordingFunctions {
   template <typename Handle>
   static RecordingDevice& self(Handle handle) {
@@ -19,10 +19,11 @@ struct RecordingFunctions {
 
   template <typename Handle>
   static Handle new_handle(RecordingDevice& device) {
-    return (Handle)(device.next_handle());  // a pointer or an integer, as the platform has it
+    return (Handle)(device.next_handle());  // handles are pointers or integers by platform
   }
 
-  // A function that does nothing and succeeds; one that creates an object gives a new handle.
+  // Returns a function that does nothing and succeeds. If it creates an object, it returns a new
+  // handle.
   template <typename Function>
   struct Nothing;
 
@@ -122,7 +123,7 @@ struct RecordingFunctions {
     return VK_SUCCESS;
   }
 
-  // Memory is the host's.
+  // Device memory is allocated from the host's heap.
   static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
                                                         const VkMemoryAllocateInfo* info,
                                                         const VkAllocationCallbacks* /*callbacks*/,
@@ -179,7 +180,7 @@ struct RecordingFunctions {
     return VK_SUCCESS;
   }
 
-  // Commands.
+  // Commands that are recorded.
   static VKAPI_ATTR void VKAPI_CALL begin_label(VkCommandBuffer commands,
                                                 const VkDebugUtilsLabelEXT* label) {
     self(commands).pass_ = label->pLabelName;

@@ -71,7 +71,8 @@ std::uint32_t number_at(std::string_view text, std::size_t at) {
   return number;
 }
 
-// "v[4:7]" moves four words, "v4:" (the compiler's text before registers are assigned) as well.
+// The number of 32-bit words of an operand: four for "v[4:7]", and for "v4:" in the compiler's text
+// before registers are assigned.
 double words_of(std::string_view text) {
   const std::string_view first = text.substr(0, text.find(','));
   if (const std::size_t range = first.find("v["); range != std::string_view::npos) {
@@ -103,8 +104,8 @@ Instruction instruction_of_aco(std::string_view line) {
       first_word(equals == std::string_view::npos ? line : line.substr(equals + 3)));
   const std::string_view result = first_word(results);
   if (operation == "p_parallelcopy") {
-    // A vector copy mostly remains. A scalar copy remains if it loads a constant; register
-    // allocation removes the others.
+    // Most vector copies become instructions, and so do scalar copies of constants. Register
+    // allocation removes the other copies.
     const std::size_t from = line.find("p_parallelcopy ") + 15;
     const bool constant = from < line.size() && (line.substr(from, 2) == "0x" ||
                                                  line[from] == '-' || std::isdigit(line[from]));
@@ -237,7 +238,7 @@ void add_memory(const Instruction& instruction, bool rdna, std::uint32_t wave, d
   }
   work.stores += operation.starts_with("image_store") ? times : 0.0;
   work.memory_cycles += (rdna ? 1.0 : 4.0) * times;
-  // The texture unit takes four lanes a cycle, and twice as long for over 64 bits a lane.
+  // The texture unit processes four lanes a cycle; loads of over 64 bits a lane take twice as long.
   const double wide = plain_load && instruction.result_words > 2 ? 2.0 : 1.0;
   work.texture_cycles += wave / 4.0 * wide * times;
 }
@@ -308,7 +309,8 @@ tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShade
 }
 
 std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks) {
-  // ACO lays the blocks of a loop out in a row, from its header to the last that goes back.
+  // ACO stores the blocks of a loop consecutively, from the header to the last block that jumps
+  // back to it.
   std::vector<Loop> loops;
   for (const BasicBlock& block : blocks) {
     const auto last = std::ranges::max_element(block.predecessors);

@@ -151,7 +151,7 @@ void load_values(const March m, int first, int count, float* values) {
     const int at = texel + low * m.minor_stride;
     const float a = m.value[at];
     const float b = m.value[at + m.minor_stride];
-    // There are no branches, because they would be unpredictable.
+    // Selection by weights replaces branches, which would be unpredictable.
     const float nearest = t >= 0.5f ? 1.0f : 0.0f;
     values[i] = a + (b - a) * (nearest + m.connected[at] * (t - nearest));
     step += 1.0f;
@@ -193,8 +193,8 @@ float squared_horizon(const March& m) {
   return best;
 }
 
-// The number of steps along an axis of the image within which every point of the sphere of the
-// radius is seen.
+// The number of texels that the occlusion radius spans along an axis of the image: no point within
+// the radius is more texels away.
 int steps_within(const HeightField& field, bool along_x, const glm::vec3& centre, float radius) {
   const float texel = std::abs(along_x ? field.scale.x : field.scale.y);
   const int most = static_cast<int>(along_x ? field.width : field.height);

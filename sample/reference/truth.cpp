@@ -111,7 +111,7 @@ float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Bas
 glm::vec3 trace_path(const RayScene::Impl& scene, glm::vec3 origin, glm::vec3 direction,
                      float radius, uint64_t seed) {
   constexpr uint32_t kLongest = 256;  // the weight is below 1e-8 even at an albedo of 0.93
-  constexpr uint32_t kSure = 3;       // bounces before Russian roulette
+  constexpr uint32_t kSure = 3;       // bounces without Russian roulette, at the start of a path
   glm::vec3 weight(1.0f);
   for (uint32_t bounce = 0; bounce < kLongest; ++bounce) {
     const std::optional<Hit> hit = scene.nearest(origin, direction, radius);

@@ -47,9 +47,9 @@ class CacheKey {
   XXH128_hash_t hash_{};
 };
 
-// Arrays of floats on disk, found by key. An entry that is damaged, cut short or of another version
-// reads as absent and is then computed again. Several processes may share a folder. Failures to
-// write are ignored, because a cache may always be empty.
+// Arrays of floats on disk, found by key. read() finds no entry if it is damaged, cut short or of
+// another version, and the caller computes it again. Several processes may share a folder. Failures
+// to write are ignored, because a cache may always be empty.
 class TruthCache {
  public:
   // Returns `$XDG_CACHE_HOME/alcove`, or else `~/.cache/alcove`. If neither is known, returns an

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(CameraOf, TypedValuesOverrideTheSceneCamera) {
+TEST(CameraOf, OptionsOverrideTheSceneCamera) {
   const Scene scene = builtin_scene();
   ViewOptions view;
   view.camera = "court";
@@ -52,7 +52,7 @@ TEST(CameraOf, AtMostTenCameraNamesAreListed) {
             "\"c5\", \"c6\", \"c7\", \"c8\", \"c9\" and 1990 more");
 }
 
-TEST(CameraOf, TypedViewStandsUpright) {
+TEST(CameraOf, ViewFromOptionsIsUprightWhateverTheSceneCamera) {
   Scene scene;
   scene.cameras = {{.name = "tilted", .up_ws = {0.6f, 0.8f, 0.0f}}};
   ViewOptions view;
@@ -114,7 +114,7 @@ TEST(CameraOf, DepthIsReversedInPerspectiveOnlyUnlessAnOptionSaysOtherwise) {
   EXPECT_TRUE(camera_of(view, scene)->reversed_z);
 }
 
-TEST(CameraOf, TypedPositionsAreRelativeToTheOriginOfTheFile) {
+TEST(CameraOf, PositionsFromOptionsAreCoordinatesOfTheFile) {
   Scene scene = builtin_scene();
   scene.origin = {1e7, 0.0, -3e7};
   ViewOptions view;

@@ -22,7 +22,7 @@ Camera camera_of_kind(bool orthographic, bool reversed, float far) {
   return camera;
 }
 
-TEST(Camera, NearAndFarLandOnTheEndsOfDepth) {
+TEST(Camera, NearAndFarPlaneProjectToTheEndsOfTheDepthRange) {
   for (const bool orthographic : {false, true}) {
     for (const bool reversed : {false, true}) {
       const Camera camera = camera_of_kind(orthographic, reversed, 20.0f);
@@ -55,7 +55,7 @@ TEST(Camera, InfiniteFarPlaneIsInfinitelyFar) {
   }
 }
 
-TEST(Camera, UpIsTowardsTheTopOfTheFramebuffer) {
+TEST(Camera, UpVectorPointsToTheTopOfTheFramebuffer) {
   EXPECT_LT(project(Camera(), {0, 1, -5}).y, 0.0f);
   EXPECT_GT(project(Camera(), {1, 0, -5}).x, 0.0f);
 }
@@ -89,7 +89,7 @@ TEST(Camera, RayThroughAPixelProjectsBackOntoIt) {
   }
 }
 
-TEST(Camera, LookingAlongUpStillHasAxes) {
+TEST(Camera, ViewAlongTheUpVectorHasValidAxes) {
   Camera camera;
   camera.eye_ws = {0, 5, 0};
   camera.target_ws = {0, 0, 0};

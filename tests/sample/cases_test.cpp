@@ -1,4 +1,5 @@
-// Small files that once drew a wrong picture without a word, drawn as `alcove render` draws them.
+// Small files that an earlier version drew wrongly without a message. They are drawn as `alcove
+// render` draws them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,7 +82,7 @@ TEST_F(Cases, SkinnedMeshIsDrawnWhereItsJointsAreAndNotByItsNode) {
   EXPECT_FLOAT_EQ(drawn->settings.radius, right->settings.radius);
 }
 
-TEST_F(Cases, SliverFarAwayChangesNeitherFramingNorPlanesNorRadius) {
+TEST_F(Cases, FarSliverChangesNeitherFramingNorPlanesNorRadius) {
   Triangles sliver;
   sliver.positions = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
   sliver.indices = {0, 1, 2};
@@ -194,7 +195,7 @@ TEST_F(Cases, SpecularGlossinessDiffuseTextureGivesColourAndCutOut) {
   EXPECT_LT(glm::distance(drawn->images.albedo.at(70, 45), glm::vec3(1, 0, 0)), 0.02f);
 }
 
-TEST_F(Cases, RequiredLightsAreNoReasonToRefuseAFile) {
+TEST_F(Cases, FileThatRequiresLightsIsLoaded) {
   ModelMaker maker;
   maker.add(room());
   maker.gltf.json["extensionsUsed"] = {"KHR_lights_punctual"};

@@ -186,8 +186,8 @@ TEST(DecodeImage, OnlyPngAndJpegAreRecognised) {
   }
 }
 
-// Either all pixels are there or it is an error: nothing is made up for what is missing.
-TEST(DecodeImage, EveryTruncationIsAnErrorOrComplete) {
+// The decoder must not invent pixels for the missing part of a file.
+TEST(DecodeImage, TruncatedImageIsRefusedUnlessAllItsPixelsArePresent) {
   for (const auto& whole : {make_png(random_png(PNG_COLOR_TYPE_RGB, 8, false, 13, 7)),
                             make_png(random_png(PNG_COLOR_TYPE_PALETTE, 4, true, 13, 7)),
                             make_jpeg(37, 21, JCS_RGB, gradient(37, 21, 3)),
@@ -203,7 +203,7 @@ TEST(DecodeImage, EveryTruncationIsAnErrorOrComplete) {
   }
 }
 
-TEST(DecodeImage, EveryDamagedByteIsSurvived) {
+TEST(DecodeImage, DamagedBytesDoNotCrashTheDecoder) {
   for (auto bytes : {make_png(random_png(PNG_COLOR_TYPE_RGB, 8, true, 13, 7)),
                      make_jpeg(37, 21, JCS_RGB, gradient(37, 21, 3)),
                      make_jpeg(37, 21, JCS_CMYK, gradient(37, 21, 4), true)}) {

@@ -38,7 +38,7 @@ TEST(Environment, SkyHasMeanOneAndIsBrighterThanTheGround) {
   EXPECT_GT(radiance(*sky, {0, 1, 0}).z, radiance(*sky, {0, -1, 0}).z);
 }
 
-TEST(Environment, DirectionsMapToPixelsAsDocumented) {
+TEST(Environment, PlusXIsAtAQuarterOfTheWidthAndColumnsWrapAround) {
   EnvironmentImage image(64, 32);
   image.at(16, 16) = glm::vec3(5);  // a quarter to the right: +X, just under the horizon
   const glm::vec3 there = glm::normalize(glm::vec3(1.0f, -0.05f, 0.05f));

@@ -1,5 +1,5 @@
-// Files after what public model sites export, drawn without an option: the first picture shows the
-// model, with occlusion on it, whatever its unit, axes and surroundings are.
+// Files as public model sites export them, drawn without options. The first picture must show the
+// model with occlusion, whatever its unit, axes and surroundings are.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// What accessors of a glTF file hold, in every form that they may have.
+// The values of glTF accessors in each form of storage: types of indices, normalised integers,
+// strides and sparse accessors.
 #include <gtest/gtest.h>
 
 #include "gltf_maker.h"
@@ -7,7 +8,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(GltfAccessor, IndicesOfEveryUnsignedTypeReadAlike) {
+TEST(GltfAccessor, IndicesOfEveryUnsignedTypeGiveTheSameTriangles) {
   for (const int type : {5121, 5123, 5125}) {
     GltfMaker maker = GltfMaker::triangle();
     const int view = type == 5121   ? maker.view<uint8_t>({0, 2, 1})
@@ -27,7 +28,7 @@ TEST(GltfAccessor, NormalizedIntegersMapToTheUnitRange) {
   const int position = maker.accessor(bytes, 5120, "VEC3", 3, true);
   maker.primitive()["attributes"] = {{"POSITION", position},
                                      {"TEXCOORD_0", maker.accessor(shorts, 5123, "VEC2", 3, true)}};
-  // Texture coordinates are kept where a texture is read by them.
+  // The loader keeps texture coordinates only if a texture uses them.
   const int texture = maker.white_texture();
   maker.json["materials"] = {{{"emissiveTexture", {{"index", texture}}}}};
   maker.primitive()["material"] = 0;

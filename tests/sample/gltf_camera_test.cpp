@@ -1,4 +1,4 @@
-// Cameras of a glTF file, and what they look at.
+// Cameras of a glTF file: position, direction, planes and target.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(GltfCamera, CamerasOfEveryKindArrive) {
+TEST(GltfCamera, PerspectiveAndOrthographicCamerasAreRead) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["scenes"][0]["nodes"] = {0, 1, 2, 3};
   maker.json["cameras"] = {
@@ -30,12 +30,12 @@ TEST(GltfCamera, CamerasOfEveryKindArrive) {
   EXPECT_TRUE(scene.cameras[2].orthographic);
   EXPECT_EQ(scene.cameras[2].ortho_height, 3.0f);
   EXPECT_EQ(scene.cameras[0].eye_ws, glm::vec3(0, 0, 5));
-  // As deep as the middle of the triangle.
+  // The target is as far away along the view axis as the middle of the triangle.
   EXPECT_EQ(scene.cameras[0].target_ws, glm::vec3(0, 0, 0));
 }
 
-// A camera turned by a quarter and some about y, and the triangle, both `scale` times as large and
-// moved by `offset`.
+// A triangle and a camera that is rotated by 52 degrees about y. Both are scaled by `scale` and
+// moved by `offset` along each axis.
 Scene seen_at(double scale, double offset) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["cameras"] = {
@@ -59,7 +59,7 @@ TEST(GltfCamera, CameraDirectionDoesNotDependOnScaleAndPosition) {
     SCOPED_TRACE(testing::Message() << "scale " << scale << ", offset " << offset);
     const Scene scene = seen_at(scale, offset);
     ASSERT_EQ(scene.cameras.size(), 1u);
-    // A tenth of a pixel in an image of 960x540.
+    // The limit is a tenth of a pixel in an image of 960x540.
     EXPECT_LT(glm::distance(direction(scene.cameras[0]), direction(plain.cameras[0])), 1.6e-4);
   }
 }

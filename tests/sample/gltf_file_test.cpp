@@ -1,4 +1,4 @@
-// Which files a glTF scene is read from, and which not.
+// The files that a glTF scene may and may not refer to.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(GltfFile, BinaryFileReadsAsItsTextTwin) {
+TEST(GltfFile, BinaryFileGivesTheSameSceneAsTheTextFile) {
   const GltfMaker maker = GltfMaker::triangle();
   EXPECT_EQ(corners(parsed(maker.glb())), corners(parsed(maker.gltf())));
 }

@@ -1,4 +1,4 @@
-// Triangles of a glTF file, and where its nodes put them.
+// Triangles of a glTF file, and their transformation by its nodes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ TEST(GltfMesh, MeshWithoutNormalsKeepsItsSharedVertices) {
   EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
 }
 
-TEST(GltfMesh, StripsAndFansKeepOneSideWithAndWithoutIndices) {
+TEST(GltfMesh, TrianglesOfStripsAndFansAllFaceTheSameWay) {
   const std::vector<float> strip = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0};
   const std::vector<float> fan = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0};
   for (const int mode : {5, 6}) {
@@ -42,7 +42,7 @@ TEST(GltfMesh, StripsAndFansKeepOneSideWithAndWithoutIndices) {
   }
 }
 
-TEST(GltfMesh, NodesComposeDownTheHierarchy) {
+TEST(GltfMesh, TransformsOfParentAndChildNodesAreMultiplied) {
   GltfMaker maker = GltfMaker::triangle();
   const float h = std::sqrt(0.5f);
   maker.json["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"scale", {2, 2, 2}}},
@@ -53,7 +53,7 @@ TEST(GltfMesh, NodesComposeDownTheHierarchy) {
   EXPECT_NEAR(glm::distance(read[2], glm::vec3(8, 2, 0)), 0.0f, 1e-5f);
 }
 
-TEST(GltfMesh, MirroringTurnsTheWindingSoThatFacesKeepTheirSide) {
+TEST(GltfMesh, WindingIsReversedUnderAMirroringNode) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["nodes"][0]["scale"] = {-1, 1, 1};
   const Scene scene = parsed(maker.gltf());
@@ -61,7 +61,7 @@ TEST(GltfMesh, MirroringTurnsTheWindingSoThatFacesKeepTheirSide) {
   EXPECT_EQ(face_normal(scene, 0), glm::vec3(0, 0, 1));
 }
 
-TEST(GltfMesh, TangentsTurnWithTheNodeAndMirrorWithIt) {
+TEST(GltfMesh, TangentsAreRotatedAndMirroredWithTheNode) {
   GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
   const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int tangents = maker.view<float>({1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});

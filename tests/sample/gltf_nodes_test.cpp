@@ -1,4 +1,5 @@
-// Where nodes, skins and instances of a glTF file put its meshes, and what its materials hide.
+// The placement of meshes by the nodes, skins and instances of a glTF file, and the parts of them
+// that its materials cut out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +15,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// A triangle bound to two joints. Its first two vertices follow joint 0, the third both alike.
+// A triangle bound to two joints. Its first two vertices follow joint 0, and the third follows both
+// joints with equal weights.
 GltfMaker skinned_triangle() {
   GltfMaker maker = GltfMaker::triangle();
   const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
@@ -37,11 +39,12 @@ GltfMaker skinned_triangle() {
   return maker;
 }
 
-TEST(GltfSkin, JointsPlaceVerticesAndTheNodeOfTheMeshDoesNot) {
+TEST(GltfSkin, JointsTransformVerticesAndTheNodeOfTheMeshDoesNot) {
   const Scene scene = parsed(skinned_triangle().gltf());
   const auto read = corners(scene);
   ASSERT_EQ(read.size(), 3u);
-  // Less 10 along x, turned from x to -z, moved to the joint.
+  // The vertex is moved by -10 along x (inverse bind matrix), rotated from x to -z and moved to the
+  // joint.
   EXPECT_LT(glm::distance(read[0], glm::vec3(10, 0, 15)), 1e-5f);
   EXPECT_LT(glm::distance(read[1], glm::vec3(10, 0, 14)), 1e-5f);
   EXPECT_LT(glm::distance(read[2], glm::vec3(10, 3, 15)), 1e-5f);
@@ -51,7 +54,7 @@ TEST(GltfSkin, JointsPlaceVerticesAndTheNodeOfTheMeshDoesNot) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
-TEST(GltfSkin, JointsWithoutInverseBindMatricesPlaceTheMeshAsItIs) {
+TEST(GltfSkin, MissingInverseBindMatricesAreTheIdentity) {
   GltfMaker maker = skinned_triangle();
   maker.json["skins"][0].erase("inverseBindMatrices");
   EXPECT_LT(glm::distance(corners(parsed(maker.gltf()))[0], glm::vec3(10, 0, 5)), 1e-5f);
@@ -151,7 +154,7 @@ GltfMaker scene_at(const glm::dvec3& offset) {
   return maker;
 }
 
-TEST(GltfNodes, SceneFarFromTheOriginIsThatAtTheOrigin) {
+TEST(GltfNodes, SceneFarFromTheOriginIsMovedToTheOrigin) {
   const Scene near_scene = parsed(scene_at(glm::dvec3(0.0)).gltf());
   EXPECT_EQ(near_scene.origin, glm::dvec3(0.0));
   const glm::dvec3 offset(100000.3, -4e6, 2e8 + 0.7);
@@ -166,7 +169,7 @@ TEST(GltfNodes, SceneFarFromTheOriginIsThatAtTheOrigin) {
   EXPECT_EQ(far_scene.cameras[0].origin, far_scene.origin);
 }
 
-TEST(GltfNodes, OriginStaysWhereOnlyAPartIsFarAway) {
+TEST(GltfNodes, SceneIsNotMovedIfOnlyAPartOfItIsFarAway) {
   GltfMaker maker = scene_at(glm::dvec3(0.0));
   for (int i = 0; i < 4; ++i) maker.json["nodes"].push_back({{"mesh", 0}});
   maker.json["nodes"].push_back({{"mesh", 0}, {"translation", {1e6, 0, 0}}});

@@ -54,7 +54,7 @@ TEST(GltfNotes, SentenceStaysShortForLongNamesAndUris) {
   const std::string data = refusal({text.begin(), text.end()});
   EXPECT_LT(data.size(), 250u);
   EXPECT_THAT(data, testing::Not(HasSubstr("AAAA")));
-  // A name, cut between two letters of it though each is two bytes.
+  // The name consists of letters of two bytes, which must not be cut in the middle.
   std::string name = "x";
   for (int i = 0; i < 1000; ++i) name += "\xc3\xa9";
   maker.json["meshes"][0]["name"] = name;
@@ -69,14 +69,15 @@ TEST(GltfNotes, SentenceStaysShortForLongNamesAndUris) {
   EXPECT_THAT(why, testing::EndsWith("accessor 9 does not exist"));
 }
 
-// report.json and trade.svg have it, and are of UTF-8.
+// The name of a scene appears in report.json and trade.svg, which must be valid UTF-8.
 TEST(GltfNotes, SceneNameIsUtf8ForAnyFileName) {
   const auto scene = parse_gltf(GltfMaker::triangle().gltf(), "caf\xe9.gltf", "");
   ASSERT_TRUE(scene) << scene.error();
   EXPECT_EQ(scene->name, "caf\xef\xbf\xbd");
 }
 
-// Mesh, node, material and camera, each of whose sentences is made elsewhere.
+// Names of a mesh, a node, a material and a camera, which four different parts of the loader
+// report.
 TEST(GltfNotes, NamesAreOneShortLine) {
   const std::string name = "a\nb\x1b[31m" + std::string(1000, 'x');
   GltfMaker maker = GltfMaker::triangle();

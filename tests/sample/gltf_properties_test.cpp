@@ -94,7 +94,7 @@ enum class Kind {
 
 struct Property {
   const char* pointer;  // RFC 6901
-  const char* name;     // as a sentence has it
+  const char* name;     // as the error sentence spells it
   Kind kind;
 };
 
@@ -260,7 +260,7 @@ const Property kProperties[] = {
 
 class GltfProperty : public testing::TestWithParam<Property> {};
 
-// The valid value is that of complete(); where it is an integer, it may be written as 4.0.
+// Reads the valid value of complete(). An integer such as 4 may also be written as 4.0.
 TEST_P(GltfProperty, ValidValueIsRead) {
   const json::json_pointer pointer(GetParam().pointer);
   GltfMaker maker = complete();

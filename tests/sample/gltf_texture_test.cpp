@@ -12,7 +12,7 @@ namespace alcove::sample {
 namespace {
 
 TEST(GltfTexture, TransformScalesThenRotatesCounterClockwiseThenTranslates) {
-  // The lower left quarter of the image, turned: the extension's own example.
+  // The example of the extension's specification: the lower left quarter of the image, rotated.
   const nlohmann::json quarter = {
       {"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}};
   const nlohmann::json uneven = {{"offset", {3, 5}}, {"rotation", 0.5}, {"scale", {2, -4}}};

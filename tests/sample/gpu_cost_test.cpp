@@ -20,6 +20,7 @@ using passes::cost::PassWork;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // Two loops, one within the other, as ACO prints them before registers are assigned.
 constexpr const char* kNestedLoops =
@@ -152,7 +153,7 @@ TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
 
 // Rows of 8 texels of 4 or 8 bytes lie in one line each. A gather of adjacent texels reads 9 rows
 // of 9 texels, and one of every second texel 16 rows of 16.
-TEST(GpuCost, CacheLinesOfALoadAreThoseOfItsAddresses) {
+TEST(GpuCost, CacheLinesOfALoadFollowFromItsAddressPattern) {
   using passes::cost::cache_lines;
   EXPECT_EQ(cache_lines({}), 8);
   EXPECT_EQ(cache_lines({.texel_bytes = 8}), 8);
@@ -182,7 +183,7 @@ SettingsCost one_pass(double instructions, double registers, double waves, doubl
   pass.vector_registers = registers;
   pass.waves_per_simd = waves;
   pass.spills = spills;
-  return {"medium", "navi21", {{FrameState::moving, {pass}}}};
+  return {"medium", "navi21", {{FrameState::moving, {pass}}}, ""};
 }
 
 TEST(GpuBudget, EachFigureThatExceedsItsBudgetIsReported) {
@@ -202,15 +203,53 @@ TEST(GpuBudget, PassWithoutABudgetIsReported) {
               testing::Contains(HasSubstr("the budget is missing")));
 }
 
+SettingsCost frames_of(const std::string& label, const std::string& family, double moving_ms,
+                       double static_ms, const std::string& label_without = "") {
+  ModelledPass moving, unchanged;
+  moving.alu_ms = moving_ms;
+  unchanged.alu_ms = static_ms;
+  return {label,
+          family,
+          {{FrameState::moving, {moving}}, {FrameState::unchanged, {unchanged}}},
+          label_without};
+}
+
+TEST(CostReport, TimeWithAnOutputIsComparedWithTheSameFrameAndGpuWithoutIt) {
+  const std::vector<SettingsCost> costs{
+      frames_of("low", "navi21", 1, 1), frames_of("medium", "bonaire", 10, 10),
+      frames_of("medium", "navi21", 2, 4),
+      frames_of("medium with bent normals", "navi21", 3, 5, "medium")};
+  EXPECT_THAT(output_ratios(costs[3], costs), ElementsAre(1.5, 1.25));
+  EXPECT_THAT(output_ratios(costs[2], costs), IsEmpty()) << "medium is compared with nothing";
+  EXPECT_THAT(output_ratios(costs[3], std::span(costs).first(2)), IsEmpty())
+      << "medium is not among the costs of this GPU";
+  EXPECT_THAT(table_of(costs, false),
+              HasSubstr("medium with bent normals                  1.500      1.250\n"));
+  EXPECT_THAT(table_of(std::span(costs).first(3), false), Not(HasSubstr("without the output")));
+  EXPECT_EQ(to_json(costs)[1]["settings"][2]["frames"][0]["of_time_without_output"], 1.5);
+}
+
+TEST(CostReport, EachOutputIsAddedAlone) {
+  const LabelledSettings plain{"high", {}, ""};
+  const auto [bent, specular] = with_each_output(plain);
+  EXPECT_EQ(bent.label, "high with bent normals");
+  EXPECT_EQ(bent.label_without, "high");
+  EXPECT_TRUE(bent.inputs.settings.bent_normal);
+  EXPECT_EQ(bent.inputs.settings.specular, passes::Specular::none);
+  EXPECT_EQ(specular.label_without, "high");
+  EXPECT_FALSE(specular.inputs.settings.bent_normal);
+  EXPECT_EQ(specular.inputs.settings.specular, passes::Specular::slices);
+}
+
 struct Budgeted {
   const GpuPart* part;
-  BudgetedSettings settings;
+  LabelledSettings settings;
 };
 
 std::vector<Budgeted> all_budgeted() {
   std::vector<Budgeted> all;
   for (const GpuPart& part : kGpuParts) {
-    for (const BudgetedSettings& settings : budgeted_settings()) {
+    for (const LabelledSettings& settings : budgeted_settings()) {
       all.push_back({&part, settings});
     }
   }
@@ -239,11 +278,9 @@ TEST_P(ShippedPresets, StayWithinTheirGpuBudget) {
     GTEST_SKIP() << "The budget was written with " << budget["compiler"]
                  << "; the compiler here is " << compiler << ", which makes other code.";
   }
-  auto frames = modelled_frames(*GetParam().part, *device, GetParam().settings.inputs);
-  ASSERT_TRUE(frames) << frames.error();
-  const auto complaints = over_budget(
-      budget,
-      {{GetParam().settings.label, std::string(GetParam().part->family), std::move(*frames)}});
+  const auto cost = cost_of(*GetParam().part, *device, GetParam().settings);
+  ASSERT_TRUE(cost) << cost.error();
+  const auto complaints = over_budget(budget, {*cost});
   for (const std::string& complaint : complaints) {
     ADD_FAILURE() << complaint << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;
   }

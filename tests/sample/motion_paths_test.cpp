@@ -141,7 +141,7 @@ TEST(MotionPaths, OnlyPointsOfTheBlockHaveAnotherPreviousPosition) {
   const glm::vec3 far = builtin_start().camera.eye_ws;
   EXPECT_EQ(path.position_before(far, 7), far);
   EXPECT_FALSE(path.is_near_object(far, 7, 6));
-  // A place that it left stays one that it has passed by.
+  // A place that the block has left still counts as near it for the given number of frames.
   const glm::vec3 left(path.world_from_moving(0)[3]);
   EXPECT_TRUE(path.is_near_object(left, kFrames - 1, kFrames - 1));
 }

@@ -188,7 +188,7 @@ TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
 
 // MikkTSpace merges corners with equal values, so that shared and unshared vertices give the same
 // tangents.
-TEST(Tangents, UnsharedVerticesHaveThoseOfSharedOnes) {
+TEST(Tangents, SharedAndUnsharedVerticesHaveTheSameTangents) {
   Scene scene = quad();
   const Mesh shared = scene.meshes[0];
   Mesh apart = shared;
@@ -211,7 +211,7 @@ TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
   mesh.normals.assign(5, glm::vec3(0, 0, 1));
-  // In the second triangle, u runs along y. It is mirrored as the first one is.
+  // In the second triangle u runs along y. Its mapping is mirrored, like that of the first one.
   mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}};
   mesh.indices = {0, 1, 2, 0, 3, 4};
   const auto tangents = corner_tangents(mesh, {});
@@ -220,7 +220,7 @@ TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
 }
 
 // A triangle without area in the texture gets the tangents of its neighbour.
-TEST(Tangents, TriangleWithoutAreaInTheTextureFollowsItsNeighbour) {
+TEST(Tangents, TriangleWithoutAreaInTheTextureGetsTheTangentOfItsNeighbour) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   mesh.normals.assign(4, glm::vec3(0, 0, 1));

@@ -38,6 +38,21 @@ TEST(Options, ViewWithoutFramesAndOutputStaysOpenAndWritesNothing) {
   EXPECT_FALSE(parse({"view", "--frames", "0"}));
 }
 
+TEST(Options, ClockOfBenchAndRecommendIsParsed) {
+  EXPECT_FALSE(parse({"bench"})->clock);
+  EXPECT_EQ(parse({"bench", "--clock", "processor"})->clock, Clock::processor);
+  EXPECT_EQ(parse({"recommend", "--tolerance", "0.1", "--clock", "modelled"})->clock,
+            Clock::modelled);
+  const auto wrong = parse({"bench", "--clock", "sundial"});
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().text, HasSubstr("--clock"));
+}
+
+TEST(Options, CostIsComparedWithAndWithoutOutputsOnRequest) {
+  EXPECT_FALSE(parse({"cost"})->cost.outputs);
+  EXPECT_TRUE(parse({"cost", "--outputs"})->cost.outputs);
+}
+
 TEST(Options, CommandLineWithEveryOptionIsParsed) {
   const auto options =
       parse({"compare",  "scene.glb", "--eye",         "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",

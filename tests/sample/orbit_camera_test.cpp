@@ -26,7 +26,7 @@ glm::vec2 ndc(const Camera& camera, const glm::vec3& point_ws) {
   return glm::vec2(clip) / clip.w;
 }
 
-TEST(OrbitCamera, TurningKeepsTheTargetAndTheDistance) {
+TEST(OrbitCamera, OrbitingKeepsTheTargetAndTheDistance) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -43,7 +43,7 @@ TEST(OrbitCamera, TurningKeepsTheTargetAndTheDistance) {
   }
 }
 
-TEST(OrbitCamera, SceneTurnsWithTheMouse) {
+TEST(OrbitCamera, SceneRotatesInTheDirectionOfTheMouse) {
   const Camera camera = some_camera();
   const glm::vec3 towards_eye =
       camera.target_ws + 0.1f * glm::normalize(camera.eye_ws - camera.target_ws);
@@ -51,19 +51,19 @@ TEST(OrbitCamera, SceneTurnsWithTheMouse) {
   EXPECT_GT(ndc(turned(camera, {0.0f, 0.1f}), towards_eye).y, 0.0f);
 }
 
-TEST(OrbitCamera, TurningThereAndBackIsNothing) {
+TEST(OrbitCamera, OrbitingAndOrbitingBackRestoresTheView) {
   const Camera camera = some_camera();
   const Camera back = turned(turned(camera, {0.7f, 0.2f}), {-0.7f, -0.2f});
   EXPECT_LT(glm::distance(back.eye_ws, camera.eye_ws), 1e-4f);
 }
 
-TEST(OrbitCamera, PanningCarriesTheTargetWithTheMouse) {
+TEST(OrbitCamera, PanningMovesTheTargetWithTheMouse) {
   for (const bool orthographic : {false, true}) {
     Camera camera = some_camera();
     camera.orthographic = orthographic;
     const glm::vec2 share(0.1f, -0.2f);
     const Camera moved = panned(camera, share);
-    // Twice the share: the image is 2 high.
+    // NDC span 2 over the height of the image, so a share of the height is twice as much in NDC.
     EXPECT_LT(glm::distance(ndc(moved, camera.target_ws), 2.0f * share), 1e-4f);
     EXPECT_LT(glm::distance(moved.eye_ws - moved.target_ws, camera.eye_ws - camera.target_ws),
               1e-5f);

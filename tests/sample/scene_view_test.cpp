@@ -1,4 +1,5 @@
-// Needs a display; ctest gives it one of its own. Everything under the validation layers.
+// Tests of the window. They need a display, which ctest starts for them, and run under the
+// validation layers.
 #include "cli/scene_view_request.h"
 
 #include <GLFW/glfw3.h>
@@ -42,7 +43,7 @@ class SceneViewTest : public testing::Test {
     view_ = std::move(*made);
   }
 
-  // Draws until so many more frames are presented.
+  // Draws until this many more frames are presented.
   void draw(std::uint32_t frames) {
     const std::uint32_t until = view_->drawn_frames() + frames;
     for (int i = 0; i < 1000 && view_->drawn_frames() < until; ++i) {

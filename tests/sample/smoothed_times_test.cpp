@@ -11,7 +11,7 @@ TEST(SmoothedTimes, FirstFrameIsNotSmoothed) {
   EXPECT_DOUBLE_EQ(times.total_ms(), 3.0);
 }
 
-TEST(SmoothedTimes, OneSlowFrameMovesThemLittleAndManyMoveThemAllTheWay) {
+TEST(SmoothedTimes, OneSlowFrameChangesTheTimesLittleAndManyChangeThemFully) {
   SmoothedTimes times;
   times.add({{"gtao", 2.0}});
   times.add({{"gtao", 12.0}});
@@ -23,7 +23,7 @@ TEST(SmoothedTimes, OneSlowFrameMovesThemLittleAndManyMoveThemAllTheWay) {
   EXPECT_NEAR(times.total_ms(), 12.0, 0.01);
 }
 
-TEST(SmoothedTimes, OtherPassesBeginAnewAndAFrameWithoutTimesChangesNothing) {
+TEST(SmoothedTimes, ChangedListOfPassesRestartsTheAverageAndAFrameWithoutTimesIsIgnored) {
   SmoothedTimes times;
   times.add({{"gtao", 2.0}});
   times.add({});

@@ -109,7 +109,7 @@ TEST_F(TextureTest, CheckerboardFinerThanPixelsIsGrey) {
 }
 
 TEST_F(TextureTest, CheckerboardWithoutMipsIsBlackOrWhite) {
-  // A pixel covers eight and a third texels, so that pixels contain both colours.
+  // A pixel covers eight and a third texels, so each pixel contains both colours.
   const Sampler sampler{.minify = Filter::kNearest, .mips = MipFilter::kNone};
   const FrameImages images = drawn(quad_of(checkerboard(200), sampler));
   std::size_t white = 0;
@@ -142,7 +142,8 @@ TEST_F(TextureTest, WrapModesAgreeBetweenRasteriserAndRayTracer) {
   const TextureImage image = image_of(2, 2, [](auto x, auto y) {
     return x + y == 0 ? kBlack : x == 0 ? kGreen : y == 0 ? kRed : kWhite;
   });
-  // The index of the texel, of two, that is read at coordinates from -1 to 2.
+  // The texture has two texels. These are the indices of the texels that are read at coordinates
+  // from -1 to 2.
   const std::array<std::pair<Wrap, std::array<int, 6>>, 3> wraps{
       {{Wrap::kRepeat, {0, 1, 0, 1, 0, 1}},
        {Wrap::kMirror, {1, 0, 0, 1, 1, 0}},
@@ -197,7 +198,7 @@ TEST_F(TextureTest, MissingSetOfCoordinatesReadsAsZero) {
 }
 
 // The number of textures exceeds the smallest limit that Vulkan allows for bound images.
-TEST_F(TextureTest, EachMaterialHasTexturesOfItsOwnHoweverManyThereAre) {
+TEST_F(TextureTest, EachMaterialReadsItsOwnTexturesWithMoreTexturesThanVulkanGuaranteesToBind) {
   constexpr std::uint32_t kCells = 12;  // cells of 2x2 pixels per axis
   Scene scene = plain_quad();
   const Mesh whole = scene.meshes[0];

@@ -1,14 +1,17 @@
 #include "evaluate/trade.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <regex>
 #include <string>
 #include <vector>
 
+#include "alcove/passes/setting_names.h"
 #include "evaluate/trade_plot.h"
 
 namespace alcove::sample {
@@ -20,9 +23,11 @@ TradePoint point(const std::string& name, double time_ms, double rmse, double sp
   return {name, {}, rmse, 0.5 * rmse, time_ms, spread_ms, 2.0 * time_ms, 1000};
 }
 
+constexpr std::array kPresets{passes::Quality::console, passes::Quality::low,
+                              passes::Quality::medium, passes::Quality::high};
+
 TEST(PresetSweep, ContainsEachPresetAndNoDuplicates) {
-  for (const passes::Quality quality :
-       {passes::Quality::low, passes::Quality::medium, passes::Quality::high}) {
+  for (const passes::Quality quality : kPresets) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     const std::vector<Variant> ways = preset_sweep(base);
     EXPECT_GE(ways.size(), 16u);
@@ -31,13 +36,29 @@ TEST(PresetSweep, ContainsEachPresetAndNoDuplicates) {
       EXPECT_EQ(std::ranges::count(seen, way.settings), 0) << way.name;
       seen.push_back(way.settings);
     }
-    EXPECT_EQ(std::ranges::count(seen, base), 1);
-    EXPECT_EQ(
-        std::ranges::count(seen, passes::quality_settings(passes::Quality::high, base.radius)), 1);
+    for (const passes::Quality preset : kPresets) {
+      EXPECT_EQ(std::ranges::count(seen, passes::quality_settings(preset, base.radius)), 1)
+          << passes::name_of(preset);
+    }
   }
 }
 
-TEST(PresetSweep, ChangesOnlyTileSizeSlicesAndSteps) {
+TEST(PresetSweep, ContainsHalfResolutionWithSeveralTileSizesAndSteps) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> half;
+  for (const Variant& variant : preset_sweep({})) {
+    EXPECT_TRUE(passes::validate(variant.settings)) << variant.name;
+    if (variant.settings.half_resolution) {
+      half.emplace_back(variant.settings.tile_size, variant.settings.steps);
+      EXPECT_TRUE(variant.name == "console" ||
+                  variant.name.find("half resolution") != std::string::npos)
+          << variant.name;
+    }
+  }
+  EXPECT_THAT(half, testing::IsSupersetOf({std::pair(8u, 4u), std::pair(8u, 8u), std::pair(4u, 8u),
+                                           std::pair(2u, 10u)}));
+}
+
+TEST(PresetSweep, ChangesOnlyTileSizeSlicesStepsAndHalfResolution) {
   OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
   base.history_frames = 0;
   base.advanced.estimator = passes::Estimator::horizons;
@@ -47,6 +68,7 @@ TEST(PresetSweep, ChangesOnlyTileSizeSlicesAndSteps) {
     settings.tile_size = base.tile_size;
     settings.slices = base.slices;
     settings.steps = base.steps;
+    settings.half_resolution = base.half_resolution;
     EXPECT_EQ(settings, base) << way.name;
   }
 }
@@ -63,7 +85,7 @@ TEST(Trade, ParetoFrontExcludesDominatedPoints) {
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
 
-TEST(Trade, DifferenceWithinTheSpreadDoesNotDominate) {
+TEST(Trade, PointThatIsFasterOnlyWithinTheSpreadIsNotOnTheParetoFront) {
   const Trade trade =
       trade_of({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
                 point("surely faster", 9.0, 0.08, 0.3)});
@@ -81,6 +103,91 @@ TEST(Trade, ParetoFrontDoesNotDependOnNoiseWithinTheSpread) {
       EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].name != "a") << run;
     }
   }
+}
+
+// A setting with its true time, relative to the base settings.
+struct TrueSetting {
+  const char* name;
+  double time;
+  double rmse;
+};
+
+// Measures settings on a simulated machine on which other programs run. They slow down both frames
+// of a pair by a common factor, each frame by a few per cent, and one frame in ten by up to three
+// times. The base settings take 5 ms.
+std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> settings,
+                                                   std::mt19937& random) {
+  std::lognormal_distribution<double> common(0.0, 0.4);
+  std::normal_distribution<double> own(1.0, 0.04);
+  std::uniform_real_distribution<double> stall(1.2, 3.0);
+  std::bernoulli_distribution stalls(0.1);
+  const auto frame = [&](double ms) {
+    ms *= std::max(own(random), 0.5);
+    return FrameTimes{0.0, stalls(random) ? ms * stall(random) : ms};
+  };
+  std::vector<TradePoint> points;
+  for (const TrueSetting& setting : settings) {
+    std::vector<TimedPair> pairs;
+    for (std::uint32_t i = 0; i < kDecidingPairs; ++i) {
+      const double base_ms = 5.0 * common(random);
+      pairs.push_back({frame(base_ms), frame(base_ms * setting.time)});
+    }
+    const VariantCost cost = cost_of(pairs, 1000);
+    points.push_back(
+        point(setting.name, 5.0 * cost.processor, setting.rmse, 5.0 * cost.processor_spread));
+  }
+  return points;
+}
+
+std::vector<std::string> sorted_front(const Trade& trade) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < trade.points.size(); ++i) {
+    if (trade.on_pareto_front[i]) {
+      names.push_back(trade.points[i].name);
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+constexpr std::array<TrueSetting, 6> kTrueSettings{{{"fast", 0.3, 0.08},
+                                                    {"as fast but worse", 0.3, 0.09},
+                                                    {"fair", 1.0, 0.05},
+                                                    {"as slow but worse", 1.0, 0.06},
+                                                    {"slow", 4.0, 0.04},
+                                                    {"slow and worse", 4.0, 0.07}}};
+
+TEST(Trade, RunsOnABusyMachineGiveTheSameParetoFront) {
+  std::mt19937 random(5);
+  for (int run = 0; run < 200; ++run) {
+    EXPECT_THAT(sorted_front(trade_of(measured_on_a_busy_machine(kTrueSettings, random))),
+                testing::ElementsAre("fair", "fast", "slow"));
+  }
+}
+
+TEST(Trade, SettingThatBecomesFasterEntersTheParetoFrontOnABusyMachine) {
+  std::mt19937 random(5);
+  auto settings = kTrueSettings;
+  settings[3] = {"faster but worse", 0.4, 0.06};
+  settings[0].time = settings[1].time = 0.1;
+  for (int run = 0; run < 200; ++run) {
+    EXPECT_THAT(sorted_front(trade_of(measured_on_a_busy_machine(settings, random))),
+                testing::ElementsAre("fair", "fast", "faster but worse", "slow"));
+  }
+}
+
+TEST(VariantCost, IsTheMedianRatioOfPairsAndHalfTheDistanceOfTheirQuartiles) {
+  std::vector<TimedPair> pairs;
+  for (const double ratio : {2.0, 1.0, 9.0, 3.0, 4.0}) {
+    pairs.push_back({{10.0, 7.0}, {10.0 * ratio, 14.0 * ratio}});
+  }
+  const VariantCost cost = cost_of(pairs, 5);
+  EXPECT_DOUBLE_EQ(cost.gpu, 3.0);
+  EXPECT_DOUBLE_EQ(cost.gpu_spread, 1.0);
+  EXPECT_DOUBLE_EQ(cost.processor, 6.0);
+  EXPECT_DOUBLE_EQ(cost.processor_spread, 2.0);
+  EXPECT_EQ(cost.bytes, 5u);
+  EXPECT_EQ(cost_of({}, 5).gpu, 1.0);
 }
 
 TEST(Trade, OneOfSeveralEqualPointsIsOnTheParetoFront) {

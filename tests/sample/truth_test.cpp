@@ -26,7 +26,7 @@ TEST_P(ClosedForm, RayTracedVisibilityAgreesWithinThreeStandardErrors) {
                                      {static_cast<float>(analytic->closed_form_radius), kRays, 1});
   for (uint32_t i = 0; i < analytic->points.size(); ++i) {
     const double expected = analytic->points[i].visibility;
-    // The standard error of independent rays; the R2 sequence has less.
+    // This is the standard error of independent rays. The R2 sequence of the ray tracer has less.
     const double standard_error = std::sqrt(expected * (1.0 - expected) / kRays);
     EXPECT_NEAR(truth.visibility.at(i, 0), expected, 3.0 * standard_error + 1e-6)
         << GetParam() << " point " << i;
