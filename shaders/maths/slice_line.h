@@ -1,15 +1,20 @@
-// The image line of a slice, and depth samples on it as points of the slice's plane.
+// The line in which a slice appears on the image, and the positions of depth samples in the slice.
 //
-// A sample snapped to a texel's centre lies beside the line. If it is of the surface's own tangent
-// plane its depth is moved onto the line along that plane (lies_on_tangent_plane), so it stays
-// exactly open at any tilt and any snapping; the further it stands off the plane, the less of
-// that. (The paper projects nothing; others use the sample as it is, and see a tilted plane occlude
-// itself.)
+// A slice is a plane that contains the view direction, so it appears on the image as a straight
+// line through the shaded pixel. Depth samples are taken along this line. Each sample becomes a
+// point (x, y) of the slice's plane, in scene units relative to the shaded point: x along the
+// slice's direction, y along the view direction towards the eye.
 //
-// In the plane a point is (x, y): x along the slice's direction, y along the view direction, in
-// scene units from the shaded point. Held as (x w, y w, w), w being 1/depth in perspective and 1 in
-// orthographic views, it is linear in the distance along the line and in the sample's `line`: it
-// costs three multiply-adds and no division, and no position in space is ever formed.
+// Depths are stored as *inverse depth*: 1/z in perspective, linear depth z in orthographic views.
+// Inverse depth is linear along the image of any plane. Points are stored as (x w, y w, w), where w
+// is the inverse depth in perspective and 1 in orthographic views. These three numbers are linear
+// in the distance on the image and in the inverse depth, so a sample costs three multiply-adds and
+// no division. Angles need only the ratio of x and y, from which w cancels.
+//
+// A sample that is snapped to the centre of a texel lies beside the line. Its depth is then that of
+// a place up to 0.7 pixels away, so that a tilted plane would occlude itself. If the sample lies on
+// the tangent plane of the shaded point (lies_on_tangent_plane), its depth is therefore moved along
+// that plane from the texel's centre to the line. Samples off the plane keep their depth.
 #ifndef ALCOVE_MATHS_SLICE_LINE_H
 #define ALCOVE_MATHS_SLICE_LINE_H
 
@@ -19,22 +24,22 @@
 
 ALCOVE_MATHS_BEGIN
 
-// SliceSample::inverse_depth of the sky.
+// The inverse depth that stands for the sky, where no surface is drawn.
 ALCOVE_INLINE float sky_inverse_depth(bool perspective) {
   return perspective ? 1.0f / kSkyDepth : kSkyDepth;
 }
 
-// Whether raw depth grows with SliceSample::inverse_depth.
+// Whether the value in the depth buffer grows with inverse depth.
 ALCOVE_INLINE bool grows_with_inverse_depth(bool perspective, bool reversed) {
   return perspective == reversed;
 }
 
-// SliceSample::inverse_depth of a raw depth: from_ndc.x * d + from_ndc.y, where d is the distance
-// of the raw depth from its value at the plane with the smallest inverse depth (the far plane in
-// perspective, the near plane in orthographic views). This distance is exact, so that no digit that
-// the depth buffer holds is lost. from_ndc.x must be positive, and in perspective from_ndc.y at
-// least 0. The far plane, everything beyond it and NaN are the sky. Depths in front of the near
-// plane give the near plane's.
+// Converts a value of the depth buffer to inverse depth: from_ndc.x * d + from_ndc.y, where d is
+// the distance of `depth_ndc` from its value at the plane with the smallest inverse depth (the far
+// plane in perspective, the near plane in orthographic views). This distance is computed without
+// rounding, so that no digit of the depth buffer is lost. from_ndc.x must be positive, and in
+// perspective from_ndc.y at least 0. The far plane, everything beyond it and NaN give the sky.
+// Depths in front of the near plane give the inverse depth of the near plane.
 ALCOVE_INLINE float inverse_depth_of_ndc(vec2 from_ndc, float depth_ndc, bool perspective,
                                          bool reversed) {
   bool grows = grows_with_inverse_depth(perspective, reversed);
@@ -43,33 +48,37 @@ ALCOVE_INLINE float inverse_depth_of_ndc(vec2 from_ndc, float depth_ndc, bool pe
   return sky ? sky_inverse_depth(perspective) : from_ndc.x * from_smallest + from_ndc.y;
 }
 
-// Whether a pixel's back face is where the occluder ends that begins at its front: it lies behind
-// by more than depth buffers round, and is not the sky. Both as SliceSample::inverse_depth.
+// Whether the back face at a pixel can be the end of the occluder whose front face is at that
+// pixel. The back face must lie behind the front face by more than the rounding of depth buffers,
+// and must not be the sky. Both arguments are inverse depths.
 ALCOVE_INLINE bool ends_occluder(float front, float back, bool perspective) {
   float behind = perspective ? front - back : back - front;
   return behind > 1e-4f * abs(front) && back != sky_inverse_depth(perspective);
 }
 
-// The one of two values of SliceSample::inverse_depth that is further from the eye.
+// Returns the one of two inverse depths that is farther from the eye.
 ALCOVE_INLINE float farther_inverse_depth(float a, float b, bool perspective) {
   return perspective ? min(a, b) : max(a, b);
 }
 
+// The coefficients that turn a distance on the image and a depth into a point of the slice's plane,
+// as slice_point() does.
 struct SliceLine {
-  vec2 direction_px;  // unit vector on the image, the way of positive x
-  float x_per_step;   // x w of a point i pixels along direction_px: i * x_per_step; positive
-  float y_per_step;   // y w of it: i * y_per_step + (centre depth - depth) w * y_per_depth
-  float y_per_depth;  // length of the view ray at unit linear depth
+  vec2 direction_px;  // unit vector on the image, towards positive x of the slice's plane
+  float x_per_step;   // change of x w per pixel along direction_px; positive
+  float y_per_step;   // change of y w per pixel along direction_px at constant depth
+  float y_per_depth;  // change of y per scene unit of linear depth towards the eye
 };
 
-// Change of the view ray's x and y from one pixel to the next.
+// Returns the change of the view ray's x and y, at unit linear depth, from one pixel to the next.
 ALCOVE_INLINE vec2 ray_per_px(Projection p) {
   return vec2((p.uv_to_slope.x + p.uv_to_origin.x) * p.texel_uv.x,
               (p.uv_to_slope.y + p.uv_to_origin.y) * p.texel_uv.y);
 }
 
-// The line of the slice through a point along `direction` (unit, perpendicular to `view`, which is
-// unit, in view space); `per_px` is ray_per_px() of the projection.
+// Returns the line of the slice that is spanned by `view`, the unit view direction at the shaded
+// point, and `direction`, a unit vector perpendicular to it. Both are in view space. `per_px` is
+// ray_per_px() of the projection.
 ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) {
   vec3 axis = cross(view, direction);
   // Image directions that stay in the plane have no component along its axis.
@@ -87,9 +96,8 @@ ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) 
 }
 
 // Returns (x w, y w, w) of the point that lies `offset_px` pixels along the line (negative: in the
-// opposite direction) and has this SliceSample::inverse_depth. In the slice's plane, relative to
-// the shaded point, x points along the line and y towards the eye; w is the inverse depth in
-// perspective, else 1.
+// opposite direction) and has the given inverse depth. `centre_depth` is the linear depth of the
+// shaded point. The comment at the top of this file explains x, y and w.
 ALCOVE_INLINE vec3 slice_point(SliceLine slice_line, float offset_px, float inverse_depth,
                                float centre_depth, bool perspective) {
   float rise = perspective ? centre_depth * inverse_depth - 1.0f : centre_depth - inverse_depth;
@@ -98,18 +106,19 @@ ALCOVE_INLINE vec3 slice_point(SliceLine slice_line, float offset_px, float inve
               perspective ? inverse_depth : 1.0f);
 }
 
-// The surface's tangent plane on the image. SliceSample::inverse_depth, 1/depth in perspective and
-// depth in orthographic views, is linear there.
+// The tangent plane of the shaded point, as a linear function of the position on the image.
 struct TangentPlane {
-  float inverse_depth;  // at the surface's own pixel
-  vec2 gradient;        // for each pixel
-  float fading;         // of a sample's correction with its distance from the plane
+  float inverse_depth;  // at the shaded pixel
+  vec2 gradient;        // change of the inverse depth per pixel in x and y of the image
+  float fading;         // pixels of distance from the shaded pixel that a sample needs per unit of
+                        // inverse depth off the plane, to count as lying on it
 };
 
-// `normal` and `view` are unit, in view space.
+// `normal` and `view` (the direction towards the eye) are unit vectors in view space, `depth` is
+// the linear depth of the shaded point, and `per_px` is ray_per_px() of the projection.
 ALCOVE_INLINE TangentPlane make_tangent_plane(vec2 per_px, vec3 normal, vec3 view, float depth,
                                               bool perspective) {
-  // Seen edge-on, the plane would run to any depth within a pixel.
+  // The lower limit keeps the gradient finite if the plane is seen edge-on.
   float n_dot_v = max(dot(normal, view), 0.01f);
   TangentPlane t;
   t.inverse_depth = perspective ? 1.0f / depth : depth;
@@ -119,10 +128,10 @@ ALCOVE_INLINE TangentPlane make_tangent_plane(vec2 per_px, vec3 normal, vec3 vie
   return t;
 }
 
-// The inverse of make_tangent_plane(): the unit normal, towards the eye, of a surface whose
-// SliceSample::inverse_depth is `inverse_depth` at a pixel and changes by `gradient` for each
-// pixel. `slope` is the view ray's x and y at unit depth there, which orthographic views do not
-// have.
+// The inverse of make_tangent_plane(). Returns the unit normal, towards the eye and in view space,
+// of a surface that has the given inverse depth at a pixel and whose inverse depth changes by
+// `gradient` per pixel. `slope` is x and y of the pixel's view ray at unit depth; it is not used in
+// orthographic views.
 ALCOVE_INLINE vec3 normal_of_gradient(vec2 per_px, vec2 slope, float inverse_depth, vec2 gradient,
                                       bool perspective) {
   float scale = perspective ? -1.0f / inverse_depth : 1.0f;
@@ -131,8 +140,8 @@ ALCOVE_INLINE vec3 normal_of_gradient(vec2 per_px, vec2 slope, float inverse_dep
   return normalize(vec3(x, y, perspective ? 1.0f + x * slope.x + y * slope.y : 1.0f));
 }
 
-// The step of a depth buffer as SliceSample::inverse_depth: the difference between neighbouring
-// values that it can hold is at most constant + per_inverse_depth * inverse_depth.
+// The precision of a depth buffer, converted to inverse depth: two neighbouring values that the
+// buffer can hold differ by at most constant + per_inverse_depth * inverse_depth.
 struct DepthStep {
   float constant;
   float per_inverse_depth;
@@ -142,8 +151,7 @@ ALCOVE_INLINE float depth_step_at(DepthStep s, float inverse_depth) {
   return max(s.constant + s.per_inverse_depth * inverse_depth, 0.0f);
 }
 
-// How far a point that differs by `step` from one at `inverse_depth` lies before or behind it, in
-// scene units.
+// Converts a small difference `step` of inverse depth at `inverse_depth` to scene units.
 ALCOVE_INLINE float depth_step_length(float step, float inverse_depth, bool perspective) {
   return perspective ? step / (inverse_depth * inverse_depth) : step;
 }
@@ -155,16 +163,17 @@ ALCOVE_INLINE float unresolved_occlusion(float step_length, float radius) {
   return saturate((step_length / radius - 0.25f) * (4.0f / 3.0f));
 }
 
-// Whether a sample, `off_plane` off the tangent plane in inverse depth and so many pixels away, is
-// taken to lie on that plane, and is moved along it to the exact place that it stands for. The
-// plane itself then stays exactly flat, and an occluder stays where it was found.
+// Whether a sample is treated as lying on the tangent plane. `off_plane` is its inverse depth less
+// that of the plane, and `offset_px` its distance from the shaded pixel. The tolerance grows with
+// the distance: a slope of 1 / (60 (n.v)^2) relative to the plane, where n.v is the cosine between
+// the normal and the view direction.
 ALCOVE_INLINE bool lies_on_tangent_plane(TangentPlane t, float off_plane, float offset_px) {
   return t.fading * abs(off_plane) < offset_px;
 }
 
-// Pixels along the line that a sphere of radius `radius` (scene units) around the point spans on
-// one side. In perspective the sphere bulges towards the eye, and one around the eye spans
-// everything: at most 1e30.
+// Returns how many pixels along the line, on one side, the sphere with this radius (scene units)
+// around the shaded point covers. In perspective its part nearer to the eye covers more than a disc
+// of the radius would. If the eye lies within the sphere the result is very large, at most 1e30.
 ALCOVE_INLINE float slice_radius_px(SliceLine slice_line, float radius, float centre_depth,
                                     bool perspective) {
   float across = radius / max((perspective ? centre_depth : 1.0f) * slice_line.x_per_step, 1e-30f);

@@ -1,19 +1,20 @@
-// Excludes unobserved directions of a slice from the average.
+// Excludes unobserved directions of a half-slice from the average.
 //
-// A direction is unobserved if, within the radius, it passes through columns of the image in which
-// the depth buffer shows nothing of the sphere around the shaded point. Either a foreground nearer
-// to the eye than the sphere hides it in those columns, or the columns lie beyond the image's
-// border. Whether an occluder lies in such a direction is then unknown. If these directions counted
-// as open, as the horizon estimators count them, the result behind foregrounds would be too bright,
-// and the more so the larger the hidden part of a direction's path is.
+// Occluders of the shaded point lie within a sphere of the radius around it. Each depth sample
+// stands for one column: a short piece of the slice's line on the image, seen from the eye. A
+// column is unobserved if the depth buffer shows nothing of the sphere in it. There are two causes:
+// a foreground that is nearer to the eye than the sphere hides it, or the column lies beyond the
+// border of the image. A direction is unobserved if its path within the sphere crosses an
+// unobserved column. Whether an occluder lies there is unknown. If unobserved directions counted as
+// open, as the horizon estimators count them, surfaces behind foregrounds would be too bright.
 //
-// Therefore a share of the directions between the innermost unobserved column and the first
-// occluder is excluded: it is subtracted from both the visible part and the unoccluded part, and
-// visibility is the quotient of the two. Excluded directions are thereby assumed to be as visible
-// as the remaining ones, and an open plane stays exactly open. The share is the square root of w /
-// r, where r is the radius on the image and w the mean width of a row, a run of adjacent unobserved
-// columns. Columns beyond the border count less: if they are the whole radius, the share is
-// border_share(), at most 0.5.
+// Therefore a share of the directions between the unobserved column that is nearest to the shaded
+// point and the first occluder is excluded. It is subtracted from both the visible part and the
+// unoccluded part, and visibility is the quotient of the two. This assumes that excluded directions
+// are as visible as the others, and an open plane stays exactly open. The share is sqrt(w / r),
+// where r is the radius on the image and w is the mean width of a row. A row is a run of adjacent
+// unobserved columns. Columns beyond the border count less: if they span the whole radius, the
+// share is border_share(), at most 0.5.
 //
 // A bent normal is a mean direction and no such quotient, so nothing is excluded from it. The
 // method is new here; it is not taken from a paper.
@@ -28,16 +29,15 @@
 
 ALCOVE_MATHS_BEGIN
 
-// The offset of the innermost unobserved column if there is none.
+// The offset, in pixels, that means that there is no unobserved column.
 const float kNowherePx = 1e9f;
 
-// The unobserved columns of a half-slice. Each sample is a column of the image. Adjacent unobserved
-// columns form a row.
+// The unobserved columns of a half-slice. Columns are added from the shaded pixel outwards.
 struct Unobserved {
-  float first_px;  // offset of the innermost one from the shaded pixel
-  float width_px;  // sum of the widths
-  float rows;      // number of rows
-  bool last;       // whether the outermost column that was added is unobserved
+  float first_px;  // distance of the nearest unobserved column from the shaded pixel
+  float width_px;  // sum of the widths of the unobserved columns
+  float rows;      // number of runs of adjacent unobserved columns
+  bool last;       // whether the column that was added last is unobserved
 };
 
 ALCOVE_INLINE Unobserved nothing_unobserved() {
@@ -49,8 +49,8 @@ ALCOVE_INLINE Unobserved nothing_unobserved() {
   return none;
 }
 
-// Adds the next column outwards, a sample at `offset_px` that is `width_px` wide. `hides` says
-// whether it is unobserved.
+// Adds the next column outwards. It is `offset_px` away from the shaded pixel and `width_px` wide,
+// and `hides` says whether it is unobserved.
 ALCOVE_INLINE Unobserved add_column(Unobserved sum, bool hides, float offset_px, float width_px) {
   sum.first_px = min(sum.first_px, hides ? offset_px : kNowherePx);
   sum.width_px += hides ? width_px : 0.0f;
@@ -59,8 +59,9 @@ ALCOVE_INLINE Unobserved add_column(Unobserved sum, bool hides, float offset_px,
   return sum;
 }
 
-// Replaces the total width by the mean width of a row. Beyond each row the columns next to it show
-// what lies there, so many narrow rows, such as leaves, hide no more than one of them does.
+// Replaces the total width of the unobserved columns by the mean width of a row. What lies behind a
+// narrow row is mostly seen in the columns beside it, so many narrow rows, such as leaves, are
+// taken to hide no more than one of them does.
 ALCOVE_INLINE Unobserved mean_row(Unobserved sum) {
   sum.width_px = sum.width_px / max(sum.rows, 1.0f);
   return sum;
@@ -77,31 +78,32 @@ ALCOVE_INLINE float border_share(float other_outside, float nearness) {
   return 0.5f * (1.0f - other_outside) * saturate(1.0f - squared * squared);
 }
 
-// Adds the `beyond_px` pixels of the radius that lie beyond the image's border as a column. The
-// last sample before the border is at `offset_px`; nothing is added if that is kNowherePx. If the
-// column is all of the radius, `share` of the directions is excluded.
+// Adds the part of the radius beyond the border of the image, `beyond_px` pixels, as a column. The
+// last sample before the border is `offset_px` away from the shaded pixel; kNowherePx means that
+// nothing is added. The column's width is scaled so that `share` of the directions is excluded if
+// the column is as wide as the whole radius.
 ALCOVE_INLINE Unobserved add_beyond_border(Unobserved sum, float offset_px, float beyond_px,
                                            float share) {
   bool hides = beyond_px > 0.0f && offset_px < kNowherePx;
   return add_column(sum, hides, offset_px, share * share * beyond_px);
 }
 
-// An arc of visible directions of which a share is excluded. `from` is nearer to the view direction
-// than `to`.
+// The directions between `from` and `to`, of which a share is excluded.
 struct UnobservedArc {
-  vec2 from;  // sine and cosine of the angle to the view direction
-  vec2 to;
-  float share;  // [0,kMostUnobserved]
+  vec2 from;    // sine and cosine of the angle to the view direction at the arc's beginning
+  vec2 to;      // those of its end, which is farther from the view direction
+  float share;  // fraction of the arc that is excluded, [0,kMostUnobserved]
 };
 
-// The largest share that is excluded, so that a part of every slice counts.
+// The largest share that is excluded. It is less than 1 so that every slice keeps some weight.
 const float kMostUnobserved = 0.98f;
 
-// Returns the arc from the direction that reaches the innermost unobserved sample at the distance
-// of the radius, to the first occluder, or to the tangent plane if nothing is occluded (`first`:
-// sine and cosine of its angle to the view direction). The share is the square root of the part of
-// the radius that the unobserved samples are wide; its error is smaller than that of the part
-// itself and of excluding all. `radius_px` is slice_radius_px().
+// Returns the arc of unobserved directions. It begins at the direction that leaves the sphere of
+// the radius exactly in the nearest unobserved column, and ends at `first`, the sine and cosine of
+// the angle between the view direction and the first occluder, or the tangent plane if nothing is
+// occluded. `radius_px` is slice_radius_px(). The share is the square root of the width of the row
+// relative to the radius. In the development views the square root had a smaller error than the
+// relative width itself, and than excluding the whole arc.
 ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserved,
                                                 float radius_px) {
   UnobservedArc arc;

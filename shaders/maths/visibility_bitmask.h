@@ -1,12 +1,19 @@
-// Visibility of one side of a slice as 32 sectors, for occluders of finite thickness (after
+// Visibility of a half-slice as a bit mask of sectors, for occluders of finite thickness (after
 // Therrien, Levesque and Gilet 2023).
 //
-// Angles are measured on a square instead of a circle, as diamond_angles: 0 along the view
-// direction, 1 across it, 2 against it, for one division and no root or arc cosine. A side's
-// sectors are equal steps of diamond angle from the view direction (sector 0) to the tangent plane.
-// Weights are applied last: any weight with an antiderivative is integrated exactly at the ends of
-// the runs of occluded sectors, of which a half-slice has one or two. One search therefore serves
-// visibility, bent normal and any lobe.
+// A half-slice is one of the two directions of a slice, `side` = +1 or -1 (maths/slice.h). Its
+// directions, from the view direction (sector 0) to the tangent plane (last sector), are divided
+// into sectors of equal diamond angle. A bit is set if the sector is occluded.
+//
+// The diamond angle replaces the angle to the view direction. It is measured along a square instead
+// of a circle: 0 along the view direction, 1 perpendicular to it, 2 opposite to it. It grows with
+// the angle and costs one division, but no square root and no arc cosine.
+//
+// Weights are applied after the search. The integral of a weight over the visible sectors is a sum
+// of its antiderivative over the boundaries of the runs of occluded sectors; a half-slice has one
+// or two such runs. The same mask therefore gives visibility, the bent normal and the visible part
+// of a GGX lobe. sector_position() and sectors_between() work with 32 sectors; biased_position()
+// and sectors_beyond() are cheaper and work with 31.
 #ifndef ALCOVE_MATHS_VISIBILITY_BITMASK_H
 #define ALCOVE_MATHS_VISIBILITY_BITMASK_H
 
@@ -19,8 +26,9 @@ ALCOVE_MATHS_BEGIN
 
 const uint kSectorCount = 32u;
 
-// The diamond angle of a point in the slice's plane, x outwards from the view direction (at least
-// 0), y along it; any length. In [0,2].
+// Returns the diamond angle, in [0,2], of the direction to a point of the slice's plane. x is at
+// least 0 and points away from the view direction, y points along it. Only the ratio of x and y
+// matters.
 ALCOVE_INLINE float diamond_angle(vec2 point) {
   return 1.0f - point.y / max(point.x + abs(point.y), 1e-30f);
 }
@@ -33,7 +41,7 @@ ALCOVE_INLINE vec2 diamond_angle_light(float at) {
   return vec2(x * inverse, y * inverse);
 }
 
-// Sine and cosine of the angle at which a side meets the tangent plane.
+// Sine and cosine of the angle between the view direction and the tangent plane in a half-slice.
 ALCOVE_INLINE vec2 tangent_light(Slice s, float side) { return vec2(s.cosine, -side * s.sine); }
 
 // Diamond angle of the tangent plane in a half-slice, at least 1e-4.
@@ -41,32 +49,33 @@ ALCOVE_INLINE float tangent_diamond_angle(Slice s, float side) {
   return max(diamond_angle(tangent_light(s, side)), 1e-4f);
 }
 
-// Sectors of a side for each unit of diamond angle, at least 16.
+// Number of sectors of a half-slice per unit of diamond angle, at least 16.
 ALCOVE_INLINE float sectors_per_diamond_angle(Slice s, float side) {
   return float(kSectorCount) / tangent_diamond_angle(s, side);
 }
 
-// Position of a point among the sectors of its side, in [0,32]; what lies under the tangent plane
-// counts as on it.
+// Position of a point among the 32 sectors of its half-slice, in [0,32]. Points below the tangent
+// plane get the position of the tangent plane, 32.
 ALCOVE_INLINE float sector_position(float per_diamond_angle, vec2 point) {
   return min(diamond_angle(point) * per_diamond_angle, float(kSectorCount));
 }
 
-// The sectors from one position in [0,32] to another that is no less, to the nearest boundaries.
+// A mask of the sectors between two positions in [0,32], each rounded to the nearest sector
+// boundary. `from` must not be larger than `to`.
 ALCOVE_INLINE uint sectors_from_to(float from, float to) {
   int low = int(from + 0.5f);
   int count = int(to + 0.5f) - low;
   return count > 0 ? (0xffffffffu >> uint(32 - count)) << uint(low) : 0u;
 }
 
-// The same of positions in either order.
+// A mask of the sectors between two positions in [0,32], in any order.
 ALCOVE_INLINE uint sectors_between(float a, float b) {
   return sectors_from_to(min(a, b), max(a, b));
 }
 
-// A cheaper form of the same, for a search that adds an interval per sample. It has one sector
-// less, so that a position fits into five bits and an interval between two positions, in either
-// order, is the exclusive or of two masks.
+// The number of sectors that the default estimator uses. With 31 instead of 32 a position, 0 to 31,
+// fits into five bits, and the sectors between two positions, in any order, are the exclusive or of
+// two masks of sectors_beyond(). This costs fewer instructions than sectors_between().
 const uint kEvenSectorCount = 31u;
 
 // Bits of the float 2^23, which has no fraction bits: adding it rounds to an integer.
@@ -97,19 +106,20 @@ ALCOVE_INLINE float visible_share_beyond(uint occluded) {
   return sectors == 0u ? 0.0f : 1.0f - float(bitCount(sectors)) / beyond;
 }
 
-// What is asked of a side.
+// Selects what visible_part() computes.
 struct PartRequest {
-  bool uniform_weight;  // of part_arc()
-  bool bent;
+  bool uniform_weight;  // weights all directions equally, not by the cosine to the normal
+  bool bent;            // also computes the sum of visible directions
 };
 
-// What is visible of a side: as slice_arc() or uniform_arc(), and as bent_arc().
+// The visible part of a half-slice.
 struct VisiblePart {
-  float arc;
-  vec2 bent;  // zero where it was not asked for
+  float arc;  // integral of the weight over the visible directions, as part_arc() has it
+  vec2 bent;  // weighted sum of the visible directions, as bent_light_arc() has it; else zero
 };
 
-// A side from the view direction to a light, cosine-weighted or not.
+// The integral of the weight over the directions of a half-slice between the view direction and the
+// direction whose sine and cosine `light` holds. The weight is the cosine to the normal, or 1.
 ALCOVE_INLINE float part_arc(Slice s, float side, vec2 light, bool uniform_weight) {
   return uniform_weight ? uniform_arc(light) : light_arc(s, side, light);
 }
@@ -121,33 +131,38 @@ ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float
   return sum;
 }
 
-// The exponent of hidden_occlusion_behind() for a mean of `hidden_occlusion`, [0,1].
+// The exponent of hidden_occlusion_behind() if nothing hidden counts as occluded.
 const float kNoHiddenOcclusion = 1e3f;
+
+// The exponent with which hidden_occlusion_behind() has the mean `hidden_occlusion`, [0,1], over
+// all run shares.
 ALCOVE_INLINE float hidden_exponent(float hidden_occlusion) {
   return hidden_occlusion > 0.0f ? max(1.0f / max(hidden_occlusion, 1e-3f) - 1.0f, 0.0f)
                                  : kNoHiddenOcclusion;
 }
 
 // The fraction of the volume hidden behind the occluders of a half-slice that counts as occluded,
-// [0,1]. `front` is the mean width of an occluder run on the image, relative to the distance that
-// was searched beyond the first one, [0,1]. A wall hides everything behind it; a blade of grass, or
-// each slat of a blind, hides little. `exponent` is hidden_exponent() of the mean over all `front`.
-ALCOVE_INLINE float hidden_occlusion_behind(float front, float exponent) {
-  float part = pow(clamp(front, 1e-6f, 1.0f), exponent);
+// [0,1]. `run_share`, [0,1], is the mean width of an occluder run on the image, relative to the
+// distance that was searched from the first run outwards. The volume behind a wall, whose run has a
+// share of 1, counts as solid. A blade of grass, or each slat of a blind, has a small share, and
+// little of the volume behind it counts as occluded. `exponent` is hidden_exponent().
+ALCOVE_INLINE float hidden_occlusion_behind(float run_share, float exponent) {
+  float part = pow(clamp(run_share, 1e-6f, 1.0f), exponent);
   return exponent < kNoHiddenOcclusion ? part : 0.0f;
 }
 
-// Exact over the visible sectors. What lies behind an occluder, up to the tangent plane, is
-// unknown: the part `hidden_occlusion` of it, [0,1], counts as occluded too. An open side is
-// exactly its open arc and a full one exactly 0.
+// Integrates the visible sectors of a half-slice exactly. Visible sectors behind the first occluder
+// count by the factor 1 - `hidden_occlusion`, [0,1], because the depth buffer does not show what is
+// there. `per_diamond_angle` is the number of sectors per unit of diamond angle. Without occluded
+// sectors the result is the open arc, and with all sectors occluded it is 0.
 ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_angle, uint occluded,
                                        float hidden_occlusion, PartRequest request) {
   float keep = 1.0f - hidden_occlusion;
   VisiblePart sum;
   sum.arc = 0.0f;
   sum.bent = vec2(0.0f, 0.0f);
-  // The ends of runs, from the view direction outwards: visible up to the first, then of what is
-  // visible beyond an occluder only the part that is kept.
+  // The weights are those of the antiderivative at the boundaries of runs. The arc up to the first
+  // occluder has the weight 1, visible arcs behind it have the weight `keep`.
   float weight = occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep);
   sum = add_part(sum, weight, s, side, tangent_light(s, side), request);
   uint ends = occluded ^ (occluded << 1u);
