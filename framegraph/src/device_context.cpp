@@ -55,13 +55,13 @@ MemoryRequirements device_requirements(const void* context, const ResourceRecord
 ImageLimits image_limits(const void* context, const ResourceRecord& record, VkFlags usage) {
   const auto& device = *static_cast<const DeviceContext*>(context);
   const VkImageCreateInfo image = image_info(record, usage);
-  VkPhysicalDeviceImageFormatInfo2 info{};
-  info.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_FORMAT_INFO_2;
-  info.format = image.format;
-  info.type = image.imageType;
-  info.tiling = image.tiling;
-  info.usage = image.usage;
-  info.flags = image.flags;
+  const VkPhysicalDeviceImageFormatInfo2 info{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_FORMAT_INFO_2,
+                                              nullptr,
+                                              image.format,
+                                              image.imageType,
+                                              image.tiling,
+                                              image.usage,
+                                              image.flags};
   VkImageFormatProperties2 found{};
   found.sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_PROPERTIES_2;
   const VkResult result = device.vk.vkGetPhysicalDeviceImageFormatProperties2(

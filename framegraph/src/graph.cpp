@@ -319,40 +319,37 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
   }
 }
 
-TextureHistory Graph::create_texture_history(std::string_view name, const TextureDesc& desc,
-                                             std::uint32_t slots) {
-  TextureHistory history;
-  history.current = {add_history(name, texture_record(desc), slots, history.validity), 0, tag_};
+template <typename History>
+History Graph::make_history(std::string_view name, const ResourceRecord& record,
+                            std::uint32_t slots, const State& final_state) {
+  History history;
+  history.current = {add_history(name, record, slots, history.validity, final_state), 0, tag_};
   history.slots = std::clamp(slots, 1u, kMaxHistorySlots);
   return history;
 }
 
+TextureHistory Graph::create_texture_history(std::string_view name, const TextureDesc& desc,
+                                             std::uint32_t slots) {
+  return make_history<TextureHistory>(name, texture_record(desc), slots);
+}
+
 BufferHistory Graph::create_buffer_history(std::string_view name, const BufferDesc& desc,
                                            std::uint32_t slots) {
-  BufferHistory history;
-  history.current = {add_history(name, buffer_record(desc), slots, history.validity), 0, tag_};
-  history.slots = std::clamp(slots, 1u, kMaxHistorySlots);
-  return history;
+  return make_history<BufferHistory>(name, buffer_record(desc), slots);
 }
 
 TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc,
                                                 const State& final_state) {
   ResourceRecord record = texture_record(desc);
   record.flags |= kPersistent;
-  TextureHistory history;
-  history.current = {add_history(name, record, 1, history.validity, final_state), 0, tag_};
-  history.slots = 1;
-  return history;
+  return make_history<TextureHistory>(name, record, 1, final_state);
 }
 
 BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc,
                                               const State& final_state) {
   ResourceRecord record = buffer_record(desc);
-  record.flags = kPersistent;
-  BufferHistory history;
-  history.current = {add_history(name, record, 1, history.validity, final_state), 0, tag_};
-  history.slots = 1;
-  return history;
+  record.flags |= kPersistent;
+  return make_history<BufferHistory>(name, record, 1, final_state);
 }
 
 Texture TextureHistory::previous(std::uint32_t age) const {

@@ -171,17 +171,17 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
 }
 
 VkBufferMemoryBarrier2 Recorder::buffer_barrier(const Transition& t) const {
-  VkBufferMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
-  barrier.srcStageMask = t.src_stages;
-  barrier.srcAccessMask = t.src_access;
-  barrier.dstStageMask = t.dst_stages;
-  barrier.dstAccessMask = t.dst_access;
-  barrier.srcQueueFamilyIndex = family(t, t.src_queue);
-  barrier.dstQueueFamilyIndex = family(t, t.dst_queue);
-  barrier.buffer = (*physical_)[t.resource]->buffer;
-  barrier.size = VK_WHOLE_SIZE;
-  return barrier;
+  return {VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
+          nullptr,
+          t.src_stages,
+          t.src_access,
+          t.dst_stages,
+          t.dst_access,
+          family(t, t.src_queue),
+          family(t, t.dst_queue),
+          (*physical_)[t.resource]->buffer,
+          0,
+          VK_WHOLE_SIZE};
 }
 
 // Returns the queue family of a transition, or VK_QUEUE_FAMILY_IGNORED if the owner stays.

@@ -1,7 +1,6 @@
 // Checks the textures that a pass is given.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>

@@ -49,6 +49,14 @@ const Named* find_named(std::span<const Named> given, std::string_view name, std
   return found == given.end() ? nullptr : &*found;
 }
 
+// Returns the first element of `given` whose name is not in `known`, which is sorted, or null.
+template <typename Named>
+const Named* find_unknown(std::span<const Named> given, std::span<const std::string_view> known) {
+  const auto found = std::ranges::find_if(
+      given, [&](const Named& named) { return !std::ranges::binary_search(known, named.name); });
+  return found == given.end() ? nullptr : &*found;
+}
+
 bool is_image(const ShaderBinding& binding) {
   return binding.type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER &&
          binding.type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -62,6 +70,9 @@ struct Kernels::State {
   VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
   VkSampler sampler = VK_NULL_HANDLE;      // of all sampled images that have one: nearest, clamped
   std::array<ShaderInterface, kShaderCount> interfaces;
+  // Names of the specialisation constants and image bindings of all shaders, sorted.
+  std::vector<std::string_view> constant_names;
+  std::vector<std::string_view> image_names;
   std::array<ShaderObjects, kShaderCount> shaders;
   std::vector<Pipeline> pipelines;
   std::unique_ptr<DescriptorSets> sets;
@@ -74,6 +85,7 @@ struct Kernels::State {
   State& operator=(const State&) = delete;
   ~State();
 
+  void read_interfaces();
   tl::expected<void, Error> check_limits() const;
   tl::expected<void, Error> create_sampler();
   tl::expected<void, Error> create_layout(std::size_t shader);
@@ -100,6 +112,22 @@ Kernels::State::~State() {
   vk.vkDestroySampler(device(), sampler, callbacks());
 }
 
+void Kernels::State::read_interfaces() {
+  for (std::size_t shader = 0; shader < kShaderCount; ++shader) {
+    interfaces[shader] = read_shader_interface(shader_source(static_cast<Shader>(shader)).code);
+    for (const ShaderConstant& constant : interfaces[shader].constants) {
+      constant_names.push_back(constant.name);
+    }
+    for (const ShaderBinding& binding : interfaces[shader].bindings) {
+      if (is_image(binding)) {
+        image_names.push_back(binding.name);
+      }
+    }
+  }
+  std::ranges::sort(constant_names);
+  std::ranges::sort(image_names);
+}
+
 // Checks the device limit on storage images per stage. It is the only descriptor limit that the
 // shaders may exceed: Vulkan guarantees only 4.
 tl::expected<void, Error> Kernels::State::check_limits() const {
@@ -122,10 +150,8 @@ tl::expected<void, Error> Kernels::State::check_limits() const {
 }
 
 tl::expected<void, Error> Kernels::State::create_sampler() {
+  // The filters are those whose value is 0: nearest.
   const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                 .magFilter = VK_FILTER_NEAREST,
-                                 .minFilter = VK_FILTER_NEAREST,
-                                 .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
                                  .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
@@ -283,10 +309,7 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   }
   state->handles = device;
   state->cache = cache;
-  for (std::size_t shader = 0; shader < kShaderCount; ++shader) {
-    state->interfaces[shader] =
-        read_shader_interface(shader_source(static_cast<Shader>(shader)).code);
-  }
+  state->read_interfaces();
   auto done = state->check_limits()
                   .and_then([&] { return state->create_sampler(); })
                   .and_then([&] { return state->create_layouts(); })
@@ -313,6 +336,14 @@ tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const NamedCon
                 "', for which its pass gives no value; name it in the pass's list of constants."});
     }
     values.at(i) = given->value;
+  }
+  if (constants.size() > declared.size()) {
+    if (const NamedConstant* const unknown = find_unknown(constants, {state_->constant_names})) {
+      return tl::unexpected(
+          Error{"The pass of the shader '" + std::string(shader_source(shader).name) +
+                "' gives a value for a specialisation constant '" + std::string(unknown->name) +
+                "', which no shader declares; correct the name or remove it."});
+    }
   }
   const std::span<const std::uint32_t> used(values.data(), declared.size());
   for (const Pipeline& made : state_->pipelines) {
@@ -349,6 +380,17 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
       return;
     }
     bound.at(count++) = given->view;
+  }
+  if (views.size() > count) {
+    if (const NamedView* const unknown = find_unknown(views, {s.image_names})) {
+      context.fail(std::string("view '")
+                       .append(unknown->name)
+                       .append("' of the shader '")
+                       .append(shader_source(kernel.shader).name)
+                       .append("', a name that no shader declares,"),
+                   VK_ERROR_UNKNOWN);
+      return;
+    }
   }
   const ShaderObjects& shader = s.shaders[index];
   const VkDescriptorSet set = s.sets->get(

@@ -2,9 +2,7 @@
 
 #include <bit>
 #include <cmath>
-#include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "alcove/passes/setting_table.h"
 #include "number_text.h"

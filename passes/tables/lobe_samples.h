@@ -15,9 +15,9 @@ namespace alcove::passes {
 template <typename Function>
 void for_each_lobe_sample(const maths::vec3& view, float alpha, int samples, Function&& f) {
   for (int i = 0; i < samples; ++i) {
-    const double turn = 0.5 + i * 0.6180339887498949;
-    const maths::vec3 half = maths::sample_ggx_normal(view, alpha, float(turn - std::floor(turn)),
-                                                      (float(i) + 0.5f) / float(samples));
+    const double fraction = 0.5 + i * 0.6180339887498949;
+    const maths::vec3 half = maths::sample_ggx_normal(
+        view, alpha, float(fraction - std::floor(fraction)), (float(i) + 0.5f) / float(samples));
     const maths::vec3 light = 2.0f * glm::dot(view, half) * half - view;
     if (light.z > 0.0f) {
       f(light, half,

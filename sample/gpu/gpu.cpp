@@ -8,9 +8,6 @@
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
-using framegraph::RecordContext;
-using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
 framegraph::DeviceHandles handles_of(const VulkanDevice& device) {
@@ -189,8 +186,8 @@ Texture add_copy(Graph& graph, const HostBuffer& source, Texture target) {
   pass.record([from, filled](RecordContext& context) {
     const VkBufferImageCopy copy{.imageSubresource = {aspect_of(context.format(filled)), 0, 0, 1},
                                  .imageExtent = context.extent(filled)};
-    context.vk.vkCmdCopyBufferToImage(context.commands, context.buffer(from), context.image(filled),
-                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    vkCmdCopyBufferToImage(context.commands, context.buffer(from), context.image(filled),
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
   });
   return filled;
 }
@@ -220,7 +217,7 @@ Texture add_mips(Graph& graph, Texture texture, std::uint32_t mips) {
                                   .regionCount = 1,
                                   .pRegions = &region,
                                   .filter = VK_FILTER_LINEAR};
-      context.vk.vkCmdBlitImage2(context.commands, &blit);
+      vkCmdBlitImage2(context.commands, &blit);
     });
   }
   return texture;
@@ -236,9 +233,8 @@ void add_read_back(Graph& graph, Texture texture, const HostBuffer& target, std:
     const VkBufferImageCopy copy{
         .imageSubresource = {aspect_of(context.format(texture)), mip, 0, 1},
         .imageExtent = context.extent(texture, mip)};
-    context.vk.vkCmdCopyImageToBuffer(context.commands, context.image(texture),
-                                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled),
-                                      1, &copy);
+    vkCmdCopyImageToBuffer(context.commands, context.image(texture),
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1, &copy);
   });
 }
 

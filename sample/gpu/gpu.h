@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
-#include <vector>
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/graph.h"
@@ -15,6 +14,11 @@
 #include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
+
+// The names of the render graph that the passes of the sample use unqualified.
+using framegraph::Graph;
+using framegraph::RecordContext;
+using framegraph::Texture;
 
 // A host-visible buffer for uploads and read-back. The device must have finished with it before it
 // is destroyed.

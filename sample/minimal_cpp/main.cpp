@@ -168,8 +168,8 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
                            {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)}),
       framegraph::access::transfer_destination, {}, framegraph::Contents::discard);
   draw.record([=](RecordContext& context) {
-    context.vk.vkCmdCopyBufferToImage(context.commands, context.buffer(from), context.image(depth),
-                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &kWholeImage);
+    vkCmdCopyBufferToImage(context.commands, context.buffer(from), context.image(depth),
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &kWholeImage);
   });
 
   passes::View view;  // The eye is the origin, and looks along -Z.
@@ -185,9 +185,9 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
   copy.read(occlusion.visibility, framegraph::access::transfer_source);
   const auto filled = copy.write(target, framegraph::buffer_access::transfer_destination);
   copy.record([visibility = occlusion.visibility, filled](RecordContext& context) {
-    context.vk.vkCmdCopyImageToBuffer(context.commands, context.image(visibility),
-                                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled),
-                                      1, &kWholeImage);
+    vkCmdCopyImageToBuffer(context.commands, context.image(visibility),
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1,
+                           &kWholeImage);
   });
 }
 

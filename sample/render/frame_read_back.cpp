@@ -4,8 +4,6 @@
 
 namespace alcove::sample {
 
-using framegraph::Texture;
-
 namespace {
 
 // Appends the textures with the lit surfaces of a frame.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <ctime>
 #include <optional>
@@ -20,8 +19,6 @@
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
-using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
 // The images that the g-buffer is drawn to. The last two are drawn only if the occlusion passes

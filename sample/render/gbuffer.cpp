@@ -16,9 +16,6 @@
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
-using framegraph::RecordContext;
-using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
 // Distances in bytes between the parameters of two frames, and of two materials, in their buffers:
@@ -225,11 +222,11 @@ void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuff
                              .colorAttachmentCount = static_cast<uint32_t>(colours.size()),
                              .pColorAttachments = colours.data(),
                              .pDepthAttachment = &depth};
-  context.vk.vkCmdBeginRendering(context.commands, &info);
+  vkCmdBeginRendering(context.commands, &info);
   const VkViewport viewport{
       0.0f, 0.0f, static_cast<float>(size.width), static_cast<float>(size.height), 0.0f, 1.0f};
-  context.vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-  context.vk.vkCmdSetScissor(context.commands, 0, 1, &area);
+  vkCmdSetViewport(context.commands, 0, 1, &viewport);
+  vkCmdSetScissor(context.commands, 0, 1, &area);
 }
 
 void GbufferRenderer::State::bind_first_layer(RecordContext& context, Texture depth) const {
@@ -242,8 +239,8 @@ void GbufferRenderer::State::bind_first_layer(RecordContext& context, Texture de
                                    .descriptorType = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
                                    .pImageInfo = &image};
   vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
-  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                     pipelines->layout(), 1, 1, &layer, 0, nullptr);
+  vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines->layout(), 1,
+                          1, &layer, 0, nullptr);
 }
 
 void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuffer,
@@ -251,29 +248,26 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
   begin_rendering(context, gbuffer, drawing.reversed_z);
   using Kind = GbufferPipelines::Kind;
   const Kind kind = drawing.first ? Kind::second_layer : Kind::all;
-  const auto& vk = context.vk;
-  vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                       pipelines->pipeline(kind, drawing.reversed_z));
+  vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                    pipelines->pipeline(kind, drawing.reversed_z));
   const VkPipelineLayout layout = pipelines->layout();
-  vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
-                             &frame_set, 1, &drawing.parameters_at);
+  vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
+                          &frame_set, 1, &drawing.parameters_at);
   if (drawing.first) {
     bind_first_layer(context, drawing.first);
   }
   std::optional<std::uint32_t> bound_material;
   for (const MeshDraw& draw : meshes->draws()) {
     if (bound_material != draw.material) {
-      vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
-                                 &material_sets[draw.material], 0, nullptr);
+      vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
+                              &material_sets[draw.material], 0, nullptr);
       bound_material = draw.material;
     }
     const maths::GbufferDraw pushed{draw.moves ? 1u : 0u, draw.faceted ? 1u : 0u};
-    vk.vkCmdPushConstants(context.commands, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(pushed),
-                          &pushed);
-    vk.vkCmdSetCullMode(context.commands,
-                        double_sided[draw.material] ? drawing.double_culled : drawing.culled);
-    // The first two functions are called directly, because the render graph's table of functions
-    // does not have them.
+    vkCmdPushConstants(context.commands, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(pushed),
+                       &pushed);
+    vkCmdSetCullMode(context.commands,
+                     double_sided[draw.material] ? drawing.double_culled : drawing.culled);
     vkCmdSetFrontFace(context.commands,
                       draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     vkCmdBindVertexBuffers2(context.commands, 0, kVertexStreams, draw.buffers.data(),
@@ -282,7 +276,7 @@ void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuff
                          VK_INDEX_TYPE_UINT32);
     vkCmdDrawIndexed(context.commands, draw.index_count, draw.instance_count, 0, 0, 0);
   }
-  vk.vkCmdEndRendering(context.commands);
+  vkCmdEndRendering(context.commands);
 }
 
 GbufferRenderer::GbufferRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -1,6 +1,5 @@
 #include "render/gbuffer_pipelines.h"
 
-#include <cstddef>
 #include <span>
 
 #include "render/gbuffer.h"

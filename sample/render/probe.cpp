@@ -9,9 +9,6 @@
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
-using framegraph::RecordContext;
-using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
 constexpr passes::EnvironmentSettings kSettings;
@@ -30,9 +27,8 @@ void add_keep(Graph& graph, Texture from, const GpuImage& to, std::uint32_t mips
       const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
       copies.push_back({layers, {}, layers, {}, context.extent(kept, mip)});
     }
-    context.vk.vkCmdCopyImage(context.commands, context.image(from),
-                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.image(kept),
-                              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, mips, copies.data());
+    vkCmdCopyImage(context.commands, context.image(from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   context.image(kept), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, mips, copies.data());
   });
 }
 

@@ -1,6 +1,5 @@
 #include "scene/analytic_scenes.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <glm/gtc/constants.hpp>

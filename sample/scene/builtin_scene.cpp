@@ -1,6 +1,5 @@
 #include "scene/builtin_scene.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/gtc/constants.hpp>
@@ -215,15 +214,15 @@ void add_plant(SceneBuilder& b, const Palette& p, glm::vec3 at, int leaves) {
   b.lathe(pot, 24);
   b.use(p.leaf);
   for (int i = 0; i < leaves; ++i) {
-    const float turn = 137.508f * static_cast<float>(i);
+    const float angle = 137.508f * static_cast<float>(i);
     const float rise = 0.35f + 0.6f * static_cast<float>(i) / static_cast<float>(leaves);
-    const float reach = 0.75f - 0.45f * static_cast<float>(i) / static_cast<float>(leaves);
-    b.world_from_shape = turned(moved(at + glm::vec3(0, 0.34f, 0)), turn);
+    const float length = 0.75f - 0.45f * static_cast<float>(i) / static_cast<float>(leaves);
+    b.world_from_shape = turned(moved(at + glm::vec3(0, 0.34f, 0)), angle);
     glm::vec3 before(0.02f, 0, 0);
     constexpr int kParts = 5;
     for (int k = 1; k <= kParts; ++k) {
       const float t = static_cast<float>(k) / kParts, u = static_cast<float>(k - 1) / kParts;
-      const glm::vec3 now(0.02f + reach * t * t, rise * (t * (1.9f - 0.9f * t)), 0);
+      const glm::vec3 now(0.02f + length * t * t, rise * (t * (1.9f - 0.9f * t)), 0);
       const float w0 = 0.075f * std::sin(glm::pi<float>() * (0.12f + 0.88f * u));
       const float w1 =
           k == kParts ? 0.002f : 0.075f * std::sin(glm::pi<float>() * (0.12f + 0.88f * t));

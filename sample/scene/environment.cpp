@@ -18,9 +18,9 @@ using Loaded = tl::expected<EnvironmentImage, std::string>;
 constexpr uint32_t kLargestSide = 2048;  // pixels, of an environment in memory
 
 glm::vec3 direction_of(double u, double v) {
-  const double turn = u * 2.0 * glm::pi<double>(), fall = v * glm::pi<double>();
-  return glm::vec3(std::sin(fall) * std::sin(turn), std::cos(fall),
-                   -std::sin(fall) * std::cos(turn));
+  const double angle = u * 2.0 * glm::pi<double>(), fall = v * glm::pi<double>();
+  return glm::vec3(std::sin(fall) * std::sin(angle), std::cos(fall),
+                   -std::sin(fall) * std::cos(angle));
 }
 
 glm::vec3 sky_radiance(const glm::vec3& d) {

@@ -3,7 +3,6 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <new>
 #include <utility>
 #include <vector>

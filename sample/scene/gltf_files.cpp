@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include "support/regular_file.h"
 

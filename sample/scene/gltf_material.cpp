@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "scene/gltf_images.h"
 #include "scene/gltf_sampler.h"

@@ -2,7 +2,6 @@
 
 #include <tiny_gltf.h>
 
-#include <cstdint>
 #include <string>
 #include <tl/expected.hpp>
 

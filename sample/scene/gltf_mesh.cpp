@@ -303,6 +303,32 @@ bool is_invisible(const Material& material) {
   return material.alpha_mode == AlphaMode::kBlend && material.base_color.a == 0.0f;
 }
 
+// Gives the mesh its instances and takes its size from the budget.
+tl::expected<void, std::string> charge_mesh(size_t vertices, const PrimitivePlacement& placement,
+                                            MeshBudget& budget, Mesh& mesh) {
+  if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
+    return Failure("takes the scene past the number of triangles that is read here");
+  }
+  if (placement.instances != nullptr) {
+    if (placement.instances->size() > budget.instances) {
+      return Failure("takes the scene past the number of instances that is read here");
+    }
+    budget.instances -= placement.instances->size();
+    mesh.instances = *placement.instances;
+  }
+  const uint64_t drawn = mesh.indices.size() / 3 * instance_count(mesh);
+  if (drawn > budget.drawn_triangles) {
+    return Failure(
+        "takes the scene past the number of triangles that is drawn here, instances "
+        "counted each");
+  }
+  // Triangles without an area count too, because they took time to read.
+  charge(budget.vertices, vertices);
+  charge(budget.indices, mesh.indices.size());
+  charge(budget.drawn_triangles, drawn);
+  return {};
+}
+
 }  // namespace
 
 tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
@@ -350,26 +376,9 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   }
   if (auto added = add_colors(model, primitive, mesh); !added) return refuse(added.error());
   mesh.indices = as_list(std::move(*order), mode);
-  if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
-    return refuse("takes the scene past the number of triangles that is read here");
+  if (auto charged = charge_mesh(vertices, placement, budget, mesh); !charged) {
+    return refuse(charged.error());
   }
-  if (placement.instances != nullptr) {
-    if (placement.instances->size() > budget.instances) {
-      return refuse("takes the scene past the number of instances that is read here");
-    }
-    budget.instances -= placement.instances->size();
-    mesh.instances = *placement.instances;
-  }
-  const uint64_t drawn = mesh.indices.size() / 3 * instance_count(mesh);
-  if (drawn > budget.drawn_triangles) {
-    return refuse(
-        "takes the scene past the number of triangles that is drawn here, instances "
-        "counted each");
-  }
-  // Triangles without an area count too, because they took time to read.
-  charge(budget.vertices, vertices);
-  charge(budget.indices, mesh.indices.size());
-  charge(budget.drawn_triangles, drawn);
   turn_mirrored(*placed, mesh.indices);
   drop_flat_faces(mesh);
   if (mesh.indices.empty()) return {};

@@ -1,10 +1,8 @@
 #include "scene/gltf_properties.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <variant>

@@ -5,7 +5,6 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
-#include <algorithm>
 #include <csetjmp>
 
 #include "support/block_mean.h"

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <functional>
 #include <span>
-#include <string>
 #include <tl/expected.hpp>
 
 namespace alcove::sample {

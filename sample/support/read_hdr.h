@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "support/float_rows.h"
 
 namespace alcove::sample {

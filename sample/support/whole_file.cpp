@@ -14,7 +14,6 @@
 #include <cstring>
 #include <random>
 #include <system_error>
-#include <utility>
 
 namespace alcove::sample {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <utility>
 
 #include "alcove/framegraph/access.h"
 #include "render/shader_module.h"
@@ -12,10 +11,6 @@
 
 namespace alcove::sample {
 namespace {
-
-using framegraph::Graph;
-using framegraph::RecordContext;
-using framegraph::Texture;
 
 // The textures in the order of the bindings of picture.frag.
 using Textures = std::array<Texture, 4>;
@@ -198,7 +193,6 @@ void PicturePass::record(RecordContext& context, Texture target, const Shown& sh
                                    .pImageInfo = images.data()};
   vkUpdateDescriptorSets(device_.device(), 1, &write, 0, nullptr);
 
-  const auto& vk = context.vk;
   const VkExtent3D size = context.extent(target);
   const VkRect2D area{{0, 0}, {size.width, size.height}};
   const VkRenderingAttachmentInfo attachment{
@@ -215,16 +209,16 @@ void PicturePass::record(RecordContext& context, Texture target, const Shown& sh
   const maths::PictureParameters parameters = parameters_of(shown);
   const VkViewport viewport{
       0.0f, 0.0f, static_cast<float>(size.width), static_cast<float>(size.height), 0.0f, 1.0f};
-  vk.vkCmdBeginRendering(context.commands, &info);
-  vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-  vk.vkCmdSetScissor(context.commands, 0, 1, &area);
-  vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
-  vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set,
-                             0, nullptr);
-  vk.vkCmdPushConstants(context.commands, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                        sizeof(parameters), &parameters);
-  vk.vkCmdDraw(context.commands, 3, 1, 0, 0);
-  vk.vkCmdEndRendering(context.commands);
+  vkCmdBeginRendering(context.commands, &info);
+  vkCmdSetViewport(context.commands, 0, 1, &viewport);
+  vkCmdSetScissor(context.commands, 0, 1, &area);
+  vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
+  vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set, 0,
+                          nullptr);
+  vkCmdPushConstants(context.commands, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(parameters),
+                     &parameters);
+  vkCmdDraw(context.commands, 3, 1, 0, 0);
+  vkCmdEndRendering(context.commands);
 }
 
 }  // namespace alcove::sample

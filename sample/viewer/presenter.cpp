@@ -5,7 +5,6 @@
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
 using Failure = tl::unexpected<std::string>;
 
 }  // namespace

@@ -8,8 +8,6 @@
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
-using framegraph::Texture;
 using passes::OcclusionSettings;
 using Failure = tl::unexpected<std::string>;
 

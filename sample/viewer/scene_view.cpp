@@ -13,8 +13,6 @@
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
-using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
 ViewState first_state(const Session& session, std::optional<float> roughness) {

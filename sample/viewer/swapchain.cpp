@@ -1,8 +1,6 @@
 #include "viewer/swapchain.h"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "alcove/framegraph/access.h"
 

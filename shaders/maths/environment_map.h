@@ -17,8 +17,8 @@ ALCOVE_MATHS_BEGIN
 
 ALCOVE_INLINE vec2 equirectangular_uv(vec3 direction) {
   float across = sqrt(direction.x * direction.x + direction.z * direction.z);
-  float turn = across > 0.0f ? atan(direction.x, -direction.z) / (2.0f * kPi) : 0.0f;
-  return vec2(turn < 0.0f ? turn + 1.0f : turn, atan(across, direction.y) / kPi);
+  float longitude = across > 0.0f ? atan(direction.x, -direction.z) / (2.0f * kPi) : 0.0f;
+  return vec2(longitude < 0.0f ? longitude + 1.0f : longitude, atan(across, direction.y) / kPi);
 }
 
 // Converts a unit direction to a point in [0,1]^2 of the octahedral map, and back.

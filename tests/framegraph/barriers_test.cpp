@@ -229,10 +229,8 @@ TEST(Barriers, NeighbouringMipsWithTheSameTransitionShareABarrier) {
 
 TEST(Barriers, DeferredFrameNeedsAllOfItsBarrierCommands) {
   Graph graph;
-  declare_deferred_frame(graph, 1920, 1080);
   Limits limits;
-  limits.memory.query = paged_requirements;
-  const auto plan = compile(graph, limits);
+  const auto plan = compile_deferred_frame(graph, limits);
   ASSERT_TRUE(plan) << to_string(plan.error());
   expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
 }

@@ -97,14 +97,14 @@ void ChecksumKernels::run(RecordContext& context, const Kernel& kernel, const Re
     writes[i].pImageInfo = &resources[i].image;
     writes[i].pBufferInfo = &resources[i].buffer;
   }
-  context.vk.vkUpdateDescriptorSets(device_, kBindings, writes, 0, nullptr);
+  vkUpdateDescriptorSets(device_, kBindings, writes, 0, nullptr);
   const std::uint32_t parameters[2] = {seed, keep ? 1u : 0u};
-  context.vk.vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
-  context.vk.vkCmdPushConstants(context.commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8,
-                                parameters);
-  context.vk.vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE,
-                                     kernel.layout, 0, 1, &set, 0, nullptr);
-  context.vk.vkCmdDispatch(context.commands, groups.width, groups.height, 1);
+  vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+  vkCmdPushConstants(context.commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8,
+                     parameters);
+  vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0, 1,
+                          &set, 0, nullptr);
+  vkCmdDispatch(context.commands, groups.width, groups.height, 1);
 }
 
 void ChecksumKernels::mix_texture(RecordContext& context, VkImageView sampled, VkImageView storage,

@@ -112,11 +112,7 @@ class FrameMaker {
     PassBuilder pass = graph_.add_pass("clear");
     made.handle = pass.write(made.handle, access::clear, {}, Contents::discard);
     pass.record([handle = made.handle, value](RecordContext& c) {
-      VkClearColorValue color{};
-      color.uint32[0] = value;
-      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-      c.vk.vkCmdClearColorImage(c.commands, c.image(handle), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                &color, 1, &range);
+      clear_image(c, c.image(handle), value);
     });
     all_.push_back(std::move(made));
   }
@@ -128,7 +124,7 @@ class FrameMaker {
     PassBuilder pass = graph_.add_pass("fill");
     made.buffer = pass.write(made.buffer, buffer_access::fill, Contents::discard);
     pass.record([handle = made.buffer, value](RecordContext& c) {
-      c.vk.vkCmdFillBuffer(c.commands, c.buffer(handle), 0, VK_WHOLE_SIZE, value);
+      vkCmdFillBuffer(c.commands, c.buffer(handle), 0, VK_WHOLE_SIZE, value);
     });
     all_.push_back(std::move(made));
   }
@@ -190,7 +186,7 @@ class FrameMaker {
         info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
         info.memoryBarrierCount = 1;
         info.pMemoryBarriers = &barrier;
-        c.vk.vkCmdPipelineBarrier2(c.commands, &info);
+        vkCmdPipelineBarrier2(c.commands, &info);
       }
       kernels_.mix_texture(c, c.view(from), c.view(and_from), c.view(old), c.extent(old), ~seed,
                            true);
@@ -270,15 +266,10 @@ class FrameMaker {
                  buffer = modelled.buffer](RecordContext& c) {
       if (!texture) {
         const VkBufferCopy copy{0, offset, c.size(buffer)};
-        c.vk.vkCmdCopyBuffer(c.commands, c.buffer(buffer), c.buffer(out), 1, &copy);
+        vkCmdCopyBuffer(c.commands, c.buffer(buffer), c.buffer(out), 1, &copy);
         return;
       }
-      VkBufferImageCopy copy{};
-      copy.bufferOffset = offset;
-      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-      copy.imageExtent = c.extent(image);
-      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(image), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                  c.buffer(out), 1, &copy);
+      copy_image(c, c.image(image), c.buffer(out), offset, c.extent(image));
     });
     return out;
   }

@@ -130,4 +130,10 @@ void declare_deferred_frame(Graph& graph, std::uint32_t width, std::uint32_t hei
   DeferredFrame(graph, width, height).declare();
 }
 
+tl::expected<Plan, Errors> compile_deferred_frame(Graph& graph, Limits& limits) {
+  declare_deferred_frame(graph, 1920, 1080);
+  limits.memory.query = paged_requirements;
+  return compile(graph, limits);
+}
+
 }  // namespace alcove::framegraph

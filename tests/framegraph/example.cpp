@@ -69,9 +69,8 @@ int main() {
     copy.record([=](RecordContext& context) {
       const VkImageSubresourceLayers color{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
       const VkImageCopy all{color, {}, color, {}, context.extent(scene)};
-      context.vk.vkCmdCopyImage(context.commands, context.image(scene),
-                                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.image(image),
-                                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &all);
+      vkCmdCopyImage(context.commands, context.image(scene), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                     context.image(image), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &all);
     });
     const QueueSemaphore wait{*acquired[slot]}, signal{*drawn[index]};
     if (!executor.submit(graph, {slot, {&wait, 1}, {&signal, 1}})) return 1;

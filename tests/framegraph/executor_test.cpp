@@ -10,23 +10,6 @@
 namespace alcove::framegraph {
 namespace {
 
-void clear_image(RecordContext& context, VkImage image, std::uint32_t value, std::uint32_t mips) {
-  VkClearColorValue color{};
-  color.uint32[0] = value;
-  const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, mips, 0, 1};
-  context.vk.vkCmdClearColorImage(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                  &color, 1, &range);
-}
-
-void copy_texel(RecordContext& context, VkImage image, VkBuffer buffer, VkDeviceSize offset) {
-  VkBufferImageCopy copy{};
-  copy.bufferOffset = offset;
-  copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  copy.imageExtent = {1, 1, 1};
-  context.vk.vkCmdCopyImageToBuffer(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                    buffer, 1, &copy);
-}
-
 class ExecutorTest : public testing::Test {
  protected:
   void SetUp() override { ASSERT_EQ(gpu_.problem(), ""); }
@@ -50,12 +33,12 @@ void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
         graph.create_texture("texture", {VK_FORMAT_R32_UINT, Extent::absolute(16 + i, 16)});
     PassBuilder clear = graph.add_pass("clear");
     texture = clear.write(texture, access::clear);
-    clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 100 + i, 1); });
+    clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 100 + i); });
     PassBuilder copy = graph.add_pass("copy");
     copy.read(texture, access::transfer_source);
     out = copy.write(out, buffer_access::transfer_destination);
     copy.record([=](RecordContext& c) {
-      copy_texel(c, c.image(texture), c.buffer(out), i * sizeof(std::uint32_t));
+      copy_image(c, c.image(texture), c.buffer(out), i * sizeof(std::uint32_t));
     });
   }
 }
@@ -69,12 +52,12 @@ TEST_F(ExecutorTest, PlansOfAlternatingGraphsStayInTheCache) {
     Executor executor = make(options);
     Graph graph;
     const HostBuffer host = gpu_.make_host_buffer(graphs * sizeof(std::uint32_t));
-    for (int turn = 0; turn < 2; ++turn) {
+    for (int round = 0; round < 2; ++round) {
       for (std::uint32_t length = 1; length <= graphs; ++length) {
         declare_chain(graph, host, length);
         const auto report = gpu_.run(executor, graph);
         ASSERT_TRUE(report) << to_string(report.error());
-        EXPECT_EQ(report->compiled, turn == 0 || graphs == 3);
+        EXPECT_EQ(report->compiled, round == 0 || graphs == 3);
       }
     }
   }
@@ -108,7 +91,7 @@ TEST_F(ExecutorTest, UndeclaredUseIsReportedIfUsesAreChecked) {
   out = pass.write(out, buffer_access::fill);
   pass.record([=](RecordContext& c) {
     EXPECT_EQ(c.image(secret), VkImage{VK_NULL_HANDLE});
-    c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0);
+    vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0);
   });
   const auto report = gpu_.run(executor, graph);
   ASSERT_FALSE(report);
@@ -266,7 +249,7 @@ TEST_F(ExecutorTest, ExecutorRunsOnVulkan12WithSynchronization2) {
   Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(16, 16)});
   PassBuilder clear = graph.add_pass("clear");
   texture = clear.write(texture, access::clear);
-  clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 3, 1); });
+  clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 3); });
   Texture other = graph.create_texture("u", {VK_FORMAT_R32_UINT, Extent::absolute(16, 16)});
   PassBuilder copy = graph.add_pass("copy");
   copy.read(texture, access::transfer_source);
@@ -345,7 +328,7 @@ TEST_F(ExecutorTest, ReplacedResourcesCountAsAllocatedUntilTheyAreFreed) {
                             graph.create_texture("transient", desc)}) {
       PassBuilder pass = graph.add_pass("clear");
       texture = pass.write(texture, access::clear);
-      pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), side, 1); });
+      pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), side); });
       graph.output(texture);
     }
     const auto report = gpu_.run(executor, graph);
@@ -387,7 +370,7 @@ class FailingDeviceTest : public ExecutorTest {
     const Texture texture = pass.write(history.current, access::clear);
     pass.record([=](RecordContext& c) {
       (void)c.view(texture);
-      clear_image(c, c.image(texture), 1, 1);
+      clear_image(c, c.image(texture), 1);
     });
     graph.output(texture);
   }

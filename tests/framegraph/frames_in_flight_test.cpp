@@ -69,12 +69,7 @@ class FramesInFlight : public testing::Test {
 void add_clear(Graph& graph, Texture& texture, const char* name = "clear") {
   PassBuilder pass = graph.add_pass(name);
   texture = pass.write(texture, access::clear, {}, Contents::discard);
-  pass.record([texture](RecordContext& c) {
-    const VkClearColorValue color{};
-    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    c.vk.vkCmdClearColorImage(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                              &color, 1, &range);
-  });
+  pass.record([texture](RecordContext& c) { clear_image(c, c.image(texture), 0); });
 }
 
 // Returns an import of the buffer whose last use was a copy by the previous frame.
@@ -89,13 +84,7 @@ void add_read(Graph& graph, Texture texture, Buffer& out) {
   PassBuilder pass = graph.add_pass("copy");
   pass.read(texture, access::transfer_source);
   out = pass.write(out, buffer_access::transfer_destination);
-  pass.record([=](RecordContext& c) {
-    VkBufferImageCopy copy{};
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    copy.imageExtent = {1, 1, 1};
-    c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                c.buffer(out), 1, &copy);
-  });
+  pass.record([=](RecordContext& c) { copy_image(c, c.image(texture), c.buffer(out)); });
 }
 
 void declare(Graph& graph, std::uint32_t size) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -25,6 +26,26 @@ struct HostBuffer {
   VkDeviceSize size = 0;
   void* mapped = nullptr;
 };
+
+// Records a clear of an image with one 32-bit channel.
+inline void clear_image(RecordContext& context, VkImage image, std::uint32_t value,
+                        const VkImageSubresourceRange& range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0,
+                                                                1}) {
+  VkClearColorValue color{};
+  color.uint32[0] = value;
+  vkCmdClearColorImage(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &color, 1,
+                       &range);
+}
+
+// Records a copy of the first texels of an image to a buffer, from `offset` on.
+inline void copy_image(RecordContext& context, VkImage image, VkBuffer buffer,
+                       VkDeviceSize offset = 0, VkExtent3D extent = {1, 1, 1},
+                       const VkImageSubresourceLayers& layers = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0,
+                                                                 1}) {
+  const VkBufferImageCopy copy{offset, 0, 0, layers, {}, extent};
+  vkCmdCopyImageToBuffer(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
+                         &copy);
+}
 
 class Gpu {
  public:

@@ -54,7 +54,7 @@ class GraphHistory : public testing::Test {
     PassBuilder mark = graph_->add_pass("mark");
     out = mark.write(out, buffer_access::fill, Contents::discard);
     mark.record([out](RecordContext& c) {
-      c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0xffff);
+      vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0xffff);
     });
     Texture newest = frame.in_place ? history.previous() : history.current;
     if (frame.writes) newest = write(newest, frame.value);
@@ -74,13 +74,7 @@ class GraphHistory : public testing::Test {
   Texture write(Texture texture, std::uint32_t value) {
     PassBuilder pass = graph_->add_pass("write");
     texture = pass.write(texture, access::clear);
-    pass.record([texture, value](RecordContext& c) {
-      VkClearColorValue color{};
-      color.uint32[0] = value;
-      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-      c.vk.vkCmdClearColorImage(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                &color, 1, &range);
-    });
+    pass.record([texture, value](RecordContext& c) { clear_image(c, c.image(texture), value); });
     return texture;
   }
 
@@ -90,12 +84,7 @@ class GraphHistory : public testing::Test {
     out = pass.write(out, buffer_access::transfer_destination);
     pass.record([=](RecordContext& c) {
       if (c.validity(texture) != HistoryValidity::valid) return;
-      VkBufferImageCopy copy{};
-      copy.bufferOffset = VkDeviceSize{4} * age;
-      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-      copy.imageExtent = {1, 1, 1};
-      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(texture),
-                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, c.buffer(out), 1, &copy);
+      copy_image(c, c.image(texture), c.buffer(out), VkDeviceSize{4} * age);
     });
     return out;
   }
@@ -119,12 +108,7 @@ class GraphHistory : public testing::Test {
     copy_pass.read(mixed, access::transfer_source);
     out = copy_pass.write(out, buffer_access::transfer_destination);
     copy_pass.record([=](RecordContext& c) {
-      VkBufferImageCopy copy{};
-      copy.bufferOffset = VkDeviceSize{4} * age;
-      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-      copy.imageExtent = {1, 1, 1};
-      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(mixed), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                  c.buffer(out), 1, &copy);
+      copy_image(c, c.image(mixed), c.buffer(out), VkDeviceSize{4} * age);
     });
     return out;
   }
@@ -325,13 +309,7 @@ TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer
   std::uint32_t value = 0;
   PassBuilder pass = graph_->add_pass("write");
   const Texture current = pass.write(history.current, access::clear);
-  pass.record([&value, current](RecordContext& c) {
-    VkClearColorValue color{};
-    color.uint32[0] = ++value;
-    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    c.vk.vkCmdClearColorImage(c.commands, c.image(current), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                              &color, 1, &range);
-  });
+  pass.record([&value, current](RecordContext& c) { clear_image(c, c.image(current), ++value); });
   Buffer out = graph_->import_buffer("host", Gpu::imported(host_));
   for (std::uint32_t age = 1; age < kSlots; ++age)
     out = read_by_copy(history.previous(age), out, age);

@@ -42,10 +42,8 @@ TEST(Place, EstimatedSizeOfATextureMatchesItsFormat) {
 
 TEST(Place, PeakMemoryOfADeferredFrameEqualsItsLowerBound) {
   Graph graph;
-  declare_deferred_frame(graph, 1920, 1080);
   Limits limits;
-  limits.memory.query = paged_requirements;
-  const auto plan = compile(graph, limits);
+  const auto plan = compile_deferred_frame(graph, limits);
   ASSERT_TRUE(plan) << to_string(plan.error());
   EXPECT_EQ(std::count_if(plan->placements.begin(), plan->placements.end(),
                           [](const Placement& p) { return p.heap != kNone; }),

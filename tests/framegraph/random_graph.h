@@ -2,11 +2,8 @@
 // have.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "alcove/framegraph/graph.h"
 

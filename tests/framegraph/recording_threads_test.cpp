@@ -40,7 +40,7 @@ class RecordingThreads : public testing::Test {
       out = pass.write(out, buffer_access::fill);
       pass.record([=, this](RecordContext& c) {
         if (during_) during_();
-        c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), i * sizeof value, sizeof value, value);
+        vkCmdFillBuffer(c.commands, c.buffer(out), i * sizeof value, sizeof value, value);
       });
     }
   }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <functional>
 
 #include "alcove/framegraph/verify.h"
 #include "failing_device.h"
@@ -65,12 +64,8 @@ class Scenario : public testing::Test {
     out_ = pass.write(out_, buffer_access::transfer_destination);
     pass.record([=, out = out_](RecordContext& c) {
       for (std::uint32_t layer = 0; layer < layers; ++layer) {
-        VkBufferImageCopy copy{};
-        copy.bufferOffset = VkDeviceSize{4} * (word + layer);
-        copy.imageSubresource = {aspect, 0, layer, 1};
-        copy.imageExtent = {1, 1, 1};
-        c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                    c.buffer(out), 1, &copy);
+        copy_image(c, c.image(from), c.buffer(out), VkDeviceSize{4} * (word + layer), {1, 1, 1},
+                   {aspect, 0, layer, 1});
       }
     });
   }
@@ -208,11 +203,8 @@ TEST_F(Scenario, PersistentTextureKeepsItsContents) {
       PassBuilder pass = graph_.add_pass("write");
       current = pass.write(current, access::clear, frame == 0 ? Range{} : Range::layer(1));
       pass.record([=](RecordContext& c) {
-        VkClearColorValue value{};
-        value.uint32[0] = 100 + frame;
-        const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, first, 2 - first};
-        c.vk.vkCmdClearColorImage(c.commands, c.image(current),
-                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
+        clear_image(c, c.image(current), 100 + frame,
+                    {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, first, 2 - first});
       });
     }
     // A pass that writes a persistent texture runs even if nothing reads it in that frame.
@@ -234,7 +226,7 @@ TEST_F(Scenario, PersistentBufferKeepsItsContents) {
       PassBuilder pass = graph_.add_pass("fill");
       const Buffer filled = pass.write(counter.current, buffer_access::fill);
       pass.record([=](RecordContext& c) {
-        c.vk.vkCmdFillBuffer(c.commands, c.buffer(filled), 0, VK_WHOLE_SIZE, 77);
+        vkCmdFillBuffer(c.commands, c.buffer(filled), 0, VK_WHOLE_SIZE, 77);
       });
     } else {
       out_ = graph_.import_buffer("host", Gpu::imported(host_));
@@ -243,7 +235,7 @@ TEST_F(Scenario, PersistentBufferKeepsItsContents) {
       out_ = pass.write(out_, buffer_access::transfer_destination);
       pass.record([=, out = out_](RecordContext& c) {
         const VkBufferCopy all{0, 0, 4};
-        c.vk.vkCmdCopyBuffer(c.commands, c.buffer(counter.current), c.buffer(out), 1, &all);
+        vkCmdCopyBuffer(c.commands, c.buffer(counter.current), c.buffer(out), 1, &all);
       });
     }
     run({frame});
@@ -259,13 +251,7 @@ TEST_F(Scenario, SecondGraphImportsAPersistentTextureOfTheFirst) {
   const auto add_clear = [](Graph& graph, Texture& texture, std::uint32_t value) {
     PassBuilder pass = graph.add_pass("clear");
     texture = pass.write(texture, access::clear, {}, Contents::discard);
-    pass.record([=](RecordContext& c) {
-      VkClearColorValue color{};
-      color.uint32[0] = value;
-      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-      c.vk.vkCmdClearColorImage(c.commands, c.image(texture), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                &color, 1, &range);
-    });
+    pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), value); });
   };
   Graph owner;
   for (std::uint32_t frame = 0; frame < 3; ++frame) {
@@ -344,13 +330,7 @@ TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
   const auto clear = [this](const char* name, Texture to, QueueClass queue, std::uint32_t value) {
     PassBuilder pass = graph_.add_pass(name, queue);
     to = pass.write(to, access::clear);
-    pass.record([=](RecordContext& c) {
-      VkClearColorValue color{};
-      color.uint32[0] = value;
-      const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-      c.vk.vkCmdClearColorImage(c.commands, c.image(to), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                &color, 1, &range);
-    });
+    pass.record([=](RecordContext& c) { clear_image(c, c.image(to), value); });
     return to;
   };
   scene = clear("scene", scene, QueueClass::graphics, 7);
@@ -392,7 +372,7 @@ TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
     particles.current = simulate.write(particles.current, buffer_access::fill, Contents::discard);
     simulate.side_effect();
     simulate.record([=, out = particles.current](RecordContext& c) {
-      c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, frame);
+      vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, frame);
     });
     Texture scene = texture("scene");
     PassBuilder draw = graph_.add_pass("draw");
@@ -436,13 +416,7 @@ TEST_F(Scenario, ImportIsAcquiredFromAndReleasedToAnotherQueueFamily) {
   Texture shared = graph_.import_texture("shared", import);
   PassBuilder pass = graph_.add_pass("clear");
   shared = pass.write(shared, access::clear);
-  pass.record([=](RecordContext& c) {
-    VkClearColorValue color{};
-    color.uint32[0] = 5;
-    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    c.vk.vkCmdClearColorImage(c.commands, c.image(shared), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                              &color, 1, &range);
-  });
+  pass.record([=](RecordContext& c) { clear_image(c, c.image(shared), 5); });
   copy_out(shared);
   const int transfers = failing::outside_transfers();
   run();

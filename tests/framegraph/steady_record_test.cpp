@@ -8,13 +8,6 @@
 namespace alcove::framegraph {
 namespace {
 
-void clear(RecordContext& context, VkImage image) {
-  const VkClearColorValue color{};
-  const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  context.vk.vkCmdClearColorImage(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                  &color, 1, &range);
-}
-
 // Declares a frame with transients, a history, an import, views, and passes on other queues.
 void declare(Graph& graph, const HostBuffer& host) {
   graph.reset();
@@ -23,24 +16,20 @@ void declare(Graph& graph, const HostBuffer& host) {
   Buffer out = graph.import_buffer("out", Gpu::imported(host));
   PassBuilder remember = graph.add_pass("remember");
   const Texture current = remember.write(history.current, access::clear);
-  remember.record([=](RecordContext& c) { clear(c, c.image(current)); });
+  remember.record([=](RecordContext& c) { clear_image(c, c.image(current), 0); });
   for (int i = 0; i < 10; ++i) {
     Texture texture = graph.create_texture("texture", desc);
     PassBuilder make = graph.add_pass("a pass with a name of some length");
     make.read(i % 2 ? history.previous() : current, access::sampled_compute);
     texture = make.write(texture, access::clear);
     make.record([=](RecordContext& c) {
-      if (c.view(texture) != VK_NULL_HANDLE) clear(c, c.image(texture));
+      if (c.view(texture) != VK_NULL_HANDLE) clear_image(c, c.image(texture), 0);
     });
     PassBuilder copy = graph.add_pass("copy", QueueClass::transfer);
     copy.read(texture, access::transfer_source);
     out = copy.write(out, buffer_access::transfer_destination);
     copy.record([=](RecordContext& c) {
-      VkBufferImageCopy region{};
-      region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-      region.imageExtent = c.extent(texture);
-      c.vk.vkCmdCopyImageToBuffer(c.commands, c.image(texture),
-                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, c.buffer(out), 1, &region);
+      copy_image(c, c.image(texture), c.buffer(out), 0, c.extent(texture));
     });
   }
 }

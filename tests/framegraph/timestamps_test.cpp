@@ -77,7 +77,7 @@ class TimestampsTest : public testing::Test {
     PassBuilder pass = graph_.add_pass("fill");
     out = pass.write(out, buffer_access::fill);
     pass.record([out](RecordContext& c) {
-      c.vk.vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 1);
+      vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 1);
     });
     return graph_;
   }

@@ -1,7 +1,6 @@
 #include "mutate_json.h"
 
 #include <iterator>
-#include <string>
 
 namespace alcove::sample {
 namespace {

@@ -9,9 +9,9 @@
 namespace alcove::maths_test {
 
 inline glm::vec3 equirectangular_direction(glm::vec2 uv) {
-  const float turn = uv.x * 2.0f * maths::kPi;
+  const float angle = uv.x * 2.0f * maths::kPi;
   const float across = std::sin(uv.y * maths::kPi);
-  return {across * std::sin(turn), std::cos(uv.y * maths::kPi), -across * std::cos(turn)};
+  return {across * std::sin(angle), std::cos(uv.y * maths::kPi), -across * std::cos(angle)};
 }
 
 }  // namespace alcove::maths_test

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "maths/raw_occlusion.h"
 #include "random_input.h"
@@ -136,11 +135,11 @@ TEST(Gtao, OpenSliceEqualsVisibilityUpToTheTangentPlane) {
 // Returns the mean visibility over `slices` slices around `view`, computed as in the pass.
 // `horizon` returns the horizon in each direction.
 template <typename Horizon>
-float visibility_over_slices(vec3 normal, vec3 view, int slices, double turn, Horizon horizon) {
+float visibility_over_slices(vec3 normal, vec3 view, int slices, double offset, Horizon horizon) {
   const maths::ViewBasis basis = maths::make_view_basis(view);
   float sum = 0.0f, weight = 0.0f;
   for (int k = 0; k < slices; ++k) {
-    const vec3 direction = maths::slice_direction(basis, float(kPi * (k + turn) / slices));
+    const vec3 direction = maths::slice_direction(basis, float(kPi * (k + offset) / slices));
     const Slice s = maths::make_slice(normal, direction, view);
     sum += maths::slice_visibility(s, horizon(direction), horizon(-direction));
     weight += maths::open_slice(s);

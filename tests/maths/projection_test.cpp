@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "maths/make_projection.h"
 #include "projection_truth.h"

@@ -109,9 +109,9 @@ double lobe_light(vec3 normal, vec3 view, float alpha) {
   double sum = 0.0, weights = 0.0;
   constexpr int kSamples = 1024;
   for (int i = 0; i < kSamples; ++i) {
-    const double turn = std::fmod(0.5 + i * 0.6180339887498949, 1.0);
+    const double fraction = std::fmod(0.5 + i * 0.6180339887498949, 1.0);
     const vec3 h =
-        maths::sample_ggx_normal(v, alpha, float(turn), (float(i) + 0.5f) / float(kSamples));
+        maths::sample_ggx_normal(v, alpha, float(fraction), (float(i) + 0.5f) / float(kSamples));
     const vec3 light = reflect(-v, h);
     if (light.z <= 0.0f) continue;
     const double weight =

@@ -14,7 +14,7 @@ namespace {
 class BackFaces : public HiddenDepthTest {};
 
 OcclusionSettings exact(Estimator estimator, float radius) {
-  OcclusionSettings settings = without_fill(estimator, radius);
+  OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
   settings.advanced.thickness_unit = ThicknessUnit::back_faces;
   return settings;
 }

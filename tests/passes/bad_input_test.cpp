@@ -2,9 +2,7 @@
 // device still works afterwards.
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <functional>
-#include <limits>
 
 #include "comma_locale.h"
 #include "gtao_scenes.h"
@@ -15,9 +13,6 @@ namespace {
 
 using framegraph::Graph;
 using testing::HasSubstr;
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class BadInput : public PassTest {
  protected:

@@ -18,8 +18,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
 bool is_a_sentence(const std::string& text) {
   return !text.empty() && text.back() == '.' && std::isupper(static_cast<unsigned char>(text[0]));
 }

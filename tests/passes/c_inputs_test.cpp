@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "c_interface_fixture.h"
@@ -15,15 +14,6 @@ namespace {
 
 constexpr std::uint32_t kWidth = 40;
 constexpr std::uint32_t kHeight = 30;
-
-double rms(const HostImage& a, const HostImage& b) {
-  EXPECT_EQ(a.texels.size(), b.texels.size());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.texels.size(); ++i) {
-    sum += std::pow(double{a.texels[i]} - b.texels[i], 2.0);
-  }
-  return std::sqrt(sum / static_cast<double>(a.texels.size()));
-}
 
 // Returns an image of the same size with `channels` channels. `map` makes each texel from the texel
 // of `image` at the same place.

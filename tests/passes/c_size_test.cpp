@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <array>
-#include <cmath>
 
 #include "c_interface_fixture.h"
 #include "gtao_scenes.h"
@@ -61,15 +60,6 @@ TEST_F(CSize, LargestSizeDoesNotChangeTheResult) {
     given.largest_size = {40, 30};
     expect_equal(run_by_c(*context, {&given, 1}, i)[0], expected);
   }
-}
-
-double rms(const HostImage& a, const HostImage& b) {
-  EXPECT_EQ(a.texels.size(), b.texels.size());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.texels.size(); ++i) {
-    sum += std::pow(a.texels[i] - b.texels[i], 2.0);
-  }
-  return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
 // A view whose size changes in every frame accumulates history like a view of constant size, both

@@ -2,7 +2,6 @@
 // unchanged.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <utility>
 
 // The includes of the example come first, as in the README.

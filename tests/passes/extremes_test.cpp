@@ -17,8 +17,6 @@
 namespace alcove::passes {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint32_t kWidth = 57;
 constexpr std::uint32_t kHeight = 39;
 
@@ -32,14 +30,6 @@ OcclusionSettings everything(Quality quality, float radius) {
   settings.specular = Specular::slices;
   settings.precision = Precision::float32;
   return settings;
-}
-
-double rms(const HostImage& a, const HostImage& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.texels.size(); ++i) {
-    sum += std::pow(double{a.texels[i]} - b.texels[i], 2.0);
-  }
-  return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
 View moved_by(View view, double x) {

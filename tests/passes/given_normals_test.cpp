@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -11,8 +10,6 @@
 namespace alcove::passes {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 48;
 
@@ -37,14 +34,6 @@ HostImage inverted(HostImage image) {
     component = -component;
   }
   return image;
-}
-
-double rms(const HostImage& a, const HostImage& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.texels.size(); ++i) {
-    sum += std::pow(double{a.texels[i]} - b.texels[i], 2.0);
-  }
-  return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
 class GivenNormals : public PassTest {

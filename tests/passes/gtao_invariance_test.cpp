@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 
 namespace alcove::passes {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::uint32_t kWidth = 57;
 constexpr std::uint32_t kHeight = 39;

@@ -23,8 +23,37 @@ OcclusionSettings exact(Estimator estimator, float radius) {
   return settings;
 }
 
+struct Errors {
+  double mean = 0.0;
+  double largest = 0.0;
+};
+
 class GtaoTruth : public PassTest {
  protected:
+  // Returns the mean and the largest error of visibility over every 5th pixel of every 3rd row.
+  Errors errors_of(Estimator estimator, const TestView& view, const Scene& scene) {
+    const float radius = 1.2f;
+    const Drawing drawing = draw(view, 60, 40, scene);
+    const HostImage visibility =
+        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius))
+            .visibility;
+    Errors errors;
+    int count = 0;
+    for (std::uint32_t y = 1; y < visibility.height; y += 3) {
+      for (std::uint32_t x = 2; x < visibility.width; x += 5) {
+        if (!drawing.is_sky(x, y)) {
+          const double truth = reference_occlusion(drawing, x, y, radius).visibility;
+          const double error = std::abs(visibility.at(x, y) - truth);
+          errors.mean += error;
+          errors.largest = std::max(errors.largest, error);
+          ++count;
+        }
+      }
+    }
+    errors.mean /= count;
+    return errors;
+  }
+
   // Returns the mean visibility of a wall 4 units away, at the eight pixels to the left of an
   // occluder that covers the image from x = 0 to the right.
   double visibility_beside(const TestView& view, const Surface& front,
@@ -40,30 +69,6 @@ class GtaoTruth : public PassTest {
 
 const char* name_of(Estimator estimator) {
   return estimator == Estimator::connected ? "connected" : "horizons";
-}
-
-struct Errors {
-  double mean = 0.0;
-  double largest = 0.0;
-};
-
-// Returns the mean and the largest error of visibility over every 5th pixel of every 3rd row.
-Errors errors_of(const HostImage& visibility, const Drawing& drawing, double radius) {
-  Errors errors;
-  int count = 0;
-  for (std::uint32_t y = 1; y < visibility.height; y += 3) {
-    for (std::uint32_t x = 2; x < visibility.width; x += 5) {
-      if (!drawing.is_sky(x, y)) {
-        const double truth = reference_occlusion(drawing, x, y, radius).visibility;
-        const double error = std::abs(visibility.at(x, y) - truth);
-        errors.mean += error;
-        errors.largest = std::max(errors.largest, error);
-        ++count;
-      }
-    }
-  }
-  errors.mean /= count;
-  return errors;
 }
 
 // Returns the mean error of bent normals in degrees, over every 7th pixel of every 4th row.
@@ -83,14 +88,10 @@ double mean_bent_error(const HostImage& bent, const Drawing& drawing, double rad
 }
 
 TEST_F(GtaoTruth, HorizonsAgreeWithBruteForceInEverySceneAndView) {
-  const float radius = 1.2f;
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name);
-      const Drawing drawing = draw(view, 60, 40, scene.scene);
-      const auto images = run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs},
-                                        exact(Estimator::horizons, radius));
-      const Errors errors = errors_of(images.visibility, drawing, radius);
+      const Errors errors = errors_of(Estimator::horizons, view, scene.scene);
       EXPECT_LT(errors.mean, 0.008);
       // The largest errors are at silhouettes, which lie between pixels, and at the ball's contact,
       // which is narrower than a pixel.
@@ -100,14 +101,9 @@ TEST_F(GtaoTruth, HorizonsAgreeWithBruteForceInEverySceneAndView) {
 }
 
 TEST_F(GtaoTruth, ConnectedSamplesAgreeWithBruteForceWhenHiddenVolumeIsSolid) {
-  const float radius = 1.2f;
-  const TestView view = test_views()[2];
   for (const NamedScene& scene : gtao_scenes()) {
     SCOPED_TRACE(scene.name);
-    const Drawing drawing = draw(view, 60, 40, scene.scene);
-    const auto images = run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs},
-                                      exact(Estimator::connected, radius));
-    const Errors errors = errors_of(images.visibility, drawing, radius);
+    const Errors errors = errors_of(Estimator::connected, test_views()[2], scene.scene);
     EXPECT_LT(errors.mean, 0.02);
     EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.08);
   }

@@ -143,7 +143,6 @@ TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
 
 // At each pixel one or several of the inputs are invalid.
 TEST_F(GtsoPass, InvalidInputsGiveValuesInRange) {
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr std::array kWrong{kNaN, std::numeric_limits<float>::infinity(), 0.0f, -1e30f};
   Inputs inputs = random_inputs();
   for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {

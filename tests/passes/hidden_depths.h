@@ -13,7 +13,7 @@ namespace alcove::passes {
 inline constexpr std::array kThickEstimators{Estimator::bitmask, Estimator::connected};
 
 // Returns settings without hidden occlusion, so that only the given depths occlude.
-inline OcclusionSettings without_fill(Estimator estimator, float radius) {
+inline OcclusionSettings without_hidden_occlusion(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.advanced.estimator = estimator;
   settings.slices = 16;

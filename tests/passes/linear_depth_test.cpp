@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <glm/glm.hpp>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,9 +15,6 @@ namespace alcove::passes {
 namespace {
 
 using framegraph::Graph;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 glm::dmat4 clip_from_view(const TestView& view) {
   glm::mat4 single;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <glm/glm.hpp>
-#include <limits>
 #include <numbers>
 
 #include "drawing.h"
@@ -12,8 +11,6 @@ namespace alcove::passes {
 namespace {
 
 using framegraph::Graph;
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 

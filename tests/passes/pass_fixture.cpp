@@ -1,6 +1,7 @@
 #include "pass_fixture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -75,6 +76,15 @@ VkFormat uploaded_format(std::uint32_t channels) {
 }
 
 }  // namespace
+
+double rms(const HostImage& a, const HostImage& b) {
+  EXPECT_EQ(a.texels.size(), b.texels.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    sum += std::pow(double{a.texels[i]} - b.texels[i], 2.0);
+  }
+  return std::sqrt(sum / static_cast<double>(a.texels.size()));
+}
 
 void PassTest::SetUp() {
   auto made =

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct HostImage {
     return texels[(std::size_t{y} * width + x) * channels + channel];
   }
 };
+
+inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Returns the root mean square of the differences between two images of one size.
+double rms(const HostImage& a, const HostImage& b);
 
 // Runs passes on the machine's Vulkan device under the validation layers. Any message of the layers
 // fails the test.

@@ -36,6 +36,12 @@ HostImage roughness_of_all() {
   return {32, 24, std::vector<float>(std::size_t{4} * 32 * 24, 0.5f), 4};
 }
 
+void expect_same(const Kept& a, const Kept& b) {
+  EXPECT_EQ(a.passes, b.passes);
+  EXPECT_EQ(a.transients, b.transients);
+  EXPECT_EQ(a.bytes, b.bytes);
+}
+
 class OcclusionPlan : public PassTest {
  protected:
   Kept kept(const OcclusionSettings& settings, Reads reads = {}, Given given = {}) {
@@ -149,9 +155,7 @@ TEST_F(OcclusionPlan, BackFaceDepthCostsNothingUnlessTheThicknessUnitNeedsIt) {
   const Kept constant = kept(settings);
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   const Kept unasked = kept(settings, {}, {.hidden_depths = true});
-  EXPECT_EQ(unasked.passes, constant.passes);
-  EXPECT_EQ(unasked.transients, constant.transients);
-  EXPECT_EQ(unasked.bytes, constant.bytes);
+  expect_same(unasked, constant);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 
   settings.advanced.thickness_unit = ThicknessUnit::back_faces;
@@ -176,9 +180,7 @@ TEST_F(OcclusionPlan, TurningOffPartsOfTheSearchAddsOnlyAPipeline) {
     OcclusionSettings changed = least();
     changed.advanced = each;
     const Kept found = kept(changed);
-    EXPECT_EQ(found.passes, as_it_is.passes);
-    EXPECT_EQ(found.transients, as_it_is.transients);
-    EXPECT_EQ(found.bytes, as_it_is.bytes);
+    expect_same(found, as_it_is);
     EXPECT_EQ(gpu().kernels().pipeline_count(), ++pipelines);
   }
 }
@@ -197,9 +199,7 @@ TEST_F(OcclusionPlan, SecondLayerCostsNothingWhenItIsNotSearched) {
   const Kept one = kept(settings);
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   const Kept unasked = kept(settings, {}, {.hidden_depths = true});
-  EXPECT_EQ(unasked.passes, one.passes);
-  EXPECT_EQ(unasked.transients, one.transients);
-  EXPECT_EQ(unasked.bytes, one.bytes);
+  expect_same(unasked, one);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 
   settings.depth_layers = 2;

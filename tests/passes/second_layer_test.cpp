@@ -13,7 +13,7 @@ namespace {
 class SecondLayer : public HiddenDepthTest {};
 
 OcclusionSettings exact(Estimator estimator, float radius) {
-  OcclusionSettings settings = without_fill(estimator, radius);
+  OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
   settings.thickness = 1.0f;
   return settings;
 }

@@ -85,7 +85,32 @@ TEST(ShaderInterface, EveryShaderHasUniqueNumbersKnownTypesAndOneParameterBlock)
   }
 }
 
-class KernelsByName : public PassTest {};
+class KernelsByName : public PassTest {
+ protected:
+  // Dispatches the shader `linear_depth` with one view for each of the names.
+  tl::expected<framegraph::FrameReport, std::string> run_linear_depth(
+      const std::vector<std::string_view>& names) {
+    const auto kernel = gpu().kernels().get(Shader::linear_depth);
+    if (!kernel) {
+      return tl::unexpected(kernel.error().message);
+    }
+    return gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
+      const Texture depth = upload(graph, {8, 8, std::vector<float>(64, 0.5f), 1});
+      auto pass = graph.add_pass("linear depth");
+      pass.read(depth, framegraph::access::sampled_compute);
+      pass.side_effect();
+      pass.record([this, names, kernel = *kernel, depth](RecordContext& context) {
+        std::vector<NamedView> views;
+        for (const std::string_view name : names) {
+          views.push_back({name, context.view(depth)});
+        }
+        const std::array<std::byte, 64> parameters{};
+        gpu().kernels().dispatch(context, kernel, views, parameters, {8, 8, 1});
+      });
+      return {};
+    });
+  }
+};
 
 TEST_F(KernelsByName, ConstantWithoutAValueIsReportedByName) {
   const auto kernel = gpu().kernels().get(
@@ -98,14 +123,14 @@ TEST_F(KernelsByName, ConstantWithoutAValueIsReportedByName) {
                         "which its pass gives no value"));
 }
 
-TEST_F(KernelsByName, ConstantsMayBeGivenInAnyOrderWithAdditionalNames) {
+TEST_F(KernelsByName, ConstantsMayBeGivenInAnyOrderWithThoseOfOtherShaders) {
   const auto ordered =
       gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kRoughnessTexture", 1},
                                                                       {"kRoughnessChannel", 2},
                                                                       {"kNormalEncoding", 3},
                                                                       {"kVisibilityChannel", 1}}));
   const auto shuffled =
-      gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kOther", 9},
+      gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kTileSize", 9},
                                                                       {"kVisibilityChannel", 1},
                                                                       {"kNormalEncoding", 3},
                                                                       {"kRoughnessTexture", 1},
@@ -114,25 +139,31 @@ TEST_F(KernelsByName, ConstantsMayBeGivenInAnyOrderWithAdditionalNames) {
   EXPECT_EQ(ordered->pipeline, shuffled->pipeline);
 }
 
+TEST_F(KernelsByName, ConstantThatNoShaderDeclaresIsReportedByName) {
+  const auto kernel =
+      gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kRoughnessTexture", 1},
+                                                                      {"kRoughnessChannel", 2},
+                                                                      {"kNormalEncoding", 3},
+                                                                      {"kVisibilityChannel", 1},
+                                                                      {"kTilesize", 9}}));
+  ASSERT_FALSE(kernel);
+  EXPECT_THAT(kernel.error().message,
+              HasSubstr("The pass of the shader 'gtso' gives a value for a specialisation constant "
+                        "'kTilesize', which no shader declares"));
+}
+
 TEST_F(KernelsByName, BindingWithoutAViewIsReportedByName) {
-  const auto kernel = gpu().kernels().get(Shader::linear_depth);
-  ASSERT_TRUE(kernel) << kernel.error().message;
-  const auto done = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
-    const Texture depth = upload(graph, {8, 8, std::vector<float>(64, 0.5f), 1});
-    auto pass = graph.add_pass("linear depth");
-    pass.read(depth, framegraph::access::sampled_compute);
-    pass.side_effect();
-    pass.record([this, kernel = *kernel, depth](RecordContext& context) {
-      const auto views = std::to_array<NamedView>(
-          {{"depth_ndc_image", context.view(depth)}, {"linear_image", context.view(depth)}});
-      const std::array<std::byte, 64> parameters{};
-      gpu().kernels().dispatch(context, kernel, views, parameters, {8, 8, 1});
-    });
-    return {};
-  });
+  const auto done = run_linear_depth({"depth_ndc_image", "linear_image"});
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(),
               HasSubstr("view of the binding 'linear_depth_image' of the shader 'linear_depth'"));
+}
+
+TEST_F(KernelsByName, ViewThatNoShaderDeclaresIsReportedByName) {
+  const auto done = run_linear_depth({"depth_ndc_image", "linear_depth_image", "linear_image"});
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error(), HasSubstr("view 'linear_image' of the shader 'linear_depth', a name "
+                                      "that no shader declares"));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // checks unoccluded scenes.
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "gtao_scenes.h"

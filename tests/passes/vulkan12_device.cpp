@@ -91,14 +91,20 @@ AlcoveContextInfo Vulkan12Device::context_info() const {
           .frames_in_flight = 1};
 }
 
-std::uint32_t Vulkan12Device::memory_type(std::uint32_t bits, VkMemoryPropertyFlags flags) const {
-  VkPhysicalDeviceMemoryProperties memory;
-  vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory);
+VkDeviceMemory Vulkan12Device::allocate(const VkMemoryRequirements& needs,
+                                        VkMemoryPropertyFlags flags) const {
+  VkPhysicalDeviceMemoryProperties properties;
+  vkGetPhysicalDeviceMemoryProperties(physical_device_, &properties);
   std::uint32_t type = 0;
-  while ((bits >> type & 1u) == 0 || (memory.memoryTypes[type].propertyFlags & flags) != flags) {
+  while ((needs.memoryTypeBits >> type & 1u) == 0 ||
+         (properties.memoryTypes[type].propertyFlags & flags) != flags) {
     ++type;
   }
-  return type;
+  const VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size,
+                                  type};
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  EXPECT_EQ(vkAllocateMemory(device_, &info, nullptr, &memory), VK_SUCCESS);
+  return memory;
 }
 
 AlcoveImage Vulkan12Device::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
@@ -115,11 +121,7 @@ AlcoveImage Vulkan12Device::make_image(VkFormat format, std::uint32_t width, std
   EXPECT_EQ(vkCreateImage(device_, &info, nullptr, &image), VK_SUCCESS);
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(device_, image, &needs);
-  const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                        .allocationSize = needs.size,
-                                        .memoryTypeIndex = memory_type(needs.memoryTypeBits, 0)};
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  EXPECT_EQ(vkAllocateMemory(device_, &allocation, nullptr, &memory), VK_SUCCESS);
+  const VkDeviceMemory memory = allocate(needs, 0);
   EXPECT_EQ(vkBindImageMemory(device_, image, memory, 0), VK_SUCCESS);
   images_.push_back(image);
   memories_.push_back(memory);
@@ -156,14 +158,8 @@ std::vector<unsigned char> Vulkan12Device::read(const AlcoveImage& image,
   EXPECT_EQ(vkCreateBuffer(device_, &info, nullptr, &buffer), VK_SUCCESS);
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device_, buffer, &needs);
-  const VkMemoryAllocateInfo allocation{
-      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-      .allocationSize = needs.size,
-      .memoryTypeIndex =
-          memory_type(needs.memoryTypeBits,
-                      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)};
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  EXPECT_EQ(vkAllocateMemory(device_, &allocation, nullptr, &memory), VK_SUCCESS);
+  const VkDeviceMemory memory =
+      allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
   EXPECT_EQ(vkBindBufferMemory(device_, buffer, memory, 0), VK_SUCCESS);
   run([&](VkCommandBuffer commands) {
     const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},

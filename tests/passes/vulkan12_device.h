@@ -13,11 +13,6 @@
 
 namespace alcove::passes {
 
-struct Vulkan12Options {
-  bool extension = true;                           // VK_KHR_synchronization2
-  std::uint32_t api_version = VK_API_VERSION_1_2;  // of the instance
-};
-
 class Vulkan12Device {
  public:
   explicit Vulkan12Device(bool has_synchronization2 = true);
@@ -40,7 +35,7 @@ class Vulkan12Device {
   const std::string& messages() const { return messages_; }
 
  private:
-  std::uint32_t memory_type(std::uint32_t bits, VkMemoryPropertyFlags flags) const;
+  VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) const;
 
   std::string messages_;
   VkInstance instance_ = VK_NULL_HANDLE;

@@ -89,6 +89,15 @@ std::vector<std::uint64_t> bits_of(std::uint64_t mask) {
   return bits;
 }
 
+// Returns whether f(i) is true for the index i of each of the bits that `mask` contains.
+template <typename Function>
+bool all_bits(const std::vector<std::uint64_t>& bits, std::uint64_t mask, const Function& f) {
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if ((mask & bits[i]) && !f(i)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 HappensBefore::HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues)
@@ -102,10 +111,7 @@ HappensBefore::HappensBefore(Stages stages, Accesses accesses, std::uint32_t que
 
 template <typename Function>
 bool HappensBefore::all_stages(Stages stages, Function&& f) const {
-  for (std::size_t i = 0; i < stages_.size(); ++i) {
-    if ((stages & stages_[i]) && !f(i)) return false;
-  }
-  return true;
+  return all_bits(stages_, stages, f);
 }
 
 template <typename Function>
@@ -115,10 +121,7 @@ bool HappensBefore::any_stage(Stages stages, Function&& f) const {
 
 template <typename Function>
 bool HappensBefore::all_writes(Accesses writes, Function&& f) const {
-  for (std::size_t i = 0; i < writes_.size(); ++i) {
-    if ((writes & writes_[i]) && !f(i)) return false;
-  }
-  return true;
+  return all_bits(writes_, writes, f);
 }
 
 template <typename Function>

@@ -32,7 +32,6 @@ const uint kBaseColourUv = 0u;
 const uint kMetallicRoughnessUv = 1u;
 const uint kEmissiveUv = 2u;
 const uint kNormalUv = 3u;
-const uint kMaterialUvs = 4u;
 
 // Parameters of a material, in its descriptor set.
 struct GbufferMaterial {

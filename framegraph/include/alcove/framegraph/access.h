@@ -58,7 +58,6 @@ constexpr Access storage_read_write(VkPipelineStageFlags2 stages) {
 }
 
 inline constexpr Access sampled_compute = sampled(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-inline constexpr Access sampled_vertex = sampled(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT);
 inline constexpr Access sampled_fragment = sampled(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access sampled_general_compute =
     sampled_general(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
@@ -152,7 +151,6 @@ inline constexpr Access uniform_compute = uniform(VK_PIPELINE_STAGE_2_COMPUTE_SH
 inline constexpr Access uniform_graphics =
     uniform(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access storage_read_compute = storage_read(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-inline constexpr Access storage_read_vertex = storage_read(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT);
 inline constexpr Access storage_read_fragment =
     storage_read(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access storage_write_compute =

@@ -220,7 +220,10 @@ class Graph {
   static void fill_texture_record(ResourceRecord& record, const TextureDesc& desc);
   static bool is_texture_record(const ResourceRecord& record, const TextureDesc& desc);
   std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
-                            HistoryValidity& validity, const State& final_state = {});
+                            HistoryValidity& validity, const State& final_state);
+  template <typename History>
+  History make_history(std::string_view name, const ResourceRecord& record, std::uint32_t slots,
+                       const State& final_state = {});
   static ResourceRecord buffer_record(const BufferDesc& desc);
   static Range resolved_range(Range range, const ResourceRecord& resource);
   template <typename Handle>

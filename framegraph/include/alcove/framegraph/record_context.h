@@ -37,7 +37,7 @@ struct Attachment {
 class RecordContext {
  public:
   VkCommandBuffer commands = VK_NULL_HANDLE;
-  const VulkanFunctions& vk;
+  const VulkanFunctions& vk;  // the few functions that the libraries call
   // A number that changes whenever a handle that passes can see may have changed, except for
   // imported views. Two executors never have the same number.
   std::uint64_t resources_id = 0;

@@ -1,5 +1,6 @@
-// The Vulkan functions that the executor and recording callbacks call. They are fetched through the
-// caller's vkGetInstanceProcAddr, because the library defines no Vulkan symbol and links no loader.
+// The Vulkan functions that the libraries call, and no others: a recording callback calls Vulkan
+// through the functions of its own program. They are fetched through the caller's
+// vkGetInstanceProcAddr, because the libraries define no Vulkan symbol and link no loader.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -25,31 +26,13 @@ namespace alcove::framegraph {
   X(vkBeginCommandBuffer)                     \
   X(vkBindBufferMemory)                       \
   X(vkBindImageMemory)                        \
-  X(vkCmdBeginQuery)                          \
   X(vkCmdBindDescriptorSets)                  \
-  X(vkCmdBindIndexBuffer)                     \
   X(vkCmdBindPipeline)                        \
-  X(vkCmdBindVertexBuffers)                   \
-  X(vkCmdClearColorImage)                     \
-  X(vkCmdClearDepthStencilImage)              \
-  X(vkCmdCopyBuffer)                          \
-  X(vkCmdCopyBufferToImage)                   \
-  X(vkCmdCopyImage)                           \
   X(vkCmdCopyImageToBuffer)                   \
   X(vkCmdDispatch)                            \
-  X(vkCmdDispatchIndirect)                    \
-  X(vkCmdDraw)                                \
-  X(vkCmdDrawIndexed)                         \
-  X(vkCmdDrawIndexedIndirect)                 \
-  X(vkCmdDrawIndirect)                        \
-  X(vkCmdEndQuery)                            \
   X(vkCmdExecuteCommands)                     \
-  X(vkCmdFillBuffer)                          \
   X(vkCmdPipelineBarrier2)                    \
-  X(vkCmdPushConstants)                       \
   X(vkCmdResetQueryPool)                      \
-  X(vkCmdSetScissor)                          \
-  X(vkCmdSetViewport)                         \
   X(vkCmdUpdateBuffer)                        \
   X(vkCmdWriteTimestamp2)                     \
   X(vkCreateBuffer)                           \
@@ -57,10 +40,8 @@ namespace alcove::framegraph {
   X(vkCreateComputePipelines)                 \
   X(vkCreateDescriptorPool)                   \
   X(vkCreateDescriptorSetLayout)              \
-  X(vkCreateFence)                            \
   X(vkCreateImage)                            \
   X(vkCreateImageView)                        \
-  X(vkCreatePipelineCache)                    \
   X(vkCreatePipelineLayout)                   \
   X(vkCreateQueryPool)                        \
   X(vkCreateSampler)                          \
@@ -70,57 +51,38 @@ namespace alcove::framegraph {
   X(vkDestroyCommandPool)                     \
   X(vkDestroyDescriptorPool)                  \
   X(vkDestroyDescriptorSetLayout)             \
-  X(vkDestroyFence)                           \
   X(vkDestroyImage)                           \
   X(vkDestroyImageView)                       \
   X(vkDestroyPipeline)                        \
-  X(vkDestroyPipelineCache)                   \
   X(vkDestroyPipelineLayout)                  \
   X(vkDestroyQueryPool)                       \
   X(vkDestroySampler)                         \
   X(vkDestroySemaphore)                       \
   X(vkDestroyShaderModule)                    \
-  X(vkDeviceWaitIdle)                         \
   X(vkEndCommandBuffer)                       \
-  X(vkFlushMappedMemoryRanges)                \
-  X(vkFreeCommandBuffers)                     \
   X(vkFreeDescriptorSets)                     \
   X(vkFreeMemory)                             \
   X(vkGetBufferMemoryRequirements)            \
-  X(vkGetDeviceQueue)                         \
-  X(vkGetFenceStatus)                         \
   X(vkGetImageMemoryRequirements)             \
   X(vkGetQueryPoolResults)                    \
-  X(vkGetSemaphoreCounterValue)               \
-  X(vkInvalidateMappedMemoryRanges)           \
   X(vkMapMemory)                              \
   X(vkQueueSubmit2)                           \
   X(vkQueueWaitIdle)                          \
-  X(vkResetCommandBuffer)                     \
   X(vkResetCommandPool)                       \
-  X(vkResetDescriptorPool)                    \
-  X(vkResetFences)                            \
-  X(vkUnmapMemory)                            \
   X(vkUpdateDescriptorSets)                   \
-  X(vkWaitForFences)                          \
   X(vkWaitSemaphores)
 
 // Calls X(name) for each function of Vulkan 1.3 or of an extension that the executor does not
-// require. Such a function is null if the device does not have it. A callback must check it before
-// it calls it.
+// require. Such a function is null if the device does not have it, and is checked before it is
+// called.
 #define ALCOVE_FRAMEGRAPH_OPTIONAL_FUNCTIONS(X) \
   X(vkCmdBeginRendering)                        \
   X(vkCmdEndRendering)                          \
-  X(vkCmdBlitImage2)                            \
-  X(vkCmdSetCullMode)                           \
-  X(vkCmdSetFrontFace)                          \
-  X(vkCreateGraphicsPipelines)                  \
   X(vkGetDeviceBufferMemoryRequirements)        \
   X(vkGetDeviceImageMemoryRequirements)         \
   X(vkCmdBeginDebugUtilsLabelEXT)               \
   X(vkCmdEndDebugUtilsLabelEXT)                 \
-  X(vkSetDebugUtilsObjectNameEXT)               \
-  X(vkCmdPushDescriptorSetKHR)
+  X(vkSetDebugUtilsObjectNameEXT)
 
 struct VulkanFunctions {
 #define ALCOVE_DECLARE(name) PFN_##name name = nullptr;

@@ -2,8 +2,6 @@
 // its table.
 #pragma once
 
-#include <cstdint>
-
 #include "alcove/passes/frame.h"
 #include "alcove/passes/settings.h"
 

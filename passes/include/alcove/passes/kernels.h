@@ -109,10 +109,10 @@ class Kernels {
   // frame is recorded.
   void begin_frame(std::uint32_t slot);
 
-  // Returns the pipeline of `shader` with these specialisation constants. Values for names that the
-  // shader does not have are ignored, so that all variants of a shader can be given the same list.
-  // Errors: a specialisation constant of the shader that has no value in the list, or a pipeline
-  // that the device could not create.
+  // Returns the pipeline of `shader` with these specialisation constants. Values for constants that
+  // only other shaders have are ignored, so that all variants of a shader can be given the same
+  // list. Errors: a specialisation constant of the shader that has no value in the list, a name
+  // that no shader declares, or a pipeline that the device could not create.
   [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
                                                 std::span<const NamedConstant> constants = {});
 
@@ -128,10 +128,10 @@ class Kernels {
   // `parameters` are the contents of the shader's uniform buffer. Each image binding of the shader
   // gets the view of its name: sampled images in the layout SHADER_READ_ONLY_OPTIMAL, storage
   // images in GENERAL. A view that is bound both as a sampled and as a storage image is in GENERAL.
-  // Views with other names are ignored, so that all variants of a shader can be
-  // given the same list. Executor::record() returns an error if a binding has no view in the list,
-  // if memory runs out, if begin_frame() was given no valid slot, or if the frame already has
-  // kMaxDispatches.
+  // Views for bindings that only other shaders have are ignored, so that all variants of a shader
+  // can be given the same list. Executor::record() returns an error if a binding has no view in the
+  // list, if no shader declares the name of a view, if memory runs out, if begin_frame() was given
+  // no valid slot, or if the frame already has kMaxDispatches.
   void dispatch(framegraph::RecordContext& context, Kernel kernel, std::span<const NamedView> views,
                 std::span<const std::byte> parameters, VkExtent3D size);
 

@@ -2,8 +2,6 @@
 // occlusion.
 #pragma once
 
-#include <cstdint>
-
 #include "alcove/passes/gtao.h"
 #include "alcove/passes/gtso.h"
 #include "alcove/passes/linear_depth.h"
