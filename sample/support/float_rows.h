@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <functional>
 #include <span>
+#include <string>
 #include <tl/expected.hpp>
 
 namespace alcove::sample {
