@@ -93,9 +93,10 @@ class VariantRunner {
   std::uint64_t base_bytes() const;
   // Medians over all variants so far; zero before the first.
   BaseTimes base_times() const;
-  // `gpu` is another device on which nothing was rendered yet, so that the histories are the
-  // variant's own. `timed_pairs`: the number of timed pairs of frames; 0 measures only the image
-  // and the bytes.
+  // Renders and times a variant. `gpu` must be a device other than that of the base settings, on
+  // which nothing was rendered yet, because the histories of a device belong to one variant. Each
+  // of `timed_pairs` pairs times a frame with the base settings and a frame with the variant; 0
+  // measures only the image and the bytes.
   [[nodiscard]] tl::expected<VariantResult, std::string> run(
       Gpu& gpu, const Variant& variant, std::uint32_t timed_pairs = kInformativePairs);
 

@@ -436,7 +436,7 @@ TEST_F(Validate, AccessBitsOfExtensionsThatWriteAreTreatedAsWrites) {
   }
 }
 
-TEST_F(Validate, ImportWrittenByAnExtensionIsMadeVisible) {
+TEST_F(Validate, ImportLastWrittenByAVulkanExtensionStageIsMadeVisible) {
   for (const Access& access : kExtensionWrites) {
     graph_.reset();
     const Buffer buffer = graph_.import_buffer(

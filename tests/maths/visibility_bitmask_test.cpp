@@ -197,7 +197,7 @@ TEST(VisibilityBitmask, EmptyMaskIsFullyVisibleAndFullMaskIsNotVisible) {
   }
 }
 
-TEST(VisibilityBitmask, HiddenOcclusionOneGivesTheVisibilityUpToTheHorizon) {
+TEST(VisibilityBitmask, IfHiddenVolumeIsSolidVisibilityEndsAtTheFirstOccludedSector) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Slice s = random_slice(random);
@@ -236,7 +236,7 @@ TEST(VisibilityBitmask, HiddenOcclusionZeroOccludesNothingAndOneOccludesAll) {
   }
 }
 
-TEST(VisibilityBitmask, NormalPerpendicularToTheSliceGivesZeroParts) {
+TEST(VisibilityBitmask, NormalPerpendicularToTheSliceGivesZeroVisibilityAndZeroBentNormal) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   for (const float side : {-1.0f, 1.0f}) {
     EXPECT_EQ(part_of(s, side, 0x0ff0u, 0.4f).arc, 0.0f);

@@ -122,7 +122,7 @@ TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
 // With dynamic resolution the history's textures are larger than the image. Beyond the image's
 // border they hold results of an earlier, larger image. history_frames is 1, so that nothing but
 // this frame and such texels could enter the result.
-TEST_F(HalfResolution, TexelsBeyondASmallerImageAreNotRead) {
+TEST_F(HalfResolution, TexelsOutsideTheRenderedSizeAreNotRead) {
   constexpr VkExtent2D kLargest{kWidth, kHeight};
   const TestView view = test_views()[2];
   const Drawing large = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
