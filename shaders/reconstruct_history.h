@@ -99,9 +99,10 @@ const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 // With tiles of 4 texels few samples are a texel's own even in time, so the window stays wider.
 const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
 
-// Returns 0.125 / w^2 for a filter window of w pixels. The window is wide while a texel has few
-// samples of its own. Later it is hardly wider than the texel, or as wide as the interpolation of
-// the history blurs in any case.
+// Returns 0.125 / w^2 for a filter window of w pixels. The window narrows as the history gathers
+// weight, down to a smallest width. If the history is read at the centre of a texel, the smallest
+// width is `own` texels. Between centres it is larger, because the interpolation of the history
+// blurs there anyway.
 float window_of(History history) {
   const float own = 0.58 * kWidth;
   const float per_squared_texel = 1.0 / float(kTexelSize * kTexelSize);

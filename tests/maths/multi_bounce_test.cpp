@@ -34,7 +34,7 @@ TEST(MultiBounce, EqualsTheCubicOfThePaperBetweenItsBounds) {
               ((0.5 * 0.6878 - 1.75585) * 0.5 + 2.0679) * 0.5, 1e-6);
 }
 
-TEST(MultiBounce, NaNInputsGiveZero) {
+TEST(MultiBounce, NaNVisibilityGivesZeroAndNaNAlbedoCountsAsZero) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(maths::multi_bounce_channel(none, 0.5f), 0.0f);
   EXPECT_EQ(maths::multi_bounce_channel(0.4f, none), maths::multi_bounce_channel(0.4f, 0.0f));
