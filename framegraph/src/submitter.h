@@ -19,9 +19,10 @@ class Submitter {
 
   // Waits until the device has finished the frame that was last submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
-  // Records and submits the plan with which `recording_threads` was begun. `timestamps` is indexed
-  // by queue class and may be null. If `full_barrier` is true, the frame begins with a barrier over
-  // everything, because another plan used the memory before.
+  // Records and submits the plan with which `recording_threads` was begun. `timestamps` is an
+  // array, not null, with one element per queue class. An element is null if its queue has no
+  // timestamps. If `full_barrier` is true, the frame begins with a barrier over everything, because
+  // another plan used the memory before.
   [[nodiscard]] VkResult submit(const Plan& plan, RecordingThreads& recording_threads,
                                 const FrameInfo& info, Timestamps* const* timestamps,
                                 bool full_barrier);

@@ -18,8 +18,8 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Number of frames over which the median time is taken. One more frame is drawn first, because it
-// also compiles shaders.
+// Number of frames, the last ones of a run, over which the median time is taken. At least one frame
+// is drawn before them and is not timed, because the first frame also compiles shaders.
 constexpr std::uint32_t kTimedFrames = 9;
 
 // Returns the median times. Passes are identified by their index, because all frames of a run have

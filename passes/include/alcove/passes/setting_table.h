@@ -164,9 +164,10 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "thickness_unit",
-          .help = "Unit of the setting thickness: the radius, or the occluder's depth along the "
-                  "view axis. With back_faces, a depth buffer of back faces gives the thickness "
-                  "instead.",
+          .help = "Unit of the setting thickness: a fraction of the radius (radius), or of the "
+                  "occluder's depth along the view axis (distance). With back_faces, an occluder "
+                  "ends at the back face behind it in a second depth buffer; if there is none, "
+                  "thickness counts as with radius.",
           .group = advanced,
           .matters = has_thickness},
       settings.advanced.thickness_unit);
