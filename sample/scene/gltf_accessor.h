@@ -11,8 +11,8 @@
 namespace alcove::sample {
 
 // Functions that read a glTF model's binary data (glTF 2.0 section 3.6). The model is not trusted:
-// every index, offset, stride and count is checked against the size of the data. Errors are the end
-// of a sentence that starts with the file's name.
+// every index, offset, stride and count is checked against the size of the data. Error texts are
+// the end of a sentence that starts with the file's name.
 
 // Returns the bytes of a buffer view.
 [[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(

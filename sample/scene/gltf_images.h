@@ -29,7 +29,7 @@ class GltfImages {
 
   // Returns the index in Scene::images, or -1 for an image that cannot be read; the scene then gets
   // one warning. An image that is too large or is in a missing buffer view is an error. The error
-  // is the end of a sentence about the material that uses the image.
+  // text is the end of a sentence about the material that uses the image.
   [[nodiscard]] tl::expected<int32_t, std::string> decode(size_t index);
 
  private:

@@ -26,8 +26,8 @@ class VertexPlacement {
 
   // Reads the sets JOINTS_n and WEIGHTS_n of a primitive with `vertices` vertices. `joints` is the
   // result of joint_matrices(). Weights are normalised; a vertex without weights follows its first
-  // joint. `most_sets` is the largest allowed number of vertices times the number of sets. Errors
-  // are the end of a sentence.
+  // joint. `most_sets` is the largest allowed number of vertices times the number of sets. Error
+  // texts are the end of a sentence whose beginning the caller adds.
   [[nodiscard]] static tl::expected<VertexPlacement, std::string> skinned(
       const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices,
       const std::vector<glm::dmat4>& joints, uint64_t most_sets);
