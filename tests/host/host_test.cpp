@@ -173,9 +173,9 @@ TEST(Host, DrawsThePictureOfAlcoveRenderFromOtherEyesWithFloatNormals) {
   }
 }
 
-// What ten bits a channel lose against 16-bit floats: the tangent plane turns by up to 0.05
-// degrees, so that a few samples pass it. At most 27 of 32,160 pixels differed by more than one
-// step.
+// Normals of ten bits a channel turn the tangent plane by up to 0.05 degrees against normals of
+// 16-bit floats, so that a few depth samples change sides. At most 27 of 32,160 pixels differed by
+// more than one step of eight bits when this limit was set.
 TEST(Host, TenBitNormalsChangeFewPixels) {
   const TemporaryFolder folder;
   for (const Shot& shot : kOtherShots) {

@@ -28,7 +28,7 @@ struct Options {
   bool float_normals = false;  // R16G16B16A16_SFLOAT instead of A2B10G10R10_UNORM
 };
 
-// Of the image of normals.
+// Returns the format of the image of normals.
 inline VkFormat normal_format(const Options& options) {
   return options.float_normals ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_A2B10G10R10_UNORM_PACK32;
 }

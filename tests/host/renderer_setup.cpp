@@ -1,4 +1,4 @@
-// What the host's renderer creates once and destroys at its end.
+// Creation and destruction of everything that lives as long as the host's renderer.
 #include <array>
 #include <cstring>
 #include <span>

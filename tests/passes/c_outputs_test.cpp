@@ -374,7 +374,8 @@ TEST_F(COutputs, OutputsOfHalfSizeAgreeWithUpsampledOnes) {
   EXPECT_LT(mean_difference(half.bent_normal, full.bent_normal), 0.01);
 }
 
-// Nothing occludes within so small a radius, so that a bent normal is the normal of its pixel.
+// The radius of this test is so small that nothing occludes. Each bent normal is then the normal of
+// its pixel, and shows which pixel a texel belongs to.
 TEST_F(COutputs, TexelOfHalfSizeBelongsToTheNearestOrFarthestOfItsPixelsInTurn) {
   GivenView given = half_view(33, 23, ball_on_floor());
   given.settings.bent_normal = true;

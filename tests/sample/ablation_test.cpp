@@ -126,10 +126,10 @@ TEST_F(AblationTest, BackFacesAndSecondLayerDoNotIncreaseTheError) {
   }
 }
 
-// The error must not rise with the work. In this scene the bias changes sign between few and many
-// steps, because few steps miss thin occluders and many steps find nearly all of them, each with
-// the assumed thickness. The error may therefore rise by kRise in one step of the ladder and over
-// the whole of it. `alcove bench --grid` prints the same table for any view.
+// More steps and more slices may raise the error by kRise at most, against the least error of the
+// smaller numbers. Many steps find nearly all thin occluders, each with the assumed thickness, so
+// that the error does not fall with every step. `alcove bench --grid` prints the table for any
+// view; in larger images the error rises by 3 to 8 % up to 64 steps.
 TEST_F(AblationTest, MoreStepsAndSlicesDoNotRaiseTheErrorByMoreThanTwoPercent) {
   constexpr double kRise = 1.02;
   const auto gpu = open_validated();
