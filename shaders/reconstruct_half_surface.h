@@ -86,26 +86,26 @@ Surface fetch_surface(ivec2 texel) {
   vec2 to_inner = (found.inner - found.depth_ndc) * (found.way * per_ndc);
   vec2 from_outer = (found.depth_ndc - found.outer) * (found.way * per_ndc);
   vec2 plausible = kPlausibleTilt * scale * abs(parameters.slope.xy);
-  surface.gradient = vec2(gradient_of(to_inner.x, from_outer.x, plausible.x),
-                          gradient_of(to_inner.y, from_outer.y, plausible.y));
+  vec2 gradient = vec2(gradient_of(to_inner.x, from_outer.x, plausible.x),
+                       gradient_of(to_inner.y, from_outer.y, plausible.y));
   float inverse_scale = 1.0 / scale;
-  surface.depth = inverse_scale;
-  surface.tilt = surface.gradient * parameters.pixels_per_slope *
-                 (kPerspective ? -inverse_scale : inverse_scale);
+  surface.tilt =
+      gradient * parameters.pixels_per_slope * (kPerspective ? -inverse_scale : inverse_scale);
   vec2 ray =
       parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
   float z = 1.0 + dot(surface.tilt, ray);
   float per_length = inversesqrt(dot(surface.tilt, surface.tilt) + z * z);
   surface.n_dot_v = max(per_length, kLeastNDotV);
   // The plane at the texel's centre, bounded where it is seen edge-on.
-  float moved = inverse_depth + 0.5 * dot(found.way, surface.gradient);
+  float moved = inverse_depth + 0.5 * dot(found.way, gradient);
   surface.inverse_depth =
       kPerspective ? clamp(moved, 0.5 * inverse_depth, 2.0 * inverse_depth) : moved;
-  surface.plane_weight = surface.n_dot_v * parameters.tolerance * inverse_scale;
+  surface.depth = kPerspective ? 1.0 / surface.inverse_depth : 1.0;
+  surface.slope = gradient * (surface.depth * surface.n_dot_v);
   if (kLobe) {
     surface.lobe = fetch_lobe_surface(surface.pixel, fetch_normal(surface.pixel));
   }
-  find_traced(surface);
+  surface.around = find_traced(texel * 2, 0.5);
   return surface;
 }
 

@@ -19,14 +19,14 @@ History no_history() { return History(0.0, 0.0, 0.0, vec3(0.0), vec2(0.0), 0.0);
 // surface keeps its history.
 const float kDepthMotion = 0.04;
 
-float log_inverse_depth(float inverse_depth, float unit) {
-  return kPerspective ? log2(inverse_depth * unit) : inverse_depth;
-}
+// Largest distance, in the units of HistoryTexels::distances, at which a texel of a static image
+// keeps its history. Its weight in a moving image would be 0.05.
+const float kSameTexel = 0.776;
 
 // The position of a surface in the image of the previous frame.
 struct Previous {
   vec2 position;  // texels, clamped to the centres of the outermost ones
-  float depth;    // linear, over the depth now in perspective; positive
+  float depth;    // in perspective over the depth now, and positive; in orthographic views linear
   bool seen;      // it was on the image
   bool moves;     // the surface moved, not only the camera
 };
@@ -36,9 +36,9 @@ Previous reproject(Surface surface) {
   vec4 from = kPerspective ? vec4(centre, 1.0, surface.inverse_depth)
                            : vec4(centre, surface.inverse_depth, 1.0);
   vec4 to = from * parameters.previous_from_pixel;
-  vec2 position = to.xy * (1.0 / to.z);
+  vec2 position = to.xy * (1.0 / max(to.z, 1e-20));
   Previous previous;
-  previous.depth = to.w;
+  previous.depth = kPerspective ? max(to.w, 1e-30) : to.w;
   previous.moves = false;
   if (kMotion) {
     vec2 here = centre * parameters.previous_extent.zw;
@@ -48,13 +48,13 @@ Previous reproject(Surface surface) {
     float apart = distance(here - motion, position);
     previous.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);
     position = here - motion;
+    // A NaN would stay in the history.
+    position = position == position ? position : vec2(-1e6);
   }
   position *= 1.0 / float(kTexelSize);
-  vec2 within = clamp(position, vec2(0.5), parameters.previous_extent.xy);
-  // A NaN fails the comparison.
-  vec2 outside = abs(position - within);
+  previous.position = clamp(position, vec2(0.5), parameters.previous_extent.xy);
+  vec2 outside = abs(position - previous.position);
   previous.seen = to.z > 0.0 && max(outside.x, outside.y) <= 0.5;
-  previous.position = previous.seen ? within : vec2(0.5);
   return previous;
 }
 
@@ -64,13 +64,17 @@ vec4 bilinear_weights(vec2 part) {
   return vec4(rest.x * part.y, part.x * part.y, part.x * rest.y, rest.x * rest.y);
 }
 
-vec4 gather_offsets(float x, float y, vec2 part) {
-  float left = -part.x * x;
-  float top = -part.y * y;
-  float right = left + x;
-  float bottom = top + y;
+// Returns `first` plus the change from the position to each of the four texels, in the order of
+// textureGather. `gradient` is the change per texel.
+vec4 gather_offsets(vec2 gradient, vec2 part, float first) {
+  float left = first - part.x * gradient.x;
+  float top = -part.y * gradient.y;
+  float right = left + gradient.x;
+  float bottom = top + gradient.y;
   return vec4(left + bottom, right + bottom, right + top, left + top);
 }
+
+float sum_of(vec4 v) { return v.x + v.y + v.z + v.w; }
 
 // Motion vectors do not say how far a moving surface has come nearer. The texel that lies nearest
 // to the expected depth does, if it lies within `limit` of it.
@@ -87,11 +91,83 @@ vec4 follow_depth(vec4 differences, float limit) {
   return differences - shift;
 }
 
+// What the history has at the four texels around a position, in the order of textureGather.
+struct HistoryTexels {
+  // From the surface's tangent plane, in units at which a texel of another depth no longer counts.
+  vec4 distances;
+  vec4 occlusions;
+  vec4 codes;    // of the weights
+  vec4 recents;  // as History::recent; only with kMotion
+};
+
 #ifdef HALF
 #include "reconstruct_half_history.h"
 #else
 #include "reconstruct_pixel_history.h"
 #endif
+
+// Reads the history between four texels. A texel's weight is its bilinear weight, reduced with the
+// distance of its depth from the surface's tangent plane.
+History read_moving(Surface surface) {
+  Previous previous = reproject(surface);
+  vec2 part = fract(previous.position - 0.5);
+  // The corner that the four texels share, so that no rounding can move the footprint.
+  vec2 uv = (previous.position + 0.5 - part) * parameters.history_texel;
+  HistoryTexels texels = gather_history(surface, previous, part, uv);
+  if (kMotion) {
+    if (previous.moves) {
+      texels.distances = follow_depth(texels.distances, moved_distance(surface));
+    }
+  }
+  vec4 linear = clamp(1.0 + history_slack(surface) - abs(texels.distances), 0.0, 1.0);
+  vec4 weights = bilinear_weights(part) * (linear * linear);
+  float total = sum_of(weights);
+  bool known = previous.seen && total >= 0.05;
+  float scale = 1.0 / max(total, 0.05);
+  History history = no_history();
+  vec4 weighted = weights * texels.occlusions;
+  float mean = sum_of(weighted) * scale;
+  history.occlusion = occlusion_of_mean(mean);
+  float variance = max(dot(weighted, texels.occlusions) * scale - mean * mean, 0.0);
+  float weight = weight_of_mean(dot(weights, texels.codes) * scale);
+  weight = min(weight, parameters.largest_weight);
+  history.weight = known ? weight_after_blur(weight, variance, 1.0 - total) : 0.0;
+  history.between = dot(part, 1.0 - part);
+  if (kMotion) {
+    history.recent = dot(weights, texels.recents) * scale;
+  }
+  if (kBentNormal) {
+    vec3 stored = vec3(dot(weights, textureGather(bent_history_image, uv, 0)),
+                       dot(weights, textureGather(bent_history_image, uv, 1)),
+                       dot(weights, textureGather(bent_history_image, uv, 2)));
+    history.residual = known ? unpack_half_residual(stored * scale) : vec3(0.0);
+    // From the view space of the previous frame.
+    history.residual = history.residual * mat3(parameters.previous_from_view);
+  }
+#ifdef SPECULAR
+  uvec4 lobes = textureGather(lobe_history_image, uv);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    LobeTexel lobe = unpack_lobe_texel(lobes[i]);
+    history.lobe += weights[i] * scale * lobe.open * vec2(lobe.occlusion, 1.0);
+  }
+#endif
+  return history;
+}
+
+// Reads the history at the texel itself, for a camera that stands still. The depth is compared too,
+// because objects may have moved without motion vectors.
+History read_static(Surface surface) {
+  History history = fetch_history(surface);
+  history.weight = min(history.weight, parameters.largest_weight);
+  if (kBentNormal) {
+    history.residual = unpack_half_residual(texelFetch(bent_history_image, surface.texel, 0).xyz);
+  }
+#ifdef SPECULAR
+  LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.texel, 0).r);
+  history.lobe = lobe.open * vec2(lobe.occlusion, 1.0);
+#endif
+  return history;
+}
 
 // The width of a tile in texels, at least 1.
 const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
@@ -142,15 +218,13 @@ void clamp_history(inout History history, Sums now) {
 
 // Returns the sums over the neighbourhood in this frame. A pixel with hardly any history gets the
 // wider neighbourhood of a first frame.
-Sums sum_neighbourhood(Surface surface, History history, float window) {
+Sums sum_neighbourhood(Surface surface, History history, Window window) {
   if (kFresh) {
-    Sums sums = no_sums();
-    add_ring(sums, surface, window, 0);
-    return sums;
+    return sum_wide(surface, window);
   }
   Sums sums = sum_near(surface, window);
   if (kFilterRadius > kNearRadius && history.weight < 1.5) {
-    add_ring(sums, surface, window, kNearRadius);
+    add_ring(sums, surface, window);
   }
   return sums;
 }
@@ -160,8 +234,8 @@ void reconstruct(Surface surface) {
   if (!kFresh) {
     history = kStatic ? read_static(surface) : read_moving(surface);
   }
-  surface.plane_weight *= plane_weight_growth(history.weight);
-  float window = window_of(history);
+  float growth = plane_weight_growth(history.weight);
+  Window window = Window(window_of(history), growth * growth);
   Sums now = sum_neighbourhood(surface, history, window);
   if (kClamp) {
     clamp_history(history, now);
@@ -172,7 +246,7 @@ void reconstruct(Surface surface) {
   // The sums are not normalised: a frame that traced the pixel itself has more weight than a frame
   // that traced its neighbours. They are scaled by the number of traced pixels per area of the
   // window, so that the mean weight of a frame is about 1 for every window and tile size.
-  float scale = 1.3 * float(kTileSize * kTileSize) * window;
+  float scale = 1.3 * float(kTileSize * kTileSize) * window.inverse_squared_width;
   float open = max(scale * now.open, 1e-37);
   float total = history.weight + open;
   float inverse_total = 1.0 / total;
@@ -186,8 +260,7 @@ void reconstruct(Surface surface) {
   }
   result.lobe =
       kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
-  float recent = kMotion ? history.recent : result.occlusion;
-  store_history(surface, result, total, recent);
+  store_history(surface, result, total, kMotion ? history.recent : result.occlusion);
 }
 
 #endif

@@ -3,17 +3,11 @@
 
 namespace alcove::passes::cost {
 
-std::optional<double> reconstruct_iterations(const PassWork& work, const CompiledLoop& loop) {
-  // The only loops are those of add_ring(): over rows of traced pixels and, within a row, over the
-  // pixels. Pixels with a history only run them while the history is less than two frames old,
-  // which is rare, so that they are counted as not run.
-  if (work.settings.history_frames > 0 && work.state != FrameState::first) {
-    return 0.0;
-  }
-  const double radius = work.settings.advanced.filter_radius;
-  const double across = work.settings.tile_size > 1 ? 2 * radius : 2 * radius + 1;
-  const double corners = radius > 1 ? 4 : 0;
-  return loop.depth == 1 ? across : (across * across - corners) / across;
+std::optional<double> reconstruct_iterations(const PassWork& /*work*/,
+                                             const CompiledLoop& /*loop*/) {
+  // The only loops are those of add_ring(), which pixels with a history run only while it is less
+  // than two frames old. That is rare, so that the loops are counted as not run.
+  return 0.0;
 }
 
 double reconstruct_traffic(const PassWork& work, std::string_view image, Direction direction) {
@@ -44,11 +38,13 @@ std::vector<LoadPattern> reconstruct_loads(const PassWork& work) {
   }
   const bool moving = work.state == FrameState::moving;
   const std::uint32_t footprint = moving ? 2 : 1;
-  loads.push_back({.footprint = footprint, .anywhere = moving});  // depth, or all of the history
+  const std::uint32_t channels = moving ? 2 : 1;  // a gather reads one
   if (half) {
-    const std::uint32_t channels = moving ? 2 : 1;  // a gather reads one
+    loads.push_back({.footprint = footprint, .anywhere = moving});  // depth
     loads.push_back(
         {.texel_bytes = 8, .footprint = footprint, .anywhere = moving, .count = channels});
+  } else {
+    loads.push_back({.footprint = footprint, .anywhere = moving, .count = channels});
   }
   return loads;
 }

@@ -41,16 +41,15 @@ namespace alcove::passes {
 inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
 
 // The formats of histories: of visibility (maths::pack_history_texel), of bent normals
-// (maths::pack_residual) and of GGX lobes (maths::pack_lobe_texel).
-inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R32_UINT;
-inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_R32_UINT;
+// (maths::pack_half_residual) and of GGX lobes (maths::pack_lobe_texel).
+inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R16G16_UNORM;
+inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_A2B10G10R10_UNORM_PACK32;
 inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
 
 // The formats of histories at half resolution, which the upsampling pass also reads:
-// maths::pack_half_texel(), maths::half_texel_depth() and maths::pack_half_residual().
+// maths::pack_half_texel() and maths::half_texel_depth().
 inline constexpr VkFormat kHalfFormat = VK_FORMAT_R16G16B16A16_SNORM;
 inline constexpr VkFormat kHalfDepthFormat = VK_FORMAT_R32_SFLOAT;
-inline constexpr VkFormat kHalfBentFormat = VK_FORMAT_A2B10G10R10_UNORM_PACK32;
 
 // Returns the bytes per pixel that all textures of a history take, as add_reconstruct() declares
 // them: two slots of each texture.

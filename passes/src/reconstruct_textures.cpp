@@ -62,9 +62,9 @@ void create_histories(Graph& graph, const OcclusionSettings& settings,
   textures.depth_history =
       create_history(graph, wanted && half, DerivedHistoryName(history_name, kDepthSuffix),
                      kHalfDepthFormat, largest, valid);
-  textures.bent_history = create_history(
-      graph, wanted && raw_occlusion.bent, DerivedHistoryName(history_name, kBentSuffix),
-      half ? kHalfBentFormat : kBentHistoryFormat, largest, valid);
+  textures.bent_history = create_history(graph, wanted && raw_occlusion.bent,
+                                         DerivedHistoryName(history_name, kBentSuffix),
+                                         kBentHistoryFormat, largest, valid);
   textures.lobe_history = create_history(graph, wanted && raw_occlusion.lobe,
                                          DerivedHistoryName(history_name, kLobeSuffix),
                                          kLobeHistoryFormat, largest, valid);
@@ -87,7 +87,7 @@ void create_half(Graph& graph, const OcclusionSettings& settings, const Reconstr
   }
   if (textures.inputs.raw_occlusion.bent && !textures.bent_history.next) {
     textures.bent_history.next =
-        graph.create_texture("half-resolution residual", {kHalfBentFormat, size});
+        graph.create_texture("half-resolution residual", {kBentHistoryFormat, size});
   }
   if (textures.inputs.raw_occlusion.lobe && !textures.lobe_history.next) {
     textures.lobe_history.next =

@@ -37,9 +37,10 @@ maths::mat4 pixel_from_view(const maths::Projection& p) {
 }
 
 // The largest range of depths that the history of a perspective view distinguishes, in octaves
-// (factors of two) from the near plane on. 14 bits then resolve a relative change of depth of
-// 2^-10. The resolution is finer if the far plane is nearer than that.
-constexpr float kLargestDepthOctaves = 22.0f;
+// (factors of two) from the near plane on. 13 bits then resolve a relative change of depth of
+// 2^-9.5. The resolution is finer if the far plane is nearer than that. All surfaces that are
+// further away than 65,536 times the distance of the near plane have the same depth in the history.
+constexpr float kLargestDepthOctaves = 16.0f;
 
 // The largest power of two that is no larger than the near plane's distance.
 float history_unit(const maths::Projection& p) {
@@ -66,14 +67,14 @@ maths::vec2 history_depth_scale(const maths::Projection& p) {
   return {scale, -near * scale};
 }
 
-// The error of a stored depth: half a step of its 14 bits, plus the rounding of its computation.
-constexpr float kHistorySlack = 0.75f / 16383.0f;
+// The error of a stored depth: half a step of its 13 bits, plus the rounding of its computation.
+constexpr float kHistorySlack = 0.75f / 8191.0f;
 
 // Returns the relative difference of depth from the tangent plane at which a history texel's weight
-// reaches 0 in perspective views: 1.5 texels, and at most 0.3 % of the depth. At least 0.12 %,
+// reaches 0 in perspective views: 1.5 texels, and at most 0.3 % of the depth. At least 0.13 %,
 // which is about the step of a stored depth. ReconstructParameters::history_sharpness is computed
 // from it.
-float relative_history_distance(float texel) { return std::clamp(1.5f * texel, 0.0012f, 0.003f); }
+float relative_history_distance(float texel) { return std::clamp(1.5f * texel, 0.0013f, 0.003f); }
 
 float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
   const float pixel = std::abs(maths::ray_per_px(p).y);
@@ -98,6 +99,12 @@ float half_history_sharpness(const maths::Projection& p) {
   const float rounding = 0x1p-14f * std::abs(p.near_far.y);
   return 1.0f /
          (is_perspective(p) ? relative_history_distance(texel) : std::max(1.5f * texel, rounding));
+}
+
+// Returns the value of ReconstructParameters::plane_from_normal.
+maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& view_from_normal) {
+  const maths::mat3 plane_from_view = maths::transpose(maths::mat3(view_from_pixel(p)));
+  return maths::mat4(maths::transpose(plane_from_view * maths::mat3(view_from_normal)));
 }
 
 // Returns the width of the filter's window in pixels for a frame without history: wide if there are
@@ -138,6 +145,7 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   parameters.previous_from_pixel = maths::mat4(previous_from_pixel[0], previous_from_pixel[1],
                                                previous_from_pixel[3], previous_from_pixel[2]);
   parameters.normal_from_view = maths::transpose(to_view);
+  parameters.plane_from_normal = plane_from_normal(projection, to_view);
   parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
   parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                                  projection.uv_to_slope.w);
@@ -153,13 +161,19 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   parameters.pixels_per_slope = 1.0f / maths::ray_per_px(projection);
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
-  parameters.history_unit = {history_unit(projection), history_unit(previous)};
+  parameters.history_unit = history_unit(projection);
+  if (is_perspective(previous)) {
+    // The difference of the units' logarithms is exact, because the units are powers of two.
+    parameters.history_depth_scale.w +=
+        parameters.history_depth_scale.z * static_cast<float>(std::ilogb(history_unit(previous)) -
+                                                              std::ilogb(history_unit(projection)));
+  }
   if (settings.half_resolution) {
     parameters.history_sharpness = half_history_sharpness(projection);
     parameters.history_slack = kHalfHistorySlack;
   } else {
     parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
-    parameters.history_slack = kHistorySlack;
+    parameters.history_slack = kHistorySlack * parameters.history_sharpness;
   }
   // Multiples of the golden ratio modulo 1, which are spread evenly over any number of successive
   // frames.

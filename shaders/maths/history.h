@@ -10,6 +10,7 @@ ALCOVE_MATHS_BEGIN
 
 // The largest weight, in frames, that a pixel's history can have.
 const uint kMaxHistoryFrames = 127u;
+const float kInverseRootOfMaxHistoryFrames = 0.0887357f;
 
 // Mean and standard deviation of a neighbourhood of this frame.
 struct Spread {
@@ -60,31 +61,6 @@ ALCOVE_INLINE float weight_after_blur(float weight, float variance, float missin
   return weight / (1.0f + weight * variance * (1.0f / kFrameVariance));
 }
 
-// A texel of the history, stored in 4 bytes.
-//
-// `weight` is the sum of the filter weights that the samples had for this pixel, in frames: on a
-// plane, a frame adds 1 on average. It is used instead of a frame count.
-struct HistoryTexel {
-  float depth;       // of history_depth(), [0,1], to 2^-15
-  float occlusion;   // 1 - visibility, [0,1]; 0 is exact
-  float recent;      // occlusion of the last few frames, [0,1], by its root; 0 is exact
-  float log_weight;  // of log_weight_of(), [0,1]; 0 is exact
-};
-
-// Weights are stored as base-2 logarithms between -4, which stands for a weight of 0, and 7, which
-// stands for 2^7 frames.
-const float kLeastLogWeight = -4.0f;
-const float kLogWeightRange = 11.0f;
-
-// The logarithm of a weight of 0 to kMaxHistoryFrames frames, scaled to [0,1].
-ALCOVE_INLINE float log_weight_of(float weight) {
-  return (log2(max(weight, 0.0f) + 0.0625f) - kLeastLogWeight) * (1.0f / kLogWeightRange);
-}
-
-ALCOVE_INLINE float weight_of_log(float log_weight) {
-  return exp2(log_weight * kLogWeightRange + kLeastLogWeight) - 0.0625f;
-}
-
 // Returns a depth as the history stores it, [0,1]. `scale_and_offset` is the result of
 // history_depth_scale() for the view (reconstruct_uniforms.cpp). In perspective views,
 // `log_inverse_depth` is the base-2 logarithm of 1/depth, and equal steps of the result are equal
@@ -119,41 +95,72 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
   return uintBitsToFloat((mantissa & (last << (23u - bits))) | 0x3f800000u) * scale - scale;
 }
 
-// Quantises a logarithmic weight to a whole number from 0 to 15, which is returned as a float.
-// `dither` rounds up at random, with a probability that preserves the mean of the weight rather
-// than of its logarithm. The weights of successive codes differ by a factor of 2^(11/15). At a
-// fraction f between two codes the exact probability is (2^(11/15 f) - 1) / (2^(11/15) - 1); the
-// polynomial is within 2.2e-3 of it.
-ALCOVE_INLINE float dithered_log_weight(float log_weight, float dither) {
-  float code = clamp(log_weight, 0.0f, 1.0f) * 15.0f;
-  float whole = floor(code);
-  float part = code - whole;
-  return whole + (part * (part * 0.253f + 0.747f) + dither >= 1.0f ? 1.0f : 0.0f);
+// A texel of the history of pixels. It is stored in the two channels of R16G16_UNORM, which texture
+// units convert to floats, so that two gathers read what the next frame needs of four texels.
+struct HistoryTexel {
+  float depth;      // of history_depth(), [0,1], to 2^-14
+  float recent;     // occlusion of the last few frames, [0,1]; its root in 3 bits; 0 is exact
+  float occlusion;  // 1 - visibility, [0,1], in 11 bits; 0 is exact
+  // The sum of the filter weights that the samples had for this pixel, [0,kMaxHistoryFrames], in
+  // frames: on a plane, a frame adds 1 on average. It is used instead of a frame count. Its square
+  // root is stored in 5 bits; 0 is exact.
+  float weight;
+};
+
+// The largest code of a weight, in 5 bits. Code c stands for a weight of kMaxHistoryFrames
+// (c/31)^2.
+const float kLastWeightCode = 31.0f;
+// The largest code of an occlusion, in 11 bits. Code c stands for an occlusion of c/2047.
+const float kLastOcclusionCode = 2047.0f;
+
+// Packs a texel. `dither`, [0,1), replaces the 0.5 that is added to round to nearest. The first
+// component has the recent occlusion in its lowest three bits, and the depth is rounded such that
+// the whole component is the depth to within 4.2/65535, and needs no unpacking. The second
+// component has the code of the weight in its highest five bits and that of the occlusion in the
+// others.
+ALCOVE_INLINE vec2 pack_history_texel(HistoryTexel texel, float dither) {
+  float recent = floor(sqrt(clamp(texel.recent, 0.0f, 1.0f)) * 7.0f + dither);
+  float depth = floor(texel.depth * (65535.0f / 8.0f) - recent * (1.0f / 8.0f) + 0.5f);
+  float root = sqrt(max(texel.weight, 0.0f));
+  float code = floor(root * (kLastWeightCode * kInverseRootOfMaxHistoryFrames) + dither);
+  float occlusion = floor(clamp(texel.occlusion, 0.0f, 1.0f) * kLastOcclusionCode + dither);
+  return vec2(clamp(depth, 0.0f, 8191.0f) * 8.0f + recent,
+              min(code, kLastWeightCode) * 2048.0f + occlusion) *
+         (1.0f / 65535.0f);
 }
 
-// Packs a texel into 14 bits of depth, 10 of occlusion, 4 of recent occlusion and 4 of weight. The
-// last three are combined as floats, because one conversion to an integer costs less than three.
-ALCOVE_INLINE uint pack_history_texel(HistoryTexel texel, float dither) {
-  float low_bits = dithered(texel.occlusion, 10u, dither) * 256.0f +
-                   dithered(sqrt(max(texel.recent, 0.0f)), 4u, dither) * 16.0f +
-                   dithered_log_weight(texel.log_weight, dither);
-  return (uint(texel.depth * 16383.0f + 0.5f) << 18u) | uint(low_bits);
+// Returns the recent occlusion from the first component of a packed texel.
+ALCOVE_INLINE float texel_recent(float first) {
+  // The root's code as a number of eighths: the fraction of the component's code over eight.
+  float root = fract(first * (65535.0f / 8.0f) + 0.5f / 8.0f) - 0.5f / 8.0f;
+  return max(root, 0.0f) * root * (64.0f / 49.0f);
 }
 
-ALCOVE_INLINE float texel_depth(uint bits) { return unpack_mantissa(bits, 18u, 14u); }
-ALCOVE_INLINE float texel_occlusion(uint bits) { return unpack_mantissa(bits, 8u, 10u); }
-ALCOVE_INLINE float texel_recent(uint bits) {
-  float root = unpack_mantissa(bits, 4u, 4u);
-  return root * root;
+// Returns the second component of a packed texel as a number whose whole part is the code of the
+// weight, and whose fraction is what texel_occlusion() decodes.
+ALCOVE_INLINE float texel_codes(float second) {
+  return second * (65535.0f / 2048.0f) + 0.5f / 2048.0f;
 }
-ALCOVE_INLINE float texel_log_weight(uint bits) { return unpack_mantissa(bits, 0u, 4u); }
 
-ALCOVE_INLINE HistoryTexel unpack_history_texel(uint bits) {
+// Returns the occlusion for the fraction of a result of texel_codes(), or for a weighted mean of
+// such fractions. For an occlusion of 0, the result is at most 0: rounding can add up to 3e-6 to
+// the fraction, which are subtracted with it.
+ALCOVE_INLINE float texel_occlusion(float fraction) {
+  return (fraction - (0.5f / 2048.0f + 3e-6f)) * (2048.0f / kLastOcclusionCode);
+}
+
+// Returns the weight for a weight's code, or for a weighted mean of codes.
+ALCOVE_INLINE float weight_of_code(float code) {
+  return code * code * (float(kMaxHistoryFrames) / (kLastWeightCode * kLastWeightCode));
+}
+
+ALCOVE_INLINE HistoryTexel unpack_history_texel(vec2 stored) {
   HistoryTexel texel;
-  texel.depth = texel_depth(bits);
-  texel.occlusion = texel_occlusion(bits);
-  texel.recent = texel_recent(bits);
-  texel.log_weight = texel_log_weight(bits);
+  texel.depth = stored.x;
+  texel.recent = texel_recent(stored.x);
+  float codes = texel_codes(stored.y);
+  texel.occlusion = max(texel_occlusion(fract(codes)), 0.0f);
+  texel.weight = weight_of_code(floor(codes));
   return texel;
 }
 

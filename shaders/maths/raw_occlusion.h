@@ -53,13 +53,10 @@ const float kLargestResidual = 4.0f / 3.0f;
 
 // Packs a residual into 10 bits per component. Components are clamped to +-kLargestResidual. The
 // error after unpack_residual() is at most 0.0014, and 0 for a component of 0.
-ALCOVE_INLINE uint pack_residual_dithered(vec3 residual, float dither) {
-  vec3 scaled =
-      clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + (512.0f + dither);
+ALCOVE_INLINE uint pack_residual(vec3 residual) {
+  vec3 scaled = clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + 512.5f;
   return uint(scaled.x) | (uint(scaled.y) << 10u) | (uint(scaled.z) << 20u);
 }
-
-ALCOVE_INLINE uint pack_residual(vec3 residual) { return pack_residual_dithered(residual, 0.5f); }
 
 ALCOVE_INLINE vec3 unpack_residual(uint bits) {
   vec3 scaled =

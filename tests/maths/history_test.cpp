@@ -9,51 +9,62 @@
 namespace alcove::maths_test {
 namespace {
 
-maths::HistoryTexel texel_of(float depth, float occlusion, float recent, float log_weight) {
+maths::HistoryTexel texel_of(float depth, float occlusion, float recent, float weight) {
   maths::HistoryTexel texel;
   texel.depth = depth;
   texel.occlusion = occlusion;
   texel.recent = recent;
-  texel.log_weight = log_weight;
+  texel.weight = weight;
   return texel;
 }
 
+// Rounds to the nearest value that a 16-bit UNORM channel can hold.
+float unorm16(float value) { return std::round(value * 65535.0f) / 65535.0f; }
+
 maths::HistoryTexel stored(const maths::HistoryTexel& texel, float dither) {
-  return maths::unpack_history_texel(maths::pack_history_texel(texel, dither));
+  const maths::vec2 packed = maths::pack_history_texel(texel, dither);
+  return maths::unpack_history_texel({unorm16(packed.x), unorm16(packed.y)});
 }
 
-TEST(History, PackedTexelKeepsValuesWithinQuantisationSteps) {
+constexpr float kMaxWeight = float(maths::kMaxHistoryFrames);
+
+// The root of a weight in steps of its five bits.
+float weight_code(float weight) { return 31.0f * std::sqrt(weight / kMaxWeight); }
+
+TEST(History, TexelKeepsItsValuesWithinTheirQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const maths::HistoryTexel texel = texel_of(random.uniform(0, 1), random.uniform(0, 1),
-                                               random.uniform(0, 1), random.uniform(0, 1));
+                                               random.uniform(0, 1), random.uniform(0, kMaxWeight));
     const maths::HistoryTexel back = stored(texel, random.uniform(0.0f, 0.999f));
-    EXPECT_NEAR(back.depth, texel.depth, 0.5f / 16383.0f + 2e-6f);
-    EXPECT_NEAR(back.occlusion, texel.occlusion, 1.0f / 1023.0f + 2e-6f);
-    EXPECT_NEAR(std::sqrt(back.recent), std::sqrt(texel.recent), 1.0f / 15.0f + 2e-6f);
-    EXPECT_NEAR(back.log_weight, texel.log_weight, 1.0f / 15.0f + 2e-6f);
+    EXPECT_NEAR(back.depth, texel.depth, 7.5f / 65535.0f);
+    EXPECT_NEAR(back.occlusion, texel.occlusion, 1.0f / 2047.0f + 4e-6f);
+    EXPECT_NEAR(std::sqrt(back.recent), std::sqrt(texel.recent), 1.0f / 7.0f + 1e-3f);
+    EXPECT_NEAR(weight_code(back.weight), weight_code(texel.weight), 1.0f + 1e-4f);
   }
 }
 
-TEST(History, PackedTexelKeepsZeroAndOneExactlyForAnyDither) {
+TEST(History, TexelKeepsZeroAndTheLargestValuesExactlyAtAnyDither) {
   for (const float dither : {0.0f, 0.3f, 0.9999f}) {
     const maths::HistoryTexel least = stored(texel_of(0, 0, 0, 0), dither);
     EXPECT_EQ(least.depth, 0.0f);
     EXPECT_EQ(least.occlusion, 0.0f);
     EXPECT_EQ(least.recent, 0.0f);
-    EXPECT_EQ(least.log_weight, 0.0f);
-    const maths::HistoryTexel most = stored(texel_of(1, 1, 1, 1), dither);
+    EXPECT_EQ(least.weight, 0.0f);
+    const maths::HistoryTexel most = stored(texel_of(1, 1, 1, kMaxWeight), dither);
     EXPECT_FLOAT_EQ(most.depth, 1.0f);
-    EXPECT_FLOAT_EQ(most.occlusion, 1.0f);
-    EXPECT_FLOAT_EQ(most.recent, 1.0f);
-    EXPECT_FLOAT_EQ(most.log_weight, 1.0f);
-    const maths::HistoryTexel beyond = stored(texel_of(1, 9, 9, 9), dither);
-    EXPECT_FLOAT_EQ(beyond.occlusion, 1.0f);
-    EXPECT_FLOAT_EQ(beyond.log_weight, 1.0f);
+    EXPECT_NEAR(most.occlusion, 1.0f, 4e-6f);
+    EXPECT_NEAR(most.recent, 1.0f, 1e-3f);
+    EXPECT_FLOAT_EQ(most.weight, kMaxWeight);
+    const maths::HistoryTexel beyond = stored(texel_of(1, 9, 9, 1000), dither);
+    EXPECT_NEAR(beyond.occlusion, 1.0f, 4e-6f);
+    EXPECT_FLOAT_EQ(beyond.weight, kMaxWeight);
   }
 }
 
-TEST(History, DitheringPreservesTheMean) {
+// The mean of the weight is up to a quarter of a squared step of its root too large, which is 0.033
+// frames.
+TEST(History, DitherKeepsTheMean) {
   constexpr int kSteps = 1000;
   for (const float value : {0.0004f, 0.1234f, 0.5f, 0.9871f}) {
     for (const float weight : {0.3f, 2.0f, 17.0f, 100.0f}) {
@@ -61,23 +72,13 @@ TEST(History, DitheringPreservesTheMean) {
       double mean_weight = 0.0;
       for (int i = 0; i < kSteps; ++i) {
         const float dither = (static_cast<float>(i) + 0.5f) / kSteps;
-        const maths::HistoryTexel back =
-            stored(texel_of(0.5f, value, 0.0f, maths::log_weight_of(weight)), dither);
+        const maths::HistoryTexel back = stored(texel_of(0.5f, value, 0.0f, weight), dither);
         occlusion += back.occlusion / kSteps;
-        mean_weight += maths::weight_of_log(back.log_weight) / kSteps;
+        mean_weight += back.weight / kSteps;
       }
-      EXPECT_NEAR(occlusion, value, 2e-6);
-      EXPECT_NEAR(mean_weight, weight, 0.003 * weight);
+      EXPECT_NEAR(occlusion, value, 5e-6);
+      EXPECT_NEAR(mean_weight, weight, 0.034 + 0.003 * weight);
     }
-  }
-}
-
-TEST(History, LogarithmicEncodingKeepsTheWeight) {
-  EXPECT_EQ(maths::log_weight_of(0.0f), 0.0f);
-  EXPECT_EQ(maths::weight_of_log(0.0f), 0.0f);
-  for (float weight = 0.1f; weight <= float(maths::kMaxHistoryFrames); weight *= 1.3f) {
-    EXPECT_NEAR(maths::weight_of_log(maths::log_weight_of(weight)), weight, 1e-4f * weight);
-    EXPECT_LE(maths::log_weight_of(weight), 1.0f);
   }
 }
 

@@ -1,0 +1,70 @@
+// The images of reconstruct.comp. The variants of the shader are compiled with these names defined:
+//   HALF      texels of 2x2 pixels are reconstructed, and the pass "upsample" computes the pixels
+//   HISTORY   there is a history
+//   SPECULAR  there is a GGX lobe for specular occlusion
+// The passes find bindings by name, so that their numbers have no meaning outside this file.
+#ifndef ALCOVE_RECONSTRUCT_BINDINGS_H
+#define ALCOVE_RECONSTRUCT_BINDINGS_H
+
+#ifdef SPECULAR
+const bool kLobe = true;
+#define RAW_FORMAT rgba32ui
+#else
+const bool kLobe = false;
+#define RAW_FORMAT rg32ui
+#endif
+
+layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
+layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // one texel a tile
+// Without bent normals it is never read, and another image is bound in its place.
+layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
+// The depth buffer as the projection wrote it. All samplers are nearest and clamp to the edge.
+layout(set = 0, binding = 3) uniform sampler2D depth_image;
+layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
+
+#ifdef HALF
+layout(set = 0, binding = 5) uniform writeonly image2D half_image;        // pack_half_texel()
+layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // half_texel_depth()
+#else
+// If an output is not wanted, it is never written, and another image is bound in its place.
+layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
+// In the space of the normals.
+layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
+// The image that visibility_image writes, from which the kept channels are read. Without
+// kKeepsChannels it is never read, and another image is bound in its place.
+layout(set = 0, binding = 16) uniform texture2D kept_image;
+#endif
+
+#ifdef HISTORY
+#ifdef HALF
+// half_image and half_depth_image of the previous frame.
+layout(set = 0, binding = 7) uniform sampler2D history_image;
+layout(set = 0, binding = 8) uniform sampler2D history_depth_image;
+#else
+layout(set = 0, binding = 7) uniform sampler2D history_image;  // pack_history_texel()
+layout(set = 0, binding = 8) uniform writeonly image2D next_history_image;
+#endif
+// Without kMotion it is never read, and another image is bound in its place.
+layout(set = 0, binding = 9) uniform texture2D motion_image;
+// Without bent normals it is never read, and another image is bound in its place.
+layout(set = 0, binding = 10) uniform sampler2D bent_history_image;  // pack_half_residual()
+#endif
+#if defined(HISTORY) || defined(HALF)
+// Without bent normals it is never written, and another image is bound in its place.
+layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
+#endif
+
+#ifdef SPECULAR
+layout(set = 0, binding = 12) uniform texture2D roughness_image;  // perceptual
+#ifndef HALF
+layout(set = 0, binding = 13) uniform writeonly image2D specular_image;
+#endif
+#ifdef HISTORY
+layout(set = 0, binding = 14) uniform usampler2D lobe_history_image;  // LobeTexel
+#endif
+#if defined(HISTORY) || defined(HALF)
+layout(set = 0, binding = 15) uniform writeonly uimage2D next_lobe_history_image;
+#endif
+#endif
+
+#endif
