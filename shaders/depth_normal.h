@@ -1,5 +1,5 @@
-// Normals from depth, for pixels whose given normal is missing. A shader that includes it must
-// define load_inverse_depth(), parameters.slope, kPerspective and size_px().
+// Computes normals from depth, for pixels whose given normal is missing. A shader that includes
+// this file must define load_inverse_depth(), parameters.slope, kPerspective and size_px().
 #ifndef ALCOVE_DEPTH_NORMAL_H
 #define ALCOVE_DEPTH_NORMAL_H
 

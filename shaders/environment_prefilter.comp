@@ -22,8 +22,8 @@ mat3 frame_of(vec3 normal) {
   return mat3(x, cross(normal, x), normal);
 }
 
-// Returns the source mip whose texels cover about twice the solid angle of one sample, for samples
-// with this probability density per steradian.
+// Returns the source mip whose texels cover about twice the solid angle of one sample. `density` is
+// the probability density of the sample per steradian.
 float source_level(float density) {
   float sample_angle = 1.0 / (parameters.samples * density);
   float texel_angle = 4.0 * kPi / (parameters.source_px.x * parameters.source_px.x);

@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Writes what is reconstructed at half resolution into images of half the depth buffer's size, for
-// engines that upsample it themselves. It takes the place of upsample.comp.
+// Writes the results of the reconstruction at half resolution into images of half the depth
+// buffer's size, for engines that upsample these themselves. It runs instead of upsample.comp.
 
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
@@ -55,10 +55,9 @@ float load_inverse_depth(ivec2 pixel) {
 #include "depth_normal.h"
 #include "store_visibility.h"
 
-// Returns the pixel of a texel whose surface the results belong to, as representative() of
-// reconstruct_half_surface.h chooses it: the nearest of the 2x2 pixels in one half of the texels,
-// the farthest in the other, like the squares of a chessboard; and the sky only where there is
-// nothing else.
+// Returns the pixel of a texel to whose surface the results belong. representative() in
+// reconstruct_half_surface.h has chosen it: the nearest of the 2x2 pixels if x + y of the texel is
+// even, and otherwise the farthest; and a pixel of the sky only if all four show the sky.
 ivec2 pixel_of(ivec2 texel) {
   ivec2 first = texel * 2;
   ivec2 last = min(first + 1, size_px() - 1);

@@ -6,8 +6,8 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Width and height of the grid of sampled pixels. The result has two texels for each sampled pixel,
-// and one more row for the whole image.
+// Width and height of the grid of sampled pixels. The image that inspect.comp writes has two texels
+// for each sampled pixel, and one more row for the whole image.
 const uint kInspectColumns = 64;
 const uint kInspectRows = 48;
 

@@ -2,8 +2,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Raises visibility by the light that occluders reflect, for each colour channel ([Jimenez 2016],
-// section 5).
+// Raises the visibility of each pixel, separately for each colour channel, by the light that
+// occluders reflect ([Jimenez 2016], section 5).
 
 #include "maths/multi_bounce.h"
 #include "multi_bounce_parameters.h"

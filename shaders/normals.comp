@@ -41,8 +41,9 @@ float miss(float depth, float one, float two) {
          0.25 * abs(inverse_depth.y - inverse_depth.x);
 }
 
-// Returns the vector between the positions of the pixel and of its better neighbour along an image
-// axis. It points in the positive direction of the axis.
+// Returns the vector between the positions of the pixel and of one of its two neighbours along an
+// image axis: the neighbour whose depth continues the pixel's surface better. The vector points in
+// the positive direction of the axis.
 vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
   ivec2 last = ivec2(parameters.projection.size_px) - 1;
   float before = fetch_depth(pixel - axis);
@@ -55,7 +56,7 @@ vec3 tangent(ivec2 pixel, ivec2 axis, float depth) {
   bool none_after = final || is_sky_depth(after);
   bool take_after = none_before || (!none_after && miss_after < miss_before);
   // If both neighbours are sky, the surface is assumed to face the eye along this axis: the
-  // neighbour is given the depth of the pixel.
+  // neighbours are given the depth of the pixel.
   before = none_before ? depth : before;
   after = none_after ? depth : after;
   vec3 here = fetch_position(pixel, depth);

@@ -70,17 +70,19 @@ float load_inverse_depth(ivec2 pixel) {
 float right_of(int i) { return i == 1 || i == 2 ? 1.0 : -1.0; }
 float below_of(int i) { return i < 2 ? 1.0 : -1.0; }
 
-// The largest distance from a plane, in units of the tolerance, for which weights still decrease.
-// The limit keeps the product of the denominators of three weights within the range of a float.
+// The largest distance from a texel's plane, in units of the tolerance, up to which weights
+// decrease. The limit keeps the product of the denominators of three weights within the range of a
+// float.
 const float kFarthest = 1e5;
 
 struct Cell {
   ivec2 first;      // the pixel to the upper left
   vec4 depths_ndc;  // raw depths of the pixels
   vec4 occlusions;  // of the texels
-  // For each texel, its distance from a pixel in units of the tolerance is steepness - plane /
-  // depth in perspective views, and steepness * depth - plane in orthographic views, where depth is
-  // the pixel's. `planes` holds the value `plane` of each texel for each of the four pixels.
+  // Coefficients of a pixel's distance from the tangent plane of each of the four texels, in units
+  // of the tolerance. With d the inverse depth of the pixel (in orthographic views its linear
+  // depth), the distance is steepness - plane / d in perspective views and steepness * d - plane in
+  // orthographic views. `planes` holds the value `plane` of each texel for each of the four pixels.
   vec4 steepness;
   vec4 planes[4];
 };
@@ -116,9 +118,9 @@ Cell fetch_cell(ivec2 index) {
   return cell;
 }
 
-// Returns the weights of the four texels for pixel `j`, which must not be sky, up to a common
-// factor: bilinear weight / (1 + distance^2), where the distance from the texel's plane is in units
-// of the tolerance.
+// Returns the weights of the four texels for pixel `j`, which must not be sky. They have a common
+// factor. Each is the bilinear weight / (1 + distance^2), where the distance of the pixel from the
+// texel's tangent plane is in units of the tolerance.
 vec4 weights_of(Cell cell, int j) {
   float from_smallest = grows_with_inverse_depth(kPerspective, kReversed)
                             ? cell.depths_ndc[j]

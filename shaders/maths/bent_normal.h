@@ -15,10 +15,10 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Returns the integral of the unoccluded direction over one half-slice, between the view direction
-// and a direction above the tangent plane: x along the slice's direction, y along the view
-// direction, each at most 1 in size. `light` has the sine (at least 0) and the cosine of that
-// direction's angle.
+// Returns the integral of the unoccluded direction over one half-slice, from the view direction to
+// the direction `light`, which lies above the tangent plane and is given by the sine (at least 0)
+// and the cosine of its angle. The result has x along the slice's direction and y along the view
+// direction; each is at most 1 in size.
 ALCOVE_INLINE vec2 bent_light_arc(Slice s, float side, vec2 light) {
   float along = side * s.along;
   float sine_cubed = light.x * light.x * light.x;
@@ -33,8 +33,9 @@ ALCOVE_INLINE vec2 bent_arc(Slice s, float side, float horizon) {
   return bent_light_arc(s, side, horizon_light(s, side, horizon));
 }
 
-// Returns a slice's contribution to the bent normal, in the space of `direction` and `view`. Sum it
-// over slices.
+// Returns a slice's contribution to the bent normal, in the space of `direction` and `view`.
+// `ahead` and `behind` are the cosines of the horizons in the positive and the negative half-slice.
+// The sum over all slices points along the bent normal.
 ALCOVE_INLINE vec3 slice_bent_normal(Slice s, vec3 direction, vec3 view, float ahead,
                                      float behind) {
   vec2 front = bent_arc(s, 1.0f, ahead);
@@ -58,14 +59,14 @@ ALCOVE_INLINE vec3 expected_residual(Slice s, vec3 direction, vec3 view, vec3 no
 }
 
 // Returns a sum of residuals minus `visibility`, [0,1], times the same sum of expected residuals.
-// The expected residual is a control variate: subtracting it does not change the mean over all
-// slices, and makes the residual of an unoccluded surface zero.
+// The expected residual serves as a control variate: subtracting it does not change the mean over
+// all slices, and makes the residual of an unoccluded surface zero.
 ALCOVE_INLINE vec3 converged_residual(vec3 residual, vec3 expected_residual, float visibility) {
   return residual - expected_residual * visibility;
 }
 
-// Returns the unit bent normal, from the sums of residuals and of visible parts over slices, or
-// `normal` if nothing is visible.
+// Returns the unit bent normal. `residual` and `visible` are the sums of residuals and of visible
+// parts over slices. If nothing is visible, returns `normal`.
 ALCOVE_INLINE vec3 finish_bent_normal(vec3 residual, float visible, vec3 normal) {
   vec3 sum = residual_of(residual, -visible, normal);
   float squared = dot(sum, sum);

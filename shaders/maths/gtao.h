@@ -1,9 +1,10 @@
 // Ground-truth ambient occlusion within a slice (Jimenez et al. 2016, ATVI-TR-16-01, section 4).
 //
 // The paper integrates visibility up to a horizon at angle h with J(h) = (-cos(2h - g) + cos g + 2
-// h sin g) / 4, times the length of the projected normal. These functions use the same integral
-// without the angle g: with c and s the cosine and sine of the horizon, and h its angle, each
-// positive,
+// h sin g) / 4, times the length of the projected normal. These functions compute the same integral
+// without the angle g. With h the angle of the horizon to the view direction, at least 0 in both
+// half-slices, c its cosine and s its sine, n the normal, v the view direction and d the direction
+// of the slice, it is
 //     length J = (s (s <n,v> - c <n,d>) + h <n,d>) / 2
 // in the positive half-slice, and with -<n,d> in the negative one. It takes one square root and one
 // arc cosine.

@@ -32,8 +32,9 @@ ALCOVE_INLINE vec3 mirror_direction(vec3 normal, vec3 view) {
   return 2.0f * dot(normal, facing) * normal - facing;
 }
 
-// Returns the angle whose squared sine and cosine these are, or the same multiple of both. A square
-// that is negative because of rounding counts as 0.
+// Returns the angle, [0,pi], from the square of its sine and from its cosine. Both may be
+// multiplied by a common factor (the square by the factor's square). A square that is negative
+// because of rounding counts as 0.
 ALCOVE_INLINE float angle_of(float sine_squared, float cosine) {
   return atan(sqrt(max(sine_squared, 0.0f)), cosine);
 }
@@ -52,8 +53,8 @@ ALCOVE_INLINE float visibility_cone(float visibility) {
 }
 
 // Returns the bent normal, rotated towards the normal until the visibility cone around it lies
-// above the surface. For an unoccluded surface the result is the normal itself, without the noise
-// of the bent normal.
+// above the surface. If the surface is unoccluded, the cone is the hemisphere, and the result is
+// the normal itself without the noise of the bent normal.
 ALCOVE_INLINE vec3 raised_bent_normal(vec3 bent_normal, vec3 normal, float visibility) {
   float v = clamp(visibility, 0.0f, 1.0f);
   float bent_dot_normal = dot(bent_normal, normal);

@@ -65,8 +65,8 @@ ALCOVE_INLINE float unsqueeze_cone(float squeezed, float width) {
   return min(part * width / max(1.0f - part, 1e-6f), kHalfPi);
 }
 
-// squeeze_mirror() maps the angle between mirror direction and normal, [0,pi/2], to [0,1], so that
-// most entries are at grazing angles. The next function is its inverse.
+// squeeze_mirror() maps the angle between the mirror direction and the normal, [0,pi/2], to [0,1],
+// with most entries at grazing angles. unsqueeze_mirror() is its inverse.
 ALCOVE_INLINE float squeeze_mirror(float mirror_from_normal) {
   float part = clamp(mirror_from_normal / kHalfPi, 0.0f, 1.0f);
   return part * part;
@@ -122,8 +122,8 @@ ALCOVE_INLINE float gtso_corner_weight(vec4 t, uint corner) {
          ((corner & 4u) != 0u ? t.z : 1.0f - t.z) * ((corner & 8u) != 0u ? t.w : 1.0f - t.w);
 }
 
-// Returns the specular visibility if it follows without the table: nothing or everything is
-// visible, or the surface is a mirror. Returns a negative value if the table is needed.
+// Returns the specular visibility in the cases that need no table: nothing or everything is
+// visible, or the surface is a mirror. In all other cases returns a negative value.
 ALCOVE_INLINE float gtso_exact(float visibility, float cone, float bent_from_mirror,
                                float roughness) {
   if (visibility <= 0.0f) return 0.0f;

@@ -1,6 +1,7 @@
-// A reconstructed texel of 2x2 pixels at half resolution: its occlusion and the tangent plane of
-// its surface. The upsampling pass computes pixels from it, and the next frame reads it as history.
-// It is stored in two images whose formats texture units unpack: R16G16B16A16_SNORM and R32_SFLOAT.
+// A texel of 2x2 pixels that was reconstructed at half resolution: its occlusion and the tangent
+// plane of its surface. The upsampling pass computes pixels from it, and the next frame reads it as
+// history. It is stored in two images, R16G16B16A16_SNORM and R32_SFLOAT, which texture units
+// unpack.
 #ifndef ALCOVE_MATHS_HALF_TEXEL_H
 #define ALCOVE_MATHS_HALF_TEXEL_H
 

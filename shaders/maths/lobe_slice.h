@@ -1,8 +1,8 @@
 // The part of a GGX lobe that a slice leaves visible, in closed form.
 //
 // Slices describe the visible directions better than a single cone does. For a light at angle t
-// from the view direction within a slice, the half vector lies in the same slice at t/2. With p and
-// g the length and the angle of the projected normal,
+// from the view direction within a slice, the half vector lies in the same slice at t/2. With p the
+// length of the projected normal and g its angle to the view direction (gamma),
 //     n.h = p cos(t/2 - g)     and     D = alpha^2 / (pi (1 - k cos^2(t/2 - g))^2),
 // k = (1 - alpha^2) p^2. D times |sin t|, the measure of the slice, has an antiderivative in x = t
 // - 2g, the angle from the lobe's centre in this slice. With m = 1 - k, B = k/2, A = 1 - B and N =
@@ -89,9 +89,9 @@ ALCOVE_INLINE float lobe_antiderivative(LobeDensity d, vec2 light) {
   float opposite = abs(half_sine);
   float adjacent = d.root_m * half_cosine;
   float cosine = adjacent * inversesqrt(max(adjacent * adjacent + opposite * opposite, 1e-30f));
-  float turn = arc_cosine(cosine);
-  turn = half_sine < 0.0f ? -turn : turn;
-  float around = (1.0f - b) * sin_x / n + 2.0f * b / d.root_m * turn;
+  float angle = arc_cosine(cosine);
+  angle = half_sine < 0.0f ? -angle : angle;
+  float around = (1.0f - b) * sin_x / n + 2.0f * b / d.root_m * angle;
   return d.strength * (d.cos_twice * rise / n + d.sin_twice * around);
 }
 
@@ -136,8 +136,8 @@ ALCOVE_INLINE LobeSlice make_lobe_slice(Slice s, float alpha) {
 }
 
 // Returns the integral of the lobe in a half-slice between the view direction and a light above the
-// tangent plane, from 0 to the half-slice's `whole`. `light` has the sine (at least 0) and the
-// cosine of the light's angle.
+// tangent plane. The result is between 0 and LobeSide::whole of the half-slice. `light` has the
+// sine (at least 0) and the cosine of the light's angle to the view direction.
 ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
   float integral =
       abs(lobe_antiderivative(lobe.density, vec2(side * light.x, light.y)) - lobe.at_view);
@@ -158,8 +158,10 @@ ALCOVE_INLINE float horizon_lobe(Slice s, LobeSlice lobe, float ahead, float beh
   return lobe_arc(s, lobe, 1.0f, ahead) + lobe_arc(s, lobe, -1.0f, behind);
 }
 
-// Returns the integral of the lobe over the directions of a half-slice that the occluded sectors
-// leave visible. visible_part() returns the same with the cosine as the weight.
+// Returns the integral of the lobe over the visible directions of a half-slice: over the sectors
+// whose bit in `occluded` is not set. Visible sectors behind the first occluder count by the factor
+// 1 - `hidden_occlusion`. visible_part() in visibility_bitmask.h does the same with the cosine as
+// the weight.
 ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_angle, uint occluded,
                                  float hidden_occlusion) {
   float keep = 1.0f - hidden_occlusion;
@@ -178,8 +180,8 @@ ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_a
   return max(sum, 0.0f);
 }
 
-// Returns the angle of the slice that contains the centre of the lobe: the plane of view direction
-// and normal. If the two are equal, every slice contains it.
+// Returns the angle of the slice that contains the centre of the lobe. Its plane contains the view
+// direction and the normal. If these two are equal, every slice contains the centre.
 ALCOVE_INLINE float lobe_plane(vec3 normal, ViewBasis basis) {
   return atan(dot(normal, basis.y), dot(normal, basis.x) + 1e-12f);
 }
@@ -190,18 +192,18 @@ struct WeightedAngle {
   float weight;
 };
 
-// Rotates a slice's angle towards the plane that contains the centre of the lobe. The narrower the
-// lobe, the larger the rotation, so that slices are up to 6 times as dense there. The weight is the
-// derivative of the rotated angle, [0.16,1.84], so that means over evenly distributed angles do not
-// change.
+// Rotates a slice's angle `phi` towards `plane`, the angle of the slice that contains the centre of
+// the lobe (lobe_plane()). The narrower the lobe, the larger the rotation: slices are up to 6 times
+// as dense there. The weight, [0.16,1.84], is the derivative of the rotated angle with respect to
+// `phi`. With it, means over evenly distributed angles do not change.
 ALCOVE_INLINE WeightedAngle lobe_angle(float phi, float plane, float roughness) {
   float smooth_part = 1.0f - roughness;
   float focus = min(0.5f * smooth_part * smooth_part, 0.42f);
   float twice = 2.0f * (phi - plane);
-  WeightedAngle turned;
-  turned.phi = phi - focus * sin(twice);
-  turned.weight = 1.0f - 2.0f * focus * cos(twice);
-  return turned;
+  WeightedAngle rotated;
+  rotated.phi = phi - focus * sin(twice);
+  rotated.weight = 1.0f - 2.0f * focus * cos(twice);
+  return rotated;
 }
 
 ALCOVE_MATHS_END

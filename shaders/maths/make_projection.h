@@ -31,8 +31,9 @@ inline bool is_orthographic(const dmat4& m) {
          (w_per_z <= kRounding * std::abs(m[3][3]) && w_per_z <= 1e-4 * std::abs(m[2][2]));
 }
 
-// Returns whether the constant part of w is at most a rounding error. Removing it then moves the
-// eye along z by less than a ten-thousandth of the near plane's distance.
+// Returns whether the constant part of the clip-space coordinate w is at most a rounding error.
+// Removing it then moves the eye along z by less than a ten-thousandth of the near plane's
+// distance.
 inline bool has_no_constant_w(const dmat4& m) {
   return std::abs(m[3][3]) <= std::max(1e-6 * std::abs(m[2][3]), 1e-4 * std::abs(m[3][2]));
 }

@@ -6,8 +6,8 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Returns x, clamped to [0,1], as an integer of `bits` bits (1 to 16). The error after
-// unpack_unorm() is at most 0.5 / (2^bits - 1).
+// Returns x, clamped to [0,1], as an integer of `bits` bits (1 to 16). unpack_unorm() then returns
+// x with an error of at most 0.5 / (2^bits - 1).
 ALCOVE_INLINE uint pack_unorm(float x, uint bits) {
   float last = float((1u << bits) - 1u);
   return uint(clamp(x, 0.0f, 1.0f) * last + 0.5f);

@@ -19,9 +19,9 @@ ALCOVE_MATHS_BEGIN
 struct Projection {
   vec4 uv_to_slope;   // xy scale, zw offset: view-space xy per unit of depth along a pixel's ray
   vec4 uv_to_origin;  // xy scale, zw offset: view-space xy of a pixel's ray at depth 0
-  // Coefficients that convert a view-space position, with coordinates xy, to uv: (position_to_uv.xy
-  // * xy + depth_to_uv.xy * depth + position_to_uv.zw) / (depth_to_uv.z * depth + depth_to_uv.w).
-  // The divisor is positive.
+  // Coefficients that convert a view-space position to uv. The position has the coordinates xy and
+  // the linear depth `depth`: uv = (position_to_uv.xy * xy + depth_to_uv.xy * depth +
+  // position_to_uv.zw) / (depth_to_uv.z * depth + depth_to_uv.w). The divisor is positive.
   vec4 position_to_uv;
   vec4 depth_to_uv;
   vec4 depth_unproject;  // depth = (x * depth_ndc + y) / (z * depth_ndc + w)
@@ -32,8 +32,8 @@ struct Projection {
   vec2 near_far;         // linear depths of both planes; kSkyDepth if infinite
 };
 
-// Returns whether raw depth is at or beyond the far plane, or NaN. Do not call it with filtered
-// depth, which mixes the sky with the foreground.
+// Returns whether `depth_ndc`, a value of the depth buffer, is at or beyond the far plane, or NaN.
+// Do not call it with filtered depth, which mixes the sky with the foreground.
 ALCOVE_INLINE bool is_sky_ndc(Projection p, float depth_ndc) {
   return !(p.sky.x * depth_ndc < p.sky.y);
 }
@@ -41,8 +41,8 @@ ALCOVE_INLINE bool is_sky_ndc(Projection p, float depth_ndc) {
 // Returns whether a result of linear_depth() is the sky. Do not call it with averaged depths.
 ALCOVE_INLINE bool is_sky_depth(float depth) { return !(depth < kSkyDepth); }
 
-// Returns the linear depth of a raw depth. The sky, infinity and NaN give kSkyDepth. A raw depth
-// nearer than the near plane gives the depth of the near plane.
+// Returns the linear depth of `depth_ndc`, a value of the depth buffer. The sky, infinity and NaN
+// give kSkyDepth. A value nearer than the near plane gives the depth of the near plane.
 ALCOVE_INLINE float linear_depth(Projection p, float depth_ndc) {
   if (is_sky_ndc(p, depth_ndc)) return kSkyDepth;
   float d = min(max(depth_ndc, 0.0f), 1.0f);

@@ -32,8 +32,8 @@ ALCOVE_INLINE uint pack_open(float open) {
 
 ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
 
-// Packs the visibility with an error of at most 2^-14, the unoccluded part, and the traced pixel's
-// QuantisedNormal.
+// Packs the raw occlusion and the normal of a traced pixel: the visibility (13 bits, with an error
+// of at most 2^-14), the unoccluded part (11 bits), and the QuantisedNormal (8 bits).
 ALCOVE_INLINE uint pack_raw_occlusion(RawOcclusion raw_occlusion, uint quantised_normal) {
   return pack_unorm(mean_visibility(raw_occlusion), 13u) | (pack_open(raw_occlusion.open) << 13u) |
          (quantised_normal << 24u);
@@ -86,8 +86,8 @@ struct LobeSurface {
   float roughness;  // perceptual, [0,1]
 };
 
-// Packs a surface with one byte per value. The error of the normal is half a degree, and that of
-// the roughness 2^-9.
+// Packs the normal and the roughness of a surface with one byte per component. The error of the
+// normal is at most half a degree, and that of the roughness 2^-9.
 ALCOVE_INLINE uint pack_lobe_surface(LobeSurface surface) {
   return packUnorm4x8(vec4(surface.normal.x * 0.5f + 0.5f, surface.normal.y * 0.5f + 0.5f,
                            surface.normal.z * 0.5f + 0.5f, surface.roughness));
