@@ -2,7 +2,7 @@
 #
 # Compiles a GLSL file to SPIR-V with glslang while TARGET is built and makes it includable there as
 # "spirv/NAME.h", which defines `const uint32_t kName[]`, the words of the module. NAME defaults to the
-# file's stem; another one makes a variant, with DEFINES, of the same file.
+# file's stem. A different NAME, together with DEFINES, makes a variant of the same file.
 find_program(ALCOVE_GLSLANG glslangValidator REQUIRED)
 
 function(alcove_embed_shader target shader)

@@ -134,8 +134,8 @@ void Synchroniser::leave(std::uint32_t resource) {
     final.state.access = reads_in(lead.seen_access);
   final.state.layout = lead.layout;
   if (workspace_.several_queues) {
-    // States do not keep uses from before a change of queue. The next frame therefore waits for all
-    // commands of the queue.
+    // The state of a subresource does not record the uses before its last change of queue. The next
+    // frame therefore waits for all commands of the queue.
     final.state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     final.state.access = VK_ACCESS_2_MEMORY_WRITE_BIT;
   }

@@ -142,8 +142,8 @@ void RecordingThreads::work(std::size_t thread) {
   }
 }
 
-// Does not throw. submission() rethrows the exception of a callback or of operator new after all
-// threads have finished.
+// Records pieces until none is left. It does not throw: an exception of a callback or of operator
+// new is stored, and submission() rethrows it after all threads have finished.
 void RecordingThreads::record_pieces(std::size_t thread) {
   for (std::size_t i = next_piece_++; i < pieces_.size(); i = next_piece_++) {
     pieces_[i].thrown = thrown_by([&] { pieces_[i].result = record(pieces_[i], thread); });

@@ -13,8 +13,8 @@
 
 namespace alcove::framegraph {
 
-// Time counts half positions: the batch before position p has time 2p, and the pass at p has time
-// 2p + 1.
+// Points in time within a frame, in half positions: the batch of barriers before the pass at
+// position p has the time 2p, and the pass itself has the time 2p + 1.
 inline constexpr std::int32_t kBeforeFrame = -1;
 inline constexpr std::int32_t kNever = -2;
 
@@ -55,17 +55,17 @@ struct PlaceItem {
 };
 
 struct Workspace {
-  // Subresources of all resources are numbered: those of resource r begin at first_sub[r]. The mip
-  // varies fastest, then the layer, then the plane. A resource with an invalid description has
-  // none.
+  // The index of each resource's first subresource in the numbering of all subresources. Within a
+  // resource the mip varies fastest, then the layer, then the plane. A resource with an invalid
+  // description has no subresources.
   std::vector<std::uint32_t> first_sub;
 
-  // Written by order and by queues, read by all later phases: the live passes in order of
-  // execution.
+  // The live passes in order of execution. The phases order and queues write it, and all later
+  // phases read it.
   std::vector<std::uint32_t> order;
 
-  // Written by queues, read by all later phases: whether the frame uses queues other than graphics,
-  // or uses resources that were last used on another queue.
+  // Whether the frame uses queues other than graphics, or resources that were last used on another
+  // queue. The phase queues writes it, and all later phases read it.
   bool several_queues = false;
 
   // Written by lifetimes, read by place: the live transients in order of first use.
@@ -90,8 +90,8 @@ struct Workspace {
     std::vector<std::uint32_t> history_reader;
   } cull;
   struct Reorder {
-    // An element of a linked list of passes: those that follow a pass, or those that read a
-    // subresource.
+    // An element of a linked list of passes. There are two kinds of list: the passes that must come
+    // after a pass, and the passes that read a subresource.
     struct Link {
       std::uint32_t pass = kNone;
       std::uint32_t next = kNone;  // link
@@ -138,8 +138,8 @@ struct Workspace {
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;
-    // The order that the search has accepted and now changes, with its offsets and its items in
-    // order of offset.
+    // The order that the search has accepted, from which it derives the next orders to try, with
+    // its offsets, and with its items in order of offset.
     std::vector<std::uint32_t> settled_order;
     std::vector<VkDeviceSize> settled_offsets;
     std::vector<PlaceItem> settled_items;

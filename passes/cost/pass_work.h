@@ -1,5 +1,5 @@
-// The functions that work.cpp calls for passes with loops or with partial traffic: one pair for
-// each pass. A result of `nullopt` means that the function does not know the loop.
+// Declares the functions that work.cpp calls for passes with loops or with partial traffic, a pair
+// for each of these passes. If the result of one is `nullopt`, it does not know the loop.
 #pragma once
 
 #include <optional>

@@ -46,8 +46,8 @@ struct PassWork {
 };
 
 // Returns how often the body of `loop`, one of `work.loops`, runs each time that the loop is
-// entered. In a wave, the lane with the most iterations counts. It is an error if no count is known
-// for the loop.
+// entered. In a wave, that is the number of iterations of the lane that needs the most. It is an
+// error if no count is known for the loop.
 [[nodiscard]] tl::expected<double, std::string> iterations(const PassWork& work,
                                                            const CompiledLoop& loop);
 
@@ -63,8 +63,8 @@ struct LoadPattern {
   std::uint32_t texel_bytes = 4;
   std::uint32_t pitch = 1;      // texels from one invocation's texel to the next, in x and y
   std::uint32_t footprint = 1;  // texels of an invocation in x and y: 2 for a gather
-  // Whether the group's first texel can be at any position, as in a read of the history of a moving
-  // camera. If false, its position is a multiple of 8 * pitch, plus `first`.
+  // Whether the position of the group's first texel is arbitrary, as it is if the history of a
+  // moving camera is read. If false, its position is a multiple of 8 * pitch, plus `first`.
   bool anywhere = false;
   std::int32_t first = 0;
   std::uint32_t count = 1;  // instructions of this pattern in a wave

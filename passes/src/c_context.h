@@ -38,15 +38,16 @@ struct ViewPasses {
   }
 };
 
-// Copies a text as snprintf does: at most `size` bytes with the terminating zero. Returns the bytes
-// that the whole text takes without that zero. `text` may be null if `size` is 0.
+// Copies a text like snprintf: writes at most `size` bytes, including the terminating zero. Returns
+// the number of bytes of the whole text without that zero. `text` may be null if `size` is 0.
 std::size_t copy_text(std::string_view from, char* text, std::size_t size);
 
 // Stores the message of a failure. Returns the result.
 AlcoveResult keep(Message& message, const Result& result);
 
 // Runs `call`, which returns a Result, and stores its message if it failed. The library itself
-// throws nothing, but operator new may. In a build without exceptions the program then ends there.
+// throws nothing, but operator new may: its exception becomes a failure. In a build without
+// exceptions, the program ends instead.
 template <typename Call>
 AlcoveResult guarded(Message& message, const Call& call) {
 #ifdef __cpp_exceptions

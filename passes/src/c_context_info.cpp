@@ -81,8 +81,8 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
     return unsupported(name + " has Vulkan " + version_text(properties.apiVersion) +
                        ", and at least 1.2 is needed; choose another or update its driver.");
   }
-  // A device without Vulkan 1.3 and without VK_KHR_synchronization2 does not write this struct,
-  // whose feature then stays false.
+  // A device without Vulkan 1.3 and without VK_KHR_synchronization2 leaves this struct as it is:
+  // the feature stays false.
   VkPhysicalDeviceSynchronization2Features synchronization2{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
   VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,

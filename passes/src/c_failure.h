@@ -24,9 +24,9 @@ struct Failure {
 // `where` begins the sentence, such as "View 3".
 [[nodiscard]] Failure failure_of(const Error& error, std::string_view where);
 
-// Checks that `given`, the struct_size of a struct of the C interface, is its size in this version
-// of the header. The message names `type`. When a later
-// version of the header enlarges a struct, this function is the place to accept the earlier size.
+// Checks that `given`, the struct_size of a struct of the C interface, is the struct's size in this
+// version of the header. The message names `type`. When a later version of the header enlarges a
+// struct, this function is the place to accept the earlier size.
 [[nodiscard]] inline tl::expected<void, Failure> check_size(std::uint32_t given, std::size_t known,
                                                             std::string_view type) {
   if (given == known) {

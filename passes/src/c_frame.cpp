@@ -58,8 +58,8 @@ Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
   return {};
 }
 
-// Called when it is sure that the last recorded frame is not discarded. Removes the histories that
-// its views no longer use, because their settings or outputs changed.
+// Removes the histories that the views of the last recorded frame no longer use because their
+// settings or outputs changed. It is called when that frame can no longer be discarded.
 void confirm_last_frame(AlcoveContext& context) {
   if (!context.may_discard) {
     return;
@@ -103,8 +103,8 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
   return passes;
 }
 
-// Declares the frame in another graph than the context's, which keeps its histories and its last
-// recorded frame.
+// Creates the pipelines for the frame by declaring it in a separate graph. The context's own graph,
+// its histories and its last recorded frame stay as they are.
 Result prepare(AlcoveContext& context, const AlcoveFrame* frame) {
   if (auto right = check(context, frame); !right) {
     return right;
@@ -181,8 +181,8 @@ AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
 
 AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
   return guarded(context, [&]() -> Result {
-    // The last frame declared the history, and must be over before it is dropped. Its plan can
-    // still be printed.
+    // The last frame declared the history, so that frame must be ended before the history is
+    // dropped. Its plan can still be printed.
     confirm_last_frame(*context);
     context->graph.histories().end_frame();
     passes::drop_reconstruct_history(context->graph, passes::ViewName(id));

@@ -89,9 +89,9 @@ tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveV
     context.vk.vkCmdCopyImageToBuffer(context.commands, context.image(samples),
                                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(buffer),
                                       1, &region);
-    // The command buffer itself holds the serial number, so that recording the next frame of the
-    // slot does not overwrite it. The number in the buffer is therefore that of the last frame that
-    // the device has finished.
+    // The serial number of the frame is stored by a command, not by the host, so that the buffer
+    // holds the number of the last frame that the device has finished, even if the next frame of
+    // the slot has already been recorded.
     context.vk.vkCmdUpdateBuffer(context.commands, context.buffer(buffer), kTexelBytes,
                                  sizeof serial, &serial);
   });

@@ -58,8 +58,8 @@ std::uint64_t pixel_bytes(const OcclusionSettings& settings, bool multi_bounce,
   return sum;
 }
 
-// Bytes per texel of the textures that the filter writes for the upsampling pass without a history;
-// with one, they are the history's.
+// Returns the bytes per texel of the textures that the filter writes for the upsampling pass. With
+// a history, these are the textures of the history and are counted there.
 std::uint64_t half_resolution_bytes(const OcclusionSettings& settings, bool lobe, bool bent) {
   return settings.history_frames > 0 ? 0 : half_history_bytes(lobe, bent) / 2;
 }

@@ -8,8 +8,8 @@
 
 namespace alcove::passes {
 
-// The name of a view's history. It is on the stack, because a steady frame must not allocate
-// memory.
+// The name of a view's history. The text is stored in the object, because a frame that repeats the
+// previous one must not allocate memory.
 class ViewName {
  public:
   explicit ViewName(std::uint32_t id);

@@ -165,8 +165,8 @@ class Inspector {
       return;
     }
     std::sort(pixels.begin(), pixels.end());
-    // The radius is smaller than half a pixel at 90 % of the samples, or larger than three image
-    // heights at 90 %.
+    // The radius is too small if it spans less than half a pixel at 90 % of the samples, and too
+    // large if it spans more than three image heights at 90 %.
     set(Mistake::radius_too_small, pixels[pixels.size() * 9 / 10] < 0.5);
     set(Mistake::radius_too_large, pixels[pixels.size() / 10] > 3.0 * view_.size.height);
   }
@@ -396,8 +396,8 @@ class Inspector {
       }
       const double ratio =
           std::log(own_across * std::abs(stored.z) / (stored_across * std::abs(own.z)));
-      // Half the sine of twice the slant: the inverse of it is how much an error of the angle
-      // changes the logarithm.
+      // The sensitivity is half the sine of twice the slant. An error of the angle changes the
+      // logarithm of the ratio by the error divided by the sensitivity.
       const double sensitivity =
           std::min(own_across * std::abs(own.z), stored_across * std::abs(stored.z));
       if (sensitivity * kRatioError > std::max(s.tilt_error, kStoredError)) {

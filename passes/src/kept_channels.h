@@ -7,10 +7,10 @@
 
 namespace alcove::passes {
 
-// Returns how many channels a format has, if a shader that reads a texel and writes the same
-// numbers back leaves every bit as it was; otherwise 0. (Of floats, NaN may change its bits and
-// denormal numbers may become 0.) Signed normalised formats do not qualify, because they have two
-// codes for -1; formats with sRGB or a shared exponent do not, because they round.
+// Returns the number of channels of a format if a shader can read a texel and write it back without
+// changing a bit, and otherwise 0. (In float formats, a NaN may change its bits and a denormal
+// number may become 0.) Signed normalised formats do not qualify, because they have two codes for
+// -1. Formats with sRGB or a shared exponent do not qualify, because they round.
 [[nodiscard]] constexpr std::uint32_t kept_channels(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8_UNORM:

@@ -51,8 +51,8 @@ inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
 inline constexpr VkFormat kHalfFormat = VK_FORMAT_R16G16B16A16_SNORM;
 inline constexpr VkFormat kHalfDepthFormat = VK_FORMAT_R32_SFLOAT;
 
-// Returns the bytes per pixel that all textures of a history take, as add_reconstruct() declares
-// them: two slots of each texture.
+// Returns the bytes per pixel of all textures of a history that add_reconstruct() declares. Each
+// texture has two slots.
 [[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
   const std::uint64_t texel = 4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u);
   return 2u * texel;

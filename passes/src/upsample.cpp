@@ -16,8 +16,8 @@ using framegraph::Texture;
 
 namespace {
 
-// Distance from a texel's tangent plane, in pixels, at which its weight falls to 0.25. Fitted with
-// `alcove compare --set half_resolution=true` over the development views.
+// Distance from a texel's tangent plane, in pixels, at which the texel's weight falls to 0.25.
+// Fitted to the error over the development views (`alcove compare --set half_resolution=true`).
 constexpr float kTolerancePx = 1.0f;
 
 Shader shader_of(const UpsampleInputs& inputs, const Occlusion& result) {
@@ -129,8 +129,8 @@ tl::expected<Occlusion, Error> add_upsample(const Frame& frame, const UpsampleIn
              {"kept_image", context.view(keeps ? out.visibility : inputs.depth_ndc)},
              {"lobe_image", view_or(context, inputs.lobes, inputs.half)},
              {"specular_image", view_or(context, out.specular, written)}});
-        // Each invocation of the upsampling handles the pixels between four texels, so that one
-        // more row and column are needed.
+        // One invocation of the upsampling computes the pixels between the centres of four texels.
+        // One more row and column of invocations is therefore needed.
         const std::uint32_t more = inputs.half_size_results ? 0 : 1;
         kernels.dispatch(context, kernel, views, bytes_of(parameters),
                          {inputs.half_size.width + more, inputs.half_size.height + more, 1});

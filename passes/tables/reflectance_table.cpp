@@ -14,8 +14,9 @@ using maths::vec3;
 
 constexpr int kSamples = 2048;
 
-// Returns the two numbers x and y of maths/split_sum.h, by numerical integration: the reflectance
-// under uniform white light is x * f0 + y, where f0 is the reflectance at normal incidence.
+// Returns the two factors x and y of shaders/maths/split_sum.h by numerical integration. The
+// reflectance under uniform white light is x * f0 + y, where f0 is the reflectance at normal
+// incidence.
 vec2 integrate(float n_dot_v, float roughness) {
   const float alpha = roughness * roughness;
   const float z = std::max(n_dot_v, 1e-4f);

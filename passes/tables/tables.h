@@ -18,8 +18,9 @@ namespace alcove::passes {
 // A GGX lobe above its surface, represented by samples of the microfacets that its view sees.
 class GtsoLobe {
  public:
-  // `mirror_from_normal` is the angle between the mirror direction and the normal in radians,
-  // [0,pi/2]. `roughness` is perceptual, [0,1]. `samples` is the number of samples of the lobe.
+  // Creates a lobe. `mirror_from_normal` is the angle between the mirror direction and the normal
+  // in radians, [0,pi/2]. `roughness` is perceptual, [0,1]. `samples` is the number of samples of
+  // the lobe.
   GtsoLobe(float mirror_from_normal, float roughness, int samples);
 
   // Returns the fraction of the lobe within a cone of half-angle `cone`, whose axis is

@@ -40,8 +40,9 @@ Image<float> shrunk(const Image<float>& image, std::uint32_t scale) {
   return small;
 }
 
-// The pixels at which both images show the same surface. A block of pixels of the second image must
-// show it in all of them.
+// Returns the pixels of the first image at which both images show the same surface. The second
+// image may be `pair.scale` times as large; then all pixels of a block of it must show that
+// surface.
 Mask common_surfaces(const InvariancePair& pair, const FrameImages& images,
                      const FrameImages& others) {
   const std::uint32_t scale = pair.scale;

@@ -23,8 +23,8 @@ std::string title_of(const Options& options, const std::string& scene) {
                      options.view.width, options.view.height, options.view.frames);
 }
 
-// Checks that every scene can be loaded and viewed before the first is measured, which takes
-// minutes.
+// Checks that every scene can be loaded and viewed. This is done for all scenes before the first
+// one is measured, because measuring takes minutes.
 Done check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
   for (const std::string& name : scenes) {
     const auto scene = load_scene(name);

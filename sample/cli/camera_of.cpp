@@ -12,8 +12,8 @@
 namespace alcove::sample {
 namespace {
 
-// Returns whether the axes of the view can be computed: their squared lengths must be normal
-// floats.
+// Returns whether the axes of the view can be computed. For this, the squared lengths of the
+// vectors that span them must be normal floats, neither too small nor too large.
 bool has_axes(const Camera& camera) {
   const glm::vec3 back = camera.eye_ws - camera.target_ws;
   return std::isnormal(glm::dot(back, back)) &&

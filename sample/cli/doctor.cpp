@@ -148,8 +148,8 @@ tl::expected<void, std::string> run_doctor(const Options& options) {
   if (options.mistakes) {
     of_scene.scene.clear();
     if (options.view.camera.empty() && !options.view.eye && !options.view.target) {
-      // This camera looks down at surfaces of many directions. In a level view of walls and floors
-      // that are parallel to its axes, a wrong angle of view cannot be detected.
+      // The camera "plant" looks down at surfaces of many directions. In a level view of walls and
+      // floors that are parallel to its axes, a wrong angle of view cannot be detected.
       of_scene.view.camera = "plant";
     }
   }

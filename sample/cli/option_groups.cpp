@@ -247,7 +247,7 @@ void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
              const std::string wanted =
                  "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
              occlusion.roughness = given.numbers(16, 0.0f, 1.0f, wanted);
-             // Output files are named by the first six digits of the roughness, which must
+             // Names of output files contain the first six digits of the roughness, which must
              // therefore differ.
              std::vector<float> sorted = occlusion.roughness;
              std::ranges::sort(sorted);

@@ -46,8 +46,8 @@ struct OptionValue {
 // Returns the shortest text that is parsed as the same float.
 [[nodiscard]] std::string shown(float value);
 
-// Returns the shortest text of a coordinate in the space of the scene's file, that is with `origin`
-// added, which is parsed as the same float.
+// Returns the shortest text of a coordinate from which the same float is parsed. The text is in the
+// space of the scene's file, which is `value` plus `origin`.
 [[nodiscard]] std::string shown_coordinate(float value, double origin);
 
 }  // namespace alcove::sample

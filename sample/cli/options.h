@@ -84,8 +84,8 @@ struct Options {
   ViewOptions view;
   OcclusionOptions occlusion;
   std::filesystem::path out = "out";  // empty for the command `view` without --out
-  // Limits for the command `recommend`, of which one is given: GPU time in milliseconds, or RMSE of
-  // visibility.
+  // The limits of the command `recommend`: GPU time in milliseconds, or RMSE of visibility. Exactly
+  // one of them is given.
   std::optional<double> budget_ms, tolerance;
   std::optional<Clock> clock;      // bench, recommend: empty for the clock that fits the device
   std::optional<MotionKind> path;  // motion: empty for all paths

@@ -67,8 +67,8 @@ std::string value_text(Choice value) {
   return std::string(passes::name_of(value));
 }
 
-// Calls `visit(info, field)` for each setting that --set accepts. These are all settings except
-// those of surfaces, which have options of their own, such as --roughness.
+// Calls `visit(info, field)` for each setting that --set accepts: all except those of surfaces,
+// which have options of their own, such as --roughness.
 template <typename Settings, typename Visit>
 void for_each_option(Settings& settings, const Visit& visit) {
   passes::for_each_setting(settings, [&](const SettingInfo& info, auto& field) {

@@ -15,8 +15,9 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
     const OcclusionOptions& options, const Scene& scene);
 
-// Returns the allowed names or values if the name of --set NAME=VALUE is unknown or its value is
-// out of range, and nothing if it is valid. Combinations are checked by occlusion_settings().
+// Checks NAME and VALUE of an option --set. Returns the allowed names if the name is unknown, the
+// allowed values if the value is out of range, and nothing if both are valid. Settings that depend
+// on each other are checked by occlusion_settings().
 [[nodiscard]] std::optional<std::string> wanted_instead(const std::string& name,
                                                         const std::string& value);
 

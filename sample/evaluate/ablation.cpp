@@ -73,8 +73,8 @@ void add_sampling(VariantList& list) {
   list.add(part, "every pixel traced", [](OcclusionSettings& s) { s.tile_size = 1; });
   list.add(part, "one in 2x2", [](OcclusionSettings& s) { s.tile_size = 2; });
   list.add(part, "one in 4x4", [](OcclusionSettings& s) { s.tile_size = 4; });
-  // Four times the slices in a quarter of the pixels: as many slices in the image as if every pixel
-  // were traced.
+  // This variant traces one of 2x2 pixels with four times the slices, so that the image has as many
+  // slices as if every pixel were traced.
   list.add(part, "one in 2x2, 4 times the slices", [](OcclusionSettings& s) {
     s.tile_size = 2;
     s.slices = std::min(s.slices * 4, 64u);
@@ -123,8 +123,8 @@ void add_reconstruction(VariantList& list, const OcclusionSettings& base) {
   });
 }
 
-// A narrow perspective from far away approximates an orthographic view. This is its distance from
-// the target, relative to the distance of the given camera.
+// The distance of a camera from its target, relative to that of the given camera, at which a narrow
+// perspective serves as an approximation of an orthographic view.
 constexpr float kFarAway = 300.0f;
 
 InvariancePair orthographic_pair(const Camera& camera, std::uint32_t height) {
@@ -146,8 +146,9 @@ InvariancePair orthographic_pair(const Camera& camera, std::uint32_t height) {
   pair.further = (kFarAway - 1.0f) * distance;
   away.near_plane = flat.near_plane + pair.further;
   away.far_plane = flat.far_plane + pair.further;
-  // Surfaces in front of and behind the target, and near the border, are shifted by some pixels
-  // between the two images. Only pixels whose depths agree to one pixel's size are compared.
+  // Between the two images, surfaces in front of and behind the target, and near the border, are
+  // shifted by some pixels. Only pixels are compared whose depths differ by no more than the size
+  // of a pixel.
   pair.tolerance = flat.ortho_height / static_cast<float>(height);
   return pair;
 }

@@ -22,8 +22,8 @@ struct InvariancePair {
   Camera second;
   std::uint32_t scale = 1;  // width and height of the second image over those of the first
   float further = 0.0f;     // distance that the second camera is moved back, scene units
-  // A pixel is compared if its depth in the second image, less `further`, differs by at most this
-  // from its depth in the first image; scene units.
+  // The largest difference, in scene units, between the depth of a pixel in the first image and its
+  // depth in the second image minus `further`, at which the pixel is compared.
   float tolerance = INFINITY;
 };
 

@@ -15,7 +15,7 @@
 
 namespace alcove::sample {
 
-// A frame as an engine hands it to the C interface, and wrong values that engines hand over by
+// A frame that an engine passes to the C interface, and the wrong values that engines pass by
 // mistake instead of the right ones.
 struct EngineFrame {
   AlcoveFrame frame{};  // `views` points to `view`

@@ -13,8 +13,8 @@
 namespace alcove::sample {
 namespace {
 
-// Summarises the differences in all channels of all pixels of the mask. `get(image, pixel,
-// channel)` reads a value.
+// Returns a summary of the differences between two images over all channels of all pixels of the
+// mask. `get(image, pixel, channel)` reads a value.
 template <class T, class Get>
 ErrorSummary compare(const Image<T>& result, const Image<T>& truth, const Mask& mask, int channels,
                      const Get& get) {

@@ -32,8 +32,9 @@ struct AngleSummary {
   double mean_degrees = 0;
   double percentile_95_degrees = 0;
 };
-// Angles between directions of any positive length. Pixels without a true direction (zero) are
-// excluded; a result of zero counts as 90 degrees.
+// Summarises the angles between corresponding directions of two images. Directions may have any
+// length above 0. Pixels without a true direction (a zero vector) are excluded; a zero vector in
+// the result counts as 90 degrees.
 [[nodiscard]] AngleSummary compare_directions(const Image<glm::vec3>& result,
                                               const Image<glm::vec3>& truth, const Mask& mask);
 
@@ -46,8 +47,8 @@ struct OpenSurfaceSummary {
 [[nodiscard]] OpenSurfaceSummary open_surfaces(const Image<float>& result,
                                                const Image<float>& truth, const Mask& mask);
 
-// Signed error as colours: white for none, red for too dark, blue for too bright; saturated at an
-// error of 0.25.
+// Returns an image of the signed error: white where there is none, red where the result is too
+// dark, blue where it is too bright. The colours are saturated at an error of 0.25.
 [[nodiscard]] Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth);
 
 // One line of a table of errors.

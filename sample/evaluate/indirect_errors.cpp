@@ -28,8 +28,8 @@ Image<glm::vec3> grey(const Image<float>& values) {
   return result;
 }
 
-// Specular occlusion that a model derives from visibility and bent normal. The slices use more than
-// these two, so the table stands in for them.
+// Returns the specular occlusion that `model` derives from visibility and bent normal. The model
+// `slices` also uses the slices themselves, which do not exist here, so the table is used instead.
 float specular_of(passes::Specular model, float visibility, const glm::vec3& bent,
                   const glm::vec3& normal, const glm::vec3& view, float roughness) {
   const float alpha = roughness * roughness;
@@ -61,8 +61,9 @@ Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth&
   return result;
 }
 
-// The smallest RMSE that any function of visibility and albedo can have. It is the spread of the
-// truth among values (a channel of a pixel) whose visibility and albedo are equal when quantised.
+// Returns the smallest RMSE that any function of visibility and albedo can have. Values (channels
+// of pixels) whose visibility and albedo are equal after quantisation form a cell. The result is
+// the RMS deviation of the truth from the mean of its cell.
 double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
                  const Image<glm::vec3>& truth, const Mask& mask) {
   constexpr int kVisibilities = 64;
@@ -84,8 +85,9 @@ double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
   }
   double squares = 0, count = 0;
   for (const Cell& cell : cells) {
-    // A single value has no spread. Bessel's correction, n - 1 for n, removes the bias that arises
-    // because the mean is computed from the same few values.
+    // A cell with a single value has no spread. Dividing by n - 1 instead of n (Bessel's
+    // correction) removes the bias that arises because the mean is computed from the same few
+    // values.
     if (cell.count > 1) {
       const double own = cell.squares - cell.sum * cell.sum / cell.count;
       squares += own * cell.count / (cell.count - 1);

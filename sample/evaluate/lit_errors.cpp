@@ -63,8 +63,8 @@ void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
   }
 }
 
-// An image of the signed error relative to `mean`: grey where there is none, brighter where the
-// result is too bright.
+// Returns an image of the signed error relative to `mean`: grey where there is no error, brighter
+// where the result is too bright, and darker where it is too dark.
 Image<glm::vec3> error_colours(const Image<glm::vec3>& result, const Image<glm::vec3>& truth,
                                double mean) {
   Image<glm::vec3> colours = result;

@@ -35,8 +35,9 @@ struct MistakeReport {
   std::vector<MistakeResult> results;
 };
 
-// Draws the view of a moving camera without a mistake and once with each of them. With a folder,
-// which exists, writes `right.png` and a picture of each mistake there.
+// Draws the view of a moving camera, once without a mistake and once with each mistake. If
+// `pictures` is not empty, it must be an existing folder, to which `right.png` and a picture of
+// each mistake are written.
 [[nodiscard]] tl::expected<MistakeReport, std::string> draw_mistakes(
     EngineRun& run, const Camera& camera, float radius, const std::filesystem::path& pictures);
 

@@ -22,8 +22,9 @@ struct RenderedFrame {
 // Where the surfaces of a frame were on the image of the previous frame.
 struct Reprojection {
   Image<glm::vec2> position_px;  // from the top left corner; may lie outside the image
-  // Bit i is set if texel i of the four around that position (x first, then y) shows the same
-  // surface: it lies within 0.5 % of the depth from the tangent plane. 0 in the sky.
+  // For the four texels around position_px, x first, then y: bit i is set if texel i shows the same
+  // surface, which means that it lies within 0.5 % of the depth from the tangent plane. 0 in the
+  // sky.
   Image<std::uint8_t> texels;
 };
 inline constexpr std::uint8_t kAllTexels = 0xf;
@@ -52,8 +53,9 @@ struct RunningMean {
   RunningMean& operator+=(const RunningMean& more);
 };
 
-// Absolute change of visibility since the previous frame, which is read bilinearly, over the pixels
-// whose four previous texels all show the same surface.
+// Returns the mean absolute change of visibility from the previous frame to this one, over the
+// pixels whose four previous texels all show the same surface. The previous frame is read
+// bilinearly at the position that the surface had.
 [[nodiscard]] RunningMean visibility_change(const Image<float>& now, const Image<float>& before,
                                             const Reprojection& reprojection);
 
@@ -76,18 +78,19 @@ struct SplitTruth {
 };
 [[nodiscard]] Image<float> mean_of(const SplitTruth<float>& truth);
 
-// A lower bound of visibility_change() for a truth: each half is counted with the sign of the
-// change in the other half, so that noise adds nothing to the mean.
+// Returns a lower bound of visibility_change() for a truth that is traced in two halves. The change
+// in each half is counted with the sign of the change in the other half, so that noise adds nothing
+// to the mean.
 [[nodiscard]] RunningMean change_lower_bound(const SplitTruth<float>& now,
                                              const SplitTruth<float>& before,
                                              const Reprojection& reprojection);
 
-// Squared error against the mean of the halves, less the variance of that mean. It may be slightly
-// negative by chance if there is no error.
+// Returns the squared error of a result against the mean of the two halves, minus the variance of
+// that mean. It may be slightly negative by chance if there is no error.
 [[nodiscard]] RunningMean squared_error(const Image<float>& result, const SplitTruth<float>& truth,
                                         const Mask& mask);
-// Squared error of directions: the squared length of the difference of the unit vectors, which is
-// the squared angle for small angles. A missing direction counts as 90 degrees.
+// Returns the squared error of directions: the squared length of the difference of the unit
+// vectors, which for small angles is the squared angle. A missing direction counts as 90 degrees.
 [[nodiscard]] RunningMean squared_error(const Image<glm::vec3>& result,
                                         const SplitTruth<glm::vec3>& truth, const Mask& mask);
 // The root of a mean of squared errors; 0 if the mean is negative.

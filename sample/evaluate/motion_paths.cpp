@@ -14,16 +14,16 @@
 namespace alcove::sample {
 namespace {
 
-// Distances that camera and object move per frame. One "height" is the length that the image's
-// height spans at a given depth.
+// How far the camera and the object move per frame, in units that do not depend on the scene:
+// depths, and heights. A height is the length that the image's height spans at a given depth.
 const float kOrbitAngle = glm::radians(0.4f);
 constexpr float kDollyStep = 0.006f;    // depths
 constexpr float kStrafeStep = 0.004f;   // heights at that depth: 2.2 pixels at 540
 constexpr float kObjectStep = 0.0075f;  // heights at the ground: 4 pixels at 540
 const float kObjectRotation = glm::radians(1.5f);
 
-// The column beside the strafing camera: its depth as a fraction of the median depth, and its
-// radius in heights.
+// The column that is added beside the strafing camera: its depth as a fraction of the median depth
+// of the view, and its radius in heights.
 constexpr float kColumnDepth = 0.3f;
 constexpr float kColumnRadius = 0.05f;
 // The moving object: half its width in heights, and its gap to the ground in occlusion radii.

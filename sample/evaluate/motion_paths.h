@@ -46,8 +46,8 @@ class MotionPath {
   void add_to(Scene& scene) const;
   // Moves the object that add_to() added to its place in a frame.
   void pose(Scene& scene, std::uint32_t frame) const;
-  // Whether the moving object is within the occlusion radius of a point in this frame or was in one
-  // of the last `frames` frames, so that it may have left a trail there.
+  // Returns whether a point lies within the occlusion radius of the moving object in this frame, or
+  // did so in one of the last `frames` frames. The object may then have left a trail there.
   bool is_near_object(const glm::vec3& position_ws, std::uint32_t frame,
                       std::uint32_t frames) const;
   // Where a surface point of a frame was one frame earlier; `frame` is at least 1.

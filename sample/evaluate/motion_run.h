@@ -15,12 +15,12 @@
 
 namespace alcove::sample {
 
-// The errors of surfaces that were uncovered this many frames ago are measured. After so many
-// frames they should be nearly as small as those of other surfaces.
+// Errors are measured of the surfaces that were uncovered exactly this many frames ago. After so
+// many frames, they should be nearly as small as those of other surfaces.
 inline constexpr std::uint32_t kUncoveredFrames = 4;
 
-// Surfaces that a moving object passed in the last so many frames are measured separately, because
-// a history could leave a trail of the object there for that long.
+// Surfaces that a moving object passed within this many last frames are measured separately,
+// because a history could leave a trail of the object there for that long.
 inline constexpr std::uint32_t kTrailFrames = 32;
 
 // RMSE of visibility against the ray-traced truth; the noise of the truth is subtracted.
@@ -65,8 +65,9 @@ struct MotionReport {
   std::vector<MotionPicture> pictures;
 };
 
-// Renders a path other than a cut and compares three of its frames with the truth: at a third, at
-// two thirds and at the end. Flicker is measured over the last two thirds.
+// Renders a path other than a cut. Three of its frames are compared with the truth: one after a
+// third of the path, one after two thirds, and the last. Flicker is measured over the last two
+// thirds.
 [[nodiscard]] tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
                                                                  const MotionPath& path,
                                                                  const MotionSetup& setup);

@@ -14,9 +14,9 @@
 
 namespace alcove::sample {
 
-// The presets and settings between and beyond them: tile size, slices, steps and half resolution
-// vary, everything else is as in `base`. No setting appears twice. `base` itself is among them if
-// it equals one of them.
+// Returns the presets, and settings between and beyond them: tile size, slices, steps and half
+// resolution vary, and everything else is as in `base`. No setting appears twice. `base` itself
+// appears only if it equals one of these.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
 // `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, ordered by steps. Shows whether the
@@ -46,9 +46,9 @@ struct Trade {
 };
 [[nodiscard]] Trade trade_of(std::vector<TradePoint> points);
 
-// Combines the points of the same settings in several scenes: mean times and spreads, root mean
-// squares of errors, the largest number of bytes. There is at least one list; all lists have one
-// length and one order.
+// Combines the points of the same settings in several scenes: the mean of times and spreads, the
+// root mean square of errors, and the largest number of bytes. There must be at least one list. All
+// lists must have one length and one order of settings.
 [[nodiscard]] std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes);
 
 // Return the point with the smallest error among those that take at most `ms`, and the fastest

@@ -54,20 +54,21 @@ struct FrameTimes {
   double processor_ms = 0;  // of all threads
 };
 
-// A frame of the base settings and a frame of a variant, drawn one after the other, so that other
-// work on the machine slows both down alike.
+// The times of a frame with the base settings and of a frame with a variant, drawn one after the
+// other, so that other work on the machine slows both down alike.
 struct TimedPair {
   FrameTimes base;
   FrameTimes variant;
 };
 
-// The cost over timed pairs of frames: the median of the pairs' ratios, variant to base, and as the
-// spread half the distance between the quartiles of these ratios. Without pairs, the ratios are 1
-// and the spreads 0.
+// Returns the cost of a variant relative to the base: the median over the pairs of the ratio of its
+// time to that of the base. The spread is half the distance between the quartiles of these ratios.
+// Without pairs, the ratios are 1 and the spreads 0.
 [[nodiscard]] VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes);
 
-// The number of pairs for times that decide between settings: with 21 pairs the quartiles are a
-// confidence interval of 97 % for the median. Times that are only printed need fewer pairs.
+// Two numbers of timed pairs. kDecidingPairs is for times that decide between settings: with 21
+// pairs, the quartiles are a confidence interval of 97 % for the median. Times that are only
+// printed need fewer pairs.
 inline constexpr std::uint32_t kDecidingPairs = 21;
 inline constexpr std::uint32_t kInformativePairs = 11;
 
@@ -93,10 +94,10 @@ class VariantRunner {
   std::uint64_t base_bytes() const;
   // Medians over all variants so far; zero before the first.
   BaseTimes base_times() const;
-  // Renders and times a variant. `gpu` must be a device other than that of the base settings, on
-  // which nothing was rendered yet, because the histories of a device belong to one variant. Each
-  // of `timed_pairs` pairs times a frame with the base settings and a frame with the variant; 0
-  // measures only the image and the bytes.
+  // Renders a variant and measures its times relative to the base. `gpu` must be a device that did
+  // not render the base or another variant, because it keeps the history of its frames.
+  // `timed_pairs` pairs of frames are timed, each with a frame of the base and a frame of the
+  // variant. With 0 pairs, only the image and the bytes are measured.
   [[nodiscard]] tl::expected<VariantResult, std::string> run(
       Gpu& gpu, const Variant& variant, std::uint32_t timed_pairs = kInformativePairs);
 

@@ -40,8 +40,8 @@ struct Profile {
   }
 };
 
-// Returns a floor that is tilted to the left, with a block on either side. The floor's slope is the
-// tangent of the angle between its normal and the view direction.
+// Returns a floor that is tilted to the left, with a block on either side. `slope` is the tangent
+// of the angle between the floor's normal and the view direction.
 Profile blocks() {
   const float slope = 0.25f;
   const auto floor = [&](float x) { return slope * x; };

@@ -22,8 +22,8 @@ struct LabelledSettings {
   std::string label_without;  // as SettingsCost::label_without
 };
 
-// `plain` with bent normals, and `plain` with specular occlusion from the slices. Each names
-// `plain` as the settings without its output.
+// Returns the settings `plain` with bent normals, and `plain` with specular occlusion from the
+// slices. Both name `plain` as the settings to compare with (LabelledSettings::label_without).
 [[nodiscard]] std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain);
 
 // The costs of `settings` on a GPU. Errors: those of modelled_frames().
@@ -31,12 +31,12 @@ struct LabelledSettings {
                                                               const NullDevice& device,
                                                               const LabelledSettings& settings);
 
-// The settings that a budget covers: every preset except `reference`, and `medium` with bent
-// normals and with specular occlusion.
+// Returns the settings that a budget covers: every preset except `reference`, and `medium` with
+// bent normals and with specular occlusion.
 [[nodiscard]] std::vector<LabelledSettings> budgeted_settings();
 
-// The costs of these settings on all GPUs. Errors: those of create_null_device() and
-// modelled_frames().
+// Returns the costs of these settings on all modelled GPUs. Errors: those of create_null_device()
+// and modelled_frames().
 [[nodiscard]] tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs();
 
 // The name and version of the driver, whose compiler determines the costs.
@@ -45,8 +45,9 @@ struct LabelledSettings {
 [[nodiscard]] nlohmann::ordered_json budget_of(const std::vector<SettingsCost>& costs,
                                                const std::string& compiler);
 
-// A sentence for each figure that exceeds its budget: more than 1 % more instructions per pixel,
-// more vector registers or spilled registers, fewer waves per SIMD, or a pass without a budget.
+// Returns a sentence for each figure that exceeds its budget: more than 1 % more instructions per
+// pixel, more vector registers or spilled registers, fewer waves per SIMD, or a pass without a
+// budget.
 [[nodiscard]] std::vector<std::string> over_budget(const nlohmann::ordered_json& budget,
                                                    const std::vector<SettingsCost>& costs);
 

@@ -46,15 +46,16 @@ tl::expected<Statistics, std::string> statistics_of(const CompiledShader& shader
   return statistics;
 }
 
-// The latency of one wave in cycles. The compiler assumes that each loop runs 8 times, so its
-// latency is scaled by the ratio of the work with the true counts.
+// Returns the latency of one wave in cycles. The compiler's latency assumes that each loop runs 8
+// times, so it is multiplied by the ratio of the work with the true counts to the work with these
+// assumed ones.
 double wave_latency(const Statistics& statistics, const WaveWork& work, double held,
                     std::uint32_t wave, bool loops) {
   if (!loops) {
     return statistics.latency;
   }
-  // "Inverse throughput" is in cycles for 64 lanes. If a single wave is limited by latency, the
-  // compiler reports the latency instead.
+  // The compiler's statistic "Inverse throughput" is in cycles for 64 lanes. If a single wave is
+  // limited by latency, the compiler reports the latency instead.
   const double throughput = statistics.inverse_throughput * wave / 64;
   const double usage =
       throughput * held > statistics.latency * 1.02 ? throughput : statistics.latency;

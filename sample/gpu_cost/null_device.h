@@ -9,8 +9,8 @@
 
 namespace alcove::sample {
 
-// Creates pipelines and nothing else. The driver cannot destroy such a device, so its handles live
-// until the process ends.
+// A device that can create pipelines and do nothing else. The driver cannot destroy it, so its
+// handles live until the process ends.
 struct NullDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -18,9 +18,10 @@ struct NullDevice {
   std::string name;
 };
 
-// `family` is a GPU family as RADV_FORCE_FAMILY names it. Sets environment variables of this
-// process while the device is created, which no other thread may read meanwhile. Errors: the driver
-// is not installed, or does not support the family.
+// Creates a device of the GPU family `family`, named as in the environment variable
+// RADV_FORCE_FAMILY. Environment variables of this process are set during the call, and no other
+// thread may read them meanwhile. Errors: the driver is not installed, or does not support the
+// family.
 [[nodiscard]] tl::expected<NullDevice, std::string> create_null_device(std::string_view family);
 
 }  // namespace alcove::sample

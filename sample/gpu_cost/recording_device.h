@@ -29,8 +29,8 @@ class RecordingDevice {
   RecordingDevice(const RecordingDevice&) = delete;
   RecordingDevice& operator=(const RecordingDevice&) = delete;
 
-  // For Executor::create and Kernels::create. Whatever they create must be destroyed before this
-  // object.
+  // Returns the handles for Executor::create and Kernels::create. Whatever these functions create
+  // must be destroyed before this object.
   framegraph::DeviceHandles handles();
   // A primary command buffer in the recording state.
   VkCommandBuffer commands();

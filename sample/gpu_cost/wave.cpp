@@ -71,8 +71,8 @@ std::uint32_t number_at(std::string_view text, std::size_t at) {
   return number;
 }
 
-// The number of 32-bit words of an operand: four for "v[4:7]", and for "v4:" in the compiler's text
-// before registers are assigned.
+// Returns the number of 32-bit words of an operand: for example four for "v[4:7]", and four for
+// "v4:" in the compiler's text before registers are assigned.
 double words_of(std::string_view text) {
   const std::string_view first = text.substr(0, text.find(','));
   if (const std::size_t range = first.find("v["); range != std::string_view::npos) {

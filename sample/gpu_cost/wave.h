@@ -50,8 +50,8 @@ struct BasicBlock {
   std::vector<Instruction> instructions;
 };
 
-// The blocks of a shader in the order of the code. Errors: the driver gave no text, or the text
-// does not have the format of Mesa's AMD compiler (ACO).
+// Returns the basic blocks of a shader in the order of the code. Errors: the driver gave no text,
+// or the text does not have the format of Mesa's AMD compiler (ACO).
 [[nodiscard]] tl::expected<std::vector<BasicBlock>, std::string> blocks_of(
     const CompiledShader& shader);
 

@@ -18,8 +18,9 @@ bool is_open(const HeightField& field, float value) {
   return field.orthographic ? value >= kFarAway : value <= 0.0f;
 }
 
-// Two texels are connected if the step between them is at most three times the smaller of the steps
-// on either side, or negligibly small. At a crease the step changes; at a discontinuity it jumps.
+// Returns whether the surface is connected between two neighbouring texels with the values `a` and
+// `b`. It is if the step between the two is at most three times the smaller of the steps on either
+// side, or negligibly small. A value is an inverse depth, or a depth in orthographic views.
 bool connected(float before, float a, float b, float after) {
   const float step = std::abs(b - a);
   const float around = std::min(std::abs(a - before), std::abs(after - b));
@@ -138,8 +139,8 @@ March march_of(const HeightField& field, uint32_t x, uint32_t y, const Walk& wal
 
 constexpr int kBlock = 64;  // steps processed together
 
-// Loads the field's values at `count` steps from step `first` on. The loads are separate from the
-// arithmetic, so that the compiler vectorises the latter.
+// Loads the values of `count` texels along the walk, from step `first` on. The loads are separate
+// from the arithmetic, so that the compiler can vectorise the latter.
 void load_values(const March m, int first, int count, float* values) {
   auto step = static_cast<float>(first);
   int texel = m.first + first * m.major_stride;
@@ -159,8 +160,9 @@ void load_values(const March m, int first, int count, float* values) {
   }
 }
 
-// For `count` steps from `first` on: the signed square of the cosine between the view direction and
-// the direction to the surface, and the squared radius less the squared distance.
+// For `count` steps of the walk, from step `first` on, computes two values: the signed square of
+// the cosine between the view direction and the direction to the surface, and the squared radius
+// minus the squared distance of the surface.
 ALCOVE_WIDE void squared_cosines(const March m, int first, int count, const float* values,
                                  float* __restrict cosines, float* __restrict slack) {
   for (int i = 0; i < count; ++i) {
@@ -177,8 +179,9 @@ ALCOVE_WIDE void squared_cosines(const March m, int first, int count, const floa
   }
 }
 
-// The signed square of the largest cosine between the view direction and the direction to a surface
-// point within the radius; -1 if there is no such point. Squaring keeps the order and avoids roots.
+// Returns the largest cosine between the view direction and the direction to a surface point within
+// the radius, squared with its sign kept, or -1 if there is no such point. Comparing squares needs
+// no square roots.
 float squared_horizon(const March& m) {
   std::array<float, kBlock> values, cosines, slack;
   float best = -1.0f;
@@ -193,8 +196,8 @@ float squared_horizon(const March& m) {
   return best;
 }
 
-// The number of texels that the occlusion radius spans along an axis of the image: no point within
-// the radius is more texels away.
+// Returns the number of texels that the occlusion radius spans along an axis of the image. No point
+// within the radius is more texels away.
 int steps_within(const HeightField& field, bool along_x, const glm::vec3& centre, float radius) {
   const float texel = std::abs(along_x ? field.scale.x : field.scale.y);
   const int most = static_cast<int>(along_x ? field.width : field.height);

@@ -47,8 +47,8 @@ struct FieldPoint {
 // The direction perpendicular to the view direction, at an angle from `right` towards `up`.
 [[nodiscard]] glm::vec3 across_view(const FieldPoint& point, float phi);
 
-// The horizon angle, [0, pi]: the smallest angle from the view direction at which the surface
-// within the radius occludes the half-slice towards `direction`. `direction` is a result of
+// Returns the horizon angle, [0,pi]: the smallest angle from the view direction at which the
+// surface within the radius occludes the half-slice towards `direction`. `direction` is a result of
 // across_view() or its negative.
 [[nodiscard]] float horizon_angle(const HeightField& field, const FieldPoint& point,
                                   const glm::vec3& direction);

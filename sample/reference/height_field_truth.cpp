@@ -13,8 +13,8 @@ namespace {
 
 constexpr float kHalfPi = glm::half_pi<float>();
 
-// Sines and cosines at the five nodes of Gauss-Legendre over [a, b], by the addition theorem, and
-// the weights.
+// The five nodes of Gauss-Legendre quadrature over [a, b]: their sines and cosines, computed by the
+// addition theorem, and their weights.
 struct Nodes {
   std::array<float, 5> sine, cosine, weight;
 };

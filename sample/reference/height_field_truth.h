@@ -19,8 +19,9 @@ struct HeightFieldTruth {
   Image<float> visibility;          // 0..1; 1 in the sky
   Image<glm::vec3> bent_normal_ws;  // unit; zero in the sky
 };
-// `depth_vs`: positive distance along the view axis; infinite or NaN in the sky, which occludes
-// nothing. `normal_ws`: unit; zero in the sky. Both are images of the camera at pixel centres.
+// Computes the truth of a depth image. `depth_vs` is the positive distance along the view axis; it
+// is infinite or NaN in the sky, which occludes nothing. `normal_ws` is unit, and zero in the sky.
+// Both are sampled at the pixel centres of the camera's image.
 [[nodiscard]] HeightFieldTruth height_field_truth(const Image<float>& depth_vs,
                                                   const Image<glm::vec3>& normal_ws,
                                                   const Camera& camera,

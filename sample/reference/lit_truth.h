@@ -21,13 +21,15 @@ struct LitTruth {
   Image<glm::vec3> specular_noise;
 };
 
-// Path tracing with unlimited bounces and the environment as the only light. A path segment that
-// hits nothing within the radius receives the environment's light, as in interreflection_truth(),
-// because this is the light that occlusion of this radius models: farther surfaces cast no shadow.
+// Computes the lit image by path tracing with unlimited bounces and the environment as the only
+// light. A path segment that hits nothing within the radius receives the environment's light, as in
+// interreflection_truth(): farther surfaces cast no shadow, because occlusion of this radius does
+// not model them.
 //
-// The material at every bounce is GGX with Smith's height-correlated masking and Schlick's Fresnel,
-// over a Lambertian part that is scaled by 1 - E(view), where E is the directional albedo of the
-// GGX part. Bounces after the first use the normals of the triangles. Skipped points are zero.
+// At every bounce, the material is GGX with Smith's height-correlated masking and Schlick's
+// Fresnel, over a Lambertian part that is scaled by 1 - E(view), where E is the directional albedo
+// of the GGX part. Bounces after the first use the normals of the triangles. Skipped points are
+// zero.
 [[nodiscard]] LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
                                  const SurfaceMaterials& materials, const Viewer& viewer,
                                  const EnvironmentImage& environment, const TruthSettings& settings,

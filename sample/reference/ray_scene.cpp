@@ -48,8 +48,9 @@ bool needs_filter(const Material& material) {
   return !material.double_sided || material.alpha_mode == AlphaMode::kMask;
 }
 
-// The triangles of a mesh, committed; null without memory. The caller releases it. Embree reads 16
-// bytes at the last vertex of a buffer, so vertices are copied rather than shared.
+// Returns the triangles of a mesh as a committed Embree geometry, or null if memory runs out. The
+// caller must release it. Embree reads 16 bytes at the last vertex of a buffer, so the vertices are
+// copied rather than shared.
 RTCGeometry triangles_of(RTCDevice device, const Material& material, FilteredMesh& filtered) {
   const Mesh& mesh = *filtered.mesh;
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -44,8 +44,9 @@ struct RayScene::Impl {
   // Whether each of up to 16 rays from one origin hits anything nearer than `far`. Bit i is ray i.
   [[nodiscard]] uint32_t blocked(const glm::vec3& origin, std::span<const glm::vec3> directions,
                                  float far) const;
-  // The origin of rays that leave a surface: offset along the normal by sixteen times the rounding
-  // error of positions in a scene of this size, so that a flat surface does not occlude itself.
+  // Returns the origin for rays that leave a surface point. It is offset along the normal by
+  // sixteen times the rounding error of positions in a scene of this size, so that a flat surface
+  // does not occlude itself.
   [[nodiscard]] glm::vec3 off_surface(const glm::vec3& position_ws,
                                       const glm::vec3& normal_ws) const;
 };

@@ -27,8 +27,9 @@ namespace alcove::sample {
   return static_cast<float>(bits >> 40) * 0x1p-24f;
 }
 
-// Point i of Roberts' R2 sequence with a Cranley-Patterson shift: evenly distributed for any number
-// of points. It is computed in fixed point, so that large i lose no precision.
+// Returns point i of Roberts' R2 sequence with a Cranley-Patterson shift. The points are evenly
+// distributed for any number of them. They are computed in fixed point, so that large i lose no
+// precision.
 [[nodiscard]] inline glm::vec2 r2_point(uint32_t i, uint64_t shift) {
   constexpr uint64_t kA = 0xc13fa9a902a6328fu;  // 2^64 / 1.32471795724...
   constexpr uint64_t kB = 0x91e10da5c79e7b1du;  // 2^64 / 1.32471795724...^2
@@ -56,8 +57,8 @@ struct Basis {
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u.x))};
 }
 
-// A normal sampled from the GGX distribution of normals visible from `v` (local, v.z > 0; Heitz
-// 2018, "Sampling the GGX Distribution of Visible Normals", section 3).
+// Returns a normal sampled from the GGX distribution of normals visible from `v` (local space, v.z
+// > 0; Heitz 2018, "Sampling the GGX Distribution of Visible Normals", section 3).
 [[nodiscard]] inline glm::vec3 visible_normal(const glm::vec3& v, float alpha, const glm::vec2& u) {
   const glm::vec3 vh = glm::normalize(glm::vec3(alpha * v.x, alpha * v.y, v.z));
   const float across = vh.x * vh.x + vh.y * vh.y;

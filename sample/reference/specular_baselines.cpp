@@ -24,8 +24,8 @@ class DepthHorizons {
   // `normal_vs`: unit.
   DepthHorizons(const HeightField& field, const FieldPoint& point, const glm::vec3& normal_vs)
       : point_(point) {
-    // The horizon of a plane is the plane itself up to rounding. This slack keeps it from occluding
-    // directions that are just above it.
+    // Up to rounding, the horizon of a plane is the plane itself. This slack keeps it from
+    // occluding directions that are just above it.
     constexpr float kTangentSlack = 0.01f;
     for (std::size_t i = 0; i < kAzimuths; ++i) {
       const glm::vec3 side = across_view(point, static_cast<float>(i) / kPerRadian);

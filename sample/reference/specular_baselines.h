@@ -8,8 +8,8 @@
 
 namespace alcove::sample {
 
-// Baselines of specular occlusion (1: open). Each is the ground truth with the approximations that
-// its comment names.
+// Baselines of specular occlusion, between 0 and 1 (open). Each is the ground truth, except for the
+// approximations that the comment of its image names.
 struct SpecularBaselines {
   // The true visibility, approximated by fifteen polynomials (visibility_polynomials.h).
   Image<float> polynomials;
@@ -19,9 +19,10 @@ struct SpecularBaselines {
   Image<float> depth_polynomials;
 };
 
-// Computes the baselines for each image of perceptual roughness. `depth_vs` is as in
-// height_field_truth(), and `points` are those of the same image. Traces settings.spp directions
-// for the visibility and settings.spp for each lobe. The result is 1 at skipped points.
+// Computes the baselines for each image of perceptual roughness in `roughness`. `depth_vs` is as in
+// height_field_truth(), and `points` are the surface points of the same image. settings.spp
+// directions are traced for the visibility, and as many for each lobe. The result is 1 at skipped
+// points.
 [[nodiscard]] std::vector<SpecularBaselines> specular_baselines(
     const RayScene& rays, const SurfacePoints& points, const Image<float>& depth_vs,
     const Camera& camera, const std::vector<Image<float>>& roughness, const TruthSettings& settings,

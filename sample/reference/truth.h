@@ -48,8 +48,8 @@ struct TruthSettings {
   uint32_t seed = 1;
 };
 
-// Cosine-weighted visibility, equation 2 of the paper: the fraction of spp rays that hit nothing
-// within the radius.
+// Cosine-weighted visibility (equation 2 of [Jimenez 2016]) by ray tracing: the fraction of
+// settings.spp rays that hit nothing within the radius, and the bent normal.
 struct OcclusionTruth {
   Image<float> visibility;  // 0..1, 1 is open
   // The unit direction of the cosine-weighted mean of the visible directions; the normal if nothing
@@ -82,8 +82,8 @@ class RayScene {
                                              const TruthSettings& settings,
                                              const Progress& progress = {});
 
-// The direction from a surface point towards the eye: `view_ws` (unit) everywhere in an
-// orthographic view, and towards `eye_ws` in perspective.
+// The view directions of a camera. In an orthographic view, the unit direction from any surface
+// point towards the eye is `view_ws`. In perspective it is the direction to `eye_ws`.
 struct Viewer {
   bool orthographic = false;
   glm::vec3 eye_ws{0.0f};
@@ -92,19 +92,19 @@ struct Viewer {
 [[nodiscard]] Viewer viewer_of(const Camera& camera);
 // The unit direction from a point towards the eye.
 [[nodiscard]] glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws);
-// Specular occlusion S = integral V f <n,w> / integral f <n,w> over the hemisphere of n, with f the
-// GGX BRDF (Smith's height-correlated masking, without Fresnel), by sampling visible normals.
-// `roughness` is perceptual, per pixel.
+// Computes specular occlusion S = integral V f <n,w> / integral f <n,w> over the hemisphere of n,
+// where V is visibility within the radius and f is the GGX BRDF (Smith's height-correlated masking,
+// without Fresnel). Visible normals are sampled. `roughness` is perceptual, one value per pixel.
 [[nodiscard]] Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
                                           const Image<float>& roughness, const Viewer& viewer,
                                           const TruthSettings& settings,
                                           const Progress& progress = {});
 
-// Interreflection: the irradiance over pi that arrives at a point in a white environment of
-// radiance 1, with Lambertian surfaces and unlimited bounces. A path segment that hits nothing
-// within the radius of the occlusion receives the environment's light. The result is 0..1 for
-// albedos up to 1. It is not multiplied by the point's own albedo, so it equals the visibility if
-// all surfaces are black.
+// Computes interreflection: the irradiance divided by pi that arrives at a point in a white
+// environment of radiance 1, with Lambertian surfaces and unlimited bounces. A path segment that
+// hits nothing within the occlusion radius receives the environment's light. The result is between
+// 0 and 1 for albedos up to 1. It is not multiplied by the point's own albedo, so it equals the
+// visibility if all surfaces are black.
 [[nodiscard]] Image<glm::vec3> interreflection_truth(const RayScene& scene,
                                                      const SurfacePoints& points,
                                                      const TruthSettings& settings,

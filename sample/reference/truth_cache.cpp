@@ -13,8 +13,8 @@
 namespace alcove::sample {
 namespace {
 
-// The header of an entry, before its floats. If the header of a file differs, the file is of
-// another version or damaged.
+// The header of an entry of the cache, which comes before its floats. If the header of a file
+// differs from this one, the file is of another version or damaged.
 struct Header {
   std::array<char, 8> magic{'a', 'l', 'c', 'o', 'v', 'e', 't', '2'};
   uint64_t count = 0;

@@ -18,8 +18,8 @@
 
 namespace alcove::sample {
 
-// A 128-bit hash of everything that a reference image depends on. Add the parts in a fixed order:
-// keys are equal when all parts are equal.
+// A 128-bit hash of everything that a reference image depends on. Add these parts in a fixed order.
+// Keys are equal if all parts are equal.
 class CacheKey {
  public:
   void add(std::span<const std::byte> bytes);
@@ -47,9 +47,10 @@ class CacheKey {
   XXH128_hash_t hash_{};
 };
 
-// Arrays of floats on disk, found by key. read() finds no entry if it is damaged, cut short or of
-// another version, and the caller computes it again. Several processes may share a folder. Failures
-// to write are ignored, because a cache may always be empty.
+// A cache of arrays of floats on disk, which are found by key. read() finds no entry if the file is
+// damaged, cut short or of another version; the caller then computes the array again. Several
+// processes may share a folder. Failures to write are ignored, because callers never rely on an
+// entry.
 class TruthCache {
  public:
   // Returns `$XDG_CACHE_HOME/alcove`, or else `~/.cache/alcove`. If neither is known, returns an

@@ -21,8 +21,8 @@ using VisibilityPolynomials = std::array<float, kVisibilityPolynomials>;
 // Adds `other` times `weight` to `sum`.
 void add_weighted(VisibilityPolynomials& sum, const VisibilityPolynomials& other, float weight);
 
-// The visible fraction of a lobe, [0,1]; 1 is open. `hidden`: coefficients of the occluded
-// directions (1 - visibility), all 0 for an open surface, whose result is then exactly 1. `lobe`:
+// Returns the visible fraction of a lobe, between 0 and 1 (open). `hidden` has the coefficients of
+// the occluded directions (1 - visibility). If they are all 0, the result is exactly 1. `lobe` is
 // the weighted mean of the polynomials over the lobe.
 [[nodiscard]] float visible_share(const VisibilityPolynomials& hidden,
                                   const VisibilityPolynomials& lobe);

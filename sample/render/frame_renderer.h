@@ -19,8 +19,8 @@ namespace alcove::sample {
 // The images that a frame computes from visibility besides the occlusion itself, if its images are
 // read back.
 struct IndirectRequest {
-  // Perceptual; one specular occlusion image for each; empty: one image with the materials'
-  // roughness.
+  // The perceptual roughness values for which specular occlusion is computed, one image for each.
+  // If empty, there is one image with the roughness of the materials.
   std::vector<float> roughness;
   // The environment that lights the scene; empty: the scene is not lit.
   EnvironmentImage environment;
@@ -83,8 +83,8 @@ class FrameRenderer {
   FrameRenderer(const FrameRenderer&) = delete;
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
-  // Draws a frame without reading images back, for the frames before the one whose images are
-  // needed.
+  // Draws a frame without reading images back. It is used for the frames before the one whose
+  // images are needed.
   [[nodiscard]] tl::expected<FrameCost, std::string> draw(const FrameRequest& request);
   // Draws a frame, lights it and reads its images back. It returns no times.
   [[nodiscard]] tl::expected<FrameImages, std::string> draw_and_read(const FrameRequest& request);

@@ -18,8 +18,8 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Distances in bytes between the parameters of two frames, and of two materials, in their buffers:
-// multiples of 256, the largest alignment that a device may require.
+// The distances in bytes, within their buffers, between the parameters of two frames and between
+// those of two materials: multiples of 256, the largest alignment that a device may require.
 constexpr std::uint32_t kParameterStride = 512;
 constexpr std::uint32_t kMaterialStride = 256;
 static_assert(sizeof(maths::GbufferParameters) <= kParameterStride && kParameterStride % 256 == 0);

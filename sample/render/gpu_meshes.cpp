@@ -341,8 +341,8 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_instances(
 
 tl::expected<void, std::string> GpuMeshes::Builder::add(const Mesh& mesh,
                                                         const Material& material) {
-  // The number of triangles is so small that the largest stream of a part fits into a page even if
-  // no two triangles share a vertex.
+  // With this limit on the number of triangles, the largest stream of a part fits into a page even
+  // if no two triangles share a vertex.
   const std::size_t most_triangles = std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
   PartBuilder builder(mesh, material);
   std::vector<MeshDraw> parts;

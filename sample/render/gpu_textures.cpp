@@ -95,8 +95,8 @@ tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sam
       .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT,
       .anisotropyEnable = anisotropy > 1.0f,
       .maxAnisotropy = anisotropy,
-      // With this maxLod, level of detail 0 to 0.25 rounds to mip 0. A maxLod of 0 would disable
-      // the minification filter.
+      // With a maxLod of 0.25, a level of detail from 0 to 0.25 is rounded to mip 0. A maxLod of 0
+      // would disable the minification filter.
       .maxLod = sampler.mips == MipFilter::kNone ? 0.25f : VK_LOD_CLAMP_NONE};
   VkSampler made = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &made);

@@ -114,8 +114,8 @@ class FrameCounter {
 
 std::uint32_t timed_frames(const Run& run) { return std::max(run.frames(), kTimedFrames + 1); }
 
-// Draws the run and returns the median times of its last frames. If the run is short, its last
-// frame is drawn several times.
+// Draws the frames of a run and returns the median times of the last kTimedFrames frames. If the
+// run is shorter, its last frame is drawn several times.
 tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run, Outputs outputs,
                                           FrameCounter& counter) {
   std::vector<FrameCost> costs;

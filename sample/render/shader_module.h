@@ -9,8 +9,8 @@
 
 namespace alcove::sample {
 
-// A shader module for the time in which pipelines are created from it. `result` is the result of
-// its creation.
+// A shader module that exists while pipelines are created from it, and is destroyed with this
+// object. `result` is the result of its creation.
 struct ShaderModule {
   VkDevice device;
   VkShaderModule module = VK_NULL_HANDLE;
@@ -27,16 +27,16 @@ struct ShaderModule {
   ShaderModule& operator=(const ShaderModule&) = delete;
 };
 
-// The shader stages of a graphics pipeline, for the time in which it is created. `result` is the
-// first failure, if any.
+// The shader modules of a graphics pipeline, which exist while the pipeline is created. `result` is
+// that of the first failure, if any.
 struct ShaderStages {
   ShaderModule vertex;
   ShaderModule fragment;
   VkResult result;
   std::array<VkPipelineShaderStageCreateInfo, 2> infos;
 
-  // `fragment_constants` specialises the fragment shader. It may be null and must outlive this
-  // object.
+  // Creates both modules. `fragment_constants` specialises the fragment shader; it may be null, and
+  // must outlive this object.
   ShaderStages(VkDevice device, std::span<const uint32_t> vertex_code,
                std::span<const uint32_t> fragment_code,
                const VkSpecializationInfo* fragment_constants = nullptr)

@@ -33,7 +33,7 @@ struct AnalyticScene {
 // Returns whether `name` begins like a name of analytic_scene(). Its angle may be out of range.
 [[nodiscard]] bool is_analytic_name(const std::string& name);
 
-// The closed forms. Each returns the cosine-weighted visibility of a point. Lengths may have any
+// Closed forms of the cosine-weighted visibility of a point in simple scenes. Lengths may have any
 // unit.
 
 // The visibility of a point under a sphere: 1 - cosine (radius / distance)^2. `distance` is that of

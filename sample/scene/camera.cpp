@@ -20,8 +20,8 @@ glm::mat3 camera_axes(const Camera& camera) {
   return {right, glm::cross(back, right), back};
 }
 
-// The two entries of the third row of a projection matrix: clip z = scale * z_vs + offset, with w =
-// -z_vs (perspective) or w = 1 (orthographic).
+// The two entries of the third row of a projection matrix, with which clip z = scale * z_vs +
+// offset. The clip-space w is -z_vs in perspective and 1 in orthographic views.
 struct DepthRow {
   double scale;
   double offset;

@@ -18,8 +18,8 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
     const tinygltf::Model& model, int64_t view);
 
-// Reads all elements of an accessor as floats. Each has `components` components: 1 to 4, or 16 for
-// a matrix of floats. Normalised integers are mapped to 0..1 or -1..1; other integers keep their
+// Reads all elements of an accessor as floats. Each element has `components` components: 1 to 4, or
+// 16 for a matrix. Normalised integers are mapped to [0,1] or [-1,1]; other integers keep their
 // value. Sparse values replace those of the buffer view. An accessor with another number of
 // components, or with more than `most` elements, is an error.
 [[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(

@@ -15,7 +15,7 @@ bool is_extension_read(const std::string& name) {
 
 bool changes_no_shape(const std::string& name) {
   // Extensions that change no shape: prefixes of families, then whole names. Extensions that hold
-  // or place triangles are not listed: mesh compression (KHR_draco_mesh_compression,
+  // or place triangles are not listed, for example mesh compression (KHR_draco_mesh_compression,
   // EXT_meshopt_compression). KHR_texture_basisu and similar extensions are not listed either,
   // because a texture may have no other source. Unknown extensions are assumed to change shapes.
   constexpr std::array<std::string_view, 4> kFamilies{"KHR_materials_", "ADOBE_materials_",

@@ -181,7 +181,7 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
   if (!transform) return Failure(transform.error());
   use.texture_from_mesh_uv = *transform;
   if (texture.source < 0) {
-    // The image may instead be named by an extension that is not supported, such as
+    // The texture may instead have its image in an extension that is not supported, such as
     // KHR_texture_basisu.
     scene_.warnings.push_back("texture " + std::to_string(index) +
                               " has no image that is read here and is left out.");

@@ -13,8 +13,8 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Returns whether a transform and its inverse can be stored as floats, as the instances of a mesh
-// need it.
+// Returns whether a transform and its inverse can be stored as floats. The instances of a mesh need
+// both.
 bool can_be_instance(const glm::dmat4& m) {
   double longest = 0.0;
   for (int c = 0; c < 3; ++c) longest = std::max(longest, glm::length(glm::dvec3(m[c])));

@@ -35,8 +35,8 @@ struct Sampler {
   bool operator==(const Sampler&) const = default;
 };
 
-// How a material uses an image. `image` indexes Scene::images; -1 is no image, which reads as
-// white.
+// How a material uses an image. `image` is an index into Scene::images; -1 means that there is no
+// image, and lookups return white.
 struct TextureUse {
   int32_t image = -1;
   Sampler sampler;

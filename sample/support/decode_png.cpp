@@ -26,8 +26,8 @@ void take_bytes(png_structp png, png_bytep out, size_t size) {
 [[noreturn]] void leave(png_structp png, png_const_charp /*message*/) { png_longjmp(png, 1); }
 void ignore(png_structp /*png*/, png_const_charp /*message*/) {}
 
-// A reader for bytes in memory. Chunks that do not change the pixels are skipped unread: glTF
-// ignores colour spaces, and compressed texts and profiles would only take time and memory.
+// A PNG reader for bytes in memory. It skips chunks that do not change the pixels: glTF ignores
+// colour spaces, and compressed texts and profiles would only take time and memory.
 class PngReader {
  public:
   explicit PngReader(Bytes bytes) : left_(bytes) {

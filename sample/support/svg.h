@@ -9,8 +9,8 @@
 namespace alcove::sample {
 
 // An SVG image that is built shape by shape. Positions and lengths are in pixels; y grows
-// downwards. `style` has presentation attributes, such as `stroke="black"`. A `title` is shown as a
-// tooltip.
+// downwards. A `style` is a text of presentation attributes, such as `stroke="black"`. A `title` is
+// shown as a tooltip.
 class Svg {
  public:
   void line(glm::vec2 from, glm::vec2 to, std::string_view style);

@@ -30,8 +30,8 @@ class SceneFrame {
   [[nodiscard]] tl::expected<framegraph::Texture, std::string> declare(framegraph::Graph& graph,
                                                                        framegraph::Texture target,
                                                                        const ViewState& state);
-  // Call it after the declared frame was submitted. That frame then is the previous frame of the
-  // next one.
+  // Makes the declared frame the previous frame of the next one. Call it after the declared frame
+  // was submitted.
   void advance();
 
  private:

@@ -6,8 +6,8 @@
 
 namespace alcove::sample {
 
-// The times of a frame's passes as moving averages over about twenty frames, so that they can be
-// read. The averages restart if the passes change.
+// Moving averages of the times of a frame's passes over about twenty frames, so that the times can
+// be read. The averages restart if the passes change.
 class SmoothedTimes {
  public:
   void add(const std::vector<PassTime>& measured);

@@ -247,8 +247,8 @@ void Replay::change(const Transition& t, QueueClass on) {
 }
 
 // Makes a transient the owner of its bytes, from its first use until another resource takes them.
-// The contents of the previous owners are lost. Only the owners immediately before must be done,
-// because they in turn came after the owners before them.
+// The contents of the previous owners are lost. It is enough to wait for the owners immediately
+// before, because these in turn waited for the owners before them.
 void Replay::take_memory(std::uint32_t resource) {
   const Placement& placement = plan_.placements[resource];
   Resource& taker = resources_[resource];

@@ -11,20 +11,19 @@
 extern "C" {
 #endif
 
-// Estimators of occlusion. A depth buffer holds only the front faces of occluders, so each
-// estimator assumes how thick occluders are.
+// Estimators of occlusion: they differ in how thick they assume occluders to be, because a depth
+// buffer shows only the front faces of occluders.
 typedef enum AlcoveEstimator {
   // Occluders are infinitely thick. The horizon search of [Jimenez 2016].
   ALCOVE_ESTIMATOR_HORIZONS = 0,
-  // HORIZONS with the thickness heuristic of [Jimenez 2016]: samples below the horizon lower it, by
-  // the fraction `blend`.
+  // Occluders are infinitely thick, but each sample below the horizon lowers the horizon by the
+  // fraction `blend`: the thickness heuristic of [Jimenez 2016].
   ALCOVE_ESTIMATOR_HEURISTIC = 1,
   // A visibility bitmask. Each sample is a separate occluder with the thickness
   // AlcoveSettings::thickness.
   ALCOVE_ESTIMATOR_BITMASK = 2,
-  // A visibility bitmask in which neighbouring samples of one surface are connected, so that no
-  // light
-  // passes between them. The default; it suits both thin objects and walls.
+  // A visibility bitmask in which consecutive samples of one surface are connected, so that no
+  // light passes between them. It is the default, and suits both thin objects and walls.
   ALCOVE_ESTIMATOR_CONNECTED = 3,
   ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
 } AlcoveEstimator;
@@ -61,8 +60,8 @@ typedef enum AlcovePattern {
   ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
 } AlcovePattern;
 
-// Square brackets hold the defaults, which are those of every quality except REFERENCE. Fields that
-// the chosen estimator does not use have no effect, but must be in range all the same.
+// Advanced settings. Values in square brackets are the defaults of all qualities except REFERENCE.
+// A field that the chosen estimator does not use has no effect, but must still be in range.
 typedef struct AlcoveAdvancedSettings {
   uint32_t struct_size;                // sizeof(AlcoveAdvancedSettings)
   AlcoveEstimator estimator;           // [CONNECTED]
@@ -71,9 +70,9 @@ typedef struct AlcoveAdvancedSettings {
   // How much a sample that lies below the horizon lowers it: 0 does not lower the horizon, 1 lowers
   // it to the sample. Read by HEURISTIC. [0.05]
   float blend;
-  // Occluders fade out over the outermost part of the radius; `falloff` is that part as a fraction
-  // of the radius, 0 to 1. Read by HORIZONS and HEURISTIC. It must be 0 with BITMASK and CONNECTED,
-  // whose bits cannot be partly occluded. [0]
+  // The outermost part of the radius, as a fraction of it from 0 to 1, over which occluders fade
+  // out. Read by HORIZONS and HEURISTIC. It must be 0 with BITMASK and CONNECTED, whose sectors are
+  // either occluded or not. [0]
   float falloff;
   AlcovePattern pattern;  // [GOLDEN]
   // Radius of the spatial filter in tiles, 0 to 3, for pixels with fewer than two frames of
@@ -89,15 +88,15 @@ typedef struct AlcoveAdvancedSettings {
 
   // Parts of the search that can be switched off, so that their effect can be measured.
 
-  // Moves each sample to the centre of its depth texel. If off, tilted planes occlude themselves.
-  // [true]
+  // Whether each sample is moved to the centre of its depth texel. If off, tilted planes occlude
+  // themselves. [true]
   VkBool32 snap_to_texels;
-  // Extrapolates surfaces beyond the border of the image. If off, nothing beyond it occludes. Read
-  // by CONNECTED. [true]
+  // Whether surfaces that leave the image are extrapolated beyond its border, where they can
+  // occlude. If off, nothing beyond the border occludes. Read by CONNECTED. [true]
   VkBool32 extrapolation;
-  // Partly leaves directions out of the average that the depth buffer does not show, because they
-  // are hidden behind a foreground or lie beyond the border of the image. If off, they count as
-  // open. Read by CONNECTED. [true]
+  // Whether directions that the depth buffer does not show are partly excluded from the average.
+  // These are directions hidden behind a foreground or beyond the border of the image. If off, they
+  // count as unoccluded. Read by CONNECTED. [true]
   VkBool32 unobserved;
 } AlcoveAdvancedSettings;
 

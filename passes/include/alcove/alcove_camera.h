@@ -8,25 +8,25 @@
 extern "C" {
 #endif
 
-// The camera that depth was drawn with, including its jitter. alcoveConvertCamera makes it from the
-// matrices of other conventions; by hand, it is done as follows. If the viewport has a negative
-// height, change the sign of the second row of clip_from_view. If the camera looks along +Z of view
-// space, change the sign of the third column of clip_from_view, of the third row of
-// view_from_world, and of z of normals in view space.
+// The camera that the depth buffer was drawn with, including its jitter. alcoveConvertCamera
+// computes it from the matrices of other conventions. To convert matrices yourself: if the viewport
+// has a negative height, change the sign of the second row of clip_from_view. If the camera looks
+// along +Z of view space, change the sign of the third column of clip_from_view, of the third row
+// of view_from_world, and of z of normals in view space.
 //
 // Rounding errors of matrix products and inverses are accepted: elements that should be exactly 0
 // or 1 may deviate by that much, and the library corrects them.
 typedef struct AlcoveCamera {
-  // Any projection: finite, infinite, reversed, off-centre, jittered, flipped in Y, orthographic.
-  // A perspective must have a clip-space w of 0 at the eye.
+  // The projection: finite, infinite, reversed, off-centre, jittered, flipped in Y, or
+  // orthographic. In a perspective projection, the clip-space w must be 0 at the eye.
   float clip_from_view[16];
-  // A rotation and a translation, without scale; or a reflection and a translation, for left-handed
-  // worlds.
+  // The matrix from world to view space: a rotation and a translation, without scale, or, for
+  // left-handed worlds, a reflection and a translation.
   float view_from_world[16];
 } AlcoveCamera;
 
-// How an engine's matrices differ from those of AlcoveCamera, for alcoveConvertCamera. Bits to be
-// combined.
+// Bits that say how an engine's matrices differ from those of AlcoveCamera. They can be combined,
+// and are an argument of alcoveConvertCamera.
 typedef enum AlcoveCameraConvention {
   // Clip-space y points up: the viewport has a negative height, or the API defines it so.
   ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP = 1,
@@ -39,8 +39,9 @@ typedef enum AlcoveCameraConvention {
   // column vectors that are stored column by column, so they do not need this bit.
   ALCOVE_CAMERA_CONVENTION_ROW_MAJOR = 8,
 
-  // glm::perspectiveRH_ZO and glm::lookAtRH, drawn with a viewport of negative height. Engines that
-  // change the sign of the projection's [1][1] instead need no conversion.
+  // The matrices of glm::perspectiveRH_ZO and glm::lookAtRH, drawn with a viewport of negative
+  // height. Engines that instead change the sign of the projection's element [1][1] need no
+  // conversion.
   ALCOVE_CAMERA_CONVENTION_GLM = 1,
   // The matrices of gluPerspective and glFrustum.
   ALCOVE_CAMERA_CONVENTION_OPENGL = 3,

@@ -18,38 +18,38 @@ typedef struct AlcoveTiming {
   double milliseconds;
 } AlcoveTiming;
 
-// The device time of each pass of the frame last recorded with `slot`, in order, after the device
-// has finished it. With `timings` null, *count becomes the number of timings; else *count is the
-// room in `timings` and becomes the number written. There are none without
-// AlcoveContextInfo::timestamps.
+// Returns the device time of each pass of the last frame that was recorded with `slot`, in order.
+// Call it after the device has finished that frame. If `timings` is null, *count becomes the number
+// of timings. Otherwise *count is the number of timings that `timings` has room for, and becomes
+// the number written. There are none if AlcoveContextInfo::timestamps is false.
 AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* count,
                               AlcoveTiming* timings);
 
-// Writes the plan of the last recorded frame as text: passes, barriers, memory. Buffer and result
-// are as with alcovePrintSettings. Returns 0 if no such frame exists or there is no memory for the
-// text.
+// Writes the plan of the last recorded frame as text: passes, barriers and memory. `text`, `size`
+// and the result are as in alcovePrintSettings. Returns 0 if there is no such frame, or not enough
+// memory for the text.
 size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 
-// Writes the mistakes of the engine that show in the frames recorded so far: a line with a sentence
-// for each, and an empty text if there is none. Call it after some dozens of frames in which the
-// camera moved. Buffer and result are as with alcovePrintSettings.
+// Writes a line with a sentence for each mistake of the engine that shows in the frames recorded so
+// far, or an empty text if there is none. Call it after some dozens of frames in which the camera
+// moved. `text`, `size` and the result are as in alcovePrintSettings.
 //
-// Mistakes that show in the calls: an index that stands still, a previous_camera that is always
+// Some mistakes show in the calls: an index that stays the same, a previous_camera that is always
 // this frame's or never the last frame's, jitter in only one of the two cameras, static_frames that
 // are not 0 although the camera moves, and reset_history in every frame.
 //
-// Mistakes that show in the pixels, if at least three frames had AlcoveFrame::diagnose_pixels and
-// all of them show the mistake: depth that runs the other way than the projection; a projection
-// with depth from -1 to 1; normals that fit the depth only with another angle of view or other near
-// and far planes, in the other space, unpacked the other way, with the other sign of z, or with the
-// other sign of y of the projection; a radius that is far too small or too large for the image; an
-// image that is smaller than it is said to be; and a slot that is recorded again before its frame
-// has finished.
+// Other mistakes show in the pixels, if at least three frames had AlcoveFrame::diagnose_pixels and
+// all of them show the mistake: depth that runs in the opposite direction to that of the
+// projection; a projection with depth from -1 to 1; normals that fit the depth only with another
+// angle of view or other near and far planes, in the other space, unpacked in the other way, with
+// the other sign of z, or with the other sign of y of the projection; a radius that is far too
+// small or too large for the image; an image that is smaller than it is said to be; and a slot that
+// is recorded again before its frame has finished.
 //
-// Mistakes that do not show: an infinite projection with a wrong near plane, which scales the whole
-// scene; another angle of view if almost every surface is parallel or perpendicular to the view
-// axis, because the scene is then only stretched across that axis, and its normals stay as they
-// are; jitter that is in neither camera; and motion vectors of the wrong sign or unit.
+// These mistakes do not show: an infinite projection with a wrong near plane, which scales the
+// whole scene; a wrong angle of view if almost every surface is parallel or perpendicular to the
+// view axis, because the scene is then only stretched across that axis, and its normals stay as
+// they are; jitter that is in neither camera; and motion vectors with the wrong sign or unit.
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 #ifdef __cplusplus

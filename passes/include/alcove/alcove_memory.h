@@ -1,5 +1,5 @@
-// Device memory: sources that the engine gives to a context, and how much frames take. Included by
-// alcove.h.
+// Device memory: the sources that the engine gives to a context, and the amounts that frames take.
+// Included by alcove.h.
 #ifndef ALCOVE_ALCOVE_MEMORY_H_
 #define ALCOVE_ALCOVE_MEMORY_H_
 
@@ -28,9 +28,9 @@ typedef struct AlcoveMemoryRange {
   void* handle;  // the engine's own, for `free`
 } AlcoveMemoryRange;
 
-// The engine's allocator of device memory: both functions, or neither. They are called by the
-// thread that calls the library, and must not call it. `free` is called only after the device has
-// finished with the memory.
+// The engine's allocator of device memory. Give both functions or neither. They are called on the
+// thread that calls the library, and must not call the library. `free` is called only after the
+// device has finished with the memory.
 typedef struct AlcoveMemoryFunctions {
   // Fills `range`, which is all zeros when the function is called. Any result but VK_SUCCESS makes
   // the Alcove call fail; VK_ERROR_OUT_OF_DEVICE_MEMORY becomes ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY.
@@ -39,9 +39,10 @@ typedef struct AlcoveMemoryFunctions {
   void* user;
 } AlcoveMemoryFunctions;
 
-// Memory that the engine has allocated, for the images of one context: device-local, in any memory
-// type that the images allow (usually every device-local one). alcoveEstimateMemory says how much
-// frames take. A change of size needs room for the old and the new images at the same time.
+// Memory that the engine has allocated for the images of one context. It must be device-local, in a
+// memory type that the images allow (usually every device-local one). alcoveEstimateMemory says how
+// much memory frames take. A change of size needs room for the old and the new images at the same
+// time.
 typedef struct AlcoveMemoryBlock {
   VkDeviceMemory memory;
   VkDeviceSize offset;   // the first byte that may be used
@@ -49,9 +50,9 @@ typedef struct AlcoveMemoryBlock {
   uint32_t memory_type;  // index of the memory type that the block was allocated from
 } AlcoveMemoryBlock;
 
-// Bytes of device memory of the last recorded frame. All are zero before the first frame, and after
-// a frame that failed or was discarded. The memory of transients is that of the largest frame so
-// far: it grows and does not shrink.
+// The bytes of device memory of the last recorded frame. All are zero before the first frame, and
+// after a frame that failed or was discarded. `transients` counts the memory of the largest frame
+// so far, because this memory grows and does not shrink.
 typedef struct AlcoveMemory {
   uint32_t struct_size;
   uint64_t transients;           // intermediate images, which share memory
@@ -72,13 +73,12 @@ typedef enum AlcoveOutput {
   ALCOVE_OUTPUT_MAX_ENUM = 0x7fffffff
 } AlcoveOutput;
 
-// Fills `memory`, whose struct_size is set, with the bytes that one view of width x height pixels
-// takes, before there is a context or a frame. `outputs` is a combination of AlcoveOutput;
-// `normals_given` says that AlcoveView::normals has an image. The figures are those of texels:
-// drivers round each image up. `transients` is what the view needs when nothing shares memory, as
-// is `transients_unshared`; a frame that was recorded may need less. `allocated` is the sum of
-// transients and history. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no
-// message.
+// Fills `memory`, whose struct_size must be set, with the bytes that one view of width x height
+// pixels takes. It needs no context and no frame. `outputs` is a combination of AlcoveOutput;
+// `normals_given` says whether AlcoveView::normals has an image. The bytes are those of the texels;
+// drivers round each image up. `transients` and `transients_unshared` are both what the view needs
+// if no images share memory; a recorded frame may need less. `allocated` is the sum of transients
+// and history. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message.
 AlcoveResult alcoveEstimateMemory(const struct AlcoveSettings* settings, uint32_t width,
                                   uint32_t height, uint32_t outputs, VkBool32 normals_given,
                                   AlcoveMemory* memory);

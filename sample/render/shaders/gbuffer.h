@@ -9,8 +9,8 @@ ALCOVE_MATHS_BEGIN
 // Parameters that are the same for all draws of a frame.
 struct GbufferParameters {
   mat4 clip_from_world;
-  // The matrix of the previous frame, without a difference of jitter to this frame, so that motion
-  // vectors contain only the motion of surfaces.
+  // The matrix of the previous frame without the difference of its jitter to this frame's jitter,
+  // so that motion vectors contain only the motion of surfaces.
   mat4 previous_clip_from_world;
   mat4 world_from_moving;  // placement of draws that move; rotation and translation
   mat4 previous_world_from_moving;
@@ -45,8 +45,9 @@ struct GbufferMaterial {
   uint unused_0;
   uint unused_1;
   uint unused_2;
-  // Each lookup's texture coordinates u and v are dot(row.xyz, (mesh_uv, 1)), one row each. The w
-  // of the first row is the index of the mesh's set of coordinates, 0 or 1.
+  // The rows of the transforms of texture coordinates, two for each lookup: u is dot(row.xyz,
+  // (mesh_uv, 1)) with the first row, and v with the second. The w of the first row is the index of
+  // the mesh's set of coordinates, 0 or 1.
   vec4 uv_rows[8];
 };
 

@@ -57,9 +57,8 @@ struct ImageOracle {
 
 enum class Ordering : std::uint8_t {
   program,  // in the order of declaration
-  // The passes run in another order than declared, because placing the transients for that order
-  // takes fewer bytes in all heaps together. Passes with side effects keep their order relative to
-  // each other.
+  // The passes run in another order than declared, because fewer bytes of transients are then live
+  // at once. Passes with side effects keep their order relative to each other.
   lower_peak,
 };
 

@@ -54,8 +54,8 @@ struct ExecutorOptions {
   bool timestamps = true;              // GPU time of each pass, on queues that have timestamps
   Ordering ordering = Ordering::lower_peak;
   bool alias = true;
-  // How long placement looks for a lower memory peak when a frame's declaration changes, in
-  // comparisons of two resources: see Limits::placement_effort.
+  // How long placement searches for a lower memory peak when a frame's declaration changes, in
+  // comparisons of two resources. Limits::placement_effort has examples.
   std::int64_t placement_effort = Limits{}.placement_effort;
   // The number of compiled plans that are cached, 1 to 4096. record() and submit() have a cache of
   // this size each. A frame whose declaration has a cached plan is not compiled again. When a cache

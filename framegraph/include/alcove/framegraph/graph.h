@@ -174,9 +174,9 @@ class Graph {
 
   const GraphDescription& description() const { return description_; }
 
-  // For callers that compile a frame without an executor, or that declare a frame and do not record
-  // it. histories() returns the state of the histories. leave_histories() advances that state as if
-  // a frame that ends in these final states had run.
+  // Functions for callers that compile a frame without an executor, or that declare a frame and do
+  // not record it. histories() returns the state of the histories. leave_histories() advances that
+  // state as if a frame that ends in these final states had run.
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
   void leave_histories(std::span<const FinalState> finals);

@@ -56,13 +56,14 @@ class HistoryTable {
   // Marks all histories as not declared, so that each can be dropped.
   void end_frame();
 
-  // Called at the end of a frame, after begin_end(): leave() sets the state in which the frame left
-  // a slot, and rotate() turns slot 0 of a history into slot 1.
+  // These functions are called at the end of a frame. begin_end() comes first. leave() stores the
+  // state in which the frame left a slot. rotate() is called for a history whose slot 0 was
+  // written: slot 0 becomes slot 1, and the oldest slot becomes slot 0.
   void begin_end();
   void leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left);
   void rotate(std::uint32_t index);
-  // Restores the table as it was at begin_frame(), except for drop(), because the frame does not
-  // run.
+  // Restores the table as it was at begin_frame(), because the declared frame does not run.
+  // Histories that were removed with drop() stay removed.
   void undo();
   // Returns whether undo() took back a description that the declared frame still uses.
   bool must_be_declared_anew() const { return anew_; }

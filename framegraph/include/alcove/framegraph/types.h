@@ -124,9 +124,9 @@ struct ImportedTexture {
   VkImageView view = VK_NULL_HANDLE;  // a view of the whole image, or null
   TextureDesc desc;                   // the extent must be absolute
   VkImageUsageFlags usage = 0;
-  // The first imported layer of the image; desc.layers layers are imported. Barriers and views of
-  // the graph count layers from it. A callback that uses the VkImage directly has to add it to its
-  // layers.
+  // The first imported layer of the image; desc.layers layers are imported. In barriers and views
+  // of the graph, layer 0 is this layer. A callback that uses the VkImage directly must add
+  // first_layer to its layer numbers.
   std::uint32_t first_layer = 0;
   State initial_state;
   // The queue family (VK_QUEUE_FAMILY_EXTERNAL is allowed) that has released the image to the
@@ -148,8 +148,8 @@ struct ImportedBuffer {
   VkBuffer buffer = VK_NULL_HANDLE;
   BufferDesc desc;
   VkBufferUsageFlags usage = 0;
-  // Whether the buffer has contents at the start of the frame. If the frame's first access needs no
-  // barrier against earlier work, leave initial_state without stages.
+  // Whether the buffer has contents at the start of the frame. If no barrier is needed between
+  // earlier work on the buffer and the frame's first access, leave initial_state without stages.
   bool has_contents = true;
   State initial_state;
   State final_state;
@@ -159,9 +159,9 @@ struct ImportedBuffer {
 
 // The effect of a write on the earlier contents of its range.
 enum class Contents : std::uint8_t {
-  // The write may be partial, so that the earlier contents are kept. The passes that wrote them run
-  // if the result is needed. They also run if the access itself reads (blending, a depth test,
-  // atomics), even if nobody needs the result.
+  // The write may cover a part of the range, so the earlier contents are kept. If the result is
+  // needed, the passes that wrote the earlier contents run too. If the access also reads (blending,
+  // a depth test, atomics), they run whenever the pass of this access runs.
   keep,
   // The pass writes every texel and reads none: the earlier contents may be thrown away.
   discard,

@@ -1,5 +1,5 @@
-// The Vulkan functions that the libraries call, and no others: a recording callback calls Vulkan
-// through the functions of its own program. They are fetched through the caller's
+// The Vulkan functions that the libraries call. A recording callback calls other functions through
+// its own program, not through these tables. The functions are fetched through the caller's
 // vkGetInstanceProcAddr, because the libraries define no Vulkan symbol and link no loader.
 #pragma once
 

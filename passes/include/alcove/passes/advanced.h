@@ -12,14 +12,14 @@ enum class Estimator : std::uint8_t {
   // Occluders are infinitely thick: the horizons of [Jimenez 2016].
   horizons,
   // Occluders are infinitely thick, but each sample that is farther out and lower than the horizon
-  // lowers the horizon: the thickness heuristic of [Jimenez 2016].
+  // lowers it by the fraction AdvancedSettings::blend: the thickness heuristic of [Jimenez 2016].
   heuristic,
   // Every sample is a separate occluder whose thickness is OcclusionSettings::thickness: the
   // visibility bitmask of Therrien et al. 2023, with exact cosine weights.
   bitmask,
-  // Every sample is a separate occluder, as with `bitmask`, but the space between two consecutive
-  // samples of one surface is occluded too (shaders/maths/connected_samples.h). It suits both thin
-  // objects and walls.
+  // Every sample is a separate occluder with a thickness, as with `bitmask`, but consecutive
+  // samples of one surface are connected: the space between them is occluded too
+  // (shaders/maths/connected_samples.h). It suits both thin objects and walls.
   connected,
 };
 
@@ -33,11 +33,11 @@ enum class Estimator : std::uint8_t {
 enum class ThicknessUnit : std::uint8_t {
   radius,    // The occlusion radius: the thickness is constant in the scene.
   distance,  // The occluder's distance along the view axis: the thickness is constant on the image.
-  // OcclusionInputs::back_depth_ndc, a second depth buffer with back faces, gives the thickness:
-  // each occluder ends at the nearest back face on its view ray. For a closed solid, that is the
-  // point where the ray leaves it, unless another solid stands inside it. If there is no back face
-  // behind the front face (cards, planes, sky), the unit is `radius`. A card in front of a solid is
-  // assumed to extend to the solid's back, because two depths cannot distinguish this case.
+  // Each occluder ends at the nearest back face on its view ray, which a second depth buffer
+  // (OcclusionInputs::back_depth_ndc) shows. For a closed solid, that is the point where the ray
+  // leaves it, unless another solid stands inside it. If there is no back face behind the front
+  // face (cards, planes, sky), the unit is `radius`. A card in front of a solid is assumed to
+  // extend to the solid's back, because two depths cannot distinguish this case.
   back_faces,
 };
 

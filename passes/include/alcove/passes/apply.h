@@ -21,8 +21,8 @@ struct ApplySettings {
   Precision precision = Precision::float16;  // light is above 1: unorm8 is refused
 };
 
-// Textures must have the size of `depth`, except those of the probe. If an optional texture is
-// null, the parts of the shader that need it are compiled out.
+// The textures that add_apply() reads. All except those of the probe must have the size of `depth`.
+// If an optional texture is null, the parts of the shader that need it are compiled out.
 struct ApplyInputs {
   framegraph::Texture depth;        // linear, as add_linear_depth makes it
   framegraph::Texture normals;      // xyz unit, in world space unless told otherwise
@@ -32,8 +32,8 @@ struct ApplyInputs {
   framegraph::Texture visibility;   // one channel, [0,1]; null: diffuse light is not occluded
   framegraph::Texture bent_normal;  // in the space of the normals; null: the normal is used
   framegraph::Texture specular_occlusion;  // one channel, [0,1], as add_gtso makes it; null: none
-  // RGB light that is added to the result unchanged, also at pixels of the sky, for example
-  // emission and direct light. Null: none.
+  // RGB light that is added to the result unchanged, for example emission and direct light. It is
+  // also added at pixels of the sky. Null: no light is added.
   framegraph::Texture light;
   // The probe's radiance in any unit, in world space with +Y up: 9x1 texels with the RGB
   // coefficients of its spherical harmonics (shaders/maths/spherical_harmonics.h).
@@ -45,8 +45,8 @@ struct ApplyInputs {
   bool normals_in_view_space = false;  // whether normals and bent normals are in view space
 };
 
-// Radiance towards the eye in RGB, and 1 in alpha, in the format RGBA16_SFLOAT or RGBA32_SFLOAT.
-// Pixels of the sky are black, apart from ApplyInputs::light.
+// The results of add_apply(): radiance towards the eye in RGB, and 1 in alpha, in the format
+// RGBA16_SFLOAT or RGBA32_SFLOAT. Pixels of the sky are black, apart from ApplyInputs::light.
 struct AppliedLight {
   framegraph::Texture lit;       // the sum of the parts and ApplyInputs::light
   framegraph::Texture diffuse;   // null without ApplySettings::parts

@@ -13,8 +13,8 @@ struct EnvironmentSettings {
   std::uint32_t samples = 64;  // of a texel's lobe in the second level, 1 to 4096; more in the next
 };
 
-// The two textures of a probe, as transients of the frame. To keep them for later frames, copy them
-// to textures of your own.
+// The two textures of a probe. They are transients of the frame: to keep them for later frames,
+// copy them to textures of your own.
 struct Environment {
   framegraph::Texture harmonics;  // 9x1 RGBA32_SFLOAT: ApplyInputs::harmonics
   framegraph::Texture map;        // RGBA16_SFLOAT with mips: ApplyInputs::map

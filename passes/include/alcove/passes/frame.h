@@ -46,10 +46,10 @@ enum class NormalEncoding : std::uint8_t {
   unsigned_octahedral,  // the same packed into [0,1]
 };
 
-// The channels of a texture that visibility is written to: all of them, or one, and the others keep
-// their contents. A texture with one channel used in this way needs VK_IMAGE_USAGE_SAMPLED_BIT too,
-// and a format from which every other channel can be read and written back unchanged: unsigned
-// normalised or float, without a shared exponent and without sRGB.
+// The channels of the visibility texture to which visibility is written: all of them, or one, while
+// the others keep their contents. To write one channel of a texture of your own, the texture also
+// needs VK_IMAGE_USAGE_SAMPLED_BIT, and a format from which every other channel can be read and
+// written back unchanged: unsigned normalised or float, without a shared exponent and without sRGB.
 enum class VisibilityChannel : std::uint8_t { all, red, green, blue, alpha };
 
 // Returns the index of the channel that visibility is read from, 0 to 3.
@@ -73,8 +73,8 @@ struct Frame {
   // or the outputs change. If it is at least 1, motion vectors are not read and history is not
   // reprojected. If it is at least 16, the history averages up to 127 frames.
   std::uint32_t static_frames = 0;
-  // For dynamic resolution: sizes that let the history continue while the size of the depth texture
-  // changes. Zero means the current size of the depth texture.
+  // Two sizes for dynamic resolution. With them, the history continues while the size of the depth
+  // texture changes. Zero means the current size of the depth texture.
   VkExtent2D largest_size{};   // size of the history textures; a change discards the history
   VkExtent2D previous_size{};  // of the depth in the previous frame; at most largest_size
   // If true, adding the passes creates all pipelines that frames of this view can need: for a first

@@ -41,9 +41,9 @@ struct RawOcclusionTextures {
   // format is R32G32B32A32_UINT: also the packed parts of the GGX lobe, and the surface's normal
   // and roughness.
   framegraph::Texture raw_occlusion;
-  // R32G32_UINT: the bent-normal residual and the residual that is expected without occluders, in
-  // view space, 10 bits per component (shaders/maths/bent_normal.h). Null if no bent normals are
-  // computed.
+  // R32G32_UINT: two sums over the slices, in view space, with 10 bits per component
+  // (shaders/maths/bent_normal.h). The first is the bent-normal residual, the second the residual
+  // that is expected without occluders. Null if no bent normals are computed.
   framegraph::Texture bent;
   std::uint32_t tile_size = 1;  // Width of a tile in pixels.
   std::uint32_t slices = 1;     // Slices per traced pixel.

@@ -33,13 +33,13 @@ struct OcclusionInputs {
   // Textures of the caller for the outputs: see ReconstructInputs::into.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
-  // Whether normals in view space have a z axis that points away from the eye, as in engines whose
-  // camera looks along +Z. Bent normals then have the same convention.
+  // Whether the z axis of normals in view space points away from the eye, as in engines whose
+  // camera looks along +Z. Bent normals are then written with the same axis.
   bool normals_forward_z = false;
   MotionConvention motion_convention;
   VisibilityChannel visibility_channel = VisibilityChannel::all;  // see ReconstructInputs
-  // The outputs have half the depth's size: see ReconstructInputs::half_size_results. The models
-  // `table` and `cone` of specular occlusion are then not available.
+  // Whether the outputs have half the depth's size: see ReconstructInputs::half_size_results.
+  // Specular occlusion with `table` and `cone` is then not available.
   bool half_size_outputs = false;
 };
 
@@ -50,8 +50,8 @@ struct OcclusionOutputs {
   framegraph::Texture bent_normal;
   // One channel that multiplies specular probe light, [0,1], 1 is open. Null if not requested.
   framegraph::Texture specular;
-  // Linear depth from add_linear_depth. Null unless it was requested, or specular occlusion or
-  // normals from depth need it.
+  // Linear depth from add_linear_depth(). It is null unless it was requested, or specular occlusion
+  // or normals from depth need it.
   framegraph::Texture linear_depth;
   framegraph::Texture normals;  // the given ones, or normals from depth in view space
 };

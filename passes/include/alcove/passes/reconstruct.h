@@ -12,11 +12,11 @@
 
 namespace alcove::passes {
 
-// Converts motion vectors to the difference of uv in this frame's image minus uv in the previous
-// frame's image, with y down: scale * vector + offset. Use a scale of 1 / size for vectors in
-// pixels, 0.5 for vectors in normalised device coordinates (with Vulkan's y down), and negate it
-// for vectors that point from this frame to the previous one. If the vectors were drawn without
-// jitter, the offset is this frame's jitter minus the previous frame's, in uv.
+// Converts motion vectors: scale * vector + offset is the uv of a surface in this frame's image
+// minus its uv in the previous frame's image, with y down. Use a scale of 1 / size for vectors in
+// pixels, and 0.5 for vectors in normalised device coordinates (with Vulkan's y down). Negate the
+// scale for vectors that point from this frame to the previous one. If the vectors were drawn
+// without jitter, the offset is this frame's jitter minus the previous frame's, in uv.
 struct MotionConvention {
   std::array<float, 2> scale{1.0f, 1.0f};
   std::array<float, 2> offset{0.0f, 0.0f};
@@ -36,10 +36,11 @@ struct ReconstructInputs {
   framegraph::Texture depth_ndc;       // See GtaoInputs::depth_ndc.
   framegraph::Texture normals;         // As GtaoInputs::normals.
   bool normals_in_view_space = false;
-  // xy: how each surface moved on the image, in the units of `motion_convention`. Null: only the
-  // camera moves. If motion is given, occluders may move too, which changes the visibility of
-  // surfaces that stand still. The history is then replaced if it differs from the mean of about
-  // the last four frames by more than noise.
+  // Motion vectors in xy: how far each surface moved on the image, in the units of
+  // `motion_convention`. If null, only the camera is assumed to move. With motion vectors,
+  // occluders may move too, which changes the visibility of surfaces that do not move. The history
+  // is then replaced where it differs from the mean of about the last four frames by more than
+  // noise.
   framegraph::Texture motion;
   framegraph::Texture roughness;  // as GtaoInputs::roughness
   // Textures of the caller, of the results' size, to which the results are written completely. If a
@@ -51,9 +52,9 @@ struct ReconstructInputs {
   MotionConvention motion_convention;
   // The channel of `into.visibility` that is written; `all` if that is null.
   VisibilityChannel visibility_channel = VisibilityChannel::all;
-  // Results have half the depth's size, rounded up, and are not upsampled. Needs half_resolution.
-  // The texel at (x, y) belongs to one of the 2x2 pixels from (2x, 2y) on: to the nearest of them
-  // if x + y is even, and otherwise to the farthest that is not the sky.
+  // Whether results have half the depth's size, rounded up, and are not upsampled. Needs
+  // half_resolution. The texel at (x, y) belongs to one of the 2x2 pixels from (2x, 2y) on: to the
+  // nearest of them if x + y is even, and otherwise to the farthest that is not the sky.
   bool half_size_results = false;
 };
 

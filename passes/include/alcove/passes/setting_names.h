@@ -10,8 +10,8 @@
 
 namespace alcove::passes {
 
-// The names of an enum's values, in the order of the enum. Each is terminated by zero, so that
-// data() is a C string.
+// kNames<Choice>: the names of the values of the enum `Choice`, in the order of the enum. Each is
+// terminated by zero, so that data() is a C string.
 template <typename Choice>
 inline constexpr std::array<std::string_view, 0> kNames{};
 template <>

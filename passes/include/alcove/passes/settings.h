@@ -9,18 +9,19 @@
 
 namespace alcove::passes {
 
-// Presets for quality_settings(). All except `reference` keep a history of 32 frames. The comments
-// say how many depth samples are fetched per pixel of the image and frame.
+// Presets for quality_settings(). All except `reference` keep a history of 32 frames. The comment
+// of each preset says how many depth samples are fetched per pixel of the image and frame.
 enum class Quality : std::uint8_t {
-  // 1 slice of 8 steps per half-slice; traces one pixel of 8x8; filter and history at half
-  // resolution: a quarter of a fetch. For consoles of about the year 2013 (PS4), as in [Jimenez
-  // 2016].
+  // 1 slice of 8 steps per half-slice, which is 16 depth fetches per traced pixel. Traces one pixel
+  // of each tile of 8x8, which is 0.25 fetches per pixel of the image. The filter and the history
+  // have half resolution. For consoles of about the year 2013 (PS4), as in [Jimenez 2016].
   console,
   low,     // 1 slice of 8 steps per half-slice; traces one pixel in 4x4: 1 fetch.
   medium,  // 1 slice of 10 steps; one pixel in 2x2: 5 fetches. The default.
   high,    // 2 slices of 16 steps; one pixel in 2x2: 16 fetches.
-  // 32 slices of 64 steps; traces every pixel: 4096 fetches. A static image for comparisons, with
-  // the infinitely thick occluders of [Jimenez 2016], without filter and history, in 32-bit floats.
+  // 32 slices of 64 steps per half-slice; traces every pixel: 4096 fetches. For comparisons with a
+  // static image: without filter and history, in 32-bit floats, and with the infinitely thick
+  // occluders of [Jimenez 2016].
   reference,
 };
 
@@ -28,8 +29,8 @@ enum class Quality : std::uint8_t {
 enum class Specular : std::uint8_t {
   none,    // Not at all.
   slices,  // Integrates the lobe over the slices of visibility. It has the smallest error.
-  // `table` and `cone` compute specular occlusion from visibility and the bent normal, which are
-  // then computed too: [Jimenez 2016], section 6 (shaders/maths/gtso.h).
+  // The next two methods compute specular occlusion from visibility and the bent normal ([Jimenez
+  // 2016], section 6; shaders/maths/gtso.h). Both are then computed even if they are not requested.
   table,  // Fraction of the lobe within the visibility cone, from a table of 54 KiB.
   cone,   // Intersection of the visibility cone with a cone that approximates the lobe.
 };
@@ -61,9 +62,9 @@ struct OcclusionSettings {
   // Largest number of frames that the history averages, 0 to 127. After 16 static frames the limit
   // is 127. 0 keeps no history and allocates none, for engines with a temporal filter of their own.
   std::uint32_t history_frames = 32;
-  // Filters and accumulates texels of 2x2 pixels, and upsamples the result to pixels along depth
-  // edges. This takes less time and less memory for the history, and has a larger error (figures in
-  // passes/README.md). It needs a tile_size of at least 2.
+  // Whether the passes filter and accumulate texels of 2x2 pixels, and upsample the result to
+  // pixels along depth edges. This takes less time and less memory for the history, and has a
+  // larger error (figures in passes/README.md). It needs a tile_size of at least 2.
   bool half_resolution = false;
 
   // Outputs. An output that is off needs no pass and no memory.
