@@ -1,5 +1,6 @@
 #include "cli/option_groups.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -118,7 +119,7 @@ void add_view(CLI::App& app, ViewOptions& view) {
   group.add(
       "--camera", "NAME",
       "name of a camera of the scene. Default: the first one, or a view of the whole scene if "
-      "it has none",
+      "the scene has no camera",
       [&](const OptionValue& given) { view.camera = given.text; });
   group.add("--eye", "X,Y,Z", "position of the camera, scene units",
             [&](const OptionValue& given) { view.eye = given.vector(); });
@@ -136,7 +137,7 @@ void add_view(CLI::App& app, ViewOptions& view) {
                   0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
             });
   group.add("--ortho-height", "LENGTH",
-            "makes the view orthographic; height of the image in scene units",
+            "makes the view orthographic, with an image of this height in scene units",
             [&](const OptionValue& given) { view.ortho_height = given.length(); });
   constexpr double kLargest = std::numeric_limits<float>::max();
   group.add("--near", "LENGTH",
@@ -159,7 +160,8 @@ void add_view(CLI::App& app, ViewOptions& view) {
   group.add_optional_flag("--standard-z",
                           "near plane at depth 0, far plane at 1. Default in orthographic views",
                           view.reversed_z, false);
-  group.add("--size", "WxH", "size of the image in pixels. Default: 960x540",
+  group.add("--size", "WxH",
+            fmt::format("size of the image in pixels. Default: {}x{}", view.width, view.height),
             [&](const OptionValue& given) { std::tie(view.width, view.height) = given.size(); });
 }
 
@@ -258,7 +260,9 @@ void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
 
 void add_rays(CLI::App& app, OcclusionOptions& occlusion) {
   Group(app, "Occlusion")
-      .add("--spp", "N", "rays per pixel of the ray-traced truth. Default: 256",
+      .add("--spp", "N",
+           "rays per pixel of the ray-traced truth. No effect on commands without a truth. "
+           "Default: 256",
            [&](const OptionValue& given) {
              occlusion.spp = static_cast<std::uint32_t>(
                  given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
@@ -287,8 +291,8 @@ void add_limits(CLI::App& app, Options& options) {
 void add_grid(CLI::App& app, bool& grid) {
   Group(app).add_flag(
       "--grid",
-      "print a table of the error with 8 to 64 steps and 1 to 8 slices instead, with all other "
-      "settings as --quality and --set give them. Times are not measured",
+      "instead of the usual table, print the errors with 8 to 64 steps and 1 to 8 slices. All "
+      "other settings are those of --quality and --set. Times are not measured",
       grid);
 }
 
@@ -297,7 +301,8 @@ void add_clock(CLI::App& app, std::optional<Clock>& clock) {
       "--clock", "NAME",
       "which time is compared: modelled (GPU time of an RDNA2 part by the cost model, "
       "the same in every run), timestamps (GPU time of the device) or processor (time "
-      "of all threads); timestamps on a GPU, modelled on a software device",
+      "of all threads). Default: timestamps on a GPU; on a software device modelled, or processor "
+      "if the driver for the model is not installed",
       [&](const OptionValue& given) { clock = static_cast<Clock>(given.one_of(kClockNames)); });
 }
 
@@ -393,11 +398,13 @@ void add_format(CLI::App& app, GraphFormat& format) {
 
 void add_device(CLI::App& app, Options& options) {
   const Group group(app);
-  group.add("--device", "N", "number of the Vulkan device in the list of `alcove doctor`",
-            [&](const OptionValue& given) {
-              options.device =
-                  static_cast<int>(given.whole_number(0, 255, "a number from 0 to 255"));
-            });
+  group.add(
+      "--device", "N",
+      "number of the Vulkan device in the list of `alcove doctor`. Default: the first discrete "
+      "GPU, else the first integrated GPU, else any device",
+      [&](const OptionValue& given) {
+        options.device = static_cast<int>(given.whole_number(0, 255, "a number from 0 to 255"));
+      });
   group.add_flag("--validation",
                  "run under the Khronos validation layers and the graph's own checks, and fail on "
                  "any message",

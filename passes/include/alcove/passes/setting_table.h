@@ -172,15 +172,15 @@ void for_each_setting(Settings& settings, const Visit& visit) {
           .matters = has_thickness},
       settings.advanced.thickness_unit);
   visit(SettingInfo{.name = "blend",
-                    .help = "For heuristic: how far a sample that lies below the horizon lowers "
-                            "the horizon. 0: not at all. 1: down to the sample.",
+                    .help = "For the estimator heuristic: how far a sample that lies below the "
+                            "horizon lowers the horizon. 0: not at all. 1: down to the sample.",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return s.advanced.estimator == Estimator::heuristic; }},
         settings.advanced.blend);
   visit(SettingInfo{.name = "falloff",
-                    .help = "For horizons and heuristic: fraction of the radius, at its outer end, "
-                            "over which occluders fade out. 0 turns fading off.",
+                    .help = "For the estimators horizons and heuristic: fraction of the radius, "
+                            "at its outer end, over which occluders fade out. 0 turns fading off.",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return !passes::has_thickness(s.advanced.estimator); }},
@@ -214,7 +214,9 @@ void for_each_setting(Settings& settings, const Visit& visit) {
       settings.advanced.filter_tolerance_px);
   visit(SettingInfo{.name = "clamp_width",
                     .help = "The history is clamped to the mean of the current neighbourhood plus "
-                            "or minus this many standard deviations. 0 turns clamping off.",
+                            "or minus this many standard deviations. Smaller values above 0 drop "
+                            "outdated values sooner and average less noise away. 0 turns clamping "
+                            "off.",
                     .group = advanced,
                     .slider = {.maximum = 8.0f},
                     .matters = [](S s) { return s.history_frames > 0; }},
@@ -225,14 +227,14 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .group = advanced},
         settings.advanced.snap_to_texels);
   visit(SettingInfo{.name = "extrapolation",
-                    .help = "For connected: assumes that surfaces which leave the image continue "
-                            "beyond its border, where they can occlude.",
+                    .help = "For the estimator connected: assumes that surfaces which leave the "
+                            "image continue beyond its border, where they can occlude.",
                     .group = advanced},
         settings.advanced.extrapolation);
   visit(SettingInfo{.name = "unobserved",
-                    .help = "For connected: partly excludes directions that the depth buffer does "
-                            "not show (behind a foreground, or beyond the image's border) from the "
-                            "average. If off, they count as unoccluded.",
+                    .help = "For the estimator connected: partly excludes directions that the "
+                            "depth buffer does not show (behind a foreground, or beyond the "
+                            "image's border) from the average. If off, they count as unoccluded.",
                     .group = advanced},
         settings.advanced.unobserved);
 }
