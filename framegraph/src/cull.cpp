@@ -115,8 +115,8 @@ class Culler {
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = pass; });
   }
 
-  // If the access reads or updates an older slot of a history, marks the passes that write the
-  // history as needed.
+  // Marks the passes that write a history as needed, if the access of a live pass reads or updates
+  // an older slot of that history.
   void find_history(const AccessRecord& access, std::uint32_t pass) {
     const ResourceRecord& resource = graph_.resources[access.resource];
     if (resource.origin != Origin::history || resource.slot == 0) return;

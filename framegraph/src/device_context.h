@@ -14,7 +14,7 @@ struct DeviceContext {
   VulkanFunctions vk;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
-  // For each queue class, the number of valid bits of a timestamp; 0 if the queue has no
+  // The number of valid bits of a timestamp for each queue class, or 0 if the queue has no
   // timestamps.
   std::uint32_t timestamp_bits[kQueueClasses] = {};
   Limits limits;

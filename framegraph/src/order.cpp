@@ -29,8 +29,8 @@ class Orderer {
     measure();
     std::int64_t floor = 0;
     const std::int64_t peak = peak_as_declared(floor);
-    // In any order, all resources of one pass are live at the same time. If the peak is no higher
-    // than the largest such sum (`floor`), no order is better.
+    // All resources of one pass are live at the same time in any order of passes. `floor` is the
+    // largest sum of one pass. If the peak is no higher than that, no order is better.
     if (peak <= floor) return false;
     find_edges();
     return list_greedily(peak) < peak && s_.order.size() == live;
@@ -55,8 +55,8 @@ class Orderer {
     for (const OutputRecord& output : graph_.outputs) ++s_.uses[output.resource];
   }
 
-  // For one pass: the bytes that become live when it runs (`gained`), the bytes that are free after
-  // it (`freed`), and the bytes of all transients that it uses (`own`).
+  // The change of memory by one pass: the bytes that become live when it runs (`gained`), the bytes
+  // that are free after it (`freed`), and the bytes of all transients that it uses (`own`).
   struct Step {
     std::int64_t gained = 0;
     std::int64_t freed = 0;

@@ -42,8 +42,8 @@ std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
   if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
   const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.queue)];
   if (opening != kNone) return opening;
-  // No pass of this frame used this part of the history: it is transferred at the end of the frame.
-  // Any submission of its queue may release it.
+  // A subresource of the history that no pass of this frame used is transferred at the end of the
+  // frame. Any submission on its queue may release it.
   const auto own = std::find_if(
       plan_.submissions.begin(), plan_.submissions.end(),
       [&state](const Submission& submission) { return submission.queue == state.queue; });

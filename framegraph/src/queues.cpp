@@ -193,9 +193,9 @@ class QueueAssigner {
     ++plan_.submissions.back().wait_count;
   }
 
-  // If a resource was last used on one queue before the frame and the frame uses it on another
-  // queue, the first queue must release it. Adds a submission without passes on each such queue.
-  // The other queue waits for that submission.
+  // Adds a submission without passes on each queue that must release a resource first. That is a
+  // queue on which a resource was last used before the frame, if the frame uses the resource on
+  // another queue. The other queue waits for the submission.
   void open_before() {
     std::fill(std::begin(s_.opening), std::end(s_.opening), kNobody);
     std::uint8_t opened = 0;
@@ -282,8 +282,8 @@ class QueueAssigner {
     }
   }
 
-  // For each queue and each other queue: the last position on the other queue that is known to be
-  // done when the queue reaches its current pass, or -1.
+  // The last position on each other queue (second index) that is known to be done when a queue
+  // (first index) reaches its current pass, or -1.
   std::int32_t known_[kQueueClasses][kQueueClasses] = {};
   // For each queue: bits of the queues whose opening submission it knows to be done.
   std::uint8_t known_open_[kQueueClasses] = {};

@@ -18,8 +18,8 @@ namespace alcove::framegraph {
 
 class RecordingThreads {
  public:
-  // `threads` includes the caller's thread: 1 creates none. Fewer are created if the system cannot
-  // create so many.
+  // Creates the threads. `threads` includes the caller's thread, so that 1 creates none. Fewer are
+  // created if the system cannot create so many.
   RecordingThreads(const DeviceContext& device, Pool& pool, std::uint32_t threads,
                    std::uint32_t slots);
   ~RecordingThreads();

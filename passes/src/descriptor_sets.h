@@ -33,8 +33,8 @@ struct DispatchBindings {
 // earlier one finds the sets of that frame, and neither allocates nor writes any.
 class DescriptorSets {
  public:
-  // `interfaces` are those of all shaders, from which the pools are sized. `vk` and `device` must
-  // outlive the result.
+  // Creates the object. `interfaces` are those of all shaders; the descriptor pools are sized for
+  // them. `vk` and `device` must outlive the result.
   static tl::expected<std::unique_ptr<DescriptorSets>, Error> create(
       const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
       std::span<const ShaderInterface> interfaces, std::uint32_t slot_count);

@@ -22,9 +22,8 @@ struct RenderedFrame {
 // Where the surfaces of a frame were on the image of the previous frame.
 struct Reprojection {
   Image<glm::vec2> position_px;  // from the top left corner; may lie outside the image
-  // For the four texels around position_px, x first, then y: bit i is set if texel i shows the same
-  // surface, which means that it lies within 0.5 % of the depth from the tangent plane. 0 in the
-  // sky.
+  // Which of the four texels around position_px (x first, then y) show the same surface: bit i is
+  // set if texel i lies within 0.5 % of the depth from the surface's tangent plane. 0 in the sky.
   Image<std::uint8_t> texels;
 };
 inline constexpr std::uint8_t kAllTexels = 0xf;

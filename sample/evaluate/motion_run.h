@@ -15,8 +15,8 @@
 
 namespace alcove::sample {
 
-// Errors are measured of the surfaces that were uncovered exactly this many frames ago. After so
-// many frames, they should be nearly as small as those of other surfaces.
+// The number of frames after which surfaces that were uncovered are measured. Their errors should
+// then be nearly as small as those of other surfaces.
 inline constexpr std::uint32_t kUncoveredFrames = 4;
 
 // Surfaces that a moving object passed within this many last frames are measured separately,

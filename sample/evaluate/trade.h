@@ -19,8 +19,8 @@ namespace alcove::sample {
 // appears only if it equals one of these.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
-// `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, ordered by steps. Shows whether the
-// error falls as samples are added.
+// Returns variants of `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, ordered by
+// steps. They show whether the error falls as samples are added.
 inline constexpr std::array<std::uint32_t, 4> kGridSteps{8, 16, 32, 64};
 inline constexpr std::array<std::uint32_t, 4> kGridSlices{1, 2, 4, 8};
 [[nodiscard]] std::vector<Variant> sampling_grid(const passes::OcclusionSettings& base);

@@ -12,8 +12,8 @@ namespace alcove::sample {
 // in Svg.
 class Drawing {
  public:
-  // `low` and `high` are the corners of the visible area; `px_per_unit` scales it to the SVG's
-  // size.
+  // Creates an empty image. `low` and `high` are the corners of the visible area in drawing units;
+  // `px_per_unit` scales it to the SVG's size in pixels.
   Drawing(glm::vec2 low, glm::vec2 high, float px_per_unit)
       : low_(low), high_(high), scale_(px_per_unit) {}
 

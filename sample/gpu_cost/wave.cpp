@@ -104,8 +104,8 @@ Instruction instruction_of_aco(std::string_view line) {
       first_word(equals == std::string_view::npos ? line : line.substr(equals + 3)));
   const std::string_view result = first_word(results);
   if (operation == "p_parallelcopy") {
-    // Most vector copies become instructions, and so do scalar copies of constants. Register
-    // allocation removes the other copies.
+    // Only some of the copies in "p_parallelcopy" become instructions: most vector copies, and
+    // scalar copies of constants. Register allocation removes the others.
     const std::size_t from = line.find("p_parallelcopy ") + 15;
     const bool constant = from < line.size() && (line.substr(from, 2) == "0x" ||
                                                  line[from] == '-' || std::isdigit(line[from]));

@@ -160,9 +160,9 @@ void load_values(const March m, int first, int count, float* values) {
   }
 }
 
-// For `count` steps of the walk, from step `first` on, computes two values: the signed square of
-// the cosine between the view direction and the direction to the surface, and the squared radius
-// minus the squared distance of the surface.
+// Computes two values for `count` steps of the walk, from step `first` on: the signed square of the
+// cosine between the view direction and the direction to the surface, and the squared radius minus
+// the squared distance of the surface.
 ALCOVE_WIDE void squared_cosines(const March m, int first, int count, const float* values,
                                  float* __restrict cosines, float* __restrict slack) {
   for (int i = 0; i < count; ++i) {

@@ -214,8 +214,8 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
     const glm::vec3 smooth =
         w * mesh.normals[i[0]] + u * mesh.normals[i[1]] + v * mesh.normals[i[2]];
     const glm::vec3 smooth_ws(direction_of(placed(glm::dvec3(smooth))));
-    // On a back face the vertex normal is flipped with the triangle's normal, even if it faces the
-    // ray already.
+    // The vertex normal is flipped on a back face, as the triangle's normal is, even if the vertex
+    // normal faces the ray already.
     const float side = glm::dot(normal, direction) > 0.0f ? -1.0f : 1.0f;
     if (glm::length(smooth) > 1e-6f && smooth_ws != glm::vec3(0.0f)) {
       hit.shading_normal_ws = side * smooth_ws;

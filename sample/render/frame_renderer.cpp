@@ -293,8 +293,8 @@ tl::expected<void, std::string> FrameRenderer::State::declare_lit(Graph& graph,
   return {};
 }
 
-// If normals were computed from depth, normals and bent normals are in view space. Rotates them to
-// world space.
+// Rotates normals and bent normals from view space to world space if the normals were computed from
+// depth. Otherwise they are already in world space.
 void FrameRenderer::State::turn_to_world(const FrameRequest& request, FrameImages& images) const {
   if (normals == NormalSource::kDepth) {
     const glm::mat3 world_from_view = glm::transpose(glm::mat3(request.view.view_from_world));

@@ -104,8 +104,9 @@ double view_depth(const glm::mat4& clip_from_view, double depth_ndc) {
 }
 
 Camera orbited(const Camera& camera, float angle) {
-  // Without a rotation the camera must stay exactly the same. Computing the eye from target and arm
-  // would change it by rounding if the target is much farther from the origin than the eye.
+  // An angle of 0 must leave the camera exactly the same. Computing the eye from the target and the
+  // rotated arm would change it by rounding if the target is much farther from the origin than the
+  // eye.
   if (angle == 0.0f) return camera;
   Camera out = camera;
   const glm::vec3 axis = glm::normalize(camera.up_ws);

@@ -55,8 +55,8 @@ class TreeWalk {
     layout.world_from_node.assign(model.nodes.size(), glm::dmat4(1.0));
   }
 
-  // If `drawn` is false, the nodes only get a transform, because joints may be outside of the drawn
-  // scene.
+  // Computes the transforms of the nodes below `roots`. If `drawn` is false, the nodes only get a
+  // transform and are not drawn: joints may be outside of the drawn scene.
   tl::expected<void, std::string> walk(const std::vector<int>& roots, bool drawn) {
     std::vector<Step> open;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) {

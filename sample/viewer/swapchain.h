@@ -15,8 +15,8 @@ namespace alcove::sample {
 // images have 8 bits per channel and no conversion: shaders write sRGB-encoded values.
 class Swapchain {
  public:
-  // `old` is retired by the new swapchain and may be null. Errors: the device cannot present to the
-  // surface, or the surface has no 8-bit format without conversion.
+  // Creates a swapchain. `old`, which may be null, is the previous one and is retired. Errors: the
+  // device cannot present to the surface, or the surface has no 8-bit format without conversion.
   [[nodiscard]] static tl::expected<std::unique_ptr<Swapchain>, std::string> create(
       const VulkanDevice& device, VkSurfaceKHR surface, VkExtent2D size,
       std::uint32_t frames_in_flight, std::unique_ptr<Swapchain> old);

@@ -66,8 +66,8 @@ ALCOVE_INLINE bool hidden_samples_join(DepthDiscontinuity here, DepthDiscontinui
   return !(is_discontinuous(here) && is_discontinuous(there));
 }
 
-// If two consecutive samples are on different surfaces, the edge of the second one's surface is
-// assumed to lie this fraction of the distance from the second sample back to the first.
+// The assumed position of the edge of a surface that begins between two consecutive samples, as a
+// fraction of the distance from the second sample, which is on this surface, back to the first.
 const float kEdgeShare = 0.5f;
 
 // Returns whether a point of the slice's plane lies above the tangent plane by more than a fifth of

@@ -52,9 +52,10 @@ struct Slice {
   float cosine;  // cos(gamma); 1 where scale is 0
 };
 
-// `normal`, `direction` and `view` are unit and in one space; `direction` and `view` are
-// perpendicular. A normal that points away from the eye is treated as perpendicular to the view
-// direction. facing_normal() returns a normal that does not point away.
+// Returns the normal in relation to the slice that `direction` and `view` span. All three vectors
+// are unit and in one space; `direction` and `view` are perpendicular. A normal that points away
+// from the eye is treated as perpendicular to the view direction. facing_normal() returns a normal
+// that does not point away.
 ALCOVE_INLINE Slice make_slice(vec3 normal, vec3 direction, vec3 view) {
   Slice s;
   s.along = dot(normal, direction);

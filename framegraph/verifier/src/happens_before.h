@@ -59,8 +59,8 @@ Barrier barrier_of(const Transition& transition, QueueClass queue);
 
 class HappensBefore {
  public:
-  // `stages` and `accesses` contain every expanded bit that an access or barrier of the plan names.
-  // `queues` is the number of queue classes.
+  // Creates an empty model. `stages` and `accesses` contain every expanded bit that an access or a
+  // barrier of the plan names. `queues` is the number of queue classes.
   HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues);
 
   // Returns the stages that the constructor was given.
@@ -82,9 +82,10 @@ class HappensBefore {
   // dependency covers the operation's resource.
   bool is_before(const Operation& operation, const Barrier& barrier) const;
   bool is_available_by(const Operation& operation, const Barrier& barrier) const;
-  // For the next command of these stages on this queue: is_ordered() returns whether the operation
-  // happens before it, is_available() whether the operation's writes are then also available, and
-  // is_visible() whether they are visible to these accesses.
+  // Functions about the next command of these stages on this queue. is_ordered() returns whether
+  // the operation happens before that command. is_available() returns whether the operation's
+  // writes are then also available. is_visible() returns whether they are visible to these
+  // accesses.
   bool is_ordered(const Operation& operation, std::uint8_t queue, Stages stages) const;
   bool is_available(const Operation& operation, std::uint8_t queue, Stages stages) const;
   bool is_visible(const Operation& operation, std::uint8_t queue, Stages stages,

@@ -122,8 +122,8 @@ void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
     if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
     return;
   }
-  // Only stages that the frame or the plan names are tracked. Waiting for the others would make no
-  // difference.
+  // Creates one operation for each stage. Only stages that the frame or the plan names are tracked;
+  // waiting for the others would make no difference.
   for (Stages left = accesses == 0 ? stages & order_.tracked_stages() : 0; left != 0;
        left &= left - 1)
     sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});

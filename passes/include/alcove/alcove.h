@@ -309,7 +309,7 @@ typedef struct AlcoveView {
   // The camera with which this id was last recorded. It is not read, and may be zero, in the first
   // frame of an id, with reset_history, if history_frames is 0, and by alcovePrepareFrame.
   AlcoveCamera previous_camera;
-  // For dynamic resolution: the largest size of the depth image. The history has room for this
+  // The largest size of the depth image, for dynamic resolution. The history has room for this
   // size, and continues while the size of the depth image changes within it. Zero means the current
   // size of the depth image; a change of size then begins a new history. A change of the largest
   // size always does. These two fields and the two below are not read if history_frames is 0.

@@ -47,7 +47,7 @@ vec3 facing_normal(vec3 texel) {
   }
   vec3 normal = normal_ws * inversesqrt(squared);
   vec3 mapped = mapped_normal(normal, texel);
-  // On a back face the whole tangent frame is flipped. If the normal map tilts the normal below the
+  // The whole tangent frame is flipped on a back face. If the normal map tilts the normal below the
   // triangle's own plane, the normal is moved back into that plane.
   vec3 shading = dot(normal, face) < 0.0 ? -mapped : mapped;
   shading -= face * min(dot(shading, face), 0.0);

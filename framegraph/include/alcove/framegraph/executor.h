@@ -68,7 +68,7 @@ struct ExecutorOptions {
   // then have no active query. If a callback throws, the exception reaches the caller of record(),
   // whichever thread the callback ran in.
   std::uint32_t recording_threads = 1;
-  // If not null, this function checks each new plan when it is compiled. Pass framegraph::verify()
+  // A function that checks each new plan when it is compiled, or null. Pass framegraph::verify()
   // from verify.h (library alcove::framegraph_verifier). Debug builds of this library use that
   // function if `verify` is null.
   PlanCheck* verify = nullptr;

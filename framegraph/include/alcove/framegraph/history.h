@@ -56,9 +56,9 @@ class HistoryTable {
   // Marks all histories as not declared, so that each can be dropped.
   void end_frame();
 
-  // These functions are called at the end of a frame. begin_end() comes first. leave() stores the
-  // state in which the frame left a slot. rotate() is called for a history whose slot 0 was
-  // written: slot 0 becomes slot 1, and the oldest slot becomes slot 0.
+  // Functions for the end of a frame. begin_end() is called first. leave() stores the state in
+  // which the frame left a slot. rotate() is called for a history whose slot 0 was written: slot 0
+  // becomes slot 1, and the oldest slot becomes slot 0.
   void begin_end();
   void leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left);
   void rotate(std::uint32_t index);

@@ -77,7 +77,7 @@ struct Frame {
   // texture changes. Zero means the current size of the depth texture.
   VkExtent2D largest_size{};   // size of the history textures; a change discards the history
   VkExtent2D previous_size{};  // of the depth in the previous frame; at most largest_size
-  // If true, adding the passes creates all pipelines that frames of this view can need: for a first
+  // Whether adding the passes creates all pipelines that frames of this view can need: for a first
   // frame, after a camera cut, in motion and while static. Declare such a frame in a separate graph
   // that is never recorded, while loading or before settings change. No frame then has to wait for
   // a pipeline.

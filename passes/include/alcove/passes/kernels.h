@@ -84,10 +84,10 @@ class Kernels {
   static constexpr std::size_t kMaxConstants = 24;           // of a shader
   static constexpr std::uint32_t kMaxFramesInFlight = 8;
 
-  // `device` must have been created with the feature shaderStorageImageWriteWithoutFormat, and must
-  // outlive the kernels. `frames_in_flight`, 1 to kMaxFramesInFlight, is the number of frames that
-  // may be recorded before the first of them has finished on the device: the same value as
-  // ExecutorOptions::frames_in_flight.
+  // Creates the kernels of a device. `device` must have been created with the feature
+  // shaderStorageImageWriteWithoutFormat, and must outlive the kernels. `frames_in_flight`, 1 to
+  // kMaxFramesInFlight, is the number of frames that may be recorded before the first of them has
+  // finished on the device: the same value as ExecutorOptions::frames_in_flight.
   //
   // `cache` is a pipeline cache of the same device, or null for none. The caller loads, stores and
   // destroys it, and it must outlive the kernels. Other threads may use it at the same time, unless
