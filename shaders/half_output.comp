@@ -36,8 +36,8 @@ layout(set = 0, binding = 4) uniform texture2D residual_image;
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
-// The image that visibility_image writes, from which the kept channels are read. Without
-// kKeepsChannels it is never read, and another image is bound in its place.
+// The same image as visibility_image, bound for reading the channels that keep their contents. It
+// is read only with kKeepsChannels; otherwise another image is bound in its place.
 layout(set = 0, binding = 7) uniform texture2D kept_image;
 #ifdef SPECULAR
 layout(set = 0, binding = 8) uniform utexture2D lobe_image;  // LobeTexel

@@ -43,8 +43,9 @@ struct Checker {
   std::uint32_t pass;
   const AccessRecord& access;
 
-  // Error sentences are composed in separate functions, because nearly all accesses are valid and
-  // the usual path should stay short.
+  // Adds an error about the access and returns false. Error sentences are composed in separate
+  // functions such as this one, because nearly all accesses are valid and the usual path should
+  // stay short.
   bool refuse(ErrorCode code, const std::string& sentence) {
     v.fail(code, v.pass_text(pass) + " " + sentence, pass, access.resource, access.version);
     return false;

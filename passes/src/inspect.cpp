@@ -431,8 +431,8 @@ class Inspector {
     }
     const double median = quantile(logarithms, 0.5);
     const double spread = quantile(logarithms, 0.75) - quantile(logarithms, 0.25);
-    // The standard error of the median of normally distributed numbers with this spread between
-    // their quartiles.
+    // The standard error of the median, for normally distributed numbers with this distance
+    // (`spread`) between their quartiles.
     const double error = 0.93 * spread / std::sqrt(static_cast<double>(logarithms.size()));
     return spread < kLargestSpread && std::abs(median) > kLeastScale + 4.0 * error;
   }

@@ -7,8 +7,8 @@
 
 namespace alcove::sample {
 
-// The contents of `report.json` for a rendering: device, settings, view, timings, memory. Commands
-// that compute a truth add `errors`.
+// Returns the contents of `report.json` for a rendering: device, settings, view, timings and
+// memory. Commands that compute a truth add `errors`.
 [[nodiscard]] nlohmann::ordered_json report_of(const Rendering& rendering, const Options& options);
 
 // The times of a rendering as a table.

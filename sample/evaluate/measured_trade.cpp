@@ -106,8 +106,8 @@ tl::expected<TradePoint, std::string> TradeClock::point_of(const VariantErrors& 
   return point;
 }
 
-// The filtered occlusion of half resolution is stored in this format (kHalfFormat of the passes).
-// A device need not support it.
+// Returns whether the device can store the filtered occlusion of half resolution, whose format is
+// that of kHalfFormat in the passes. Vulkan does not require the format for storage images.
 bool can_store_half_resolution(VkPhysicalDevice device) {
   VkFormatProperties properties;
   vkGetPhysicalDeviceFormatProperties(device, VK_FORMAT_R16G16B16A16_SNORM, &properties);

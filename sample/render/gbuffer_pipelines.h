@@ -34,8 +34,8 @@ class GbufferPipelines {
   [[nodiscard]] VkDescriptorSetLayout frame_set() const { return frame_set_; }
   // Set 1, only for the second layer: the depth of the first layer.
   [[nodiscard]] VkDescriptorSetLayout layer_set() const { return layer_set_; }
-  // Set 2: the textures and the parameters of a material. Each material has its own descriptor set,
-  // because few devices allow hundreds of textures in one set.
+  // Returns the layout of descriptor set 2: the textures and the parameters of a material. Each
+  // material has its own descriptor set, because few devices allow hundreds of textures in one set.
   [[nodiscard]] VkDescriptorSetLayout material_set() const { return material_set_; }
 
  private:

@@ -26,8 +26,9 @@ struct Errors {
   std::longjmp(reinterpret_cast<Errors*>(jpeg->err)->jump, 1);
 }
 
-// libjpeg only warns of damaged data (level -1) and continues with grey. Here a warning is an
-// error, except for warnings after which the pixels are still right.
+// Handles a message of libjpeg. If data is damaged, libjpeg only warns (level -1) and continues
+// with grey. Here a warning is an error, except for warnings after which the pixels are still
+// right.
 void judge(j_common_ptr jpeg, int level) {
   const int code = jpeg->err->msg_code;
   const bool harmless = code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR ||

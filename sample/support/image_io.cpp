@@ -35,8 +35,8 @@ Outcome check_writable_image(uint32_t width, uint32_t height, size_t pixels) {
   return {};
 }
 
-// OpenEXR's destructor ignores errors when it closes the file. A disk that becomes full at the end
-// is therefore only detected by reading the file back.
+// Checks that a file is complete by reading it back. OpenEXR's destructor ignores errors when it
+// closes the file, so a disk that becomes full at the end is not detected in any other way.
 Outcome check_complete_exr(const std::filesystem::path& file) {
   try {
     Imf::InputFile input(file.string().c_str());

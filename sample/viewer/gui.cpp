@@ -87,8 +87,8 @@ Gui::~Gui() {
   vkDestroyDescriptorPool(device_.device(), pool_, nullptr);
 }
 
-// ImGui's pipeline needs a render pass. This one changes no layouts and has no barriers, because
-// the render graph does both.
+// Creates the render pass that ImGui's pipeline needs. It changes no layouts and has no barriers,
+// because the render graph does both.
 VkResult Gui::create_render_pass(VkFormat format) {
   const VkAttachmentDescription attachment{
       .format = format,

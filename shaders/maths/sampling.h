@@ -19,11 +19,11 @@ ALCOVE_INLINE float slice_angle(uint slice, uint slice_count, float direction) {
   return kPi * (float(slice) + direction) / float(slice_count);
 }
 
-// The paper's pattern (section 4.4). A block of 4x4 pixels has 16 directions and 4 offsets. In each
-// of six frames the directions are rotated by another multiple of a sixth of 180 degrees, which
-// gives 96 different directions. The order of the multiples keeps successive frames of a pixel far
-// apart. Every second rotation is shifted by 1/96 of 180 degrees, so that no two of the 96
-// coincide.
+// Returns the paper's pattern (section 4.4). A block of 4x4 pixels has 16 directions and 4 offsets.
+// In each of six frames the directions are rotated by another multiple of a sixth of 180 degrees,
+// which gives 96 different directions. The order of the multiples keeps successive frames of a
+// pixel far apart. Every second rotation is shifted by 1/96 of 180 degrees, so that no two of the
+// 96 coincide.
 ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
   uint x = pixel.x & 3u;
   uint y = pixel.y & 3u;
@@ -108,9 +108,9 @@ ALCOVE_INLINE SliceNoise r2_sequence(uint index) {
   return noise;
 }
 
-// The R2 sequence at the pixel's index along a Hilbert curve. It repeats after 64 frames.
-// Neighbouring pixels and successive frames get evenly distributed values, as a spatial filter
-// followed by a temporal one needs them.
+// Returns the element of the R2 sequence whose index is the pixel's position along a Hilbert curve.
+// The pattern repeats after 64 frames. Neighbouring pixels and successive frames get evenly
+// distributed values, as a spatial filter followed by a temporal one needs them.
 ALCOVE_INLINE SliceNoise hilbert_pattern(uvec2 pixel, uint frame) {
   return r2_sequence(hilbert_index(pixel) + 288u * (frame & 63u));
 }

@@ -30,8 +30,8 @@ ALCOVE_INLINE float cap_intersection(float a, float b, float d) {
   float large = max(a, b);
   if (d >= small + large) return 0.0f;
   if (d <= large - small) return cap_area(small);
-  // The angles of the triangle whose corners are the two axes and a point where the rims cross, by
-  // the half-angle formula.
+  // The three corners of a spherical triangle are the two axes and a point where the rims cross.
+  // Its angles are computed by the half-angle formula.
   float whole = max(sin(0.5f * (large + d + small)), 1e-20f);
   float less_small = max(sin(0.5f * (large + d - small)), 1e-20f);
   float less_large = max(sin(0.5f * (small + (d - large))), 0.0f);

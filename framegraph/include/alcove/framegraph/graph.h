@@ -38,14 +38,14 @@ class Graph;
 // One pass while it is declared: from add_pass to the next add_pass.
 class PassBuilder {
  public:
-  // The pass reads the version of the texture or buffer that the handle stands for. It may read one
-  // texture in several ranges. To read and write the same subresource, declare a single write whose
-  // access also reads.
+  // Declares that the pass reads the version of the texture or buffer that the handle stands for.
+  // It may read one texture in several ranges. To read and write the same subresource, declare a
+  // single write whose access also reads.
   void read(Texture texture, const Access& access, Range range = {});
   void read(Buffer buffer, const Access& access);
 
-  // The pass writes the texture or buffer. Returns the handle of the next version; the given handle
-  // becomes invalid.
+  // Declares that the pass writes the texture or buffer. Returns the handle of the next version;
+  // the given handle becomes invalid.
   [[nodiscard]] Texture write(Texture texture, const Access& access, Range range = {},
                               Contents contents = Contents::keep, Need need = Need::required);
   [[nodiscard]] Buffer write(Buffer buffer, const Access& access,
@@ -128,9 +128,9 @@ class Graph {
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
 
-  // Created textures and buffers are transient: the executor provides memory for them during the
-  // frame if a pass that is not culled uses them. Imported ones belong to the caller. Names are
-  // copied. They need not be unique, except those of histories.
+  // Create or import textures and buffers. Created ones are transient: the executor provides memory
+  // for them during the frame if a pass that is not culled uses them. Imported ones belong to the
+  // caller. Names are copied. They need not be unique, except those of histories.
   Texture create_texture(std::string_view name, const TextureDesc& desc);
   Buffer create_buffer(std::string_view name, const BufferDesc& desc);
   Texture import_texture(std::string_view name, const ImportedTexture& import);
@@ -207,7 +207,7 @@ class Graph {
 
   void keep_name(std::string_view name, GraphDescription::Name& to);
   void keep_long_name(std::string_view name, GraphDescription::Name& to);
-  // Called when a record of the declaration differs from the record at the same place in the
+  // Notes that a record of the declaration differs from the record at the same place in the
   // previous frame. The frame is then no longer treated as a repetition of the previous one.
   void changed();
   template <typename Record>
