@@ -20,11 +20,11 @@ constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 // The least number of samples from which a mistake is concluded.
 constexpr std::size_t kEnoughSamples = 100;
 
-// Limits for the comparison of slants.
+// Limits for the comparison of the angles to the view axis.
 constexpr double kSameTurn = 0.966;     // cosine of 15 degrees about the view axis
 constexpr double kStoredError = 0.002;  // of stored normals, radians: that of 10 bits a channel
 constexpr double kRatioError = 0.05;    // of the tangents' ratio at one sample
-constexpr double kOblique = 0.3;        // half the sine of twice the slant: 18 to 72 degrees
+constexpr double kOblique = 0.3;        // half the sine of twice the angle: 18 to 72 degrees
 constexpr double kLeastScale = 0.14;    // logarithm of 1.15, below which a scale is not reported
 constexpr double kLargestSpread = 0.5;  // between the quartiles of the ratios' logarithms
 
@@ -378,9 +378,10 @@ class Inspector {
     }
   }
 
-  // Compares the slants of normals from depth with those of given normals, where slant is the angle
-  // to the view axis. Another angle of view multiplies the tangent of every slant by one number.
-  // Surfaces along or across the view axis do not change their slant and are left out.
+  // Compares the angles between normals and the view axis: those of normals from depth with those
+  // of given normals. A wrong angle of view multiplies the tangent of every such angle by one
+  // number. Surfaces that are parallel or perpendicular to the view axis keep their angle and are
+  // left out.
   bool has_other_slants(const Reading& given) const {
     std::vector<double> exact, oblique;  // logarithms of the ratio of the tangents
     for (const SmoothSample& s : smooth_) {
@@ -396,8 +397,8 @@ class Inspector {
       }
       const double ratio =
           std::log(own_across * std::abs(stored.z) / (stored_across * std::abs(own.z)));
-      // The sensitivity is half the sine of twice the slant. An error of the angle changes the
-      // logarithm of the ratio by the error divided by the sensitivity.
+      // The sensitivity is half the sine of twice the angle to the view axis. An error of the angle
+      // changes the logarithm of the ratio by the error divided by the sensitivity.
       const double sensitivity =
           std::min(own_across * std::abs(own.z), stored_across * std::abs(stored.z));
       if (sensitivity * kRatioError > std::max(s.tilt_error, kStoredError)) {

@@ -18,8 +18,8 @@ using passes::SettingGroup;
 using passes::SettingInfo;
 using Failure = tl::unexpected<std::string>;
 
-// Each overload parses `text` as a setting. If that fails, it returns the allowed values for the
-// error sentence.
+// Parses `text` as the value of a setting. Each overload is for one type of value. Returns an empty
+// text, or, if `text` is not allowed, the allowed values for the error sentence.
 template <typename Number>
 std::string parse_number(const std::string& text, const SettingInfo& info, const char* kind,
                          Number& value) {

@@ -34,9 +34,10 @@ struct LitErrors {
 [[nodiscard]] nlohmann::ordered_json to_json(const LitErrors& errors);
 [[nodiscard]] std::string lit_error_table(const LitErrors& errors);
 
-// Writes lit_steps.png: the four steps, then visibility alone, the truth and the error of the last
-// step (grey for none). Also writes truth_lit.png, the truth alone, and lit_comparison.png: without
-// occlusion, the last step and the truth. The images have one pixel for each block.
+// Writes lit_steps.png: the lit picture of each LitStep, then the one with visibility alone, the
+// truth, and the error of the last step (grey for none). Also writes truth_lit.png, the truth
+// alone, and lit_comparison.png: without occlusion, the last step and the truth. The images have
+// one pixel for each block of pixels (IndirectTruths::block).
 [[nodiscard]] tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
                                                               const IndirectTruths& light,
                                                               const std::filesystem::path& folder);

@@ -22,8 +22,8 @@ struct RecordingFunctions {
     return (Handle)(device.next_handle());  // handles are pointers or integers by platform
   }
 
-  // Returns a function that does nothing and succeeds. If it creates an object, it returns a new
-  // handle.
+  // Nothing<Function>::call is a Vulkan function of the type `Function` that does nothing and
+  // succeeds. If it creates an object, it returns a new handle.
   template <typename Function>
   struct Nothing;
 

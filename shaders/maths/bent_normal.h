@@ -53,7 +53,8 @@ ALCOVE_INLINE vec3 residual_of(vec3 part, float visible, vec3 normal) {
 }
 
 // Returns the residual of a slice without occluders; `open` is its open_slice(). Its mean over all
-// slices is zero. If there are few slices, it is most of the error of their sum of residuals.
+// slices is zero. With few slices their mean is not zero, and is most of the error of the sum of
+// residuals.
 ALCOVE_INLINE vec3 expected_residual(Slice s, vec3 direction, vec3 view, vec3 normal, float open) {
   return residual_of(slice_bent_normal(s, direction, view, -1.0f, -1.0f), open, normal);
 }

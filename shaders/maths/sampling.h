@@ -65,8 +65,9 @@ ALCOVE_INLINE uint hash_of(uvec2 pixel) {
 // frames. The rotation per frame is then a quarter of such a number, so that the frames in which a
 // pixel itself is traced cover directions and offsets evenly.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
-  // Rotations per frame as fractions of 2^32, exact for every frame: of 1.6180339887 and
-  // 0.7548776662, or of a quarter of 1.6180339887 and of 2.5698402910.
+  // Rotations per frame, of the directions (`turn`) and of the offsets (`shift`), as fractions of
+  // 2^32, so that they are exact for every frame. The fractions are those of 1.6180339887 and
+  // 0.7548776662, or, if `moves` is true, a quarter of 1.6180339887 and of 2.5698402910.
   uint turn = moves ? 1737350766u : 2654435769u;
   uint shift = moves ? 2759345001u : 3242174889u;
   uint random_shift = (hash_of(pixel) >> 16u) << 13u;  // below an eighth

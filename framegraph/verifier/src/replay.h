@@ -24,8 +24,8 @@ struct History {
 
 struct Sub {
   History last;
-  // The last access of a series of unordered writes (Contents::accumulate), and the operations
-  // before the series.
+  // The index of the last access of a series of unordered writes (Contents::accumulate), or kNone,
+  // and the operations before that series.
   std::uint32_t series = kNone;
   History before_series;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
