@@ -1,29 +1,31 @@
-// Alcove from C: ambient occlusion recorded into an engine's own command buffer, on its own device.
+// The C interface of Alcove. It records ambient occlusion into an engine's own command buffer, on
+// the engine's own device.
 //
-//   Once:       alcoveCreateContext, and AlcoveSettings from alcoveGetSettings.
-//   Each frame: wait for the fence of slot s, call alcoveRecordFrame with a command buffer in the
-//               recording state, end the command buffer and submit it with that fence.
-//   At the end: alcoveDestroyContext, when the device has finished.
+//   Once:       alcoveCreateContext, and alcoveGetSettings for the settings.
+//   Each frame: wait for the fence of frame slot s, call alcoveRecordFrame with a command buffer in
+//               the recording state, end the command buffer and submit it with that fence.
+//   At the end: alcoveDestroyContext, after the device has finished.
 //
 // passes/INTEGRATION.md is a guide from an engine with a depth buffer to a picture. This header
-// includes those of cameras, memory, reports and results, which stand alone too.
+// includes those of cameras, memory, reports and results; each of them can also be included alone.
 //
-// Space. View space is right-handed with the camera along -Z, clip space is Vulkan's (y down, depth
-// 0 to 1), matrices are column-major: row r of column c at 4 * c + r. Lengths are in the scene's
-// units. A visibility of 1 is open.
+// Space. View space is right-handed with the camera along -Z. Clip space is Vulkan's: y down, depth
+// 0 to 1. Matrices are column-major: row r of column c is element 4 * c + r. Lengths are in the
+// scene's units. A visibility of 1 is open.
 //
-// Threads. One thread at a time may call functions on a context, which takes no lock. Contexts
-// share nothing, not even on one device.
+// Threads. Only one thread at a time may call functions on a context, because a context takes no
+// lock. Contexts share nothing, not even on one device.
 //
-// Errors. A call on a context that fails records nothing and changes no history, and
-// alcoveGetMessage says in a sentence what was wrong. Where memory runs out or the device is lost
-// in the middle of a frame, throw the command buffer away; the next frame may be tried. No
-// exception leaves the library, and nothing is printed: AlcoveContextInfo::log gets every sentence.
+// Errors. A call that fails records nothing and changes no history, and alcoveGetMessage describes
+// the error in a sentence. If memory runs out or the device is lost in the middle of a frame,
+// discard the command buffer. After running out of memory, the next frame can be tried; after
+// losing the device, destroy the context. No exception leaves the library. It prints nothing: all
+// sentences go to AlcoveContextInfo::log.
 //
-// Versions. A struct that may grow begins with struct_size, which the caller sets to sizeof the
-// struct. It tells the library which version of this header the caller was compiled with. From the
-// first release on, structs grow at their end, fields that an older caller does not have stay off,
-// and values of enums do not change.
+// Versions. A struct that may grow begins with struct_size, which the caller sets to the sizeof of
+// the struct. It tells the library which version of this header the caller was compiled with. From
+// the first release on, structs grow only at their end, fields that an older caller does not have
+// are off, and values of enums do not change.
 #ifndef ALCOVE_ALCOVE_H_
 #define ALCOVE_ALCOVE_H_
 
