@@ -303,8 +303,8 @@ typedef struct AlcoveView {
   // The number of consecutive frames, up to and including this one, whose image is exactly that of
   // the frame before. It is 0 if this frame differs from the previous one, or if the engine does
   // not know. It must start again at 0 after reset_history and when the size, the settings or the
-  // outputs change. If it is at least 1, `motion` is not read. If it is at least 16, only the
-  // pixels around traced pixels are updated, and all frames have the same weight.
+  // outputs change. If it is at least 1, `motion` is not read. If it is at least 16, the history
+  // averages up to 127 frames.
   uint32_t static_frames;
   const AlcoveSettings* settings;
   AlcoveCamera camera;

@@ -59,9 +59,9 @@ struct ReconstructInputs {
 };
 
 // Adds the reconstruction. Each view of a graph needs its own `history_name`. A history starts
-// again from this frame when the size of the raw occlusion changes or it gets other contents, when
-// history or bent normals were off in the previous frame, and after
-// Graph::reset_history(history_name).
+// again from this frame when its size (Frame::largest_size) or half_resolution changes, when the
+// raw occlusion has bent normals or a GGX lobe that the previous frame did not have, when the
+// previous frame had no history, and after Graph::reset_history(history_name).
 //
 // Errors: an input that is missing or whose size differs from the depth's, raw occlusion whose size
 // does not fit the number of tiles, a texture for visibility whose other channels cannot be kept,
