@@ -37,10 +37,11 @@ vec3 depth_normal(ivec2 pixel) {
 }
 
 // Returns the unit normal, in view space, of the side of the surface that the eye sees. `given` is
-// the normal of the texture in view space, with any length. If it has no direction, the normal is
-// computed from depth. If it faces away by less than kFlippedNormal, it may be the normal of the
-// other side of the surface, or of a surface just beyond a silhouette; the normal from depth
-// decides which.
+// the normal of the texture in view space, with any length. If it has no direction (zero, or not
+// finite), the normal is computed from depth. If it faces away from the eye, but the cosine of its
+// angle to the view direction is at least -kFlippedNormal, it may be the normal of the other side
+// of the surface, or of a surface just beyond a silhouette. The normal from depth then decides
+// whether it is flipped.
 vec3 seen_normal(ivec2 pixel, vec3 given, vec3 view) {
   bool missing = !has_direction(given);
   vec3 normal = normalize(given);

@@ -82,9 +82,9 @@ ALCOVE_INLINE float slice_gamma(Slice s) {
 const float kFlippedNormal = 0.25f;
 
 // Returns the normal of the side of the surface that the eye sees. It is `normal` if that faces the
-// eye, and its opposite if it faces away by more than kFlippedNormal (double-sided materials,
-// inverted normals). In between it is the nearest direction that is perpendicular to the view
-// direction. Both arguments are unit.
+// eye. It is the opposite of `normal` if the cosine of its angle to the view direction is below
+// -kFlippedNormal, as with double-sided materials and inverted normals. In between it is the
+// nearest direction that is perpendicular to the view direction. Both arguments are unit.
 ALCOVE_INLINE vec3 facing_normal(vec3 normal, vec3 view) {
   float towards = dot(normal, view);
   vec3 side = towards < -kFlippedNormal ? -normal : normal;
