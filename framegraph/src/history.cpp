@@ -39,8 +39,8 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
     before_.reserve(entries_.size() + 1);
     place = entries_.insert(place, HistoryEntry{});
   }
-  // The generation continues from the previous history that had this entry, so that the resources
-  // of that history are never found for the new one.
+  // The generation number of the new history continues from that of the previous history in this
+  // entry, so that the resources of the previous one are never found for the new one.
   const std::uint32_t newest = place->newest;
   *place = {};
   place->name = name;

@@ -42,8 +42,8 @@ bool same_declaration(const GraphDescription& a, const GraphDescription& b) {
   if (a.accesses.size() != b.accesses.size() || a.resources.size() != b.resources.size() ||
       a.externals.size() != b.externals.size() || a.outputs.size() != b.outputs.size())
     return false;
-  // Pass records are always compared: their flags may be set after the pass was added, which does
-  // not change the edition.
+  // Descriptions with the same edition have the same records, except for pass records: their flags
+  // may be set after the pass was added. Pass records are therefore always compared.
   if (!same(a.passes, b.passes)) return false;
   return a.edition == b.edition ||
          (same(a.accesses, b.accesses) && same(a.resources, b.resources) &&

@@ -87,7 +87,7 @@ namespace alcove::passes {
                                                  VkFormat format) {
   const maths::vec2 from_ndc = inverse_depth_from_ndc(projection);
   const double scale = from_ndc.x;
-  // One and a half steps are used instead of one, because rasterisers do not always round to the
+  // The result is 1.5 times the step of the format, because rasterisers do not always round to the
   // nearest value.
   const auto fixed = [&](double levels) {
     return maths::DepthStep{static_cast<float>(1.5 * scale / levels), 0.0f};

@@ -14,9 +14,9 @@
 
 namespace alcove::sample {
 
-// Returns the presets, and settings between and beyond them: tile size, slices, steps and half
-// resolution vary, and everything else is as in `base`. No setting appears twice. `base` itself
-// appears only if it equals one of these.
+// Returns the presets, and other settings with tile sizes, numbers of slices and steps, and half
+// resolution between and beyond those of the presets. Everything else is as in `base`. No setting
+// appears twice. `base` itself appears only if it equals one of these.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
 // Returns variants of `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, ordered by

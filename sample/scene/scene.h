@@ -44,8 +44,8 @@ struct TextureUse {
   glm::mat3x2 texture_from_mesh_uv{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f};  // finite
 };
 
-// Alpha-blended materials are opaque in the rasteriser and in the ray tracer, because a g-buffer
-// holds one surface per pixel.
+// How the alpha of a material is used. Alpha-blended materials are opaque in the rasteriser and in
+// the ray tracer, because a g-buffer holds one surface per pixel.
 enum class AlphaMode : uint8_t {
   kOpaque,
   kMask,   // cut out below alpha_cutoff

@@ -36,8 +36,9 @@ enum class ThicknessUnit : std::uint8_t {
   // Each occluder ends at the nearest back face on its view ray, which a second depth buffer
   // (OcclusionInputs::back_depth_ndc) shows. For a closed solid, that is the point where the ray
   // leaves it, unless another solid stands inside it. If there is no back face behind the front
-  // face (cards, planes, sky), the unit is `radius`. A card in front of a solid is assumed to
-  // extend to the solid's back, because two depths cannot distinguish this case.
+  // face (cards, planes, sky), the occluder has the thickness that the unit `radius` gives. A card
+  // in front of a solid is assumed to extend to the solid's back, because two depths cannot
+  // distinguish this case.
   back_faces,
 };
 
