@@ -7,14 +7,17 @@
 // pass, because all three read the same neighbourhood with the same weights.
 //
 // One pixel of each tile of kTileSize x kTileSize pixels is traced in a frame, at a position that
-// moves through the tile from frame to frame (`interleave_offset`). Each invocation computes one
-// pixel. A group of 8x8 adjacent pixels first unpacks the traced pixels around it into shared
-// memory. A pixel then averages the traced pixels around it: 2x2 of them where it has a history,
-// kFilterRadius on each side, without the corners, where it has none. Their weights fall with the
-// distance on the image, with the distance from the pixel's tangent plane, so that a plane at any
-// tilt is filtered as a whole and nothing leaks across a depth edge, and with the angle between the
-// normals, so that little leaks across a crease. Occluded and open parts are summed separately and
-// divided last. Sums of the GGX lobe are also weighted by how alike normals and roughnesses are.
+// moves through the tile from frame to frame (`interleave_offset`). A group of 8x8 invocations
+// first unpacks the traced pixels around its pixels into shared memory. Each invocation then
+// computes one pixel as a weighted average of the traced pixels around it. A pixel with a history
+// averages 2x2 of them. A pixel without one averages those up to kFilterRadius tiles away on each
+// side, except at the corners.
+//
+// The weight of a traced pixel falls with three values. The first is its distance on the image. The
+// second is its distance from the pixel's tangent plane, so that a plane at any tilt is filtered as
+// a whole and nothing leaks across a depth edge. The third is the angle between the two normals, so
+// that little leaks across a crease. Weights for the GGX lobe also depend on the difference of the
+// roughnesses. Occluded and unoccluded parts are summed separately and divided last.
 //
 // Sums hold occlusion rather than visibility: an unoccluded surface then sums zeros, and its
 // visibility is exactly 1 after any number of frames.
@@ -67,8 +70,8 @@ const bool kByNormal = false;
 const bool kByNormal = true;
 #endif
 
-// Bound of the cosine between normal and view direction: a plane seen edge-on would reach any
-// depth.
+// Lower bound of the cosine between the normal and the view direction. Without it, the tangent
+// plane of a surface that is seen edge-on would contain points at every depth.
 const float kLeastNDotV = 0.02;
 
 ivec2 size_px() { return textureSize(depth_image, 0); }
@@ -91,18 +94,19 @@ struct Surface {
   float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
   float depth;          // 1/inverse_depth in perspective, 1 otherwise
   float n_dot_v;        // cosine between normal and view direction, on the camera's axis
-  // The change of inverse_depth per pixel along the tangent plane, times n_dot_v, and in
-  // perspective over inverse_depth.
+  // The change of inverse_depth per pixel along the tangent plane, times n_dot_v. In perspective it
+  // is divided by inverse_depth.
   vec2 slope;
-  // The view-space normal (x, y, 1 + z). Times z, a QuantisedNormal differs from xy by about the
-  // angle between the normals.
+  // The view-space normal (x, y, z), stored as (x, y, 1 + z). The stereographic coordinates of a
+  // QuantisedNormal times the stored 1 + z, minus (x, y), have about the length of the angle
+  // between the two normals.
   vec3 stereographic;
   LobeSurface lobe;  // normal as it was given
   vec2 tilt;         // HalfTexel::tilt; only with HALF
   TracedPixels around;
-  // Set by set_plane(). Distances from the tangent plane are measured in tolerances: that of a
-  // neighbour is its inverse depth times per_inverse_depth, minus plane.xy times its offset in
-  // pixels, minus plane.z.
+  // Coefficients of the distance of a neighbour from the tangent plane, in units of the tolerance:
+  // its inverse depth times per_inverse_depth, minus plane.xy times its offset in pixels, minus
+  // plane.z. They are set by set_plane().
   float per_inverse_depth;
   vec3 plane;
 };
@@ -114,9 +118,9 @@ void set_plane(inout Surface surface) {
                        kPerspective ? per_distance : per_distance * surface.inverse_depth);
 }
 
-// Returns the pixel's normal in the space of the normals; its length may be any but 0. If the
-// texture has no valid normal, returns the direction to the eye: that is exact enough for the
-// filter's weights, and a NaN would stay in the history.
+// Returns the pixel's normal in the space of the normals, with any length except 0. If the texture
+// has no valid normal, returns the direction to the eye instead. It is exact enough for the
+// filter's weights. A NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
   vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;

@@ -1,8 +1,9 @@
-// The images of reconstruct.comp. The variants of the shader are compiled with these names defined:
-//   HALF      texels of 2x2 pixels are reconstructed, and the pass "upsample" computes the pixels
+// The parameters and images of reconstruct.comp. The variants of the shader are compiled with these
+// macros defined:
+//   HALF      texels of 2x2 pixels are reconstructed, and upsample.comp computes the pixels
 //   HISTORY   there is a history
 //   SPECULAR  there is a GGX lobe for specular occlusion
-// The passes find bindings by name, so that their numbers have no meaning outside this file.
+// The passes find bindings by name, so that binding numbers have no meaning outside this file.
 #ifndef ALCOVE_RECONSTRUCT_BINDINGS_H
 #define ALCOVE_RECONSTRUCT_BINDINGS_H
 
@@ -30,8 +31,8 @@ layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // hal
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
-// The image that visibility_image writes, from which the kept channels are read. Without
-// kKeepsChannels it is never read, and another image is bound in its place.
+// The same image as visibility_image, bound for reading the channels that keep their contents. It
+// is read only with kKeepsChannels; otherwise another image is bound in its place.
 layout(set = 0, binding = 16) uniform texture2D kept_image;
 #endif
 

@@ -5,13 +5,14 @@
 // Number of traced pixels on each side that are averaged for a pixel with a history.
 const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
 
-// Bound of the squared angle between normals in a neighbour's weight, which is then at least
-// 1 / (1 + 1.23)^2 = 0.2: where a pixel has few other neighbours, one across a crease is better
-// than none. Fitted to the error of first frames (`alcove compare --frames 1`).
+// Upper bound of the squared angle between normals in a neighbour's weight. The factor of the
+// weight that depends on the angle is then at least 1 / (1 + 1.23)^2 = 0.2, because a neighbour
+// across a crease is better than none where a pixel has few other neighbours. Fitted to the error
+// of first frames (`alcove compare --frames 1`).
 const float kLargestSquaredAngle = 1.23;
 
-// Distance from the tangent plane, in tolerances, from which on a weight no longer falls, so that
-// no weight is a denormal number.
+// The distance from the tangent plane, in units of the tolerance, beyond which a weight no longer
+// falls. It keeps weights from becoming denormal numbers.
 const float kFarthestOffPlane = 1e7;
 
 // How weights fall with distance.
@@ -33,10 +34,10 @@ struct Sums {
 
 Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0)); }
 
-// Adds the traced pixel that lies `i` tiles to the right of the first and `j` below it. Its weight
-// falls with the distance on the image, with the distance from the tangent plane and with the angle
-// between the normals, but never to zero: where no neighbour lies on the plane, the nearest to it
-// count.
+// Adds the traced pixel that lies `i` tiles to the right of the first one and `j` tiles below it.
+// Its weight falls with the distance on the image, with the distance from the tangent plane and
+// with the angle between the normals, but never to zero: if no neighbour lies on the plane, the
+// nearest to it count most.
 void add_traced(inout Sums sums, Surface surface, Window window, int i, int j) {
   vec2 offset = vec2(traced_offset(surface.around, 0, i), traced_offset(surface.around, 1, j));
   int index = surface.around.first_tile + j * kSpan + i;
@@ -91,8 +92,8 @@ Sums sum_near(Surface surface, Window window) {
   return sums;
 }
 
-// Returns the sums over the traced pixels within kFilterRadius without the corners. The loops are
-// unrolled, since every pixel of a first frame runs them.
+// Returns the sums over the traced pixels within kFilterRadius, without the corners. The loops are
+// unrolled, because every pixel of a first frame runs them.
 Sums sum_wide(Surface surface, Window window) {
   Sums sums = no_sums();
   [[unroll]] for (int j = kFirstWide; j <= kFilterRadius; ++j) {

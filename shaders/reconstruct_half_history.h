@@ -1,5 +1,5 @@
-// The format of the history of texels of 2x2 pixels, the part of reconstruct_history.h with HALF.
-// It is what the previous frame stored for upsampling (HalfTexel).
+// The history of texels of 2x2 pixels, whose format is HalfTexel, as the previous frame stored it
+// for upsampling. It is the part of reconstruct_history.h that is compiled with HALF.
 #ifndef ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 

@@ -1,14 +1,16 @@
-// The surface of a texel of 2x2 pixels, the part of reconstruct.comp with HALF: which of its pixels
-// stands for it, and the tangent plane there, both from depth alone.
+// The surface of a texel of 2x2 pixels: which of its pixels represents it, and the tangent plane
+// there. Both are computed from depth alone. It is the part of reconstruct.comp that is compiled
+// with HALF.
 #ifndef ALCOVE_RECONSTRUCT_HALF_SURFACE_H
 #define ALCOVE_RECONSTRUCT_HALF_SURFACE_H
 
-// Tilt up to which a change of depth between neighbouring pixels is taken for a surface although
-// the change on the other side has the other sign: about 70 degrees.
+// The largest tilt (tangent of an angle of about 70 degrees) at which a change of depth to a
+// neighbouring pixel is taken as the slope of the surface if the change on the other side of the
+// pixel has the opposite sign.
 const float kPlausibleTilt = 3.0;
 
-// The pixel that stands for a texel. Its inner neighbours are pixels of the texel too, its outer
-// ones are not.
+// The pixel that represents a texel. Its inner neighbours belong to the texel too, its outer
+// neighbours do not.
 struct TexelPixel {
   float depth_ndc;
   vec2 inner;  // raw depths, the neighbour along x and along y
@@ -16,9 +18,11 @@ struct TexelPixel {
   vec2 way;  // 1 or -1 along each axis, from the pixel to its inner neighbour
 };
 
-// The change of inverse depth along an axis: the smaller of the changes on both sides of a pixel,
-// since the larger may lead to another surface. Where they differ in sign both may, as on a thin
-// object, so a steep one is then not believed. A change of 0 may be the border of the image.
+// Returns the change of inverse depth along an axis: the smaller one of the changes on the two
+// sides of a pixel, because the larger one may lead to another surface. If the two differ in sign,
+// as on a thin object, both may lead to other surfaces. A change above `plausible` is then replaced
+// by 0. A change of exactly 0 is used only if both are 0, because it may come from the border of
+// the image.
 float gradient_of(float inner_change, float outer_change, float plausible) {
   bool inner =
       outer_change == 0.0 || (inner_change != 0.0 && abs(inner_change) < abs(outer_change));
@@ -27,9 +31,9 @@ float gradient_of(float inner_change, float outer_change, float plausible) {
   return agree || abs(smaller) < plausible ? smaller : 0.0;
 }
 
-// The pixel that stands for the texel: the nearest in one half of the texels and the farthest in
-// the other, as on a chessboard. Where two surfaces meet, both are then found among any 2x2 texels.
-// The sky stands for a texel only where there is nothing else.
+// Returns the pixel that represents the texel: the nearest one if x + y of the texel is even, and
+// otherwise the farthest, like the squares of a chessboard. Where two surfaces meet, both are then
+// found among any 2x2 texels. A pixel of the sky represents a texel only if all four show the sky.
 TexelPixel representative(ivec2 texel) {
   vec2 uv = vec2(texel * 2) * parameters.pixel_uv;
   vec2 step = 2.0 * parameters.pixel_uv;

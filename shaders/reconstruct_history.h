@@ -1,5 +1,6 @@
-// Temporal accumulation, the part of reconstruct.comp with HISTORY: reads the history where the
-// surface was in the previous frame, rejects texels of other surfaces, and adds this frame.
+// Temporal accumulation: the part of reconstruct.comp that is compiled with HISTORY. It reads the
+// history at the position that the surface had in the previous frame, rejects texels of other
+// surfaces, and adds the samples of this frame.
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HISTORY_H
 
@@ -19,8 +20,9 @@ History no_history() { return History(0.0, 0.0, 0.0, vec3(0.0), vec2(0.0), 0.0);
 // surface keeps its history.
 const float kDepthMotion = 0.04;
 
-// Largest distance, in the units of HistoryTexels::distances, at which a texel of a static image
-// keeps its history. Its weight in a moving image would be 0.05.
+// The largest distance, in the units of HistoryTexels::distances, at which a texel of a static
+// image keeps its history. It is the distance at which the weight of a texel in a moving image, (1
+// - distance)^2, is 0.05.
 const float kSameTexel = 0.776;
 
 // The position of a surface in the image of the previous frame.
@@ -76,8 +78,9 @@ vec4 gather_offsets(vec2 gradient, vec2 part, float first) {
 
 float sum_of(vec4 v) { return v.x + v.y + v.z + v.w; }
 
-// Motion vectors do not say how far a moving surface has come nearer. The texel that lies nearest
-// to the expected depth does, if it lies within `limit` of it.
+// Returns the differences of depth of four texels from the expected depth of a moving surface,
+// minus the smallest of them if that is at most `limit`. Motion vectors do not tell how far a
+// surface has moved towards the eye; the texel that is nearest to the expected depth does.
 vec4 follow_depth(vec4 differences, float limit) {
   vec4 apart = abs(differences);
   float least = min(min(apart.x, apart.y), min(apart.z, apart.w));
@@ -154,8 +157,8 @@ History read_moving(Surface surface) {
   return history;
 }
 
-// Reads the history at the texel itself, for a camera that stands still. The depth is compared too,
-// because objects may have moved without motion vectors.
+// Reads the history at the texel itself, for a static image. The depth is compared too, because
+// objects may have moved without motion vectors.
 History read_static(Surface surface) {
   History history = fetch_history(surface);
   history.weight = min(history.weight, parameters.largest_weight);
@@ -175,8 +178,8 @@ const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 // With tiles of 4 texels few samples are a texel's own even in time, so the window stays wider.
 const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
 
-// Returns 0.125 / w^2 for a filter window of w pixels. The window narrows as the history gathers
-// weight, down to a smallest width. If the history is read at the centre of a texel, the smallest
+// Returns 0.125 / w^2 for a filter window of w pixels. The window narrows as the weight of the
+// history grows, down to a smallest width. At the centre of a texel of the history, this smallest
 // width is `own` texels. Between centres it is larger, because the interpolation of the history
 // blurs there anyway.
 float window_of(History history) {
@@ -186,17 +189,17 @@ float window_of(History history) {
              parameters.inverse_squared_window * (3.0 * history.weight + 1.0));
 }
 
-// Returns the factor, at least 1, on the weight of a neighbour's distance from the tangent plane,
-// compared with a first frame. The more samples of its own a pixel has, the less it needs those of
-// other surfaces. Fitted to the error
-// after 4 and 32 frames at each tile size (`alcove compare --frames`).
+// Returns the factor, at least 1, by which a neighbour's distance from the tangent plane is
+// multiplied, compared with a first frame. The more samples of its own a pixel has, the less it
+// needs those of other surfaces. Fitted to the error after 4 and 32 frames at each tile size
+// (`alcove compare --frames`).
 float plane_weight_growth(float weight) {
   const float own = 1.0 / float(kTileTexels * kTileTexels);  // traced frames per frame
   return min(1.0 + 12.0 * own * weight, 5.0);
 }
 
-// If objects move, visibility also changes on surfaces at rest. Where the mean of the last few
-// frames differs from the mean of all frames by more than noise, it replaces the latter.
+// Replaces the mean of all frames by the mean of the last few frames if the two differ by more than
+// noise. If objects move, visibility also changes on surfaces that do not move.
 void follow_change(inout History history, float now, float open) {
   history.recent = update_recent(history.recent, history.weight, now, open);
   float changed =
@@ -216,8 +219,8 @@ void clamp_history(inout History history, Sums now) {
   }
 }
 
-// Returns the sums over the neighbourhood in this frame. A pixel with hardly any history gets the
-// wider neighbourhood of a first frame.
+// Returns the sums over the traced pixels around the pixel in this frame. A pixel with hardly any
+// history gets the wider neighbourhood of a first frame.
 Sums sum_neighbourhood(Surface surface, History history, Window window) {
   if (kFresh) {
     return sum_wide(surface, window);

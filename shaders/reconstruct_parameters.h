@@ -6,14 +6,16 @@
 ALCOVE_MATHS_BEGIN
 
 struct ReconstructParameters {
-  // From (x, y, 1, 1/depth) in perspective or (x, y, depth, 1) in orthographic views, x and y in
-  // pixels of this frame, to the previous frame: x w and y w in pixels there, w, and the depth
-  // there (over the depth here in perspective). Rows, so that each is one dot product.
+  // Converts a position in this frame to a position in the previous frame, as (position * matrix),
+  // so that each component is one dot product. The position is (x, y, 1, 1/depth) in perspective or
+  // (x, y, depth, 1) in orthographic views, with x and y in pixels. The result is (x w, y w, w,
+  // depth) with x and y in pixels of the previous frame. In perspective its depth is divided by the
+  // depth in this frame.
   mat4 previous_from_pixel;
   mat4 normal_from_view;  // rotation from view space to the space of the normals
-  // A normal in the space of the normals times its upper 3x3 part is the normal of its tangent
-  // plane in the space of (x s, y s, depth), x and y in pixels and s the depth in perspective, 1
-  // otherwise.
+  // Converts a normal in the space of the normals to the normal of its tangent plane in the space
+  // of (x s, y s, depth): normal * mat3(plane_from_normal). x and y are in pixels; s is the depth
+  // in perspective and 1 in orthographic views.
   mat4 plane_from_normal;
   mat4 previous_from_view;   // rotation from view space to that of the previous frame
   vec4 slope;                // xy: ray_per_px(); zw: of the ray at the image's corner; view space
@@ -35,14 +37,16 @@ struct ReconstructParameters {
   float history_unit;  // a power of two near the near plane, in which the history holds depths,
                        // so that no unit of length changes a bit
   float tolerance;     // scale of distances from the tangent plane, in depths
-  float history_sharpness;  // of history_agreement(), for a surface seen head-on
-  float history_slack;      // of history_agreement()
-  float largest_weight;     // of the history, frames
-  float clamp_width;        // of clamp_to_spread()
-  float roughness;          // perceptual, of every surface where no texture has it
-  float power;              // of shaped_visibility()
-  float intensity;          // of shaped_visibility()
-  float dither_offset;      // [0,1), another one each frame
+  // 1 over the change of a stored depth at which a history texel's weight reaches 0, for a surface
+  // seen head-on.
+  float history_sharpness;
+  float history_slack;   // rounding error of a stored depth, times history_sharpness
+  float largest_weight;  // of the history, frames
+  float clamp_width;     // of clamp_to_spread()
+  float roughness;       // perceptual, of every surface where no texture has it
+  float power;           // of shaped_visibility()
+  float intensity;       // of shaped_visibility()
+  float dither_offset;   // [0,1), another one each frame
 };
 
 ALCOVE_MATHS_END

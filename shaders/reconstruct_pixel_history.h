@@ -1,10 +1,10 @@
-// The format of the history of pixels (HistoryTexel), the part of reconstruct_history.h without
-// HALF.
+// The history of pixels, whose format is HistoryTexel. It is the part of reconstruct_history.h that
+// is compiled without HALF.
 #ifndef ALCOVE_RECONSTRUCT_PIXEL_HISTORY_H
 #define ALCOVE_RECONSTRUCT_PIXEL_HISTORY_H
 
-// The change of a stored depth for a relative change of depth of 1 in perspective, and for a change
-// of depth of 1 in orthographic views.
+// Returns the change of a stored depth for a change of depth: per relative change in perspective
+// views, and per change of 1 in orthographic views. `scale` is the x or z of history_depth_scale.
 float stored_per_depth(float scale) { return kPerspective ? 1.442695 * scale : scale; }
 
 // The logarithm of the inverse depth in perspective, the depth in orthographic views.

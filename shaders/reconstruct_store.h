@@ -1,5 +1,5 @@
-// The stores of reconstruct.comp: of the outputs, or of the texels that the upsampling pass and the
-// next frame read.
+// Stores the results of reconstruct.comp: the outputs, or the texels that the upsampling pass and
+// the next frame read.
 #ifndef ALCOVE_RECONSTRUCT_STORE_H
 #define ALCOVE_RECONSTRUCT_STORE_H
 
@@ -25,7 +25,7 @@ Result result_of(Sums sums) {
   return result;
 }
 
-// A number in [0,1) that is evenly distributed over neighbouring texels and over frames:
+// Returns a number in [0,1) that is evenly distributed over neighbouring texels and over frames:
 // interleaved gradient noise [Jimenez 2014].
 float dither_of(vec2 centre) {
   return fract(52.9829189 *
@@ -52,8 +52,8 @@ void store_kept(Surface surface, Result result, float dither) {
 #endif
 #ifdef HALF
 
-// Stores a texel for upsampling and for the next frame. `recent` is the occlusion of the last few
-// frames, which is read only with kMotion.
+// Stores a texel for upsampling and for the next frame. `recent`, the occlusion of the last few
+// frames, is stored only with kMotion.
 void store_half(Surface surface, Result result, float weight, float recent) {
   HalfTexel texel = HalfTexel(result.occlusion, weight, surface.tilt);
   imageStore(half_image, surface.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));

@@ -12,8 +12,9 @@ Surface fetch_surface(ivec2 pixel) {
   surface.depth = kPerspective ? 1.0 / surface.inverse_depth : 1.0;
   surface.around = find_traced(pixel, 0.0);
   vec3 normal = fetch_normal(surface.pixel);
-  // dot((x s, y s, depth), plane) is constant on the tangent plane, where x and y are in pixels and
-  // s is the depth in perspective and 1 otherwise.
+  // `plane` is the normal of the tangent plane in the space of (x s, y s, depth): dot((x s, y s,
+  // depth), plane) is constant on the plane. x and y are in pixels; s is the depth in perspective
+  // and 1 otherwise.
   vec3 plane = normal * mat3(parameters.plane_from_normal);
   // How the distance from the plane grows with depth along the pixel's ray.
   float along = plane.z + (kPerspective ? dot(surface.centre, plane.xy) : 0.0);

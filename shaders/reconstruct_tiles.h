@@ -1,10 +1,10 @@
-// The traced pixels around a group of invocations, unpacked into shared memory, and where the
-// traced pixels around a pixel are found there. A part of reconstruct.comp.
+// Unpacks the traced pixels around a group of invocations into shared memory, and finds those
+// around a pixel there. It is a part of reconstruct.comp.
 #ifndef ALCOVE_RECONSTRUCT_TILES_H
 #define ALCOVE_RECONSTRUCT_TILES_H
 
-// Whether a pixel averages the traced pixels around it. If not, every pixel was traced itself, or
-// takes the value of its tile.
+// Whether a pixel averages the traced pixels around it. If not, either every pixel was traced
+// itself (kTileSize is 1), or a pixel takes the value of its tile (kFilterRadius is 0).
 const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
 // Base-2 logarithm of kTileSize.
 const int kShift = kTileSize == 8 ? 3 : kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
@@ -13,8 +13,9 @@ const int kGroupPixels = 8 * kTexelSize;
 // Number of tiles along x and along y whose traced pixels the pixels of a group average.
 const int kSpan = kGroupPixels / kTileSize + 2 * kFilterRadius;
 
-// x: inverse depth. y: the occluded part, z: RawOcclusion::open, neither of them normalised. w: x
-// of the normal's stereographic projection.
+// The unpacked raw occlusion of the tiles around the group. x: inverse depth. y: the occluded part
+// and z: RawOcclusion::open, neither of them normalised. w: x of the normal's stereographic
+// coordinates.
 shared vec4 traced[kSpan * kSpan];
 shared float traced_stereographic_y[kByNormal ? kSpan * kSpan : 1];
 // The arrays of results that are not computed have one element, which nothing reads.
@@ -25,8 +26,8 @@ const int kLobeSpan = kLobe ? kSpan * kSpan : 1;
 shared vec2 traced_lobe[kLobeSpan];  // occluded, open
 shared uint traced_lobe_surface[kLobeSpan];
 
-// Returns the tile to the upper left among the 2x2 tiles whose traced pixels surround a pixel. If
-// pixels take the value of their tile, returns the pixel's own tile.
+// Returns the upper left one of the 2x2 tiles whose traced pixels surround a pixel. If pixels take
+// the value of their tile, returns the pixel's own tile.
 ivec2 cell_of(ivec2 pixel) {
   return kBetween ? (pixel - parameters.interleave_pixel) >> kShift : pixel >> kShift;
 }
@@ -81,9 +82,9 @@ struct TracedPixels {
   vec4 range;      // smallest and largest offset of a traced pixel in the image
 };
 
-// Returns the traced pixels around `pixel`, whose upper left corner is the first of one or more
-// pixels between the same traced pixels. `centre` is what offsets are measured from, in pixels from
-// that pixel's centre.
+// Returns the traced pixels around `pixel`. Offsets to them are measured from the point that lies
+// `centre` pixels right of and below the pixel's centre, which is 0, or 0.5 for a texel of 2x2
+// pixels whose first pixel this is.
 TracedPixels find_traced(ivec2 pixel, float centre) {
   ivec2 place = cell_of(pixel) - first_tile_of_group();
   TracedPixels found;
@@ -95,8 +96,8 @@ TracedPixels find_traced(ivec2 pixel, float centre) {
   return found;
 }
 
-// Returns the offset to the traced pixel that lies `i` tiles to the right of (axis 0) or below
-// (axis 1) the first, pixels.
+// Returns the offset, in pixels, to the traced pixel that lies `i` tiles to the right of the first
+// one (axis 0) or below it (axis 1).
 float traced_offset(TracedPixels around, int axis, int i) {
   return clamp(around.offset[axis] + float(i * kTileSize), around.range[axis],
                around.range[axis + 2]);

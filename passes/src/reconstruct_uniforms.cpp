@@ -38,8 +38,8 @@ maths::mat4 pixel_from_view(const maths::Projection& p) {
 
 // The largest range of depths that the history of a perspective view distinguishes, in octaves
 // (factors of two) from the near plane on. 13 bits then resolve a relative change of depth of
-// 2^-9.5. The resolution is finer if the far plane is nearer than that. All surfaces that are
-// further away than 65,536 times the distance of the near plane have the same depth in the history.
+// 2^-9.5. The resolution is finer if the far plane is nearer than that. All surfaces farther away
+// than 65,536 times the distance of the near plane have the same depth in the history.
 constexpr float kLargestDepthOctaves = 16.0f;
 
 // The largest power of two that is no larger than the near plane's distance.
@@ -71,9 +71,9 @@ maths::vec2 history_depth_scale(const maths::Projection& p) {
 constexpr float kHistorySlack = 0.75f / 8191.0f;
 
 // Returns the relative difference of depth from the tangent plane at which a history texel's weight
-// reaches 0 in perspective views: 1.5 texels, and at most 0.3 % of the depth. At least 0.13 %,
-// which is about the step of a stored depth. ReconstructParameters::history_sharpness is computed
-// from it.
+// reaches 0 in perspective views. It is 1.5 texels, but at most 0.3 % of the depth, and at least
+// 0.13 %, which is about the step of a stored depth. ReconstructParameters::history_sharpness is
+// computed from it.
 float relative_history_distance(float texel) { return std::clamp(1.5f * texel, 0.0013f, 0.003f); }
 
 float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
@@ -86,9 +86,8 @@ float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
   return 1.0f / std::max(1.5f * pixel * scale.x, 2.0f * kHistorySlack);
 }
 
-// Error of the depth of a texel at half resolution, relative to the distance at which its weight
-// reaches
-// 0. The depth is stored with a relative error of 2^-15.
+// The error of the depth of a texel at half resolution, relative to the distance at which its
+// weight reaches 0. The depth is stored with a relative error of 2^-15.
 constexpr float kHalfHistorySlack = 0.03f;
 
 // Returns ReconstructParameters::history_sharpness at half resolution, where depths are stored
@@ -132,8 +131,8 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
                                                     const ReconstructInputs& inputs,
                                                     const OcclusionSettings& settings) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
-  // Computed in double, because the translations nearly cancel if the camera is far from the
-  // origin.
+  // This matrix is computed in double, because the translations nearly cancel if the camera is far
+  // from the origin.
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
                                    maths::inverse(to_rigid(frame.view.view_from_world));
   const maths::mat4 to_view =
@@ -175,8 +174,8 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
     parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
     parameters.history_slack = kHistorySlack * parameters.history_sharpness;
   }
-  // Multiples of the golden ratio modulo 1, which are spread evenly over any number of successive
-  // frames.
+  // The dither offsets of the frames are multiples of the golden ratio modulo 1, which are spread
+  // evenly over any number of successive frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
   parameters.motion =
@@ -185,7 +184,7 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   parameters.roughness = settings.roughness;
   const float window = window_px(inputs.raw_occlusion);
   parameters.inverse_squared_window = 0.125f / (window * window);
-  // More slices narrow the window, and reduce the distance from the tangent plane that is
+  // More slices narrow the window. They also reduce the distance from the tangent plane that is
   // tolerated.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
   const auto [offset_x, offset_y] =

@@ -1,6 +1,6 @@
-// Accumulation over frames [Jimenez 2016, section 4.5]: decides which texels of the previous frame
+// Temporal accumulation [Jimenez 2016, section 4.5]: decides which texels of the previous frame
 // show the same surface and how much they weigh against the samples of this frame, and packs the
-// history's texels.
+// texels of the history.
 #ifndef ALCOVE_MATHS_HISTORY_H
 #define ALCOVE_MATHS_HISTORY_H
 
@@ -27,10 +27,10 @@ ALCOVE_INLINE Spread spread_of_sums(float sum, float sum_of_squares, float count
   return spread;
 }
 
-// Returns the history clamped to the neighbourhood's mean plus or minus `width` standard
-// deviations. If this frame's samples are noisy, the deviation is large and the history is hardly
-// clamped. If light or occluders have changed, the history lies outside and is moved to the nearer
-// limit.
+// Returns the visibility `history`, clamped to the mean of this frame's neighbourhood plus or minus
+// `width` standard deviations. If this frame's samples are noisy, the deviation is large and the
+// history is hardly clamped. If light or occluders have changed, the history lies outside and is
+// moved to the nearer limit.
 ALCOVE_INLINE float clamp_to_spread(float history, Spread now, float width) {
   float half_width = width * now.deviation;
   return clamp(history, now.mean - half_width, now.mean + half_width);
@@ -43,12 +43,12 @@ ALCOVE_INLINE float weight_after_clamp(float weight, float before, float after, 
   return mix(weight, min(weight, 1.0f), moved);
 }
 
-// Variance of the visibility that one frame measures at a pixel. Tuned with `alcove motion --path
-// orbit` in one view, and checked in another.
+// Variance of the visibility that one frame measures at a pixel. Tuned in one view (`alcove motion
+// --path orbit`), and checked in another.
 const float kFrameVariance = 0.02f;
 
-// Variance of the difference in visibility between a surface and the neighbouring history texels
-// that are used instead if a texel shows another surface. Mean over the development scenes.
+// Variance of the error of visibility if a history texel shows another surface and neighbouring
+// texels are used instead. It is the mean over the development scenes.
 const float kMissingVariance = 0.003f;
 
 // Returns the history's weight after interpolation between four texels whose visibilities have the
@@ -113,11 +113,11 @@ const float kLastWeightCode = 31.0f;
 // The largest code of an occlusion, in 11 bits. Code c stands for an occlusion of c/2047.
 const float kLastOcclusionCode = 2047.0f;
 
-// Packs a texel. `dither`, [0,1), replaces the 0.5 that is added to round to nearest. The first
-// component has the recent occlusion in its lowest three bits, and the depth is rounded such that
-// the whole component is the depth to within 4.2/65535, and needs no unpacking. The second
-// component has the code of the weight in its highest five bits and that of the occlusion in the
-// others.
+// Packs a texel. `dither`, [0,1), replaces the 0.5 that is added to round to nearest. The lowest
+// three bits of the first component hold the recent occlusion, and the other bits the depth. The
+// depth is rounded such that the whole component differs from it by at most 4.2/65535 and can be
+// used as the depth without unpacking. The highest five bits of the second component hold the code
+// of the weight, and the other bits that of the occlusion.
 ALCOVE_INLINE vec2 pack_history_texel(HistoryTexel texel, float dither) {
   float recent = floor(sqrt(clamp(texel.recent, 0.0f, 1.0f)) * 7.0f + dither);
   float depth = floor(texel.depth * (65535.0f / 8.0f) - recent * (1.0f / 8.0f) + 0.5f);
@@ -136,15 +136,15 @@ ALCOVE_INLINE float texel_recent(float first) {
   return max(root, 0.0f) * root * (64.0f / 49.0f);
 }
 
-// Returns the second component of a packed texel as a number whose whole part is the code of the
-// weight, and whose fraction is what texel_occlusion() decodes.
+// Converts the second component of a packed texel to a number whose whole part is the code of the
+// weight. texel_occlusion() decodes its fraction.
 ALCOVE_INLINE float texel_codes(float second) {
   return second * (65535.0f / 2048.0f) + 0.5f / 2048.0f;
 }
 
-// Returns the occlusion for the fraction of a result of texel_codes(), or for a weighted mean of
-// such fractions. For an occlusion of 0, the result is at most 0: rounding can add up to 3e-6 to
-// the fraction, which are subtracted with it.
+// Returns the occlusion from the fraction of a result of texel_codes(), or from a weighted mean of
+// such fractions. For an occlusion of 0 the result is at most 0: rounding adds up to 3e-6 to the
+// fraction, which is subtracted.
 ALCOVE_INLINE float texel_occlusion(float fraction) {
   return (fraction - (0.5f / 2048.0f + 3e-6f)) * (2048.0f / kLastOcclusionCode);
 }
