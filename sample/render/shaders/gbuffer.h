@@ -9,8 +9,8 @@ ALCOVE_MATHS_BEGIN
 // Parameters that are the same for all draws of a frame.
 struct GbufferParameters {
   mat4 clip_from_world;
-  // The matrix from world to clip space of the previous frame, but with the jitter of this frame, so
-  // that motion vectors contain only the motion of surfaces.
+  // The matrix from world to clip space of the previous frame, but with the jitter of this frame,
+  // so that motion vectors contain only the motion of surfaces.
   mat4 previous_clip_from_world;
   mat4 world_from_moving;  // placement of draws that move; rotation and translation
   mat4 previous_world_from_moving;
