@@ -17,7 +17,7 @@ namespace {
 // The graphs have no transient buffers. A transient buffer's dependency on the previous frame could
 // sometimes be met by a barrier of that frame, but the compiler always adds a barrier in the
 // current frame.
-TEST(Barriers, NoPlanWithFewerBarrierCommandsIsValid) {
+TEST(Barriers, CompiledPlanHasTheFewestBarrierCommandsOfAllValidPlans) {
   Graph graph;
   std::uint32_t tried = 0;
   RandomOptions options;
@@ -45,7 +45,7 @@ TEST(Barriers, NoPlanWithFewerBarrierCommandsIsValid) {
 
 // Each face of a cube, and each mip of a face, is written by a different pass. One barrier must be
 // enough for the pass that reads the cube.
-TEST(Barriers, LayersAndMipsWithTheSameTransitionShareABarrier) {
+TEST(Barriers, LayersAndMipsWrittenByDifferentPassesShareOneBarrierBeforeTheirReader) {
   for (const std::uint32_t mips : {1u, 3u}) {
     Graph graph;
     Texture cube =
@@ -94,7 +94,7 @@ TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
 
 // A write has been made visible to access A of stage 1 and to access B of stage 2. Stage 1 then
 // reads with access B, for which the write is not visible yet.
-TEST(Barriers, WriteVisibleToOneAccessIsNotVisibleToAnotherAccessOfTheStage) {
+TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOfTheSameStage) {
   Graph graph;
   Buffer data = graph.create_buffer("data", {64});
   Buffer other = graph.create_buffer("other", {64});
@@ -144,7 +144,7 @@ class InitialStates : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(InitialStates, WriteVisibleToOneStageIsMadeVisibleToAnother) {
+TEST_F(InitialStates, ImportVisibleToOneStageGetsABarrierOnlyIfAnotherStageReadsIt) {
   for (const Access& initial_state : {access::sampled_compute, access::sampled_fragment}) {
     graph_.reset();
     const Texture texture = import(state_of(initial_state));
@@ -160,7 +160,7 @@ TEST_F(InitialStates, WriteVisibleToOneStageIsMadeVisibleToAnother) {
   }
 }
 
-TEST_F(InitialStates, UnreadImportIsMadeVisibleToItsFinalState) {
+TEST_F(InitialStates, ImportThatNoPassUsesGetsABarrierFromItsInitialToItsFinalState) {
   const State written{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -171,7 +171,8 @@ TEST_F(InitialStates, UnreadImportIsMadeVisibleToItsFinalState) {
   EXPECT_EQ(plan.transitions[0].dst_stages, access::sampled_fragment.stages);
 }
 
-TEST_F(InitialStates, HistoryIsMadeVisibleToItsNextReader) {
+TEST_F(InitialStates,
+       HistoryVisibleToComputeGetsABarrierBeforeAFragmentShaderReadsItInTheNextFrame) {
   const auto declare = [&](const Access& own, const Access& old) {
     graph_.reset();
     const TextureHistory history =
@@ -197,7 +198,7 @@ TEST_F(InitialStates, HistoryIsMadeVisibleToItsNextReader) {
   EXPECT_EQ(seen.dst_stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
 
-TEST_F(InitialStates, PartlyWrittenHistoryIsNotValid) {
+TEST_F(InitialStates, HistoryWithOnlyOneMipWrittenIsReportedAsPartlyWrittenInTheNextFrame) {
   const auto declare = [&](Range range) {
     graph_.reset();
     const TextureHistory history =
@@ -214,7 +215,7 @@ TEST_F(InitialStates, PartlyWrittenHistoryIsNotValid) {
   EXPECT_EQ(declare({}), HistoryValidity::valid);
 }
 
-TEST(Barriers, NeighbouringMipsWithTheSameTransitionShareABarrier) {
+TEST(Barriers, AllMipsAndLayersWrittenByOnePassShareOneBarrierBeforeTheirReader) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5, 3});
   PassBuilder writer = graph.add_pass("writer");
@@ -227,7 +228,7 @@ TEST(Barriers, NeighbouringMipsWithTheSameTransitionShareABarrier) {
   EXPECT_EQ(plan->transitions.size(), 2u);
 }
 
-TEST(Barriers, DeferredFrameNeedsAllOfItsBarrierCommands) {
+TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands) {
   Graph graph;
   Limits limits;
   const auto plan = compile_deferred_frame(graph, limits);

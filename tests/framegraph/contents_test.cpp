@@ -364,20 +364,22 @@ void expect_contents(const Way& way, std::uint64_t seed) {
   EXPECT_EQ(messages(gpu, way), "");
 }
 
-TEST(Contents, RandomFramesThatShareMemoryHaveTheExpectedContents) { expect_contents({}, 1000); }
-TEST(Contents, RandomFramesThatShareNoMemoryHaveTheExpectedContents) {
+TEST(Contents, RandomFramesGiveTheContentsOfACpuModelIfTransientsShareMemory) {
+  expect_contents({}, 1000);
+}
+TEST(Contents, RandomFramesGiveTheContentsOfACpuModelIfTransientsShareNoMemory) {
   expect_contents({.alias = false}, 1000);
 }
-TEST(Contents, SubmittedRandomFramesHaveTheExpectedContents) {
+TEST(Contents, RandomFramesSubmittedByTheExecutorGiveTheContentsOfACpuModel) {
   expect_contents({.path = Path::submit}, 2000);
 }
-TEST(Contents, RandomFramesOverSeveralQueuesHaveTheExpectedContents) {
+TEST(Contents, RandomFramesOverThreeQueueClassesGiveTheContentsOfACpuModel) {
   expect_contents({.path = Path::submit_to_three}, 3000);
 }
-TEST(Contents, RandomFramesRecordedByThreeThreadsHaveTheExpectedContents) {
+TEST(Contents, RandomFramesRecordedByThreeThreadsGiveTheContentsOfACpuModel) {
   expect_contents({.threads = 3}, 1000);
 }
-TEST(Contents, RandomFramesOverSeveralQueuesRecordedByThreeThreadsHaveTheExpectedContents) {
+TEST(Contents, RandomFramesOverThreeQueueClassesRecordedByThreeThreadsGiveTheContentsOfACpuModel) {
   expect_contents({.path = Path::submit_to_three, .threads = 3}, 3000);
 }
 }  // namespace

@@ -24,7 +24,7 @@ class Cull : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(Cull, PassesWithoutReadersAndTheirTexturesAreCulled) {
+TEST_F(Cull, PassWhoseOutputNobodyReadsIsCulledTogetherWithItsTexture) {
   const Texture wanted = make("wanted");
   (void)make("unwanted");
   graph_.output(wanted);
@@ -35,7 +35,7 @@ TEST_F(Cull, PassesWithoutReadersAndTheirTexturesAreCulled) {
   EXPECT_EQ(result.placements[1].heap, kNone);
 }
 
-TEST_F(Cull, CullReasonNamesTheConsumerThatKeepsThePass) {
+TEST_F(Cull, PlanNamesThePassThatReadsTheOutputOfAKeptPass) {
   const Texture first = make("first");
   Texture second = graph_.create_texture("second", kDesc);
   PassBuilder pass = graph_.add_pass("reader");
@@ -48,7 +48,7 @@ TEST_F(Cull, CullReasonNamesTheConsumerThatKeepsThePass) {
   EXPECT_EQ(result.cull_reasons[0].resource, 0u);
 }
 
-TEST_F(Cull, SideEffectKeepsAPassThatWritesNothing) {
+TEST_F(Cull, PassDeclaredToHaveASideEffectIsKeptThoughItWritesNothing) {
   graph_.add_pass("kept").side_effect();
   (void)graph_.add_pass("gone");
   const Plan result = plan();
@@ -56,7 +56,7 @@ TEST_F(Cull, SideEffectKeepsAPassThatWritesNothing) {
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::writes_nothing);
 }
 
-TEST_F(Cull, WritesBeforeADiscardingWriteAreCulled) {
+TEST_F(Cull, PassWhoseOutputTheNextPassDiscardsIsCulled) {
   Texture texture = make("first");
   texture = write("second", texture, Contents::discard);
   graph_.output(texture);
@@ -65,7 +65,7 @@ TEST_F(Cull, WritesBeforeADiscardingWriteAreCulled) {
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::output);
 }
 
-TEST_F(Cull, UnreadOptionalOutputHasNoMemory) {
+TEST_F(Cull, OptionalOutputThatNobodyReadsGetsNoMemory) {
   Texture main = graph_.create_texture("main", kDesc);
   Texture extra = graph_.create_texture("extra", kDesc);
   PassBuilder pass = graph_.add_pass("pass");
@@ -77,7 +77,7 @@ TEST_F(Cull, UnreadOptionalOutputHasNoMemory) {
   EXPECT_EQ(result.placements[extra.index].heap, kNone);
 }
 
-TEST_F(Cull, ReadingOneMipKeepsOnlyTheWriterOfThatMip) {
+TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
   TextureDesc desc = kDesc;
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
@@ -94,7 +94,7 @@ TEST_F(Cull, ReadingOneMipKeepsOnlyTheWriterOfThatMip) {
   EXPECT_EQ(result.cull_reasons[2].cull_reason, CullReason::unread);
 }
 
-TEST_F(Cull, HistoryKeepsItsWriterOnlyIfItIsRead) {
+TEST_F(Cull, PassThatWritesAHistoryIsKeptOnlyIfAKeptPassReadsThatHistory) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   Texture result = graph_.create_texture("result", kDesc);
   PassBuilder accumulate = graph_.add_pass("accumulate");
@@ -111,7 +111,7 @@ TEST_F(Cull, HistoryKeepsItsWriterOnlyIfItIsRead) {
   EXPECT_EQ(kept.cull_reasons[1].consumer, 0u);
 }
 
-TEST_F(Cull, InPlaceUpdateOfAHistoryIsNotCulledIfTheHistoryIsRead) {
+TEST_F(Cull, PassThatUpdatesAHistoryInPlaceIsKeptOnlyIfAKeptPassReadsThatHistory) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   (void)write("remember", history.current);
   Texture result = graph_.create_texture("result", kDesc);
@@ -132,7 +132,7 @@ TEST_F(Cull, InPlaceUpdateOfAHistoryIsNotCulledIfTheHistoryIsRead) {
 //
 //   clear -> acc -> update -> acc (unread)
 //                     +----> second -> output
-class CullUpdate : public Cull {
+class CullReadModifyWrite : public Cull {
  protected:
   // Returns the plan of the frame above. The arguments are the accesses of the two passes to `acc`.
   Plan plan_of_update(const Access& clear, Contents cleared, Need need, const Access& update) {
@@ -157,34 +157,34 @@ class CullUpdate : public Cull {
   }
 };
 
-TEST_F(CullUpdate, ReadModifyWriteKeepsTheProducerOfWhatItReads) {
+TEST_F(CullReadModifyWrite, PassThatWritesTheInputOfAReadModifyWriteIsNotCulled) {
   expect_both(plan_of_update(access::clear, Contents::discard, Need::required,
                              access::storage_read_write_compute));
 }
 
-TEST_F(CullUpdate, BlendingKeepsTheProducerOfWhatItReads) {
+TEST_F(CullReadModifyWrite, PassThatWritesTheTargetOfABlendingPassIsNotCulled) {
   expect_both(
       plan_of_update(access::clear, Contents::discard, Need::required, access::color_attachment));
 }
 
-TEST_F(CullUpdate, DepthTestKeepsTheDepthPrepass) {
+TEST_F(CullReadModifyWrite, DepthPrepassIsNotCulledIfALaterPassTestsAgainstItsDepth) {
   expect_both(plan_of_update(access::depth_attachment, Contents::discard, Need::required,
                              access::depth_attachment));
 }
 
-TEST_F(CullUpdate, OptionalWriteIsNotCulledIfOnlyAnUpdateReadsIt) {
+TEST_F(CullReadModifyWrite, OptionalWriteIsNotCulledIfOnlyAReadModifyWriteReadsIt) {
   expect_both(plan_of_update(access::storage_write_compute, Contents::keep, Need::optional,
                              access::storage_read_write_compute));
 }
 
-TEST_F(CullUpdate, PartialWriteThatReadsNothingDoesNotKeepTheProducer) {
+TEST_F(CullReadModifyWrite, PassIsCulledIfItsTextureIsOnlyWrittenAgainWithoutBeingRead) {
   const Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
                                      access::storage_write_compute);
   EXPECT_EQ(result.passes.size(), 1u);
   EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
 }
 
-TEST_F(CullUpdate, VerifierRefusesAPlanWithoutTheProducerOfWhatAnUpdateReads) {
+TEST_F(CullReadModifyWrite, VerifierRefusesAPlanThatLacksTheWriterOfAReadModifyWritesInput) {
   Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
                                access::storage_read_write_compute);
   // This plan is that of the same frame with an update that does not read `acc`, so that the clear

@@ -45,7 +45,7 @@ void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
 
 // Several graphs run in turn on one executor. If the cache has room for the plans of all of them,
 // each graph is compiled once.
-TEST_F(ExecutorTest, PlansOfAlternatingGraphsStayInTheCache) {
+TEST_F(ExecutorTest, GraphsThatRunInTurnAreCompiledOnceIfThePlanCacheHasRoomForAllOfThem) {
   for (const std::uint32_t graphs : {60u, 3u}) {
     ExecutorOptions options;
     if (graphs == 3) options.cached_plans = 2;
@@ -63,7 +63,7 @@ TEST_F(ExecutorTest, PlansOfAlternatingGraphsStayInTheCache) {
   }
 }
 
-TEST_F(ExecutorTest, TransientsThatShareMemoryKeepTheirContents) {
+TEST_F(ExecutorTest, TransientsThatShareMemoryAreReadBackWithTheirOwnContents) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(8 * sizeof(std::uint32_t));
   Graph graph;
@@ -79,7 +79,7 @@ TEST_F(ExecutorTest, TransientsThatShareMemoryKeepTheirContents) {
   }
 }
 
-TEST_F(ExecutorTest, UndeclaredUseIsReportedIfUsesAreChecked) {
+TEST_F(ExecutorTest, PassThatUsesATextureWithoutDeclaringItIsReportedIfUseCheckingIsOn) {
   ExecutorOptions options;
   options.check_uses = true;
   Executor executor = make(options);
@@ -100,7 +100,7 @@ TEST_F(ExecutorTest, UndeclaredUseIsReportedIfUsesAreChecked) {
 }
 
 // The pass declares only the second of the texture's four mips.
-TEST_F(ExecutorTest, ViewsOutsideOfTheDeclaredRangeAreRefused) {
+TEST_F(ExecutorTest, ImageViewOfMipsOrLayersThatThePassDidNotDeclareIsRefused) {
   struct Case {
     Range range;
     ErrorCode code;
@@ -135,7 +135,7 @@ TEST_F(ExecutorTest, ViewsOutsideOfTheDeclaredRangeAreRefused) {
   }
 }
 
-TEST_F(ExecutorTest, CallbackCannotRecordWithItsOwnExecutor) {
+TEST_F(ExecutorTest, RecordingWithAnExecutorFromInsideOneOfItsPassCallbacksIsRefused) {
   Executor executor = make();
   Graph graph;
   Graph other;
@@ -156,7 +156,7 @@ TEST_F(ExecutorTest, CallbackCannotRecordWithItsOwnExecutor) {
   EXPECT_EQ(refused, 4u);
 }
 
-TEST_F(ExecutorTest, LimitsAreThoseOfTheDevice) {
+TEST_F(ExecutorTest, ExecutorReportsTheBufferSizeAndSampleCountLimitsOfItsDevice) {
   const Executor executor = make();
   VkPhysicalDeviceMaintenance4Properties buffers{};
   buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
@@ -231,7 +231,7 @@ PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr_1_2(VkInstance instance, co
   return vkGetInstanceProcAddr(instance, name);
 }
 
-TEST_F(ExecutorTest, ExecutorRunsOnVulkan12WithSynchronization2) {
+TEST_F(ExecutorTest, ExecutorRunsOnAVulkan12DeviceWithTheSynchronization2Extension) {
   VkPhysicalDeviceSynchronization2Features synchronization{};
   synchronization.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES;
   synchronization.synchronization2 = VK_TRUE;
@@ -278,7 +278,7 @@ TEST_F(ExecutorTest, ExecutorRunsOnVulkan12WithSynchronization2) {
 
 // Declares in turn a transient without a device address, a transient with an address in the same
 // heap, and a history.
-TEST_F(ExecutorTest, BuffersWithADeviceAddressGetMemoryThatAllowsIt) {
+TEST_F(ExecutorTest, BuffersUsedByDeviceAddressGetMemoryThatAllowsDeviceAddresses) {
   VkPhysicalDeviceVulkan12Features v12{};
   v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
   v12.bufferDeviceAddress = v12.timelineSemaphore = VK_TRUE;
@@ -315,7 +315,7 @@ TEST_F(ExecutorTest, BuffersWithADeviceAddressGetMemoryThatAllowsIt) {
   EXPECT_EQ(found, 2u);
 }
 
-TEST_F(ExecutorTest, ReplacedResourcesCountAsAllocatedUntilTheyAreFreed) {
+TEST_F(ExecutorTest, MemoryOfAReplacedResourceIsCountedAsAllocatedUntilItIsFreed) {
   struct Made {
     Executor executor;
     Graph graph;
@@ -416,16 +416,16 @@ void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t 
   EXPECT_GE(failed, 20);
 }
 
-TEST_F(FailingDeviceTest, RunningOutOfMemoryAnywhereIsAnErrorAndLeaksNothing) {
+TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyVulkanCallIsAnErrorAndLeaksNothing) {
   expect_out_of_memory_anywhere_is_an_error(1);
 }
-TEST_F(FailingDeviceTest, RunningOutOfMemoryInAnyThreadIsAnErrorAndLeaksNothing) {
+TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyRecordingThreadIsAnErrorAndLeaksNothing) {
   expect_out_of_memory_anywhere_is_an_error(2);
 }
 
 // Loses the device at each submission in turn. Every later call must return an error, and nothing
 // may leak.
-TEST_F(FailingDeviceTest, LosingTheDeviceIsAnErrorAndLeaksNothing) {
+TEST_F(FailingDeviceTest, LosingTheDeviceAtAnySubmissionIsAnErrorAndLeaksNothing) {
   handles_.queues[1] = handles_.queues[0];
   int lost = 0;
   for (int submission = 0; submission < 4; ++submission) {
@@ -453,7 +453,7 @@ TEST_F(FailingDeviceTest, LosingTheDeviceIsAnErrorAndLeaksNothing) {
   }
 }
 
-TEST_F(FailingDeviceTest, LosingTheDeviceWhileWaitingIsAnErrorAndLeaksNothing) {
+TEST_F(FailingDeviceTest, LosingTheDeviceWhileWaitingForAFrameIsAnErrorAndLeaksNothing) {
   {
     auto executor = Executor::create(handles_);
     ASSERT_TRUE(executor) << to_string(executor.error());

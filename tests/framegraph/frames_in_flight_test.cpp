@@ -98,7 +98,7 @@ void declare(Graph& graph, std::uint32_t size) {
 // Two plans alternate. One ends with a write of the texture and the other with a read, so that each
 // frame finds the texture in another state than the one in which it leaves it. The validation
 // layers check both submissions.
-TEST_F(FramesInFlight, HostNeedNotWaitBetweenFramesOfDifferentPlans) {
+TEST_F(FramesInFlight, FramesOfAlternatingPlansAreOrderedOnTheDeviceWithoutAWaitOnTheHost) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
   Graph graph;
@@ -123,7 +123,7 @@ TEST_F(FramesInFlight, HostNeedNotWaitBetweenFramesOfDifferentPlans) {
 // An image is read by one stage of the frame, and later, in the same layout, by another stage in
 // the caller's own commands. The next frame waits only for the caller's stage, so that the frame
 // must order its own reads before the final state.
-TEST_F(FramesInFlight, FinalStateIsOrderedAfterTheReadsOfTheFrame) {
+TEST_F(FramesInFlight, BarrierToTheFinalStateOfAnImportWaitsForTheReadsOfTheFrame) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
   const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(16, 16)};
@@ -149,7 +149,7 @@ TEST_F(FramesInFlight, FinalStateIsOrderedAfterTheReadsOfTheFrame) {
 }
 
 // The executor must not conclude from a frame that never runs that earlier frames have finished.
-TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNoMemoryThatMayBeInUse) {
+TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNoMemoryThatEarlierFramesMayStillUse) {
   Executor executor = make();
   Graph graph;
   declare(graph, 4);

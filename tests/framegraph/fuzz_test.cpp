@@ -47,7 +47,7 @@ void expect_verified(const RandomOptions& options, const Limits& limits) {
   }
 }
 
-RC_GTEST_PROP(Fuzz, EveryPlanOfAValidGraphIsVerified, ()) { expect_verified({}, {}); }
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomValidGraphPassesTheVerifier, ()) { expect_verified({}, {}); }
 
 Limits with_families(std::uint32_t graphics, std::uint32_t compute, std::uint32_t transfer) {
   Limits limits;
@@ -63,19 +63,19 @@ RandomOptions on_all_queues() {
   return options;
 }
 
-RC_GTEST_PROP(Fuzz, EveryPlanOverThreeQueueFamiliesIsVerified, ()) {
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphOverThreeQueueFamiliesPassesTheVerifier, ()) {
   expect_verified(on_all_queues(), with_families(0, 1, 2));
 }
 
-RC_GTEST_PROP(Fuzz, EveryPlanOverQueuesOfOneFamilyIsVerified, ()) {
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphOverThreeQueuesOfOneFamilyPassesTheVerifier, ()) {
   expect_verified(on_all_queues(), with_families(0, 0, 0));
 }
 
-RC_GTEST_PROP(Fuzz, GraphsForSeveralQueuesCompileForOneQueue, ()) {
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphForThreeQueuesPassesTheVerifierOnADeviceWithOneQueue, ()) {
   expect_verified(on_all_queues(), with_families(0, kNone, kNone));
 }
 
-RC_GTEST_PROP(Fuzz, EveryPlanWithCoarseGranularityIsVerified, ()) {
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphPassesTheVerifierIfBufferImageGranularityIsCoarse, ()) {
   Limits limits;
   limits.buffer_image_granularity = 4096;
   expect_verified({}, limits);

@@ -129,7 +129,7 @@ class GraphHistory : public testing::Test {
 
 constexpr std::uint32_t kNothing = 0xffff;
 
-TEST_F(GraphHistory, SlotsHoldThePreviousFrames) {
+TEST_F(GraphHistory, HistorySlotsHoldTheContentsOfThePreviousFrames) {
   for (std::uint32_t frame = 1; frame <= 6; ++frame) {
     run({frame});
     EXPECT_EQ(validity_, frame == 1 ? HistoryValidity::first_frame : HistoryValidity::valid);
@@ -138,7 +138,7 @@ TEST_F(GraphHistory, SlotsHoldThePreviousFrames) {
   }
 }
 
-TEST_F(GraphHistory, FrameThatDoesNotWriteDoesNotRotateTheSlots) {
+TEST_F(GraphHistory, FrameThatDoesNotWriteTheHistoryDoesNotRotateItsSlots) {
   run({1});
   run({2});
   run({0, false});
@@ -149,7 +149,7 @@ TEST_F(GraphHistory, FrameThatDoesNotWriteDoesNotRotateTheSlots) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(GraphHistory, FrameThatCullsTheWriterDoesNotRotateTheSlots) {
+TEST_F(GraphHistory, FrameInWhichTheWriterOfTheHistoryIsCulledDoesNotRotateItsSlots) {
   run({1});
   run({2});
   run({9, true, false});
@@ -158,7 +158,7 @@ TEST_F(GraphHistory, FrameThatCullsTheWriterDoesNotRotateTheSlots) {
   EXPECT_EQ(slot(2), 1u);
 }
 
-TEST_F(GraphHistory, UpdateOfAnOlderSlotDoesNotRotateTheSlots) {
+TEST_F(GraphHistory, UpdatingAnOlderHistorySlotInPlaceDoesNotRotateTheSlots) {
   run({1});
   run({2});
   run({.value = 5, .in_place = true});
@@ -174,7 +174,7 @@ TEST_F(GraphHistory, UpdateOfAnOlderSlotDoesNotRotateTheSlots) {
   EXPECT_EQ(slot(2), 6u);
 }
 
-TEST_F(GraphHistory, FrameThatDoesNotDeclareTheHistoryKeepsIt) {
+TEST_F(GraphHistory, HistoryKeepsItsContentsThroughAFrameThatDoesNotDeclareIt) {
   run({1});
   graph_->reset();
   ASSERT_TRUE(gpu_.run(*executor_, *graph_));
@@ -183,7 +183,7 @@ TEST_F(GraphHistory, FrameThatDoesNotDeclareTheHistoryKeepsIt) {
   EXPECT_EQ(slot(1), 1u);
 }
 
-TEST_F(GraphHistory, ResizeInvalidatesTheHistoryWithAReason) {
+TEST_F(GraphHistory, ResizingAHistoryInvalidatesItAndReportsTheReason) {
   run({1});
   run({2});
   run({3, true, true, false, 16});
@@ -195,7 +195,7 @@ TEST_F(GraphHistory, ResizeInvalidatesTheHistoryWithAReason) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, ResetInvalidatesTheHistoryWithAReason) {
+TEST_F(GraphHistory, ResettingAHistoryInvalidatesItAndReportsTheReason) {
   run({1});
   run({2});
   graph_->reset_history("history");
@@ -207,7 +207,7 @@ TEST_F(GraphHistory, ResetInvalidatesTheHistoryWithAReason) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, DiscardedFrameDoesNotChangeTheHistory) {
+TEST_F(GraphHistory, FrameThatIsRecordedAndDiscardedDoesNotChangeTheHistory) {
   run({.value = 1});
   run({.value = 99, .discarded = true});
   run({.value = 2});
@@ -223,7 +223,7 @@ TEST_F(GraphHistory, DiscardedFrameDoesNotChangeTheHistory) {
   EXPECT_EQ(slot(1), 3u);
 }
 
-TEST_F(GraphHistory, DiscardedResizeOrResetDoesNotChangeTheHistory) {
+TEST_F(GraphHistory, HistoryIsUnchangedIfAFrameThatResizesOrResetsItIsDiscarded) {
   run({.value = 1});
   run({.value = 2});
   const VkDeviceSize bytes = history_bytes_;
@@ -247,7 +247,7 @@ TEST_F(GraphHistory, DiscardedResizeOrResetDoesNotChangeTheHistory) {
   EXPECT_EQ(slot(2), kNothing);
 }
 
-TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeMustBeDeclaredAgain) {
+TEST_F(GraphHistory, FrameThatResizesTheHistoryMustBeDeclaredAgainAfterItWasDiscarded) {
   run({.value = 1});
   run({.value = 2, .discarded = true});
   EXPECT_TRUE(gpu_.run(*executor_, *graph_)) << "the frame needs no new declaration";
@@ -259,7 +259,7 @@ TEST_F(GraphHistory, DiscardedFrameOfAnotherSizeMustBeDeclaredAgain) {
   EXPECT_EQ(slot(1), 2u);
 }
 
-TEST_F(GraphHistory, GraphsOfOneExecutorHaveSeparateHistories) {
+TEST_F(GraphHistory, GraphsThatShareAnExecutorHaveSeparateHistories) {
   run({.value = 1});
   const VkDeviceSize bytes = history_bytes_;
   // Another graph has a history of the same name with another size.
@@ -284,7 +284,7 @@ TEST_F(GraphHistory, GraphsOfOneExecutorHaveSeparateHistories) {
   EXPECT_LE(history_bytes_, bytes);
 }
 
-TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
+TEST_F(GraphHistory, HistoryKeepsItsContentsWhenPassesReadItThroughAnotherAccess) {
   run({1});
   run({2});
   run({3, true, true, true});
@@ -297,7 +297,7 @@ TEST_F(GraphHistory, ContentsSurviveAChangeOfAccess) {
 
 // The frame is recorded several times into one command buffer without being declared again. Each
 // recording continues from the histories that the previous one left.
-TEST_F(GraphHistory, OneDeclarationCanBeRecordedSeveralTimesIntoOneCommandBuffer) {
+TEST_F(GraphHistory, DeclaredFrameCanBeRecordedSeveralTimesIntoOneCommandBuffer) {
   ExecutorOptions options;
   options.frames_in_flight = 3;
   options.verify = verify;

@@ -88,7 +88,7 @@ void expect_agreement(const Counts& counts) {
   }
 }
 
-TEST(Mutation, VerifierRefusesEveryHarmfulMutant) {
+TEST(Mutation, VerifierRefusesEveryHarmfulMutationOfAValidPlan) {
   const Counts counts = mutate_graphs(400, {}, {});
   expect_harmless_only(counts, {"drop a barrier"});
   EXPECT_GE(killed(counts), 10'000u);
@@ -110,7 +110,7 @@ Counts mutate_graphs_of_several_queues(const Limits& limits) {
   return counts;
 }
 
-TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueueTransfers) {
+TEST(Mutation, VerifierRefusesHarmfulMutationsOfPlansWithQueueOwnershipTransfers) {
   Limits limits;
   limits.queue_families[1] = 1;
   limits.queue_families[2] = 2;
@@ -118,7 +118,7 @@ TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueueTransfers) {
   EXPECT_GT(counts.at("skip an ownership transfer").killed, 100u);
 }
 
-TEST(Mutation, VerifierRefusesHarmfulMutantsOfQueuesOfOneFamily) {
+TEST(Mutation, VerifierRefusesHarmfulMutationsOfPlansOverQueuesOfOneFamily) {
   Limits limits;
   limits.queue_families[1] = limits.queue_families[2] = 0;
   mutate_graphs_of_several_queues(limits);
@@ -149,7 +149,7 @@ struct Diamond {
   }
 };
 
-TEST(Mutation, TexturesLiveAtTheSameTimeInADiamondShareNoMemory) {
+TEST(Mutation, VerifierRefusesAPlanInWhichTexturesLiveAtTheSameTimeShareMemory) {
   Diamond diamond;
   const GraphDescription& description = diamond.graph.description();
   const auto plan = compile(diamond.graph);

@@ -31,7 +31,7 @@ void declare(Graph& graph, passes::Kernels& kernels, VkImage image, passes::Qual
   light.record([](RecordContext&) {});
 }
 
-TEST(OwnFrame, OcclusionFrameHasMinimalBarriersAndMinimalPeakMemory) {
+TEST(OcclusionFrame, PlanHasTheFewestBarrierCommandsAndTheLeastPeakMemory) {
   Gpu gpu;
   ASSERT_EQ(gpu.problem(), "");
   auto kernels = passes::Kernels::create(gpu.handles(), 1);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
-TEST(Place, EstimatedSizeOfATextureMatchesItsFormat) {
+TEST(MemoryPlacement, EstimatedTextureSizeCountsTheBytesOfItsFormatForAllLayersAndSamples) {
   struct Case {
     VkFormat format;
     VkDeviceSize bytes;  // per texel
@@ -40,7 +40,7 @@ TEST(Place, EstimatedSizeOfATextureMatchesItsFormat) {
   }
 }
 
-TEST(Place, PeakMemoryOfADeferredFrameEqualsItsLowerBound) {
+TEST(MemoryPlacement, PeakMemoryOfADeferredRenderingFrameEqualsItsLowerBound) {
   Graph graph;
   Limits limits;
   const auto plan = compile_deferred_frame(graph, limits);
@@ -121,20 +121,20 @@ void expect_close_to_bound(std::uint32_t fewest_passes, std::int64_t effort, dou
 
 constexpr std::int64_t kDefaultEffort = Limits{}.placement_effort;
 
-TEST(Place, PeakMemoryOf20To40PassesIsCloseToTheLowerBound) {
+TEST(MemoryPlacement, PeakMemoryOfFramesOf20To40PassesIsCloseToTheLowerBound) {
   expect_close_to_bound(20, kDefaultEffort, 1.0, 1.08);
 }
-TEST(Place, PeakMemoryOf40To80PassesIsCloseToTheLowerBound) {
+TEST(MemoryPlacement, PeakMemoryOfFramesOf40To80PassesIsCloseToTheLowerBound) {
   expect_close_to_bound(40, kDefaultEffort, 1.01, 1.10);
 }
-TEST(Place, PeakMemoryOf100To200PassesIsCloseToTheLowerBound) {
+TEST(MemoryPlacement, PeakMemoryOfFramesOf100To200PassesIsCloseToTheLowerBound) {
   expect_close_to_bound(100, kDefaultEffort, 1.03, 1.15);
 }
-TEST(Place, LargerPlacementEffortComesWithinTwoPercentOfTheLowerBound) {
+TEST(MemoryPlacement, LargerPlacementEffortBringsPeakMemoryWithinTwoPercentOfTheLowerBound) {
   expect_close_to_bound(20, 1 << 24, 1.0, 1.02);
 }
 
-TEST(Place, TransientsShareNoBytesWithoutAliasing) {
+TEST(MemoryPlacement, TransientsShareNoBytesIfAliasingIsOff) {
   Graph graph;
   declare_deferred_frame(graph, 640, 360);
   Limits limits;
@@ -144,7 +144,7 @@ TEST(Place, TransientsShareNoBytesWithoutAliasing) {
   EXPECT_EQ(plan->heaps[0].size, plan->heaps[0].unaliased);
 }
 
-TEST(Place, DifferentMemoryTypesGetSeparateHeaps) {
+TEST(MemoryPlacement, TransientsOfDifferentMemoryTypesGetSeparateHeaps) {
   Graph graph;
   declare_deferred_frame(graph, 640, 360);
   Limits limits;
@@ -193,21 +193,21 @@ void expect_no_higher_peak(const Limits& limits, bool queues) {
   EXPECT_GT(reordered, 10u);
 }
 
-TEST(Order, AnotherOrderIsUsedOnlyIfItsPeakIsLower) { expect_no_higher_peak({}, false); }
+TEST(PassOrder, PassesAreReorderedOnlyIfThatLowersPeakMemory) { expect_no_higher_peak({}, false); }
 
-TEST(Order, AnotherOrderHasALowerPeakInPagesOf64KiB) {
+TEST(PassOrder, PassesAreReorderedOnlyIfThatLowersPeakMemoryInPagesOf64KiB) {
   Limits limits;
   limits.memory.query = paged_requirements;
   expect_no_higher_peak(limits, false);
 }
 
-TEST(Order, AnotherOrderHasALowerPeakOverTwoQueues) {
+TEST(PassOrder, PassesOnTwoQueuesAreReorderedOnlyIfThatLowersPeakMemory) {
   Limits limits;
   limits.queue_families[1] = 1;
   expect_no_higher_peak(limits, true);
 }
 
-TEST(Order, SideEffectsKeepTheirOrderOfDeclaration) {
+TEST(PassOrder, PassesWithSideEffectsKeepTheirOrderOfDeclaration) {
   Graph graph;
   std::uint32_t reordered = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
@@ -228,7 +228,7 @@ TEST(Order, SideEffectsKeepTheirOrderOfDeclaration) {
   EXPECT_GT(reordered, 10u);
 }
 
-TEST(Order, VerifierRefusesSideEffectsOutOfOrder) {
+TEST(PassOrder, VerifierRefusesPassesWithSideEffectsOutOfTheirDeclaredOrder) {
   Graph graph;
   for (const char* name : {"first", "second"}) graph.add_pass(name).side_effect();
   auto plan = compile(graph);

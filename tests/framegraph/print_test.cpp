@@ -23,7 +23,7 @@ class Print : public testing::Test {
   Plan plan_;
 };
 
-TEST_F(Print, TextShowsPassesBarriersCullingAndMemory) {
+TEST_F(Print, PrintedPlanShowsPassesBarriersCullReasonsAndMemory) {
   const std::string text = print_text(graph_.description(), plan_);
   EXPECT_THAT(text, HasSubstr("lower bound"));
   EXPECT_THAT(text, HasSubstr("g-buffer"));
@@ -35,12 +35,12 @@ TEST_F(Print, TextShowsPassesBarriersCullingAndMemory) {
   EXPECT_THAT(text, HasSubstr("<bloom down#"));
 }
 
-TEST_F(Print, TextLinesFitAScreen) {
+TEST_F(Print, LinesOfAPrintedPlanHaveAtMost120Characters) {
   std::istringstream lines(print_text(graph_.description(), plan_));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
-TEST_F(Print, GraphvizTextHasANodeForEachPass) {
+TEST_F(Print, GraphvizOutputHasANodeForEachPass) {
   const std::string dot = print_dot(graph_.description(), plan_);
   for (std::size_t i = 0; i < graph_.description().passes.size(); ++i)
     EXPECT_THAT(dot, HasSubstr(std::string("p").append(std::to_string(i)).append(" [label=")));

@@ -42,7 +42,7 @@ class Queues : public testing::Test {
 
 //   a (graphics) -- x --> b (compute) -- z --> c (transfer)
 //         +--------------- y -------------------^
-TEST_F(Queues, WaitsThatFollowFromOtherWaitsAreLeftOut) {
+TEST_F(Queues, SemaphoreWaitsImpliedByOtherWaitsAreLeftOut) {
   PassBuilder a = graph_.add_pass("a");
   const Texture x = a.write(make("x"), access::storage_write_compute);
   const Texture y = a.write(make("y"), access::storage_write_compute);
@@ -60,7 +60,7 @@ TEST_F(Queues, WaitsThatFollowFromOtherWaitsAreLeftOut) {
       << "the wait for b implies the wait for a";
 }
 
-TEST_F(Queues, GraphicsQueueWaitsOnlyForTheLastPassOfAChainAtTheEnd) {
+TEST_F(Queues, AtTheEndOfAFrameTheGraphicsQueueWaitsOnlyForTheLastOfAChainOfQueues) {
   Texture x = import("x");
   Texture y = import("y");
   PassBuilder first = graph_.add_pass("first", QueueClass::compute);
@@ -76,7 +76,7 @@ TEST_F(Queues, GraphicsQueueWaitsOnlyForTheLastPassOfAChainAtTheEnd) {
   EXPECT_EQ(plan.submissions[plan.waits[last.first_wait].submission].queue, QueueClass::transfer);
 }
 
-TEST_F(Queues, OtherQueueWaitsOnceForResourcesThatGraphicsUsedBefore) {
+TEST_F(Queues, ComputePassesThatReadImportsOfTheGraphicsQueueShareOneSubmission) {
   const Texture x = import("x");
   const Texture y = import("y");
   for (const Texture texture : {x, y}) {
@@ -90,7 +90,7 @@ TEST_F(Queues, OtherQueueWaitsOnceForResourcesThatGraphicsUsedBefore) {
 
 // A history that was last used on another queue is released by that queue, even in a frame in which
 // that queue runs no pass.
-TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
+TEST_F(Queues, ComputeQueueReleasesItsHistoryToGraphicsInAFrameWithoutComputePasses) {
   const auto declare = [&](QueueClass queue) {
     graph_.reset();
     const TextureHistory history = graph_.create_texture_history("history", kDesc);
@@ -113,7 +113,7 @@ TEST_F(Queues, HistoryOfAnotherQueueCanBeUsedInAFrameWithGraphicsOnly) {
 
 // A part of the history is not used by any pass of the frame. The queue that owns it releases it in
 // the submission with its other passes.
-TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
+TEST_F(Queues, UpdatingAPartOfAHistoryOnTheQueueThatOwnsItGivesAVerifiedPlan) {
   const auto declare = [&] {
     graph_.reset();
     return graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
@@ -131,7 +131,7 @@ TEST_F(Queues, PartOfAHistoryIsUpdatedOnTheQueueThatOwnsIt) {
 
 // Particles are simulated on the compute queue while the scene is drawn on the graphics queue. The
 // two share no memory, so that neither queue waits for the previous frame of the other.
-TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForThePreviousFrame) {
+TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForEachOthersPreviousFrame) {
   BufferHistory particles = graph_.create_buffer_history("particles", {4096});
   PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);
   particles.current =
@@ -150,7 +150,7 @@ TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForThePreviousFrame) {
 //   scene (graphics) --> blur (compute) --> effect outside the graph
 // The texture that graphics writes first has the memory that compute read last in the previous
 // frame.
-TEST_F(Queues, QueueWaitsBeforeReusingMemoryOfAnotherQueue) {
+TEST_F(Queues, GraphicsQueueWaitsBeforeReusingMemoryThatComputeReadInThePreviousFrame) {
   PassBuilder draw = graph_.add_pass("scene");
   const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);
   PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);

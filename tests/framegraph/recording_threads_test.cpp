@@ -70,7 +70,7 @@ class RecordingThreads : public testing::Test {
   std::function<void()> during_;
 };
 
-TEST_F(RecordingThreads, ExceptionOfACallbackInAnyThreadReachesTheCaller) {
+TEST_F(RecordingThreads, ExceptionThrownByAPassCallbackInAWorkerThreadReachesTheCaller) {
   auto executor = Executor::create(gpu_.handles(), options_);
   ASSERT_TRUE(executor) << to_string(executor.error());
   const std::thread::id caller = std::this_thread::get_id();
@@ -86,7 +86,7 @@ TEST_F(RecordingThreads, ExceptionOfACallbackInAnyThreadReachesTheCaller) {
   expect_right(*executor, 2);
 }
 
-TEST_F(RecordingThreads, ExceptionInTheCallersThreadIsRethrownAfterAllThreadsFinished) {
+TEST_F(RecordingThreads, ExceptionThrownInTheCallingThreadIsRethrownAfterAllWorkerThreadsFinished) {
   auto executor = Executor::create(gpu_.handles(), options_);
   ASSERT_TRUE(executor) << to_string(executor.error());
   const std::thread::id caller = std::this_thread::get_id();
@@ -110,7 +110,7 @@ TEST_F(RecordingThreads, ExceptionInTheCallersThreadIsRethrownAfterAllThreadsFin
 
 // Creates an executor and records its first frame. Repeats this with each allocation of the calling
 // thread failing in turn.
-TEST_F(RecordingThreads, NextFrameIsRightAfterAnyHostAllocationFailed) {
+TEST_F(RecordingThreads, NextFrameIsRecordedCorrectlyAfterAnyHostAllocationFailed) {
   options_.recording_threads = 4;
   bool failed = true;
   std::size_t which = 1;
@@ -159,7 +159,7 @@ class NoThreads {
   pthread_attr_t before_;
 };
 
-TEST_F(RecordingThreads, CallerRecordsAloneIfNoThreadCanBeCreated) {
+TEST_F(RecordingThreads, CallingThreadRecordsTheFrameAloneIfNoOtherThreadCanBeCreated) {
   options_.recording_threads = 4;
   const auto create = [&] {
     const NoThreads none;

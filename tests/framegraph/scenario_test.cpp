@@ -37,7 +37,7 @@ class Scenario : public testing::Test {
 };
 
 // prepass -> depth -> opaque -> colour -> output
-TEST_F(Scenario, DepthPrepassRunsBeforeTheOpaquePassThatTestsAgainstIt) {
+TEST_F(Scenario, DepthPrepassIsKeptForTheOpaquePassThatTestsAgainstItsDepth) {
   Texture depth = graph_.create_texture("depth", kDepth);
   Texture color = graph_.create_texture("color", kColor);
   PassBuilder prepass = graph_.add_pass("prepass");
@@ -50,7 +50,7 @@ TEST_F(Scenario, DepthPrepassRunsBeforeTheOpaquePassThatTestsAgainstIt) {
 }
 
 // clear -> counter -> count -> draw arguments -> draw
-TEST_F(Scenario, CounterIsClearedCountedAndReadAsIndirectArguments) {
+TEST_F(Scenario, IndirectDrawWaitsForTheComputePassThatCountsItsArguments) {
   Buffer counter = graph_.create_buffer("counter", {16});
   Texture color = graph_.create_texture("color", kColor);
   PassBuilder clear = graph_.add_pass("clear");
@@ -70,7 +70,7 @@ TEST_F(Scenario, CounterIsClearedCountedAndReadAsIndirectArguments) {
 }
 
 // clear -> counter -> three passes that add to it in any order -> reader
-TEST_F(Scenario, UnorderedAtomicAdditionsGetNoBarrierBetweenThem) {
+TEST_F(Scenario, AtomicAdditionsDeclaredAsUnorderedGetNoBarrierBetweenThem) {
   Buffer counter = graph_.create_buffer("counter", {16});
   PassBuilder clear = graph_.add_pass("clear");
   counter = clear.write(counter, buffer_access::fill, Contents::discard);
@@ -95,7 +95,7 @@ TEST_F(Scenario, UnorderedAtomicAdditionsGetNoBarrierBetweenThem) {
   }
 }
 
-TEST_F(Scenario, OrderedAtomicAdditionsGetABarrierBetweenThem) {
+TEST_F(Scenario, AtomicAdditionsNotDeclaredAsUnorderedGetABarrierBetweenThem) {
   Buffer counter = graph_.create_buffer("counter", {16});
   PassBuilder clear = graph_.add_pass("clear");
   counter = clear.write(counter, buffer_access::fill, Contents::discard);
@@ -109,7 +109,7 @@ TEST_F(Scenario, OrderedAtomicAdditionsGetABarrierBetweenThem) {
 }
 
 // a -> b -> a -> b -> output: passes alternate between two textures.
-TEST_F(Scenario, PingPongNeedsTwoTexturesAndKeepsEveryPass) {
+TEST_F(Scenario, PassesThatAlternateBetweenTwoTexturesNeedOnlyTheirMemoryAndAreAllKept) {
   Texture a = graph_.create_texture("a", kColor);
   Texture b = graph_.create_texture("b", kColor);
   PassBuilder first = graph_.add_pass("first");
@@ -127,7 +127,7 @@ TEST_F(Scenario, PingPongNeedsTwoTexturesAndKeepsEveryPass) {
   EXPECT_EQ(result.heaps[0].size, 2u * 64 * 64 * 4);
 }
 
-TEST_F(Scenario, MipChainInManyPassesReadsEachMipAfterItsWrite) {
+TEST_F(Scenario, ReaderOfAMipChainWrittenByOnePassPerMipNeedsAtMostTwoBarriers) {
   TextureDesc desc = kColor;
   desc.mips = 5;
   Texture chain = graph_.create_texture("chain", desc);
@@ -148,7 +148,7 @@ TEST_F(Scenario, MipChainInManyPassesReadsEachMipAfterItsWrite) {
   EXPECT_LE(transitions_before(result, 5), 2u);
 }
 
-TEST_F(Scenario, MipChainInOnePassIsDeclaredAsOneWriteOfAllMips) {
+TEST_F(Scenario, MipChainWrittenByOnePassNeedsOneBarrierBeforeAndOneAfterThatPass) {
   TextureDesc desc = kColor;
   desc.mips = 5;
   Texture chain = graph_.create_texture("chain", desc);
@@ -162,7 +162,7 @@ TEST_F(Scenario, MipChainInOnePassIsDeclaredAsOneWriteOfAllMips) {
 }
 
 // The final state of the texture in the first graph is its initial state in the second.
-TEST_F(Scenario, TextureThatAnotherGraphTakesOverNeedsNoSecondBarrier) {
+TEST_F(Scenario, TextureLeftByOneGraphInTheStateThatAnotherGraphNeedsGetsNoFurtherBarrier) {
   const State between{access::sampled_fragment.stages, access::sampled_fragment.access,
                       access::sampled_fragment.layout};
   ImportedTexture import{.image = fake_handle<VkImage>(),
@@ -185,7 +185,7 @@ TEST_F(Scenario, TextureThatAnotherGraphTakesOverNeedsNoSecondBarrier) {
 
 // clear -> sum -> accumulate -> sum (unread)
 //                     +------> picture -> output
-TEST_F(Scenario, ClearIsNotCulledIfOnlyTheSecondOutputOfItsAccumulationIsRead) {
+TEST_F(Scenario, ClearOfABlendTargetIsNotCulledIfOnlyAnotherOutputOfTheBlendingPassIsRead) {
   Texture sum = graph_.create_texture("sum", kColor);
   Texture picture = graph_.create_texture("picture", kColor);
   PassBuilder clear = graph_.add_pass("clear");
@@ -197,7 +197,7 @@ TEST_F(Scenario, ClearIsNotCulledIfOnlyTheSecondOutputOfItsAccumulationIsRead) {
   EXPECT_EQ(plan().passes.size(), 2u);
 }
 
-TEST_F(Scenario, AccelerationStructureIsBuiltAndTraced) {
+TEST_F(Scenario, BuildingAndTracingAnAccelerationStructureNeedsEveryBarrierOfThePlan) {
   constexpr VkPipelineStageFlags2 kBuild = VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
   Buffer vertices = graph_.create_buffer("vertices", {1024});
   Buffer bottom = graph_.create_buffer("bottom level", {4096});
@@ -231,7 +231,7 @@ TEST_F(Scenario, AccelerationStructureIsBuiltAndTraced) {
   }
 }
 
-TEST_F(Scenario, DepthIsTestedAndSampledInOneAccess) {
+TEST_F(Scenario, DepthTestAndSamplingOfOneTextureCanBeDeclaredAsOneAccess) {
   Texture depth = graph_.create_texture("depth", kDepth);
   Texture color = graph_.create_texture("color", kColor);
   PassBuilder prepass = graph_.add_pass("prepass");
@@ -251,7 +251,7 @@ TEST_F(Scenario, DepthIsTestedAndSampledInOneAccess) {
 // prepass -> depth and stencil -> mark (reads depth, writes stencil) -> ambient (samples depth)
 // Writing the stencil does not write the depth. The last pass therefore needs no barrier before it
 // samples the depth.
-TEST_F(Scenario, WritingTheStencilLeavesTheDepthReadable) {
+TEST_F(Scenario, DepthStaysReadableWithoutABarrierAfterAPassThatWritesOnlyTheStencil) {
   Texture depth =
       graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64)});
   PassBuilder prepass = graph_.add_pass("prepass");
@@ -290,7 +290,7 @@ TEST_F(Scenario, DepthAndStencilWithTheSameTransitionShareABarrier) {
 }
 
 // gbuffer -> albedo -> light (reads albedo at its own pixel, as an input attachment)
-TEST_F(Scenario, InputAttachmentHasItsOwnAccessAndLayout) {
+TEST_F(Scenario, TextureReadAsInputAttachmentGetsTheVulkanUsageForIt) {
   Texture albedo = graph_.create_texture("albedo", kColor);
   Texture lit = graph_.create_texture("lit", kColor);
   PassBuilder gbuffer = graph_.add_pass("gbuffer");
@@ -307,7 +307,7 @@ TEST_F(Scenario, InputAttachmentHasItsOwnAccessAndLayout) {
 
 // 1,000 passes, each of which reads some of the most recent textures. A debug build verifies every
 // new plan; framegraph_benchmark prints how long this takes for a plan of this size.
-TEST_F(Scenario, PlanOfAThousandPassesIsVerified) {
+TEST_F(Scenario, VerifierAcceptsAPlanOfAThousandPassesAndRefusesItIfOnePassLacksItsBarriers) {
   std::vector<Texture> textures;
   for (std::uint32_t i = 0; i < 1000; ++i) {
     Texture texture = graph_.create_texture("texture", kColor);

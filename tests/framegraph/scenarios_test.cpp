@@ -87,7 +87,7 @@ class Scenario : public testing::Test {
 };
 
 // The multisampled texture is cleared, resolved within its pass, and not stored.
-TEST_F(Scenario, MultisampledColorIsResolvedInItsPass) {
+TEST_F(Scenario, MultisampledColorIsResolvedInThePassThatDrawsIt) {
   begin();
   Texture msaa = texture("msaa", kColor, VK_SAMPLE_COUNT_4_BIT);
   Texture resolved = texture("resolved");
@@ -156,7 +156,7 @@ TEST_F(Scenario, AttachmentsAreLoadedAndStoredOnlyIfContentsAreNeeded) {
 
 // The pass clears the stencil of a texture. At the same time it samples the depth of the same
 // texture, which is attached read-only and keeps its contents.
-TEST_F(Scenario, DepthIsSampledWhileItsStencilIsWritten) {
+TEST_F(Scenario, DepthCanBeSampledWhileTheStencilOfTheSameTextureIsWritten) {
   begin();
   static constexpr VkClearValue kCleared{.depthStencil = {0.25f, 3}};
   static constexpr VkClearValue kMarked{.depthStencil = {0.0f, 7}};
@@ -191,7 +191,7 @@ TEST_F(Scenario, DepthIsSampledWhileItsStencilIsWritten) {
 
 // The texture is written in the first frame, read in later ones, and partly updated in the last
 // one.
-TEST_F(Scenario, PersistentTextureKeepsItsContents) {
+TEST_F(Scenario, PersistentTextureKeepsItsContentsFromFrameToFrame) {
   for (std::uint32_t frame = 0; frame < 4; ++frame) {
     begin();
     const TextureHistory table = graph_.create_persistent_texture(
@@ -217,7 +217,7 @@ TEST_F(Scenario, PersistentTextureKeepsItsContents) {
 }
 
 // The buffer is filled in the first frame and read in the second.
-TEST_F(Scenario, PersistentBufferKeepsItsContents) {
+TEST_F(Scenario, PersistentBufferKeepsItsContentsFromFrameToFrame) {
   for (std::uint32_t frame = 0; frame < 2; ++frame) {
     begin();
     const BufferHistory counter = graph_.create_persistent_buffer("counter", {4});
@@ -245,7 +245,7 @@ TEST_F(Scenario, PersistentBufferKeepsItsContents) {
 
 // The first graph draws to a persistent texture and leaves it in a final state. The second graph
 // imports it, copies it to host memory and writes another value, which the first graph then reads.
-TEST_F(Scenario, SecondGraphImportsAPersistentTextureOfTheFirst) {
+TEST_F(Scenario, PersistentTextureOfOneGraphCanBeImportedByAnotherGraph) {
   const State between{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
   const auto add_clear = [](Graph& graph, Texture& texture, std::uint32_t value) {
@@ -280,7 +280,7 @@ TEST_F(Scenario, SecondGraphImportsAPersistentTextureOfTheFirst) {
 }
 
 // A separate pass draws each face. The cube is then read through a cube view.
-TEST_F(Scenario, CubeShadowMapIsDrawnFaceByFace) {
+TEST_F(Scenario, CubeShadowMapCanBeDrawnFaceByFaceAndReadThroughACubeView) {
   begin();
   TextureDesc desc{VK_FORMAT_D32_SFLOAT, Extent::absolute(16, 16), 1, 6};
   desc.flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
@@ -315,7 +315,7 @@ TEST_F(Scenario, CubeShadowMapIsDrawnFaceByFace) {
 // The frame runs a graphics pass, then a compute and a graphics pass that may overlap, and then a
 // graphics pass. It waits for a semaphore of the caller and signals another. All queue classes use
 // one queue, so that one vkQueueSubmit2 is enough.
-TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
+TEST_F(Scenario, FrameWithAsyncComputeWaitsForAndSignalsSemaphoresOfTheCaller) {
   several_queues_ = true;
   const VkDevice device = gpu_.device().device();
   VkSemaphoreTypeCreateInfo type{};
@@ -363,7 +363,7 @@ TEST_F(Scenario, AsyncComputeIsOrderedWithSemaphoresOfTheCaller) {
 // Particles run on the compute queue and the scene on the graphics queue, with no resource in
 // common. From the second frame of a plan on, no queue waits for the other queue's work of the
 // previous frame.
-TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
+TEST_F(Scenario, WorkOfTwoQueuesWithoutCommonResourcesOverlapsAcrossFrames) {
   several_queues_ = true;
   const auto declare = [&](std::uint32_t frame, VkDeviceSize size) {
     begin();
@@ -401,7 +401,7 @@ TEST_F(Scenario, FramesOverTwoQueuesOverlap) {
 }
 
 // The image is transferred from a queue family outside the device and back to it.
-TEST_F(Scenario, ImportIsAcquiredFromAndReleasedToAnotherQueueFamily) {
+TEST_F(Scenario, ImportOfAnotherQueueFamilyIsAcquiredFromThatFamilyAndReleasedBackToIt) {
   ImportedTexture import;
   import.desc = {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)};
   import.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;

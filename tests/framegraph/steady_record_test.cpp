@@ -65,16 +65,16 @@ std::size_t allocations_of_steady_frames(Path path, std::uint32_t threads = 1) {
   return allocations() - before;
 }
 
-TEST(SteadyRecord, RecordingAFrameAgainAllocatesNothing) {
+TEST(SteadyFrameRecording, RecordingAnUnchangedFrameAgainAllocatesNoHostMemory) {
   EXPECT_EQ(allocations_of_steady_frames(Path::record), 0u);
 }
-TEST(SteadyRecord, SubmittingAFrameAgainAllocatesNothing) {
+TEST(SteadyFrameRecording, SubmittingAnUnchangedFrameAgainAllocatesNoHostMemory) {
   EXPECT_EQ(allocations_of_steady_frames(Path::submit), 0u);
 }
-TEST(SteadyRecord, SubmittingAFrameToThreeQueuesAgainAllocatesNothing) {
+TEST(SteadyFrameRecording, SubmittingAnUnchangedFrameToThreeQueuesAgainAllocatesNoHostMemory) {
   EXPECT_EQ(allocations_of_steady_frames(Path::submit_to_three), 0u);
 }
-TEST(SteadyRecord, RecordingAFrameAgainWithTwoThreadsAllocatesNothing) {
+TEST(SteadyFrameRecording, RecordingAnUnchangedFrameAgainWithTwoThreadsAllocatesNoHostMemory) {
   EXPECT_EQ(allocations_of_steady_frames(Path::record, 2), 0u);
 }
 

@@ -24,7 +24,7 @@ void declare(Graph& graph) {
   graph.output(pass.write(history.current, access::storage_write_compute));
 }
 
-TEST(Steady, DeclaringAFrameAgainAllocatesNothing) {
+TEST(SteadyFrame, DeclaringAnUnchangedFrameAgainAllocatesNoHostMemory) {
   Graph graph;
   declare(graph);
   declare(graph);
@@ -38,7 +38,7 @@ TEST(Steady, DeclaringAFrameAgainAllocatesNothing) {
   EXPECT_EQ(allocations() - before, 0u);
 }
 
-TEST(Steady, CompilingAFrameAgainAllocatesNothing) {
+TEST(SteadyFrame, CompilingAnUnchangedFrameAgainAllocatesNoHostMemory) {
   Graph graph;
   declare(graph);
   Compiler compiler;
@@ -49,7 +49,7 @@ TEST(Steady, CompilingAFrameAgainAllocatesNothing) {
   EXPECT_EQ(allocations() - before, 0u);
 }
 
-TEST(Steady, AnyDifferenceOfDeclarationsChangesTheirHash) {
+TEST(SteadyFrame, AddingAResourceChangesTheHashOfTheDeclaredFrame) {
   Graph one;
   Graph other;
   declare_deferred_frame(one, 1920, 1080);
@@ -84,7 +84,7 @@ void declare_one_of_few(Graph& graph, Dice& order) {
   if (order.roll(4) != 0) declare_random(graph, dice, options);
 }
 
-TEST(Steady, SameDeclarationAgreesWithAComparisonOfBytes) {
+TEST(SteadyFrame, DeclaredFramesCompareEqualExactlyIfTheBytesOfTheirRecordsAreEqual) {
   Graph graph;
   std::vector<GraphDescription> kept;
   Dice order(7);
@@ -105,7 +105,7 @@ TEST(Steady, SameDeclarationAgreesWithAComparisonOfBytes) {
   }
 }
 
-TEST(Steady, ReusedGraphGivesTheSameDeclarationAsANewGraph) {
+TEST(SteadyFrame, GraphReusedAfterResetRecordsTheSameDeclarationAsANewGraph) {
   Graph used;
   Dice order(11);
   for (int frame = 0; frame < 2000; ++frame) {
@@ -128,7 +128,7 @@ TEST(Steady, ReusedGraphGivesTheSameDeclarationAsANewGraph) {
 // An earlier, longer frame left a record behind the end of the current records. Its resource index
 // belongs to another texture in this frame, so that the record must not be found equal without a
 // comparison.
-TEST(Steady, AccessLeftFromALongerEarlierFrameIsNotReused) {
+TEST(SteadyFrame, StaleAccessRecordOfALongerEarlierFrameIsNotReused) {
   const auto declare = [](Graph& graph, std::uint32_t mips, bool reads) {
     graph.reset();
     Texture texture =
@@ -146,7 +146,7 @@ TEST(Steady, AccessLeftFromALongerEarlierFrameIsNotReused) {
 }
 
 // The previous frame's access to one mip must not be taken for the access to all mips.
-TEST(Steady, AccessToAllMipsIsNotReusedFromAnAccessToOneMip) {
+TEST(SteadyFrame, AccessToOneMipInThePreviousFrameIsNotReusedForAnAccessToAllMips) {
   Graph graph;
   for (const Range range : {Range::mip(0), Range{}}) {
     graph.reset();
@@ -160,7 +160,7 @@ TEST(Steady, AccessToAllMipsIsNotReusedFromAnAccessToOneMip) {
 
 // The caller makes a handle by incrementing the index of another handle. It must be invalid until
 // its resource is declared, even if the previous frame declared such a resource.
-TEST(Steady, HandleMadeUpByTheCallerIsRefused) {
+TEST(SteadyFrame, HandleMadeUpByTheCallerIsRefused) {
   Graph graph;
   for (int frame = 0; frame < 3; ++frame) {
     graph.reset();
@@ -173,7 +173,7 @@ TEST(Steady, HandleMadeUpByTheCallerIsRefused) {
   }
 }
 
-TEST(Steady, PassAndResourceNamesOfAnyLengthAreStored) {
+TEST(SteadyFrame, PassAndResourceNamesOfAnyLengthAreStored) {
   Graph graph;
   for (std::size_t size = 0; size < 80; ++size) {
     graph.reset();

@@ -90,7 +90,7 @@ class TimestampsTest : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(TimestampsTest, TimesAreRightWhenTheTimestampCounterWrapsAround) {
+TEST_F(TimestampsTest, PassTimesAreRightWhenTheTimestampCounterWrapsAround) {
   for (const std::uint32_t bits : {36u, 63u, 64u}) {
     Executor executor = make(bits);
     const std::uint64_t all = ~std::uint64_t{0} >> (64 - bits);
@@ -101,7 +101,7 @@ TEST_F(TimestampsTest, TimesAreRightWhenTheTimestampCounterWrapsAround) {
   }
 }
 
-TEST_F(TimestampsTest, QueueWithoutTimestampsGetsNoTimings) {
+TEST_F(TimestampsTest, QueueWithoutTimestampSupportGivesNoTimings) {
   Executor executor = make(0);
   ASSERT_TRUE(gpu_.run(executor, declare()));
   EXPECT_TRUE(executor.timings().empty());
@@ -111,7 +111,7 @@ TEST_F(TimestampsTest, QueueWithoutTimestampsGetsNoTimings) {
   EXPECT_EQ(written, 0);
 }
 
-TEST_F(TimestampsTest, TimingsRequestedTooEarlyAreRightInALaterCall) {
+TEST_F(TimestampsTest, TimingsRequestedBeforeTheFrameFinishedAreRightWhenRequestedAgainLater) {
   Executor executor = make(64);
   gpu_.begin();
   ASSERT_TRUE(executor.record(declare(), gpu_.commands()));

@@ -36,7 +36,7 @@ class Validate : public testing::Test {
   Graph graph_;
 };
 
-TEST_F(Validate, ValidGraphHasNoErrors) {
+TEST_F(Validate, ValidGraphCompilesWithoutErrors) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute);
   EXPECT_TRUE(compile(graph_));
@@ -50,7 +50,7 @@ TEST_F(Validate, ReadModifyWriteOfUnwrittenContentsIsRefused) {
       "pass 'update' reads and writes texture 't' version 0, parts of which nothing has written");
 }
 
-TEST_F(Validate, AttachmentsAndDiscardingWritesNeedNoContents) {
+TEST_F(Validate, AttachmentsAndDiscardingWritesOfUnwrittenTexturesAreAllowed) {
   const Texture drawn = graph_.create_texture("drawn", kDesc);
   (void)pass("draw").write(drawn, access::color_attachment);
   const Texture stored = graph_.create_texture("stored", kDesc);
@@ -58,7 +58,7 @@ TEST_F(Validate, AttachmentsAndDiscardingWritesNeedNoContents) {
   EXPECT_TRUE(compile(graph_));
 }
 
-TEST_F(Validate, AttachmentsOfDifferentRenderingsMayDifferInSize) {
+TEST_F(Validate, AttachmentsOfOnePassMayDifferInSizeOnlyInDifferentRenderings) {
   for (const bool separate : {true, false}) {
     graph_.reset();
     const Texture large = graph_.create_texture("large", kDesc);
@@ -75,7 +75,7 @@ TEST_F(Validate, AttachmentsOfDifferentRenderingsMayDifferInSize) {
   }
 }
 
-TEST_F(Validate, ResolveTargetsHaveOneSampleBesideMultisampledAttachments) {
+TEST_F(Validate, SingleSampledResolveTargetIsAllowedBesideAMultisampledAttachment) {
   TextureDesc multisampled = kDesc;
   multisampled.samples = VK_SAMPLE_COUNT_4_BIT;
   for (const bool first : {true, false}) {
@@ -90,7 +90,7 @@ TEST_F(Validate, ResolveTargetsHaveOneSampleBesideMultisampledAttachments) {
   }
 }
 
-TEST_F(Validate, RelativeExtentsMultiplyAndDivide) {
+TEST_F(Validate, RelativeExtentIsTheBaseExtentTimesMultiplierOverDivisorRoundedUp) {
   const Texture base = graph_.create_texture("base", {kDesc.format, Extent::absolute(100, 7)});
   const auto size = [&](std::uint32_t divisor, std::uint32_t multiplier) {
     const VkExtent3D extent = graph_.extent(
@@ -105,7 +105,7 @@ TEST_F(Validate, RelativeExtentsMultiplyAndDivide) {
 
 // Tests a depth attachment with and without a later reader, on a device with lazily allocated
 // memory.
-TEST_F(Validate, AttachmentsWithoutContentsAreTransientOnDevicesWithLazyMemory) {
+TEST_F(Validate, AttachmentThatNobodyReadsLaterGetsTransientUsageOnDevicesWithLazyMemory) {
   for (const bool read_later : {false, true}) {
     graph_.reset();
     Texture color = graph_.create_texture("color", kDesc);
@@ -137,7 +137,7 @@ TEST_F(Validate, LayerOrMipIndexAbove16BitsIsRefused) {
   expect(ErrorCode::bad_range, "pass 'reader' reads texture 't'");
 }
 
-TEST_F(Validate, PassBuilderUsedAfterResetIsRefused) {
+TEST_F(Validate, PassBuilderUsedAfterGraphResetIsRefused) {
   using Use = void (*)(PassBuilder&, Texture, Buffer);
   const Use uses[] = {
       [](PassBuilder& old, Texture t, Buffer) { old.read(t, access::sampled_compute); },
@@ -159,7 +159,7 @@ TEST_F(Validate, PassBuilderUsedAfterResetIsRefused) {
 
 TEST_F(Validate, EmptyGraphIsValid) { EXPECT_TRUE(compile(graph_)); }
 
-TEST_F(Validate, StaleHandleIsReportedWithItsVersions) {
+TEST_F(Validate, ReadThroughAnOutdatedHandleIsReportedWithItsVersionAndTheCurrentOne) {
   const Texture old = written("t");
   PassBuilder second = pass("second");
   (void)second.write(old, access::storage_read_write_compute);
@@ -168,7 +168,7 @@ TEST_F(Validate, StaleHandleIsReportedWithItsVersions) {
          "pass 'reader' reads texture 't' version 1, but the version then is 2: pass 'second'");
 }
 
-TEST_F(Validate, WriteThroughAConsumedVersionIsRefused) {
+TEST_F(Validate, WriteThroughAHandleThatAnEarlierWriteReplacedIsRefused) {
   const Texture old = written("t");
   PassBuilder second = pass("second");
   (void)second.write(old, access::storage_read_write_compute);
@@ -186,7 +186,7 @@ TEST_F(Validate, HandleOfAnotherGraphIsRefused) {
   expect(ErrorCode::foreign_handle, "'reader' reads a texture through a handle of another graph");
 }
 
-TEST_F(Validate, HandleFromBeforeResetIsRefused) {
+TEST_F(Validate, HandleFromBeforeGraphResetIsRefused) {
   const Texture old = graph_.create_texture("t", kDesc);
   graph_.reset();
   PassBuilder writer = pass("writer");
@@ -215,7 +215,7 @@ TEST_F(Validate, ReadingAMipThatNothingWroteIsRefused) {
   expect(ErrorCode::read_before_write, "'reader'");
 }
 
-TEST_F(Validate, ReadingAndWritingOneSubresourceIsRefused) {
+TEST_F(Validate, PassThatDeclaresBothAReadAndAWriteOfOneSubresourceIsRefused) {
   const Texture texture = written("t");
   PassBuilder both = pass("both");
   both.read(texture, access::sampled_compute);
@@ -223,7 +223,7 @@ TEST_F(Validate, ReadingAndWritingOneSubresourceIsRefused) {
   expect(ErrorCode::read_and_write, "'both' uses a subresource of texture 't'");
 }
 
-TEST_F(Validate, ReadingOneMipAndWritingAnotherIsAllowed) {
+TEST_F(Validate, PassMayReadOneMipAndWriteAnotherMipOfTheSameTexture) {
   TextureDesc desc = kDesc;
   desc.mips = 2;
   Texture texture = graph_.create_texture("t", desc);
@@ -243,7 +243,7 @@ TEST_F(Validate, TwoWritesOfOneSubresourceInAPassAreRefused) {
   expect(ErrorCode::two_writers, "'twice' writes a subresource of texture 't' twice");
 }
 
-TEST_F(Validate, AttachmentsOfDifferentSizesAreRefused) {
+TEST_F(Validate, AttachmentsOfOneRenderingWithDifferentSizesAreRefused) {
   Texture color = graph_.create_texture("color", kDesc);
   Texture depth = graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, Extent::absolute(16, 8)});
   PassBuilder draw = pass("draw");
@@ -252,7 +252,7 @@ TEST_F(Validate, AttachmentsOfDifferentSizesAreRefused) {
   expect(ErrorCode::attachment_mismatch, "'draw' draws to texture 'depth' of 16x8");
 }
 
-TEST_F(Validate, ImportWithoutTheNeededUsageIsRefused) {
+TEST_F(Validate, ImportWithoutTheVulkanUsageThatAPassNeedsIsRefused) {
   ImportedTexture import;
   import.image = fake_handle<VkImage>();
   import.desc = kDesc;
@@ -264,7 +264,7 @@ TEST_F(Validate, ImportWithoutTheNeededUsageIsRefused) {
          "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
 }
 
-TEST_F(Validate, HistoryWithoutTheNeededUsageIsRefused) {
+TEST_F(Validate, HistoryWithoutTheVulkanUsageThatAPassNeedsIsRefused) {
   Access addressed = buffer_access::storage_write_compute;
   addressed.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
   BufferHistory history = graph_.create_buffer_history("particles", {64});
@@ -284,7 +284,7 @@ TEST_F(Validate, ImportWithoutAVulkanHandleIsRefused) {
   expect(ErrorCode::bad_import, "set ImportedTexture::image");
 }
 
-TEST_F(Validate, UnsupportedFormatIsRefused) {
+TEST_F(Validate, TextureFormatThatTheDeviceCannotUseAsDeclaredIsRefused) {
   (void)written("t");
   Limits limits;
   limits.formats.query = [](const void*, VkFormat) {
@@ -293,13 +293,13 @@ TEST_F(Validate, UnsupportedFormatIsRefused) {
   expect(ErrorCode::unsupported_format, "does not support on this device", limits);
 }
 
-TEST_F(Validate, RangeBeyondTheMipsIsRefused) {
+TEST_F(Validate, AccessToMipsThatTheTextureDoesNotHaveIsRefused) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute, Range::mip(3));
   expect(ErrorCode::bad_range, "but it has 1 mips and 1 layers");
 }
 
-TEST_F(Validate, AspectsThatTheFormatOrTheDeviceLacksAreRefused) {
+TEST_F(Validate, ImageAspectsThatTheFormatOrTheDeviceDoesNotSupportAreRefused) {
   const Texture color = written("t");
   pass("reader").read(color, access::sampled_compute, Range::stencil());
   expect(ErrorCode::bad_range, "in an aspect that its format does not have");
@@ -313,7 +313,7 @@ TEST_F(Validate, AspectsThatTheFormatOrTheDeviceLacksAreRefused) {
   expect(ErrorCode::bad_range, "set DeviceHandles::separate_depth_stencil", limits);
 }
 
-TEST_F(Validate, ZeroSizesAndSizesOverTheLimitsAreRefused) {
+TEST_F(Validate, ResourcesOfSizeZeroOrOverTheDeviceLimitsAreRefused) {
   (void)graph_.create_texture("none", {VK_FORMAT_R8_UNORM, Extent::absolute(0, 4)});
   (void)graph_.create_texture("huge", {VK_FORMAT_R8_UNORM, Extent::absolute(1 << 20, 4)});
   (void)graph_.create_texture("deep", {VK_FORMAT_R8_UNORM, Extent::absolute(4, 4), 9});
@@ -325,14 +325,14 @@ TEST_F(Validate, ZeroSizesAndSizesOverTheLimitsAreRefused) {
   for (const Error& error : plan.error()) EXPECT_EQ(error.code, ErrorCode::bad_description);
 }
 
-TEST_F(Validate, ExtentRelativeToAForeignTextureIsRefused) {
+TEST_F(Validate, ExtentRelativeToATextureOfAnotherGraphIsRefused) {
   Graph other;
   const Texture foreign = other.create_texture("foreign", kDesc);
   (void)graph_.create_texture("half", {VK_FORMAT_R8_UNORM, Extent::relative(foreign, 2)});
   expect(ErrorCode::bad_description, "relative to a handle of another graph");
 }
 
-TEST_F(Validate, HistoryThatNothingWritesIsRefused) {
+TEST_F(Validate, ReadingAHistoryThatNoPassWritesIsRefused) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   pass("reader").read(history.previous(), access::sampled_compute);
   expect(ErrorCode::history_never_written, "write its current slot");
@@ -350,7 +350,7 @@ TEST_F(Validate, GraphicsStageOnTheComputeQueueIsRefused) {
   expect(ErrorCode::bad_access, "put the pass on QueueClass::graphics");
 }
 
-TEST_F(Validate, AccessDeclaredAfterTheNextPassIsRefused) {
+TEST_F(Validate, AccessDeclaredForAPassAfterTheNextPassWasAddedIsRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
   PassBuilder early = pass("early");
   (void)pass("late");
@@ -358,19 +358,19 @@ TEST_F(Validate, AccessDeclaredAfterTheNextPassIsRefused) {
   expect(ErrorCode::closed_pass, "before the next add_pass");
 }
 
-TEST_F(Validate, WriteWithAnAccessThatOnlyReadsIsRefused) {
+TEST_F(Validate, WriteDeclaredWithAReadOnlyAccessIsRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
   PassBuilder writer = pass("writer");
   (void)writer.write(texture, access::sampled_compute);
   expect(ErrorCode::bad_access, "declare it with read()");
 }
 
-TEST_F(Validate, OutputThatNothingWritesIsRefused) {
+TEST_F(Validate, GraphOutputThatNoPassWritesIsRefused) {
   graph_.output(graph_.create_texture("t", kDesc));
   expect(ErrorCode::read_before_write, "output texture 't' is written by no pass");
 }
 
-TEST_F(Validate, AllErrorsAreReportedAtOnce) {
+TEST_F(Validate, AllErrorsOfAGraphAreReportedByOneCompilation) {
   pass("one").read(Texture{}, access::sampled_compute);
   pass("two").read(graph_.create_texture("t", kDesc), access::sampled_compute);
   (void)graph_.create_buffer("empty", {0});
@@ -422,7 +422,7 @@ constexpr Access kExtensionWrites[] = {
     {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT,
      VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT}};
 
-TEST_F(Validate, AccessBitsOfExtensionsThatWriteAreTreatedAsWrites) {
+TEST_F(Validate, WriteAccessBitsOfVulkanExtensionsAreTreatedAsWrites) {
   for (const Access& access : kExtensionWrites) {
     graph_.reset();
     PassBuilder writer = pass("writer");
@@ -436,7 +436,7 @@ TEST_F(Validate, AccessBitsOfExtensionsThatWriteAreTreatedAsWrites) {
   }
 }
 
-TEST_F(Validate, ImportLastWrittenByAVulkanExtensionStageIsMadeVisible) {
+TEST_F(Validate, ImportWrittenByAVulkanExtensionStageGetsABarrierBeforeItsReader) {
   for (const Access& access : kExtensionWrites) {
     graph_.reset();
     const Buffer buffer = graph_.import_buffer(

@@ -17,7 +17,7 @@ namespace {
 using glm::vec3;
 using maths::Slice;
 
-TEST(BentNormal, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
+TEST(BentNormal, BentNormalIntegralOfAHalfSliceAgreesWithQuadratureForEveryNormalAndHorizon) {
   double worst = 0.0;
   for_each_slice_and_horizon([&](const Slice& s, const SliceTruth& truth, float c) {
     const glm::dvec2 ahead = truth.bent(0.0, std::acos(double(c)));
@@ -28,7 +28,7 @@ TEST(BentNormal, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
   EXPECT_LT(worst, 1e-6);
 }
 
-TEST(BentNormal, ClosedFormEqualsTheFormulaOfThePaper) {
+TEST(BentNormal, BentNormalOfASliceEqualsTheFormulaOfThePaper) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const double g = random.uniform(-1.5f, 1.5f);
@@ -66,7 +66,7 @@ std::vector<float> even_angles(int count) {
   return angles;
 }
 
-TEST(BentNormal, UnoccludedSurfaceGetsItsNormalFromASingleSlice) {
+TEST(BentNormal, BentNormalOfAnUnoccludedSurfaceIsItsNormalEvenFromASingleSlice) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);
@@ -82,7 +82,7 @@ TEST(BentNormal, UnoccludedSurfaceGetsItsNormalFromASingleSlice) {
   }
 }
 
-TEST(BentNormal, UnoccludedResidualsCancelOverAllSlices) {
+TEST(BentNormal, ExpectedResidualsOfAnUnoccludedSurfaceSumToZeroOverAllSlices) {
   RandomInput random;
   for (int i = 0; i < 200; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);
@@ -104,16 +104,16 @@ TEST(BentNormal, UnoccludedResidualsCancelOverAllSlices) {
 // A wall in a random direction occludes up to most of one half-slice. Compares the bent normal of 3
 // random slices, which weight directions unevenly, with that of 256 slices. The error is the
 // root-mean-square angle over many walls, with and without the expected residual.
-TEST(BentNormal, SubtractingTheExpectedResidualReducesTheErrorOfFewSlices) {
+TEST(BentNormal, SubtractingTheExpectedResidualReducesTheBentNormalErrorOfThreeSlices) {
   RandomInput random;
   double raw = 0.0;
-  double settled = 0.0;
+  double corrected = 0.0;
   for (int i = 0; i < 2000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);
     const vec3 wall =
         maths::slice_direction(maths::make_view_basis(view), random.uniform(0.0f, 6.28f));
     const float height = random.uniform(0.0f, 3.0f);
-    const auto found = [&](const std::vector<float>& angles, bool settle) {
+    const auto found = [&](const std::vector<float>& angles, bool subtract_expected) {
       vec3 residual(0), expected_residual(0);
       float visible = 0.0f, open = 0.0f;
       for (const float phi : angles) {
@@ -132,7 +132,7 @@ TEST(BentNormal, SubtractingTheExpectedResidualReducesTheErrorOfFewSlices) {
         residual += maths::residual_of(part, seen, normal);
         expected_residual += maths::expected_residual(s, direction, view, normal, all);
       }
-      const vec3 sum = settle
+      const vec3 sum = subtract_expected
                            ? maths::converged_residual(residual, expected_residual, visible / open)
                            : residual;
       return maths::finish_bent_normal(sum, visible, normal);
@@ -141,14 +141,14 @@ TEST(BentNormal, SubtractingTheExpectedResidualReducesTheErrorOfFewSlices) {
     const std::vector<float> few{random.uniform(0.0f, float(kPi)), random.uniform(0.0f, float(kPi)),
                                  random.uniform(0.0f, float(kPi))};
     const vec3 raw_apart = found(few, false) - truth;
-    const vec3 settled_apart = found(few, true) - truth;
+    const vec3 corrected_apart = found(few, true) - truth;
     raw += double(dot(raw_apart, raw_apart));
-    settled += double(dot(settled_apart, settled_apart));
+    corrected += double(dot(corrected_apart, corrected_apart));
   }
-  EXPECT_LT(std::sqrt(settled), 0.75 * std::sqrt(raw));
+  EXPECT_LT(std::sqrt(corrected), 0.75 * std::sqrt(raw));
 }
 
-TEST(BentNormal, BentNormalPointsAwayFromAWall) {
+TEST(BentNormal, BentNormalBesideAWallPointsAwayFromTheWall) {
   const vec3 view(0, 0, 1);
   const Slice s = maths::make_slice(view, vec3(1, 0, 0), view);
   const vec3 bent = maths::slice_bent_normal(s, vec3(1, 0, 0), view, 0.8f, -1.0f);
@@ -156,7 +156,7 @@ TEST(BentNormal, BentNormalPointsAwayFromAWall) {
   EXPECT_GT(bent.z, 0.1f);
 }
 
-TEST(BentNormal, BentNormalIsTheNormalIfNothingIsVisible) {
+TEST(BentNormal, BentNormalOfAFullyOccludedSurfaceIsItsNormal) {
   const vec3 normal(0, 1, 0);
   EXPECT_EQ(maths::finish_bent_normal(vec3(0), 0.0f, normal), normal);
   EXPECT_EQ(maths::finish_bent_normal(vec3(1e-30f), 0.0f, normal), normal);

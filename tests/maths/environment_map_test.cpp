@@ -12,7 +12,7 @@ using glm::ivec2;
 using glm::vec2;
 using glm::vec3;
 
-TEST(EnvironmentMap, DirectionsConvertToBothLayoutsAndBack) {
+TEST(EnvironmentMap, DirectionsConvertToOctahedralAndEquirectangularCoordinatesAndBack) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const vec3 d = random.unit_vector();
@@ -25,7 +25,7 @@ TEST(EnvironmentMap, DirectionsConvertToBothLayoutsAndBack) {
   }
 }
 
-TEST(EnvironmentMap, AxesAreAtTheDocumentedTexels) {
+TEST(EnvironmentMap, CoordinateAxesMapToTheirDocumentedPositionsInTheImage) {
   EXPECT_NEAR(maths::equirectangular_uv({0, 0, -1}).x, 0.0f, 1e-6f);
   EXPECT_NEAR(maths::equirectangular_uv({1, 0, 0}).x, 0.25f, 1e-6f);
   EXPECT_NEAR(maths::equirectangular_uv({0, 0, 1}).x, 0.5f, 1e-6f);
@@ -35,7 +35,7 @@ TEST(EnvironmentMap, AxesAreAtTheDocumentedTexels) {
 
 // Checks that two neighbouring texels across an edge of the map are not farther apart in angle than
 // neighbouring texels inside the map.
-TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueTheMap) {
+TEST(EnvironmentMap, TexelsBeyondAnEdgeOfTheOctahedralMapContinueItOnTheSphere) {
   constexpr int kSize = 16;
   const auto direction = [](ivec2 texel) {
     const ivec2 there = maths::map_texel(texel, kSize);
@@ -53,7 +53,7 @@ TEST(EnvironmentMap, TexelsBeyondAnEdgeContinueTheMap) {
   EXPECT_LT(distance(direction({-1, -1}), direction({0, 0})), 0.26f);
 }
 
-TEST(EnvironmentMap, SolidAnglesOfAllTexelsSumToTheSphere) {
+TEST(EnvironmentMap, SolidAnglesOfAllTexelsSumToFourPi) {
   for (const int size : {16, 64, 256}) {
     double sum = 0.0;
     for (int y = 0; y < size; ++y) {
@@ -65,7 +65,7 @@ TEST(EnvironmentMap, SolidAnglesOfAllTexelsSumToTheSphere) {
   }
 }
 
-TEST(EnvironmentMap, MipLevelsHaveRoughnessZeroToOne) {
+TEST(EnvironmentMap, MipLevelsCoverRoughnessZeroToOneAndConvertBack) {
   EXPECT_EQ(maths::level_of_roughness(0.0f, 6), 0.0f);
   EXPECT_EQ(maths::level_of_roughness(2.0f, 6), 5.0f);
   EXPECT_EQ(maths::level_of_roughness(0.7f, 1), 0.0f);

@@ -43,7 +43,7 @@ double over_hemisphere(Function f, int panels = 60) {
       0.0, 2 * kPi, panels);
 }
 
-TEST(Ggx, ProjectedMicrofacetAreaIsOne) {
+TEST(Ggx, ProjectedMicrofacetAreaIntegratesToOneOverTheHemisphere) {
   for (const float alpha : {1e-3f, 0.01f, 0.1f, 0.5f, 1.0f}) {
     // The integration variable is log(tan(theta)), because the density of a narrow lobe extends
     // over many powers of ten of the tangent.
@@ -75,7 +75,7 @@ TEST(Ggx, MaskingIsOneAtNormalIncidenceAndDecreasesTowardsGrazingAngles) {
   }
 }
 
-TEST(Ggx, LobeReflectsNoMoreLightThanItReceives) {
+TEST(Ggx, ReflectanceOfTheLobeIsAtMostOneForEveryViewAngle) {
   for (const float alpha : {0.2f, 0.5f, 1.0f}) {
     for (double angle : {0.0, 0.7, 1.2, 1.5}) {
       const double sum = over_hemisphere(
@@ -86,7 +86,7 @@ TEST(Ggx, LobeReflectsNoMoreLightThanItReceives) {
   }
 }
 
-TEST(Ggx, LobeIsReciprocal) {
+TEST(Ggx, BrdfIsUnchangedWhenViewAndLightDirectionsAreSwapped) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec3 view = random.facing(kNormal), light = random.facing(kNormal);
@@ -97,7 +97,7 @@ TEST(Ggx, LobeIsReciprocal) {
   }
 }
 
-TEST(Ggx, SamplesAreDistributedAccordingToTheirDensity) {
+TEST(Ggx, ImportanceSamplesWeightedByTheirDensityReproduceTheIntegralOfTheLobe) {
   RandomInput random;
   for (const float alpha : {0.1f, 0.4f, 1.0f}) {
     for (double angle : {0.0, 0.8, 1.4}) {
@@ -131,13 +131,13 @@ TEST(Ggx, SamplesAreDistributedAccordingToTheirDensity) {
   }
 }
 
-TEST(Ggx, SamplesOfAMirrorAreTheReflectedViewDirection) {
+TEST(Ggx, LightDirectionSampledAtRoughnessZeroIsTheReflectedViewDirection) {
   const vec3 view = at_angle(1.0);
   const vec3 light = reflect(-view, maths::sample_ggx_normal(view, 0.0f, 0.3f, 0.4f));
   EXPECT_LT(distance(light, at_angle(-1.0)), 0.01f);
 }
 
-TEST(Ggx, ExtremeInputsGiveFiniteResults) {
+TEST(Ggx, GrazingViewsAndZeroRoughnessGiveFiniteResults) {
   for (const float alpha : {0.0f, 1e-30f, 1.0f}) {
     for (double angle : {0.0, kPi / 2 - 1e-4, kPi / 2}) {
       const vec3 view = at_angle(angle);

@@ -15,7 +15,7 @@ namespace {
 using glm::vec3;
 using maths::Slice;
 
-TEST(ArcCosine, StaysWithinItsStatedErrorEverywhere) {
+TEST(ArcCosine, ApproximationStaysWithinItsStatedErrorEverywhere) {
   double worst = 0.0;
   for (int i = -2000000; i <= 2000000; ++i) {
     const float x = float(i) / 2000000.0f;
@@ -30,7 +30,7 @@ TEST(ArcCosine, ClampsItsArgumentToMinusOneToOne) {
   EXPECT_FLOAT_EQ(maths::arc_cosine(-7.0f), float(kPi));
 }
 
-TEST(ViewBasis, IsOrthonormalForEveryViewDirection) {
+TEST(ViewBasis, BasisIsOrthonormalForEveryViewDirection) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1));
@@ -43,12 +43,12 @@ TEST(ViewBasis, IsOrthonormalForEveryViewDirection) {
   }
 }
 
-TEST(Slice, GammaIsTheSignedAngleFromTheViewDirectionToTheProjectedNormal) {
+TEST(Slice, AngleGammaIsTheSignedAngleFromTheViewDirectionToTheProjectedNormal) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.01)
     EXPECT_NEAR(maths::slice_gamma(slice_of(0.7, gamma)), gamma, 4.8e-5);
 }
 
-TEST(Slice, NormalPerpendicularToTheSliceGivesWeightZero) {
+TEST(Slice, NormalPerpendicularToTheSlicePlaneGivesWeightAndVisibilityZero) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   EXPECT_EQ(s.scale, 0.0f);
   EXPECT_EQ(s.cosine, 1.0f);
@@ -56,7 +56,7 @@ TEST(Slice, NormalPerpendicularToTheSliceGivesWeightZero) {
   EXPECT_EQ(maths::slice_visibility(s, -1.0f, -1.0f), 0.0f);
 }
 
-TEST(Slice, ZeroAndDenormalNormalsGiveFiniteResults) {
+TEST(Slice, ZeroAndDenormalisedNormalsGiveFiniteResults) {
   for (const float size : {0.0f, 1e-42f, 1e-20f}) {
     const Slice s = maths::make_slice(vec3(size, 0, size), vec3(1, 0, 0), vec3(0, 0, 1));
     EXPECT_TRUE(std::isfinite(maths::open_slice(s)));
@@ -64,7 +64,7 @@ TEST(Slice, ZeroAndDenormalNormalsGiveFiniteResults) {
   }
 }
 
-TEST(Slice, NormalsFacingAwayAreFlippedOrMadePerpendicularToTheView) {
+TEST(Slice, NormalsFacingAwayFromTheEyeAreFlippedOrMadePerpendicularToTheView) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 view = random.unit_vector(), normal = random.unit_vector();
@@ -83,7 +83,7 @@ TEST(Slice, NormalsFacingAwayAreFlippedOrMadePerpendicularToTheView) {
   EXPECT_EQ(maths::facing_normal(vec3(0, 0, -1), vec3(0, 0, 1)), vec3(0, 0, 1));
 }
 
-TEST(Gtao, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
+TEST(Gtao, VisibilityOfAHalfSliceAgreesWithQuadratureForEveryNormalAndHorizon) {
   double worst = 0.0;
   for_each_slice_and_horizon([&](const Slice& s, const SliceTruth& truth, float c) {
     const double ahead = truth.visibility(0.0, std::acos(double(c)));
@@ -94,7 +94,7 @@ TEST(Gtao, ArcAgreesWithQuadratureForEveryNormalAndHorizon) {
   EXPECT_LT(worst, 2.4e-5);
 }
 
-TEST(Gtao, ArcEqualsTheIntegralOfThePaper) {
+TEST(Gtao, VisibilityOfAHalfSliceEqualsTheIntegralOfThePaper) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
     const double g = random.uniform(-1.57f, 1.57f), h = random.uniform(0.0f, float(g + kPi / 2));
@@ -103,7 +103,7 @@ TEST(Gtao, ArcEqualsTheIntegralOfThePaper) {
   }
 }
 
-TEST(Gtao, ArcIncreasesAsTheHorizonFallsUntilTheTangentPlane) {
+TEST(Gtao, VisibilityOfAHalfSliceIncreasesAsTheHorizonFallsToTheTangentPlane) {
   for (double gamma = -1.5; gamma <= 1.5; gamma += 0.1) {
     const Slice s = slice_of(1.0, gamma);
     float before = -1e-6f;
@@ -117,13 +117,13 @@ TEST(Gtao, ArcIncreasesAsTheHorizonFallsUntilTheTangentPlane) {
   }
 }
 
-TEST(Gtao, HorizonsOutOfRangeAreClamped) {
+TEST(Gtao, HorizonCosinesOutOfRangeAreClamped) {
   const Slice s = slice_of(1.0, 0.3);
   EXPECT_EQ(maths::slice_visibility(s, 9.0f, 9.0f), 0.0f);
   EXPECT_EQ(maths::slice_visibility(s, -9.0f, -9.0f), maths::slice_visibility(s, -1.0f, -1.0f));
 }
 
-TEST(Gtao, OpenSliceEqualsVisibilityUpToTheTangentPlane) {
+TEST(Gtao, VisibilityOfAnUnoccludedSliceEqualsTheIntegralUpToTheTangentPlane) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.01) {
     const Slice s = slice_of(0.8, gamma);
     EXPECT_NEAR(maths::open_slice(s), SliceTruth(s).open(), 5e-5);
@@ -165,7 +165,7 @@ TEST(Gtao, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   }
 }
 
-TEST(Gtao, UnoccludedWeightsAverageToOneOverManySlices) {
+TEST(Gtao, WeightsOfManySlicesOfAnyTiltedSurfaceAverageToOne) {
   const vec3 view(0, 0, 1);
   for (double tilt = 0.0; tilt < 1.57; tilt += 0.1) {
     const vec3 normal(float(std::sin(tilt)), 0, float(std::cos(tilt)));
@@ -189,7 +189,7 @@ double sphere_elevation(double x, glm::dvec2 direction) {
   return std::atan2(1.0, toward) + std::asin(radius / std::hypot(toward, 1.0));
 }
 
-TEST(Gtao, SphereOnAPlaneOccludesEverythingBelowItsSilhouette) {
+TEST(Gtao, SphereOnAPlaneOccludesEverythingBelowItsUpperSilhouette) {
   const vec3 up(0, 0, 1);
   for (double x : {1.2, 1.5, 2.0, 3.0, 6.0}) {
     const auto open_sector = [x](double phi) {
@@ -224,7 +224,7 @@ TEST(Gtao, BottomOfAGrooveHasVisibilityOfTheSineOfItsHalfAngle) {
   }
 }
 
-TEST(Gtao, VisibilityStaysInRangeForAnyHorizons) {
+TEST(Gtao, VisibilityIsBetweenZeroAndOneForAnyHorizons) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1));
@@ -235,7 +235,7 @@ TEST(Gtao, VisibilityStaysInRangeForAnyHorizons) {
   }
 }
 
-TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveHorizonsAndTangentPlane) {
+TEST(Gtao, UniformlyWeightedVisibilityIsTheSolidAngleAboveHorizonsAndTangentPlane) {
   for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25) {
     const Slice s = slice_of(0.7, gamma);
     for (double h1 = 0.0; h1 <= kPi; h1 += 0.1) {
@@ -253,7 +253,7 @@ TEST(Gtao, UniformVisibilityIsTheSolidAngleAboveHorizonsAndTangentPlane) {
   }
 }
 
-TEST(Gtao, OccluderWeightFallsToZeroAtTheRadius) {
+TEST(Gtao, WeightOfAnOccluderFallsFromOneAtTheFalloffStartToZeroAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(1.0f, 2.0f, 0.5f), 1.0f);
   EXPECT_FLOAT_EQ(maths::radius_weight(1.5f, 2.0f, 0.5f), 0.5f);
   EXPECT_EQ(maths::radius_weight(2.0f, 2.0f, 0.5f), 0.0f);
@@ -263,13 +263,13 @@ TEST(Gtao, OccluderWeightFallsToZeroAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(0.0f, 2.0f, 1.0f), 1.0f);
 }
 
-TEST(Gtao, ThicknessHeuristicRaisesTheHorizonAtOnceAndLowersItByTheBlend) {
+TEST(Gtao, HeuristicRaisesTheHorizonFullyToAHigherSampleAndLowersItByTheBlendFraction) {
   EXPECT_EQ(maths::raise_horizon(0.2f, 0.5f, 0.05f), 0.5f);
   EXPECT_FLOAT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.05f), 0.48f);
   EXPECT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.0f), 0.5f);
 }
 
-TEST(Gtao, TangentArcsSumToTheUnoccludedSlice) {
+TEST(Gtao, UnoccludedVisibilitiesOfBothHalfSlicesSumToThatOfTheSlice) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const maths::Slice s = slice_of(random.uniform(0.01f, 1.0f), random.uniform(-1.57f, 1.57f));

@@ -37,7 +37,7 @@ float possible_angle(float share, float cone, float mirror_from_normal) {
 
 // Compares the table with the integral at random coordinates. Some coordinates are at the ends of
 // their ranges, so that entries, edges and points between entries are all tested.
-TEST(GtsoTable, TableIsCloseToTheIntegral) {
+TEST(GtsoTable, LookedUpSpecularOcclusionIsCloseToItsIntegral) {
   RandomInput random(1);  // a fixed set, because the README states its figures
   double squares = 0.0, worst = 0.0;
   int count = 0;
@@ -67,7 +67,7 @@ TEST(GtsoTable, TableIsCloseToTheIntegral) {
   EXPECT_LT(rmse, 0.008);
 }
 
-TEST(GtsoTable, FullyOpenFullyOccludedAndMirrorSurfacesAreExact) {
+TEST(GtsoTable, SpecularOcclusionOfFullyOpenFullyOccludedAndMirrorSurfacesIsExact) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float mirror_from_normal = random.uniform(0.0f, maths::kHalfPi);
@@ -83,7 +83,7 @@ TEST(GtsoTable, FullyOpenFullyOccludedAndMirrorSurfacesAreExact) {
 
 // At roughness 1 only the last layer of the table is read. At the coordinates of an entry the value
 // is exact to 8 bits.
-TEST(GtsoTable, EntriesOfRoughnessOneEqualTheIntegral) {
+TEST(GtsoTable, TableEntriesAtRoughnessOneEqualTheIntegralTo8Bits) {
   for (const unsigned mirror : {0u, 7u, 14u}) {
     const float mirror_from_normal =
         maths::unsqueeze_mirror(float(mirror) / float(maths::kGtsoMirror - 1));
@@ -103,7 +103,7 @@ TEST(GtsoTable, EntriesOfRoughnessOneEqualTheIntegral) {
   }
 }
 
-TEST(GtsoTable, UnsqueezeInvertsSqueezeForEveryCoordinate) {
+TEST(GtsoTable, TableCoordinatesConvertToAnglesAndBack) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const float cone = random.uniform(0.01f, maths::kHalfPi);
@@ -119,7 +119,7 @@ TEST(GtsoTable, UnsqueezeInvertsSqueezeForEveryCoordinate) {
 
 // Compares the errors of the table and of the cones. Bent normals are at random azimuths around the
 // mirror direction.
-TEST(GtsoTable, TableHasLessThanHalfTheErrorOfTheCones) {
+TEST(GtsoTable, TableHasLessThanHalfTheErrorOfTheConeIntersectionOfThePaper) {
   RandomInput random;
   double by_table = 0.0, by_cone = 0.0;
   for (int i = 0; i < 600; ++i) {

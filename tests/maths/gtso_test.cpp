@@ -34,7 +34,7 @@ double shared_area(double a, double b, double d) {
          integrate(ring, k2, a, 200);
 }
 
-TEST(SphericalCap, IntersectionAreaAgreesWithQuadrature) {
+TEST(SphericalCap, IntersectionAreaOfTwoCapsAgreesWithQuadrature) {
   RandomInput random;
   for (int i = 0; i < 1500; ++i) {
     const double a = random.log_uniform(1e-3f, 1.5707f), b = random.log_uniform(1e-3f, 1.5707f);
@@ -48,7 +48,7 @@ TEST(SphericalCap, IntersectionAreaAgreesWithQuadrature) {
   }
 }
 
-TEST(SphericalCap, IntersectionAreaIsContinuousAtItsLimits) {
+TEST(SphericalCap, IntersectionAreaIsContinuousWhereCapsTouchOrContainEachOther) {
   for (const float a : {0.01f, 0.3f, 1.2f, 1.5707f}) {
     for (const float b : {0.02f, 0.5f, 1.5707f}) {
       const float whole = maths::cap_area(std::min(a, b));
@@ -61,7 +61,7 @@ TEST(SphericalCap, IntersectionAreaIsContinuousAtItsLimits) {
   }
 }
 
-TEST(Gtso, VisibilityConeHasTheSolidAngleOfTheVisibility) {
+TEST(Gtso, CosineWeightedSolidAngleOfTheVisibilityConeEqualsTheVisibility) {
   for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
     const double angle = maths::visibility_cone(v);
     const double cosine_weighted =
@@ -70,14 +70,14 @@ TEST(Gtso, VisibilityConeHasTheSolidAngleOfTheVisibility) {
   }
 }
 
-TEST(Gtso, LobeConeHasTheHalfAngleOfThePaper) {
+TEST(Gtso, ConeOfTheSpecularLobeHasTheHalfAngleOfThePaper) {
   for (float alpha = 0.0f; alpha <= 1.0f; alpha += 0.001f) {
     const double expected = std::acos(std::pow(10.0, -double(alpha) * alpha));
     EXPECT_NEAR(maths::lobe_cone(alpha), expected, 1e-5 + 2e-5 * expected);
   }
 }
 
-TEST(Gtso, UnoccludedSurfaceHasSpecularVisibilityOneForEveryLobeAndView) {
+TEST(Gtso, UnoccludedSurfaceHasSpecularVisibilityOneForEveryRoughnessAndViewAngle) {
   for (float alpha : {0.0f, 1e-3f, 0.01f, 0.1f, 0.3f, 1.0f})
     for (double angle = 0.0; angle <= 89.9; angle += 0.7) {
       const double t = angle * kPi / 180;
@@ -87,7 +87,7 @@ TEST(Gtso, UnoccludedSurfaceHasSpecularVisibilityOneForEveryLobeAndView) {
     }
 }
 
-TEST(Gtso, FullOcclusionGivesZero) {
+TEST(Gtso, FullyOccludedSurfaceHasSpecularVisibilityZero) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const vec3 bent = random.facing(kNormal), reflection = random.facing(kNormal);
@@ -97,13 +97,13 @@ TEST(Gtso, FullOcclusionGivesZero) {
   }
 }
 
-TEST(Gtso, MirrorIsVisibleExactlyInsideTheCone) {
+TEST(Gtso, MirrorReflectionIsUnoccludedExactlyInsideTheVisibilityCone) {
   const vec3 inside(0.3f, 0, std::sqrt(1 - 0.09f)), outside(0.9f, 0, std::sqrt(1 - 0.81f));
   EXPECT_EQ(maths::specular_occlusion(0.5f, kNormal, kNormal, inside, 0.0f), 1.0f);
   EXPECT_EQ(maths::specular_occlusion(0.5f, kNormal, kNormal, outside, 0.0f), 0.0f);
 }
 
-TEST(Gtso, SpecularVisibilityIncreasesWithVisibilityAndIsInRange) {
+TEST(Gtso, SpecularVisibilityIncreasesWithVisibilityAndIsAtMostOne) {
   RandomInput random;
   for (int i = 0; i < 500; ++i) {
     const vec3 bent = random.facing(kNormal), reflection = random.facing(kNormal);
@@ -118,7 +118,7 @@ TEST(Gtso, SpecularVisibilityIncreasesWithVisibilityAndIsInRange) {
   }
 }
 
-TEST(Gtso, ConvergedVisibilityRoundsNearlyOpenToOpen) {
+TEST(Gtso, VisibilityWithin127thOfOneIsRoundedToOneBeforeSpecularOcclusion) {
   EXPECT_EQ(maths::converged_visibility(0.0f), 0.0f);
   EXPECT_EQ(maths::converged_visibility(127.5f / 128.0f), 1.0f);
   for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
@@ -126,7 +126,7 @@ TEST(Gtso, ConvergedVisibilityRoundsNearlyOpenToOpen) {
   }
 }
 
-TEST(Gtso, RaisedBentNormalPutsTheConeAboveTheSurface) {
+TEST(Gtso, BentNormalIsRaisedUntilTheVisibilityConeLiesAboveTheSurface) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec3 normal = random.unit_vector(), bent = random.facing(normal);

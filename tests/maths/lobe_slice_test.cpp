@@ -101,7 +101,7 @@ struct Surface {
   }
 };
 
-TEST(LobeSlice, AntiderivativeMatchesTheDistribution) {
+TEST(LobeSlice, AntiderivativeOfTheLobeMatchesQuadratureOfTheGgxDistribution) {
   RandomInput random;
   double worst = 0.0;
   for (const float roughness : kRoughnesses) {
@@ -172,15 +172,15 @@ void expect_horizon_error_below(double rms, double worst, int slices, int cases)
   }
 }
 
-TEST(LobeSlice, OneSliceStaysWithinItsStatedErrorOfTheWholeBrdf) {
+TEST(LobeSlice, LobeVisibilityOfOneSliceStaysWithinItsStatedErrorOfTheFullBrdf) {
   expect_horizon_error_below(0.011, 0.07, 1, 4000);
 }
 
-TEST(LobeSlice, SumOfSlicesStaysWithinItsStatedErrorOfTheWholeBrdf) {
+TEST(LobeSlice, LobeVisibilityOfSixteenSlicesStaysWithinItsStatedErrorOfTheFullBrdf) {
   expect_horizon_error_below(0.007, 0.05, 16, 200);
 }
 
-TEST(LobeSlice, UnoccludedSlicesOverAllRotationsSumToTheLobeOfTheBrdf) {
+TEST(LobeSlice, UnoccludedSlicesOfAllOrientationsSumToTheLobeOfTheBrdf) {
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     for (const double tilt : {0.2, 0.8, 1.3}) {
       const Surface surface(tilt);
@@ -201,7 +201,7 @@ TEST(LobeSlice, UnoccludedSlicesOverAllRotationsSumToTheLobeOfTheBrdf) {
   }
 }
 
-TEST(LobeSlice, FullyOpenAndFullyOccludedLobesAreExact) {
+TEST(LobeSlice, LobeVisibilityOfFullyOpenAndFullyOccludedSlicesIsExact) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = Surface(random.uniform(0.0f, 1.5707f)).slice(random.uniform(0.0f, 3.14f));
@@ -213,7 +213,7 @@ TEST(LobeSlice, FullyOpenAndFullyOccludedLobesAreExact) {
   }
 }
 
-TEST(LobeSlice, ArcIncreasesAsTheHorizonFalls) {
+TEST(LobeSlice, VisiblePartOfTheLobeIncreasesAsTheHorizonFalls) {
   RandomInput random;
   for (int i = 0; i < 300; ++i) {
     const Slice s = Surface(random.uniform(0.0f, 1.57f)).slice(random.uniform(0.0f, 3.14f));
@@ -229,7 +229,7 @@ TEST(LobeSlice, ArcIncreasesAsTheHorizonFalls) {
   }
 }
 
-TEST(LobeSlice, MirrorLobeIsVisibleIfTheHorizonIsBelowItsDirection) {
+TEST(LobeSlice, MirrorReflectionIsVisibleIfTheHorizonIsBelowItsDirection) {
   const double tilt = 0.4;
   const Slice s = Surface(tilt).slice(0.0);
   const LobeSlice lobe = maths::make_lobe_slice(s, 0.0f);
@@ -242,7 +242,7 @@ TEST(LobeSlice, MirrorLobeIsVisibleIfTheHorizonIsBelowItsDirection) {
 }
 
 // The sectors beyond the horizon, rounded to the nearest boundary, are occluded.
-TEST(LobeSlice, SectorsOccludedBelowAHorizonLeaveTheLobeUpToThatHorizon) {
+TEST(LobeSlice, BitmaskOccludedBelowAHorizonLeavesTheLobeVisibleAboveThatHorizon) {
   RandomInput random;
   for (const float roughness : kRoughnesses) {
     Error error;
@@ -279,7 +279,7 @@ TEST(LobeSlice, SliceThroughViewAndNormalContainsTheMirrorDirection) {
   }
 }
 
-TEST(LobeSlice, WeightsOfSliceAnglesTurnedTowardsTheLobeKeepTheMean) {
+TEST(LobeSlice, SamplingSliceAnglesNearTheSpecularLobeWithWeightsDoesNotChangeMeansOverAngles) {
   for (const float roughness : kRoughnesses) {
     double plain = 0.0, turned = 0.0, weights = 0.0;
     const auto f = [](double phi) {

@@ -7,7 +7,7 @@
 namespace alcove::maths_test {
 namespace {
 
-TEST(MultiBounce, VisibilityZeroAndOneAreUnchanged) {
+TEST(MultiBounce, VisibilityZeroAndOneAreUnchangedAtAnyAlbedo) {
   for (float albedo = 0.0f; albedo <= 1.0f; albedo += 0.01f) {
     EXPECT_EQ(maths::multi_bounce_channel(1.0f, albedo), 1.0f);
     EXPECT_EQ(maths::multi_bounce_channel(0.0f, albedo), 0.0f);
@@ -28,26 +28,26 @@ TEST(MultiBounce, ResultIsAtLeastVisibilityAndIncreasesWithVisibilityAndAlbedo) 
   }
 }
 
-TEST(MultiBounce, EqualsTheCubicOfThePaperBetweenItsBounds) {
+TEST(MultiBounce, ResultEqualsTheCubicPolynomialOfThePaper) {
   // Section 5 at visibility 0.5 and albedo 0.5: a = 0.6878, b = -1.75585, c = 2.0679.
   EXPECT_NEAR(maths::multi_bounce_channel(0.5f, 0.5f),
               ((0.5 * 0.6878 - 1.75585) * 0.5 + 2.0679) * 0.5, 1e-6);
 }
 
-TEST(MultiBounce, NaNVisibilityGivesZeroAndNaNAlbedoCountsAsZero) {
+TEST(MultiBounce, NaNVisibilityGivesZeroAndNaNAlbedoCountsAsAlbedoZero) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(maths::multi_bounce_channel(none, 0.5f), 0.0f);
   EXPECT_EQ(maths::multi_bounce_channel(0.4f, none), maths::multi_bounce_channel(0.4f, 0.0f));
 }
 
-TEST(MultiBounce, ChannelsAreIndependent) {
+TEST(MultiBounce, ColourChannelsAreComputedIndependently) {
   const glm::vec3 bounced = maths::multi_bounce(0.4f, glm::vec3(0.9f, 0.5f, 0.1f));
   EXPECT_EQ(bounced.x, maths::multi_bounce_channel(0.4f, 0.9f));
   EXPECT_EQ(bounced.y, maths::multi_bounce_channel(0.4f, 0.5f));
   EXPECT_EQ(bounced.z, maths::multi_bounce_channel(0.4f, 0.1f));
 }
 
-TEST(MultiBounce, InputsOutOfRangeAreClamped) {
+TEST(MultiBounce, VisibilityAndAlbedoOutOfRangeAreClamped) {
   EXPECT_EQ(maths::multi_bounce_channel(2.0f, 0.5f), 1.0f);
   EXPECT_EQ(maths::multi_bounce_channel(-1.0f, 0.5f), 0.0f);
   EXPECT_EQ(maths::multi_bounce_channel(0.5f, 9.0f), maths::multi_bounce_channel(0.5f, 1.0f));

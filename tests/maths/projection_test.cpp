@@ -98,7 +98,7 @@ Imaged image_of(const mat4& matrix, glm::dvec3 position) {
   return {glm::dvec2(clip.x, clip.y) / clip.w * 0.5 + 0.5, clip.z / clip.w};
 }
 
-TEST(Projection, PositionsAgreeWithTheMatrix) {
+TEST(Projection, PositionsFromDepthProjectBackToTheirPixelByTheProjectionMatrix) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const Frustum f = random_frustum(random);
@@ -118,7 +118,7 @@ TEST(Projection, PositionsAgreeWithTheMatrix) {
   }
 }
 
-TEST(Projection, RawDepthConvertsBackToItsDistance) {
+TEST(Projection, RawDepthConvertsToTheDistanceItWasMadeFrom) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const Frustum f = random_frustum(random);
@@ -142,7 +142,7 @@ TEST(Projection, RawDepthConvertsBackToItsDistance) {
   }
 }
 
-TEST(Projection, ReversedInfiniteDepthIsPreciseFarAway) {
+TEST(Projection, ReversedDepthWithAnInfiniteFarPlaneIsPreciseFarAway) {
   Frustum f;
   f.infinite = f.reversed = true;
   const Projection p = projection_of(f);
@@ -151,7 +151,7 @@ TEST(Projection, ReversedInfiniteDepthIsPreciseFarAway) {
   }
 }
 
-TEST(Projection, NearAndFarPlanesEqualThoseOfTheFrustum) {
+TEST(Projection, NearAndFarPlanesReadFromTheMatrixEqualThoseOfTheFrustum) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Frustum f = random_frustum(random);
@@ -167,7 +167,7 @@ TEST(Projection, NearAndFarPlanesEqualThoseOfTheFrustum) {
   }
 }
 
-TEST(Projection, FarPlaneAndInvalidDepthsAreTheSky) {
+TEST(Projection, DepthsOnOrBeyondTheFarPlaneAndNaNAreSky) {
   for (const bool infinite : {false, true}) {
     for (const bool perspective : {false, true}) {
       Frustum f;
@@ -191,7 +191,7 @@ TEST(Projection, FarPlaneAndInvalidDepthsAreTheSky) {
   }
 }
 
-TEST(Projection, DepthsOfSurfacesAreFiniteAndNotNearerThanTheNearPlane) {
+TEST(Projection, AnyRawDepthGivesAFiniteDistanceNoNearerThanTheNearPlane) {
   RandomInput random;
   for (int i = 0; i < 500; ++i) {
     const Frustum f = random_frustum(random);
@@ -255,7 +255,7 @@ TEST(Projection, PixelCentresAreHalfATexelFromTheEdge) {
   EXPECT_FLOAT_EQ(maths::pixel_centre_uv(p, glm::uvec2(4, 2)).y, 2.5f / 3.0f);
 }
 
-TEST(Projection, FirstRowIsTheTopOfTheView) {
+TEST(Projection, FirstRowOfTheImageIsTheTopOfTheViewUnlessTheProjectionIsFlipped) {
   const Projection p = projection_of(Frustum{});
   EXPECT_GT(maths::position_vs(p, vec2(0.5f, 0.0f), 1.0f).y, 0.9f);
   Frustum upside_down;
@@ -265,7 +265,7 @@ TEST(Projection, FirstRowIsTheTopOfTheView) {
 
 // Elements that are zero in the exact matrix get random rounding errors, as products and inverses
 // of matrices in floats have them.
-TEST(MakeProjection, RoundingErrorsInTheMatrixAreAcceptedAndRemoved) {
+TEST(MakeProjection, RoundingErrorsInZeroElementsOfTheMatrixAreAcceptedAndRemoved) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const Frustum f = random_frustum(random);

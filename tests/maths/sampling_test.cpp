@@ -24,7 +24,7 @@ float largest_gap(std::vector<float> values) {
   return gap;
 }
 
-TEST(PaperPattern, FourByFourPixelsHaveSixteenDirectionsAndFourOffsets) {
+TEST(PaperPattern, FourByFourPixelsHaveSixteenSliceDirectionsAndFourStepOffsets) {
   for (unsigned frame = 0; frame < 24; ++frame) {
     std::set<float> directions, offsets;
     for (unsigned y = 0; y < 4; ++y) {
@@ -43,7 +43,7 @@ TEST(PaperPattern, FourByFourPixelsHaveSixteenDirectionsAndFourOffsets) {
   }
 }
 
-TEST(PaperPattern, FourByFourPixelsHaveNinetySixDirectionsInSixFrames) {
+TEST(PaperPattern, FourByFourPixelsHaveNinetySixSliceDirectionsInSixFrames) {
   std::set<int> directions;
   for (unsigned frame = 0; frame < 6; ++frame)
     for (unsigned y = 0; y < 4; ++y)
@@ -53,7 +53,7 @@ TEST(PaperPattern, FourByFourPixelsHaveNinetySixDirectionsInSixFrames) {
   EXPECT_EQ(directions.size(), 96u);
 }
 
-TEST(PaperPattern, SixDirectionsOfAPixelAreSpreadOverHalfATurn) {
+TEST(PaperPattern, SliceDirectionsOfAPixelInSixFramesAreSpreadEvenlyOver180Degrees) {
   for (unsigned pixel = 0; pixel < 16; ++pixel) {
     std::vector<float> directions;
     for (unsigned frame = 0; frame < 6; ++frame)
@@ -66,14 +66,14 @@ TEST(PaperPattern, SixDirectionsOfAPixelAreSpreadOverHalfATurn) {
   }
 }
 
-TEST(PaperPattern, RepeatsEveryFourPixelsAndTwentyFourFrames) {
+TEST(PaperPattern, PatternRepeatsEveryFourPixelsAndTwentyFourFrames) {
   const SliceNoise a = maths::paper_pattern(uvec2(5, 6), 7);
   const SliceNoise b = maths::paper_pattern(uvec2(1, 2), 31);
   EXPECT_EQ(a.direction, b.direction);
   EXPECT_EQ(a.offset, b.offset);
 }
 
-TEST(GoldenPattern, AnyFourByFourPixelsCoverDirectionsAndOffsetsEvenly) {
+TEST(GoldenPattern, AnyFourByFourPixelsCoverSliceDirectionsAndStepOffsetsEvenly) {
   for (unsigned frame : {0u, 1u, 5u, 1000000u}) {
     for (const uvec2 corner : {uvec2(0, 0), uvec2(3, 17), uvec2(1919, 1079)}) {
       std::vector<float> directions, offsets;
@@ -94,7 +94,7 @@ TEST(GoldenPattern, AnyFourByFourPixelsCoverDirectionsAndOffsetsEvenly) {
 // Directions and offsets of pixels that are `period` apart must differ. Each value is mapped to a
 // point of the unit circle. The mean of these points is near the centre if the values vary, and on
 // the circle if all of them are equal.
-TEST(GoldenPattern, DoesNotRepeatAtAnySmallPeriod) {
+TEST(GoldenPattern, PatternDoesNotRepeatOverTheImageWithAnySmallPeriod) {
   constexpr unsigned kWindow = 48;
   for (const unsigned period : {1u, 2u, 3u, 4u, 8u}) {
     for (unsigned place = 0; place < period * period; ++place) {
@@ -117,7 +117,7 @@ TEST(GoldenPattern, DoesNotRepeatAtAnySmallPeriod) {
 // lattice, each harmonic of this dependence would be visible as parallel stripes: its spectrum over
 // the image would have one peak of 1. After the eight traces that a pixel gets in 32 frames,
 // stripes of a visible width must be weak.
-TEST(GoldenPattern, EightTracesOfAPixelLeaveNoWideStripes) {
+TEST(GoldenPattern, MeanOfEightFramesOfAPatternOverTheImageHasNoWideStripes) {
   constexpr unsigned kWindow = 32;
   const auto residual = [](unsigned harmonic, unsigned x, unsigned y) {
     std::complex<double> mean;
@@ -148,7 +148,7 @@ TEST(GoldenPattern, EightTracesOfAPixelLeaveNoWideStripes) {
   }
 }
 
-TEST(GoldenPattern, ConsecutiveFramesCoverDirectionsAndOffsetsEvenly) {
+TEST(GoldenPattern, ConsecutiveFramesOfAPixelCoverSliceDirectionsAndStepOffsetsEvenly) {
   for (unsigned start : {0u, 123u, 4000000000u}) {
     std::vector<float> directions, offsets;
     for (unsigned frame = 0; frame < 32; ++frame) {
@@ -161,7 +161,7 @@ TEST(GoldenPattern, ConsecutiveFramesCoverDirectionsAndOffsetsEvenly) {
   }
 }
 
-TEST(GoldenPattern, EveryFourthFrameCoversDirectionsAndOffsetsEvenly) {
+TEST(GoldenPattern, EveryFourthFrameOfAPixelCoversSliceDirectionsAndStepOffsetsEvenly) {
   for (unsigned start : {0u, 123u, 4000000000u}) {
     for (const unsigned apart : {1u, 4u}) {
       std::vector<float> directions, offsets;
@@ -176,7 +176,7 @@ TEST(GoldenPattern, EveryFourthFrameCoversDirectionsAndOffsetsEvenly) {
   }
 }
 
-TEST(HilbertNoise, CurveVisitsEveryPixelOnceInUnitSteps) {
+TEST(HilbertNoise, HilbertCurveVisitsEveryPixelOfASquareOnceInUnitSteps) {
   std::vector<uvec2> path(4096, uvec2(64));
   for (unsigned y = 0; y < 64; ++y)
     for (unsigned x = 0; x < 64; ++x) {
@@ -191,7 +191,7 @@ TEST(HilbertNoise, CurveVisitsEveryPixelOnceInUnitSteps) {
   }
 }
 
-TEST(HilbertNoise, IsTheR2SequenceInExactArithmetic) {
+TEST(HilbertNoise, NoiseEqualsTheR2SequenceInExtendedPrecision) {
   for (unsigned index : {0u, 1u, 17u, 4095u, 22527u}) {
     const SliceNoise noise = maths::r2_sequence(index);
     const long double x = 0.5L + index * 0.75487766624669276005L;
@@ -201,7 +201,7 @@ TEST(HilbertNoise, IsTheR2SequenceInExactArithmetic) {
   }
 }
 
-TEST(HilbertNoise, IsEvenlyDistributedOverABlockAndOverFrames) {
+TEST(HilbertNoise, NoiseIsEvenlyDistributedOverFourByFourPixelsAndOverFrames) {
   std::vector<float> block, frames;
   for (unsigned k = 0; k < 16; ++k)
     block.push_back(maths::hilbert_pattern(uvec2(8 + (k & 3u), 12 + (k >> 2u)), 0).direction);
@@ -211,7 +211,7 @@ TEST(HilbertNoise, IsEvenlyDistributedOverABlockAndOverFrames) {
   EXPECT_LT(largest_gap(frames), 4.0f / 64);
 }
 
-TEST(Slices, SliceAnglesAreEvenlySpacedOverHalfATurn) {
+TEST(Slices, SliceAnglesAreEvenlySpacedOver180Degrees) {
   EXPECT_FLOAT_EQ(maths::slice_angle(0, 3, 0.0f), 0.0f);
   EXPECT_FLOAT_EQ(maths::slice_angle(2, 4, 0.0f), maths::kHalfPi);
   EXPECT_LT(maths::slice_angle(2, 3, 0.99f), maths::kPi);

@@ -68,7 +68,7 @@ struct Setting {
   }
 };
 
-TEST(SliceLine, SampleOnTheLineHasTheCoordinatesOfItsSurfacePoint) {
+TEST(SliceLine, SampleOnTheImageLineOfASliceGetsTheSliceCoordinatesOfItsSurfacePoint) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -85,7 +85,7 @@ TEST(SliceLine, SampleOnTheLineHasTheCoordinatesOfItsSurfacePoint) {
 
 float inverse_depth_of(float depth, bool perspective) { return perspective ? 1.0f / depth : depth; }
 
-TEST(SliceLine, BackFaceEndsAnOccluderOnlyBehindItsFrontFace) {
+TEST(SliceLine, BackFaceDepthEndsAnOccluderOnlyIfItIsBehindTheFrontFace) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const bool perspective = random.bits() % 2 == 0;
@@ -106,7 +106,7 @@ TEST(SliceLine, BackFaceEndsAnOccluderOnlyBehindItsFrontFace) {
 }
 
 // The sectors of an occluder are those between its two ends, whatever lies between.
-TEST(SliceLine, BackOfAnOccluderIsOnTheViewRayOfItsFront) {
+TEST(SliceLine, BackEndOfAThickOccluderLiesOnTheViewRayThroughItsFront) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -122,7 +122,7 @@ TEST(SliceLine, BackOfAnOccluderIsOnTheViewRayOfItsFront) {
   }
 }
 
-TEST(SliceLine, SnappedSamplesOfTheTangentPlaneStayOnThePlane) {
+TEST(SliceLine, SampleOfATiltedPlaneSnappedToATexelCentreStillLiesOnThatPlane) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Setting s(random);
@@ -143,7 +143,7 @@ TEST(SliceLine, SnappedSamplesOfTheTangentPlaneStayOnThePlane) {
   }
 }
 
-TEST(SliceLine, AnyRawDepthIsClampedBetweenTheNearPlaneAndTheSky) {
+TEST(SliceLine, InverseDepthOfAnyRawDepthIsBetweenTheNearPlaneAndTheSky) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   // Tests perspective views with the near plane at 0.1 and the far plane at 100 or infinity,
   // reversed or not, and orthographic views.
@@ -165,7 +165,7 @@ TEST(SliceLine, AnyRawDepthIsClampedBetweenTheNearPlaneAndTheSky) {
   }
 }
 
-TEST(SliceLine, OnlySamplesCloseToTheTangentPlaneCountAsLyingOnIt) {
+TEST(SliceLine, SampleCountsAsLyingOnTheTangentPlaneOnlyIfItsDepthIsCloseToThePlane) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const Setting s(random);
@@ -179,7 +179,7 @@ TEST(SliceLine, OnlySamplesCloseToTheTangentPlaneCountAsLyingOnIt) {
   }
 }
 
-TEST(SliceLine, LineOnTheImageHasTheDirectionOfTheSlice) {
+TEST(SliceLine, ImageLineOfASliceHasTheProjectedDirectionOfTheSlice) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Setting s(random);
@@ -193,7 +193,7 @@ TEST(SliceLine, LineOnTheImageHasTheDirectionOfTheSlice) {
   }
 }
 
-TEST(SliceLine, RadiusOnTheImageReachesTheSilhouetteOfTheSphere) {
+TEST(SliceLine, RadiusInPixelsApproximatesTheSilhouetteOfASphereOfThatRadius) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     Setting s(random);
@@ -226,7 +226,7 @@ TEST(ConnectedSamples, SamplesAreConnectedAlongPlanesAndAcrossCreasesButNotOverG
   EXPECT_FALSE(maths::samples_join(kConcave, kConvex)) << "one surface behind another";
 }
 
-TEST(ConnectedSamples, HiddenSamplesAreConnectedAlongPlanesOnly) {
+TEST(ConnectedSamples, SamplesOfTheSecondDepthLayerAreConnectedAlongPlanesOnly) {
   EXPECT_TRUE(maths::hidden_samples_join(kNone, kNone)) << "a plane";
   EXPECT_TRUE(maths::hidden_samples_join(kNone, kConcave)) << "a plane that ends";
   EXPECT_TRUE(maths::hidden_samples_join(kConvex, kNone)) << "a plane that begins";
@@ -234,7 +234,7 @@ TEST(ConnectedSamples, HiddenSamplesAreConnectedAlongPlanesOnly) {
   EXPECT_FALSE(maths::hidden_samples_join(kConvex, kConcave)) << "one surface in front of another";
 }
 
-TEST(ConnectedSamples, OccluderBacksMoveAwayFromTheViewDirectionWithThickness) {
+TEST(ConnectedSamples, BackOfAnOccluderMovesAwayFromTheViewDirectionAsItsThicknessGrows) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec2 front(random.uniform(0.01f, 2.0f), random.uniform(-2.0f, 2.0f));
@@ -249,7 +249,7 @@ TEST(ConnectedSamples, OccluderBacksMoveAwayFromTheViewDirectionWithThickness) {
   }
 }
 
-TEST(ConnectedSamples, OnlyPointsWellAboveTheTangentPlaneAreOccluders) {
+TEST(ConnectedSamples, OnlyPointsRaisedMoreThanAFifthOfTheirDistanceAreOccluders) {
   for (const double gamma : {-0.8, 0.0, 0.8}) {
     const vec2 gradient(std::sin(gamma), std::cos(gamma));
     for (const double length : {0.1, 10.0}) {
@@ -265,7 +265,7 @@ TEST(ConnectedSamples, OnlyPointsWellAboveTheTangentPlaneAreOccluders) {
   }
 }
 
-TEST(ConnectedSamples, OnlyLargeChangesOfSlopeAreDiscontinuities) {
+TEST(ConnectedSamples, OnlySlopeChangesAboveTheThresholdAreDepthDiscontinuities) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float before = random.uniform(-1.0f, 1.0f), after = random.uniform(-1.0f, 1.0f);
@@ -279,14 +279,14 @@ TEST(ConnectedSamples, OnlyLargeChangesOfSlopeAreDiscontinuities) {
   }
 }
 
-TEST(ConnectedSamples, ExtrapolatedPlanesStayInFrontOfTheEye) {
+TEST(ConnectedSamples, ExtrapolationOfAPlaneBeyondTheImageBorderStopsBeforeItReachesTheEye) {
   EXPECT_EQ(maths::extrapolated_way(0.5f, 0.25f, 8.0f, true), 8.0f) << "the plane comes nearer";
   EXPECT_EQ(maths::extrapolated_way(0.5f, -0.03125f, 8.0f, true), 8.0f);
   EXPECT_FLOAT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, true), 1.8f);
   EXPECT_EQ(maths::extrapolated_way(0.5f, -0.25f, 8.0f, false), 8.0f) << "orthographic";
 }
 
-TEST(TangentPlane, NormalIsRecoveredFromTheGradientOfInverseDepth) {
+TEST(TangentPlane, NormalIsRecoveredFromTheGradientOfInverseDepthOfItsTangentPlane) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const bool perspective = i % 2 == 0;

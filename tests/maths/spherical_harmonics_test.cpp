@@ -38,7 +38,7 @@ TEST(SphericalHarmonics, BasisIsOrthonormal) {
 
 // The integral over the hemisphere of the cosine times a basis function is that function at the
 // normal, times the factor of its band.
-TEST(SphericalHarmonics, IrradianceScalesEachElementByTheFactorOfItsBand) {
+TEST(SphericalHarmonics, IrradianceOfEachBasisFunctionIsThatFunctionTimesTheFactorOfItsBand) {
   const vec3 normal = normalize(vec3(0.3f, 0.8f, -0.5f));
   for (unsigned i = 0; i < maths::kHarmonics; ++i) {
     const double irradiance = over_sphere([&](vec3 d) {

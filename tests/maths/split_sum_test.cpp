@@ -60,7 +60,7 @@ vec2 quadrature(float n_dot_v, float roughness) {
   return vec2(float(sum.x), float(sum.y)) / float(kSide * kSide);
 }
 
-TEST(SplitSum, TableIsCloseToTheIntegralAlsoBetweenItsEntries) {
+TEST(SplitSum, InterpolatedReflectanceTableIsCloseToTheIntegral) {
   const auto table = alcove::passes::reflectance_table();
   RandomInput random(1);  // a fixed set, because the README states its figures
   double worst = 0.0, squares = 0.0;
@@ -81,7 +81,7 @@ TEST(SplitSum, TableIsCloseToTheIntegralAlsoBetweenItsEntries) {
   EXPECT_LT(rmse, 0.001);
 }
 
-TEST(SplitSum, ReflectanceIsAtMostOne) {
+TEST(SplitSum, SpecularReflectanceOfAWhiteSurfaceIsAtMostOne) {
   const auto table = alcove::passes::reflectance_table();
   for (int x = 0; x <= 100; ++x) {
     for (int y = 0; y <= 100; ++y) {
@@ -122,7 +122,7 @@ double lobe_light(vec3 normal, vec3 view, float alpha) {
   return sum / weights;
 }
 
-TEST(SplitSum, DominantDirectionHalvesTheErrorOfRoughLobes) {
+TEST(SplitSum, LookingUpTheDominantDirectionHalvesTheErrorOfRoughReflections) {
   RandomInput random;
   for (const float roughness : {0.6f, 0.8f, 1.0f}) {
     double mirror_squares = 0.0, squares = 0.0;
@@ -144,7 +144,7 @@ TEST(SplitSum, DominantDirectionHalvesTheErrorOfRoughLobes) {
       << "mirrors keep their direction";
 }
 
-TEST(SplitSum, MetalsHaveNoDiffuseAndDielectricsReflectFourPercent) {
+TEST(SplitSum, MetalsHaveNoDiffuseAlbedoAndDielectricsReflectFourPercent) {
   const vec3 base(0.9f, 0.5f, 0.1f);
   EXPECT_EQ(maths::diffuse_albedo(base, 1.0f), vec3(0));
   EXPECT_EQ(maths::diffuse_albedo(base, 0.0f), base);

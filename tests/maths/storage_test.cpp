@@ -25,13 +25,13 @@ maths::RawOcclusion raw_occlusion_of(float visible, float open) {
   return raw_occlusion;
 }
 
-TEST(RawOcclusion, ZeroWeightMeansUnoccluded) {
+TEST(RawOcclusion, RawOcclusionOfWeightZeroMeansVisibilityOne) {
   EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, 0.0f)), 1.0f);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(maths::mean_visibility(raw_occlusion_of(0.0f, nan)), 1.0f);
 }
 
-TEST(RawOcclusion, PackingKeepsVisibilityAndKeepsOneExactly) {
+TEST(RawOcclusion, PackingKeepsVisibilityApproximatelyAndVisibilityOneExactly) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.uniform(1e-3f, maths::kLargestOpen);
@@ -46,7 +46,7 @@ TEST(RawOcclusion, PackingKeepsVisibilityAndKeepsOneExactly) {
   }
 }
 
-TEST(RawOcclusion, PackingKeepsLobesOfAnyMagnitude) {
+TEST(RawOcclusion, PackingKeepsSpecularLobeSumsOfAnyMagnitude) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const float open = random.log_uniform(1e-20f, 1e20f);
@@ -62,7 +62,7 @@ TEST(RawOcclusion, PackingKeepsLobesOfAnyMagnitude) {
   EXPECT_EQ(maths::unpack_lobe(maths::pack_lobe(raw_occlusion_of(0, 0))).open, 0.0f);
 }
 
-TEST(RawOcclusion, LobeWeightsDependOnNormalAndRoughness) {
+TEST(RawOcclusion, WeightOfANeighboursLobeFallsWithDifferenceOfNormalAndRoughness) {
   RandomInput random;
   const auto surface = [](vec3 normal, float roughness) {
     maths::LobeSurface made;
@@ -88,7 +88,7 @@ TEST(RawOcclusion, LobeWeightsDependOnNormalAndRoughness) {
   }
 }
 
-TEST(RawOcclusion, PackingKeepsBentNormalResidualsWithinTenBits) {
+TEST(RawOcclusion, PackingKeepsBentNormalResidualsToTenBitPrecision) {
   RandomInput random;
   const auto round_trip = [](const vec3& residual) {
     return maths::unpack_residual(maths::pack_residual(residual));
@@ -116,13 +116,13 @@ TEST(Octahedral, EncodingThenDecodingKeepsEveryDirection) {
   }
 }
 
-TEST(Octahedral, AxesAndFoldsAreEncodedExactly) {
+TEST(Octahedral, CoordinateAxesAreEncodedExactly) {
   for (const vec3 axis : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0),
                           vec3(0, 0, 1), vec3(0, 0, -1)})
     EXPECT_EQ(maths::octahedral_decode(maths::octahedral_encode(axis)), axis);
 }
 
-TEST(Octahedral, EncodingIgnoresLengthAndAcceptsZero) {
+TEST(Octahedral, EncodingIgnoresTheLengthOfAVectorAndAcceptsTheZeroVector) {
   EXPECT_LT(distance(maths::octahedral_encode(vec3(3, -4, 5)),
                      maths::octahedral_encode(vec3(3, -4, 5) * 1e-20f)),
             1e-6f);
@@ -150,7 +150,7 @@ vec3 facing_normal(RandomInput& random) {
   return normal;
 }
 
-TEST(QuantisedNormal, DecodedNormalIsCloseToTheOriginal) {
+TEST(QuantisedNormal, NormalQuantisedTo8BitsIsDecodedWithin12Degrees) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const vec3 normal = facing_normal(random);
@@ -166,7 +166,7 @@ TEST(QuantisedNormal, DecodedNormalIsCloseToTheOriginal) {
   EXPECT_EQ(maths::make_quantised_normal(vec3(0, -1, 0)).stereographic, vec2(0, -1));
 }
 
-TEST(QuantisedNormal, SquaredTurnApproximatesTheSquareOfSmallAngles) {
+TEST(QuantisedNormal, SquaredAngleToAnotherNormalIsApproximatedForSmallAngles) {
   RandomInput random;
   for (int i = 0; i < 100000; ++i) {
     const maths::QuantisedNormal own = maths::make_quantised_normal(facing_normal(random));
@@ -183,7 +183,7 @@ TEST(QuantisedNormal, SquaredTurnApproximatesTheSquareOfSmallAngles) {
   }
 }
 
-TEST(Packing, UnormRoundsToNearestAndKeepsZeroAndOne) {
+TEST(Packing, PackingAsUnormRoundsToNearestAndKeepsZeroAndOneExactly) {
   for (const unsigned bits : {1u, 8u, 12u, 16u}) {
     const float step = 1.0f / float((1u << bits) - 1u);
     for (float x = 0.0f; x <= 1.0f; x += 0.001f)

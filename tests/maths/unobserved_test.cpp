@@ -76,7 +76,7 @@ struct Case {
   }
 };
 
-TEST(Unobserved, ExcludedPartEqualsTheQuadratureOfTheExcludedFraction) {
+TEST(UnobservedDirections, ExcludedPartOfAHalfSliceEqualsQuadratureOfTheExcludedDirections) {
   constexpr int kCases = 20000;
   RandomInput random;
   double worst = 0.0, sum = 0.0, sum_uniform = 0.0, largest = 0.0;
@@ -101,7 +101,7 @@ TEST(Unobserved, ExcludedPartEqualsTheQuadratureOfTheExcludedFraction) {
   EXPECT_LT(sum_uniform / kCases, 2e-8);
 }
 
-TEST(Unobserved, ExcludedLobeIsTheShareOfTheLobeInTheUnobservedArc) {
+TEST(UnobservedDirections, ExcludedPartOfTheSpecularLobeIsThatWithinTheUnobservedDirections) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Case c(random);
@@ -115,7 +115,7 @@ TEST(Unobserved, ExcludedLobeIsTheShareOfTheLobeInTheUnobservedArc) {
   }
 }
 
-TEST(Unobserved, NothingIsExcludedFromAFullyObservedHalfSlice) {
+TEST(UnobservedDirections, NothingIsExcludedFromAHalfSliceWhoseDirectionsAreAllObserved) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     Case c(random);
@@ -128,7 +128,7 @@ TEST(Unobserved, NothingIsExcludedFromAFullyObservedHalfSlice) {
   }
 }
 
-TEST(Unobserved, ManyNarrowRunsExcludeNoMoreThanOneRun) {
+TEST(UnobservedDirections, ManyNarrowGapsInASliceExcludeNoMoreDirectionsThanOneGap) {
   Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
   row = maths::add_column(row, true, 6.0f, 3.0f);
   EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "adjacent columns are one row";
@@ -142,7 +142,7 @@ TEST(Unobserved, ManyNarrowRunsExcludeNoMoreThanOneRun) {
   EXPECT_EQ(maths::mean_row(maths::nothing_unobserved()).width_px, 0.0f);
 }
 
-TEST(Unobserved, ShareOfDirectionsBeyondTheImageBorderIsExcluded) {
+TEST(UnobservedDirections, GivenFractionOfTheDirectionsBeyondTheImageBorderIsExcluded) {
   const Unobserved some = maths::add_column(maths::nothing_unobserved(), true, 7.0f, 2.0f);
   const Unobserved border = maths::add_beyond_border(some, 9.0f, 12.0f, 0.5f);
   EXPECT_EQ(border.first_px, 7.0f);
@@ -155,7 +155,8 @@ TEST(Unobserved, ShareOfDirectionsBeyondTheImageBorderIsExcluded) {
   EXPECT_NEAR(maths::make_unobserved_arc(tangent, all, kRadiusPx).share, 0.3f, 1e-6f);
 }
 
-TEST(Unobserved, BorderShareDecreasesNearTheEyeAndWithTheOtherHalfSliceOutside) {
+TEST(UnobservedDirections,
+     FractionExcludedAtTheBorderFallsNearTheEyeAndIfTheOtherHalfSliceIsAlsoOutside) {
   EXPECT_EQ(maths::border_share(0.0f, 0.0f), 0.5f);
   EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
   EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);
@@ -165,13 +166,13 @@ TEST(Unobserved, BorderShareDecreasesNearTheEyeAndWithTheOtherHalfSliceOutside) 
   }
 }
 
-TEST(Unobserved, RadiusInsideTheImageExcludesNothing) {
+TEST(UnobservedDirections, NothingIsExcludedIfTheRadiusLiesInsideTheImage) {
   const Unobserved none = maths::nothing_unobserved();
   EXPECT_EQ(maths::add_beyond_border(none, 9.0f, 0.0f, 1.0f).first_px, none.first_px);
   EXPECT_EQ(maths::add_beyond_border(none, maths::kNowherePx, 10.0f, 1.0f).width_px, 0.0f);
 }
 
-TEST(Unobserved, HalfSliceIsNeverExcludedCompletely) {
+TEST(UnobservedDirections, DirectionsOfAHalfSliceAreNeverAllExcluded) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     Case c(random);

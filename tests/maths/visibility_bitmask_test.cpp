@@ -48,7 +48,7 @@ VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float hi
                              hidden_occlusion, {.uniform_weight = uniform_weight, .bent = true});
 }
 
-TEST(VisibilityBitmask, DiamondAnglesIncreaseWithTheAngleAndConvertBack) {
+TEST(VisibilityBitmask, DiamondAngleIncreasesWithTheAngleAndConvertsBackToTheDirection) {
   float before = -1.0f;
   for (double angle = 0.0; angle <= kPi; angle += 0.001) {
     const vec2 light = light_at(angle);
@@ -63,7 +63,7 @@ TEST(VisibilityBitmask, DiamondAnglesIncreaseWithTheAngleAndConvertBack) {
   EXPECT_TRUE(std::isfinite(maths::diamond_angle(vec2(0, 0))));
 }
 
-TEST(VisibilityBitmask, SectorPositionsGoFromTheViewDirectionToTheTangentPlane) {
+TEST(VisibilityBitmask, SectorPositionsRunFrom0AtTheViewDirectionTo32AtTheTangentPlane) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = random_slice(random);
@@ -79,7 +79,7 @@ TEST(VisibilityBitmask, SectorPositionsGoFromTheViewDirectionToTheTangentPlane) 
   }
 }
 
-TEST(VisibilityBitmask, MaskBetweenTwoPositionsHasTheSectorsBetweenThem) {
+TEST(VisibilityBitmask, MaskBetweenTwoPositionsSetsExactlyTheBitsOfTheSectorsBetweenThem) {
   for (int from = 0; from <= 32; ++from) {
     for (int to = 0; to <= 32; ++to) {
       std::uint32_t expected = 0;
@@ -91,7 +91,7 @@ TEST(VisibilityBitmask, MaskBetweenTwoPositionsHasTheSectorsBetweenThem) {
   }
 }
 
-TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHasTheSectorsBetweenThem) {
+TEST(VisibilityBitmask, ExclusiveOrOfTheMasksBeyondTwoPositionsSetsTheSectorsBetweenThem) {
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const Slice s = random_slice(random);
@@ -115,7 +115,7 @@ TEST(VisibilityBitmask, ExclusiveOrOfTwoMasksHasTheSectorsBetweenThem) {
   }
 }
 
-TEST(VisibilityBitmask, HighestBitRepeatsTheLastOf31Sectors) {
+TEST(VisibilityBitmask, HighestBitOfTheMaskRepeatsTheLastOf31Sectors) {
   EXPECT_EQ(maths::repeat_last_sector(1u << 30), 3u << 30);
   EXPECT_EQ(maths::repeat_last_sector(1u << 29), 1u << 29);
 }
@@ -147,7 +147,7 @@ Expected expected_part(const Slice& s, float side, std::uint32_t occluded,
   return sum;
 }
 
-TEST(VisibilityBitmask, VisiblePartEqualsTheIntegralOverTheVisibleSectors) {
+TEST(VisibilityBitmask, VisibilityAndBentNormalOfAMaskEqualTheIntegralOverItsVisibleSectors) {
   RandomInput random;
   double worst_arc = 0.0, worst_bent = 0.0;
   for (int i = 0; i < 1500; ++i) {
@@ -166,7 +166,7 @@ TEST(VisibilityBitmask, VisiblePartEqualsTheIntegralOverTheVisibleSectors) {
   EXPECT_LT(worst_bent, 1e-5);
 }
 
-TEST(VisibilityBitmask, UniformVisiblePartEqualsTheSolidAngleOfTheVisibleSectors) {
+TEST(VisibilityBitmask, UniformlyWeightedVisibilityOfAMaskEqualsTheSolidAngleOfItsVisibleSectors) {
   RandomInput random;
   for (int i = 0; i < 1500; ++i) {
     const Slice s = random_slice(random);
@@ -197,7 +197,7 @@ TEST(VisibilityBitmask, EmptyMaskIsFullyVisibleAndFullMaskIsNotVisible) {
   }
 }
 
-TEST(VisibilityBitmask, IfHiddenVolumeIsSolidVisibilityEndsAtTheFirstOccludedSector) {
+TEST(VisibilityBitmask, VisibilityEndsAtTheFirstOccludedSectorIfVolumeBehindOccludersIsSolid) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const Slice s = random_slice(random);
@@ -211,7 +211,7 @@ TEST(VisibilityBitmask, IfHiddenVolumeIsSolidVisibilityEndsAtTheFirstOccludedSec
   }
 }
 
-TEST(VisibilityBitmask, HiddenOcclusionGrowsWithOccluderWidthAndHasTheSettingAsMean) {
+TEST(VisibilityBitmask, SolidFractionBehindAnOccluderGrowsWithItsWidthAndAveragesToTheSetting) {
   for (const float hidden_occlusion : {0.1f, 0.35f, 0.5f, 0.9f}) {
     const float exponent = maths::hidden_exponent(hidden_occlusion);
     constexpr int kSteps = 4000;
@@ -229,14 +229,14 @@ TEST(VisibilityBitmask, HiddenOcclusionGrowsWithOccluderWidthAndHasTheSettingAsM
   }
 }
 
-TEST(VisibilityBitmask, HiddenOcclusionZeroOccludesNothingAndOneOccludesAll) {
+TEST(VisibilityBitmask, HiddenOcclusionSettingZeroOccludesNothingAndOneEverythingBehindOccluders) {
   for (const float front : {0.0f, 1e-4f, 0.5f, 1.0f, 1.0001f}) {
     EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(0.0f)), 0.0f);
     EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(1.0f)), 1.0f);
   }
 }
 
-TEST(VisibilityBitmask, NormalPerpendicularToTheSliceGivesZeroVisibilityAndZeroBentNormal) {
+TEST(VisibilityBitmask, NormalPerpendicularToTheSlicePlaneGivesZeroVisibilityAndZeroBentNormal) {
   const Slice s = maths::make_slice(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
   for (const float side : {-1.0f, 1.0f}) {
     EXPECT_EQ(part_of(s, side, 0x0ff0u, 0.4f).arc, 0.0f);
@@ -244,7 +244,7 @@ TEST(VisibilityBitmask, NormalPerpendicularToTheSliceGivesZeroVisibilityAndZeroB
   }
 }
 
-TEST(VisibilityBitmask, VisibleShareIsTheFractionOfSectorsBeyondTheFirstOccluder) {
+TEST(VisibilityBitmask, VisibleShareIsTheUnoccludedFractionOfTheSectorsBeyondTheFirstOccludedOne) {
   EXPECT_EQ(maths::visible_share_beyond(0u), 0.0f) << "there is no occluder";
   EXPECT_EQ(maths::visible_share_beyond(0xffffffffu), 0.0f) << "everything is occluded";
   EXPECT_FLOAT_EQ(maths::visible_share_beyond(1u), 30.0f / 31.0f);
