@@ -151,7 +151,7 @@ const Shot kOtherShots[] = {{{0.3f, 3.1f, 4.4f}, 160, 201}, {{4.1f, 0.8f, -1.2f}
 
 // Both programs then store normals in the same ten bits, or nearly: `alcove render` keeps the
 // rounded normals in 16-bit floats.
-TEST(Host, DrawsThePictureOfAlcoveRenderWithinOneStepOfEightBits) {
+TEST(HostProgram, HostProgramDrawsTheSameImageAsAlcoveRenderWithinOneStepOfEightBits) {
   const TemporaryFolder folder;
   const std::vector<int> found = draw_by_host(folder, {}, "");
   EXPECT_EQ(found, draw_by_host(folder, {}, "--async"));
@@ -161,7 +161,7 @@ TEST(Host, DrawsThePictureOfAlcoveRenderWithinOneStepOfEightBits) {
 
 // Both programs store normals in 16-bit floats. The cameras differ by rounding, which changed two
 // of 32,160 pixels by two steps.
-TEST(Host, DrawsThePictureOfAlcoveRenderFromOtherEyesWithFloatNormals) {
+TEST(HostProgram, HostProgramDrawsTheSameImageAsAlcoveRenderFromOtherCamerasWithFloatNormals) {
   const TemporaryFolder folder;
   for (const Shot& shot : kOtherShots) {
     SCOPED_TRACE(name_of(shot));
@@ -176,7 +176,7 @@ TEST(Host, DrawsThePictureOfAlcoveRenderFromOtherEyesWithFloatNormals) {
 // Normals of ten bits a channel turn the tangent plane by up to 0.05 degrees against normals of
 // 16-bit floats, so that a few depth samples change sides. At most 27 of 32,160 pixels differed by
 // more than one step of eight bits when this limit was set.
-TEST(Host, TenBitNormalsChangeFewPixels) {
+TEST(HostProgram, StoringNormalsInTenBitsChangesFewPixels) {
   const TemporaryFolder folder;
   for (const Shot& shot : kOtherShots) {
     SCOPED_TRACE(name_of(shot));

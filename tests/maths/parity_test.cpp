@@ -108,7 +108,7 @@ class Parity : public ::testing::TestWithParam<std::uint32_t> {
   static inline std::unique_ptr<ComputeRun> shared_run;
 };
 
-TEST_P(Parity, GpuAndCpuComputeTheSameValues) {
+TEST_P(Parity, ShaderFunctionGivesTheSameValuesOnGpuAndCpu) {
   ASSERT_NE(shared_run, nullptr);
   RandomInput random;
   std::vector<vec4> inputs(2 * kInputs);

@@ -33,7 +33,7 @@ ApplyInputs inputs_of(Graph& graph, bool all) {
   return inputs;
 }
 
-TEST(ApplySteadyFrame, DeclaringTheLightingPassAgainAllocatesNothing) {
+TEST(SteadyLightingPass, DeclaringTheUnchangedLightingPassAgainAllocatesNoHostMemory) {
   const auto gpu = sample::Gpu::create();
   ASSERT_TRUE(gpu) << gpu.error();
   View view;

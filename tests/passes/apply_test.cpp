@@ -41,7 +41,7 @@ void expect_close(const HostImage& image, std::uint32_t x, std::uint32_t y, vec3
   }
 }
 
-class ApplyPass : public PassTest {
+class LightingPass : public PassTest {
  protected:
   // Uploads the required inputs: diffuse surfaces under unoccluded light.
   ApplyInputs surfaces(Graph& graph, const LitSurfaces& inputs) {
@@ -52,7 +52,7 @@ class ApplyPass : public PassTest {
   }
 };
 
-TEST_F(ApplyPass, AgreesWithTheFormulasInEveryView) {
+TEST_F(LightingPass, LitImageAgreesWithTheFormulasOnTheCpuInEveryKindOfView) {
   const LitSurfaces inputs = random_surfaces();
   for (const TestView& test_view : test_views()) {
     SCOPED_TRACE(test_view.name);
@@ -94,7 +94,7 @@ TEST_F(ApplyPass, AgreesWithTheFormulasInEveryView) {
   }
 }
 
-TEST_F(ApplyPass, SurfacesReflectNoMoreThanTheyReceiveAndWhiteDielectricsReflectAll) {
+TEST_F(LightingPass, SurfacesReflectNoMoreLightThanTheyReceiveAndWhiteDielectricsReflectAll) {
   LitSurfaces inputs = random_surfaces();
   make_white(inputs);
   inputs.albedo.texels.assign(inputs.albedo.texels.size(), 1.0f);
@@ -123,7 +123,7 @@ TEST_F(ApplyPass, SurfacesReflectNoMoreThanTheyReceiveAndWhiteDielectricsReflect
   }
 }
 
-TEST_F(ApplyPass, ReflectanceTableIsCreatedOnlyWithAnEnvironmentMap) {
+TEST_F(LightingPass, ReflectanceTableIsCreatedOnlyWithAnEnvironmentMap) {
   const LitSurfaces inputs = random_surfaces();
   const auto transients = [&](bool map, const ApplySettings& settings) {
     Kept kept;
@@ -154,7 +154,7 @@ TEST_F(ApplyPass, ReflectanceTableIsCreatedOnlyWithAnEnvironmentMap) {
 
 // A frame from depth to lit surfaces without specular light: it must have no bent normal, no
 // specular occlusion pass, no environment map and no table.
-TEST_F(ApplyPass, FrameWithoutSpecularLightHasNoSpecularResources) {
+TEST_F(LightingPass, FrameWithoutSpecularLightHasNoSpecularPassesTexturesOrTables) {
   const PlaneScene plane = plane_scene(test_views()[2], kWidth, kHeight, 30.0f);
   const LitSurfaces inputs = random_surfaces();
   Kept kept;
@@ -193,7 +193,7 @@ TEST_F(ApplyPass, FrameWithoutSpecularLightHasNoSpecularResources) {
   EXPECT_EQ(gpu().kernels().table_bytes(), 0u);
 }
 
-TEST_F(ApplyPass, DiffuseSurfacesNeedNoEnvironmentMap) {
+TEST_F(LightingPass, DiffuseLightingNeedsNoEnvironmentMap) {
   LitSurfaces inputs = random_surfaces();
   make_white(inputs);
   run([&](Graph& graph) {
@@ -213,7 +213,7 @@ TEST_F(ApplyPass, DiffuseSurfacesNeedNoEnvironmentMap) {
   }
 }
 
-TEST_F(ApplyPass, InvalidInputsAreReportedByName) {
+TEST_F(LightingPass, InvalidInputOfTheLightingPassIsReportedByName) {
   const LitSurfaces inputs = random_surfaces();
   const HostImage small{2, 3, std::vector<float>(24), 4};
   run([&](Graph& graph) {

@@ -11,7 +11,7 @@
 namespace alcove::passes {
 namespace {
 
-class BackFaces : public HiddenDepthTest {};
+class BackFaceDepth : public HiddenDepthTest {};
 
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
@@ -29,7 +29,7 @@ OcclusionSettings of_thickness(OcclusionSettings settings, float thickness) {
 //           |____|   a slab, endless along y: from a point of the floor it occludes the angles
 //        .´ .´       between the directions to its near upper edge and to its far lower edge
 //   ____x_____________
-TEST_F(BackFaces, SlabAboveAFloorMatchesTheClosedForm) {
+TEST_F(BackFaceDepth, VisibilityUnderASlabWithBackFaceDepthMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double near = 0.3, far = 0.7, bottom = 0.8, top = 1.0, floor = 4.0;
   Scene scene = box({near, -100.0, bottom - floor}, {far, 100.0, top - floor});
@@ -61,7 +61,7 @@ TEST_F(BackFaces, SlabAboveAFloorMatchesTheClosedForm) {
 
 // A ball with radius r, whose centre is at distance d and at angle t to the normal, lowers the
 // visibility by cos t (r / d)^2 if it lies completely above the tangent plane.
-TEST_F(BackFaces, BallAboveAFloorMatchesTheClosedFormInEveryView) {
+TEST_F(BackFaceDepth, VisibilityUnderABallWithBackFaceDepthMatchesTheClosedFormInEveryView) {
   const glm::dvec3 centre(0.05, -0.1, -3.1);
   const double radius = 0.35, floor = 4.0;
   const Scene scene{plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}), sphere(centre, radius)};
@@ -96,7 +96,7 @@ TEST_F(BackFaces, BallAboveAFloorMatchesTheClosedFormInEveryView) {
   }
 }
 
-TEST_F(BackFaces, SolidThickerThanTheRadiusOccludesLikeInfinitelyThickHorizons) {
+TEST_F(BackFaceDepth, SolidThickerThanTheRadiusOccludesAtMostLikeAnInfinitelyThickOne) {
   const float radius = 1.2f;
   Scene scene = box({0.31, -50.0, -20.0}, {50.0, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}));
@@ -127,7 +127,7 @@ TEST_F(BackFaces, SolidThickerThanTheRadiusOccludesLikeInfinitelyThickHorizons) 
 // Tests back-face depths that give no thickness: the far plane (sky), the near plane (in front of
 // the first layer), NaN, and the depth of the first layer itself, as if the visible surface were a
 // back face.
-TEST_F(BackFaces, SettingThicknessIsUsedIfNoBackFaceIsBehindTheFront) {
+TEST_F(BackFaceDepth, ThicknessSettingIsUsedWhereNoBackFaceLiesBehindTheVisibleSurface) {
   Scene scene = box({0.31, -50.0, -20.0}, {0.6, 50.0, -3.5});
   scene.push_back(plane({0.0, 0.0, -4.0}, {0.3, 0.1, 1.0}));
   for (const TestView& view : test_views()) {

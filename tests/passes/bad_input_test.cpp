@@ -119,7 +119,7 @@ TEST_F(BadInput, SettingsOutOfRangeAreReportedByName) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, NumbersInMessagesAreShortAndExactInEveryLocale) {
+TEST_F(BadInput, NumbersInErrorMessagesAreShortAndExactInEveryLocale) {
   const CommaLocale comma;
   struct Case {
     const char* says;
@@ -144,7 +144,7 @@ TEST_F(BadInput, NumbersInMessagesAreShortAndExactInEveryLocale) {
   }
 }
 
-TEST_F(BadInput, InvalidProjectionIsReported) {
+TEST_F(BadInput, InvalidProjectionMatrixIsReported) {
   const std::vector<std::function<void(Matrix&)>> spoils{
       [](Matrix& m) { m.fill(0.0f); },         [](Matrix& m) { m[0] = kNaN; },
       [](Matrix& m) { m[10] = kInfinity; },    [](Matrix& m) { m[5] = 0.0f; },
@@ -174,7 +174,7 @@ TEST_F(BadInput, ViewMatrixThatScalesIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, TransposedProjectionIsReported) {
+TEST_F(BadInput, TransposedProjectionMatrixIsReported) {
   for (const TestView& test : test_views()) {
     if (test.orthographic) {
       continue;
@@ -190,7 +190,7 @@ TEST_F(BadInput, TransposedProjectionIsReported) {
   }
 }
 
-TEST_F(BadInput, RawOcclusionOfTheWrongKindIsReported) {
+TEST_F(BadInput, RawOcclusionWithWrongTileSizeSlicesOrImageSizeIsReported) {
   struct Case {
     const char* names;
     std::function<void(RawOcclusionTextures&, OcclusionSettings&)> spoil;
@@ -238,7 +238,7 @@ TEST_F(BadInput, RawOcclusionOfTheWrongKindIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, FrameSlotOutOfRangeIsReported) {
+TEST_F(BadInput, FrameInFlightSlotOutOfRangeIsReported) {
   const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
   const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
     gpu().kernels().begin_frame(8);
@@ -253,7 +253,7 @@ TEST_F(BadInput, FrameSlotOutOfRangeIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, FramesInFlightOutOfRangeAreReported) {
+TEST_F(BadInput, NumberOfFramesInFlightOutOfRangeIsReported) {
   for (const std::uint32_t frames : {0u, 9u, ~0u}) {
     const auto kernels = Kernels::create(handles(), frames);
     ASSERT_FALSE(kernels) << frames;
@@ -262,7 +262,7 @@ TEST_F(BadInput, FramesInFlightOutOfRangeAreReported) {
   }
 }
 
-TEST_F(BadInput, ImageWithoutPixelsIsReported) {
+TEST_F(BadInput, InputImageWithoutPixelsIsReported) {
   std::string said;
   const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
     const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
@@ -279,7 +279,7 @@ TEST_F(BadInput, ImageWithoutPixelsIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, ImagesOfDifferentSizesAreReported) {
+TEST_F(BadInput, InputImagesOfDifferentSizesAreReported) {
   const Drawing drawing = draw(test_views()[2], 16, 12, groove(0.8));
   const Drawing small = draw(test_views()[2], 16, 11, groove(0.8));
   run([&](Graph& graph) {
@@ -311,7 +311,7 @@ TEST_F(BadInput, ImagesOfDifferentSizesAreReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, NullInputIsReported) {
+TEST_F(BadInput, MissingDepthImageIsReported) {
   std::string said;
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};

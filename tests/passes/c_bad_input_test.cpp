@@ -101,7 +101,7 @@ class CBadInput : public CInterface {
   AlcoveView view_{};
 };
 
-TEST_F(CBadInput, InvalidFrameIsReported) {
+TEST_F(CBadInput, InvalidFrameDescriptionIsReported) {
   struct Case {
     const char* names;
     std::function<void(Spoilt&)> spoil;
@@ -202,7 +202,7 @@ TEST_F(CBadInput, InvalidCameraIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, PreviousCameraIsReadOnlyIfTheViewHasAHistory) {
+TEST_F(CBadInput, PreviousCameraIsCheckedOnlyIfTheViewHasHistoryContents) {
   view().previous_camera = {};
   const AlcoveFrame frame{
       .struct_size = sizeof(AlcoveFrame), .index = 0, .view_count = 1, .views = &view()};
@@ -219,7 +219,7 @@ TEST_F(CBadInput, PreviousCameraIsReadOnlyIfTheViewHasAHistory) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, PreviousCameraAndSizesAreIgnoredWithoutHistory) {
+TEST_F(CBadInput, PreviousCameraAndImageSizesAreIgnoredIfHistoryIsOff) {
   AlcoveSettings settings = *view().settings;
   settings.history_frames = 0;
   AlcoveView alone = view();
@@ -235,7 +235,7 @@ TEST_F(CBadInput, PreviousCameraAndSizesAreIgnoredWithoutHistory) {
   expect_equal(results_of(alone), expected);
 }
 
-TEST_F(CBadInput, UnusableImageIsReported) {
+TEST_F(CBadInput, ImageOfWrongSizeFormatUsageOrLayoutIsReported) {
   struct Case {
     const char* names;
     std::function<void(AlcoveView&)> spoil;
@@ -318,7 +318,7 @@ TEST_F(CBadInput, MissingImageOfTheSecondDepthLayerIsReported) {
   EXPECT_PRED1(is_a_sentence, said);
 }
 
-TEST_F(CBadInput, NullPointersAreErrors) {
+TEST_F(CBadInput, NullPointerArgumentsAreErrors) {
   AlcoveFrame frame{.struct_size = sizeof frame};
   EXPECT_EQ(alcoveRecordFrame(context(), VK_NULL_HANDLE, &frame), ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_THAT(alcoveGetMessage(context()), HasSubstr("command buffer"));
@@ -347,7 +347,7 @@ TEST_F(CBadInput, NullPointersAreErrors) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, InvalidContextInfoIsReported) {
+TEST_F(CBadInput, InvalidCreationInfoOfAContextIsReported) {
   struct Case {
     const char* names;
     std::function<void(AlcoveContextInfo&)> spoil;
@@ -380,7 +380,7 @@ TEST_F(CBadInput, InvalidContextInfoIsReported) {
   EXPECT_PRED1(is_a_sentence, message);
 }
 
-TEST_F(CBadInput, UnknownQualityIsAnError) {
+TEST_F(CBadInput, RequestingSettingsWithUnknownQualityOrInvalidRadiusIsAnError) {
   AlcoveSettings settings{.struct_size = sizeof settings};
   AlcoveQuality quality = ALCOVE_QUALITY_LOW;
   EXPECT_EQ(alcoveGetSettings(quality, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
@@ -400,7 +400,7 @@ TEST_F(CBadInput, UnknownQualityIsAnError) {
 
 // Random numbers in settings and cameras never crash: either the frame is recorded, or it is
 // refused with a sentence.
-TEST_F(CBadInput, FramesWithRandomNumbersAreRecordedOrRefusedWithASentence) {
+TEST_F(CBadInput, FramesWithRandomSettingsAndCamerasAreRecordedOrRefusedWithAMessage) {
   const std::uint32_t seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);

@@ -48,23 +48,23 @@ void expect_converted(const glm::mat4& clip, const glm::mat4& view, std::uint32_
   expect_near(matrix_of(camera.view_from_world), expected_view());
 }
 
-TEST(CCamera, MatricesInTheLibrarysConventionAreNotChanged) {
+TEST(CCamera, CameraMatricesInTheLibrarysConventionAreNotChanged) {
   expect_converted(expected_clip(), expected_view(), 0);
 }
 
-TEST(CCamera, GlmMatricesForANegativeViewportHeightAreConverted) {
+TEST(CCamera, GlmCameraMatricesForANegativeViewportHeightAreConverted) {
   expect_converted(glm::perspectiveRH_ZO(kFovY, kAspect, kNear, kFar), expected_view(),
                    ALCOVE_CAMERA_CONVENTION_GLM);
 }
 
-TEST(CCamera, OpenGlMatricesAreConverted) {
+TEST(CCamera, OpenGlCameraMatricesAreConverted) {
   expect_converted(glm::perspectiveRH_NO(kFovY, kAspect, kNear, kFar), expected_view(),
                    ALCOVE_CAMERA_CONVENTION_OPENGL);
 }
 
 // In Direct3D's view space the camera looks along +Z, x points to the right and y up. World space
 // is the same as in the other tests.
-TEST(CCamera, Direct3dMatricesAreConverted) {
+TEST(CCamera, Direct3dCameraMatricesAreConverted) {
   glm::mat4 view = expected_view();
   for (int column = 0; column < 4; ++column) {
     view[column][2] = -view[column][2];
@@ -73,7 +73,7 @@ TEST(CCamera, Direct3dMatricesAreConverted) {
                    ALCOVE_CAMERA_CONVENTION_DIRECT3D);
 }
 
-TEST(CCamera, RowMajorMatricesAreTransposed) {
+TEST(CCamera, RowMajorCameraMatricesAreTransposed) {
   expect_converted(glm::transpose(expected_clip()), glm::transpose(expected_view()),
                    ALCOVE_CAMERA_CONVENTION_ROW_MAJOR);
 }
@@ -96,14 +96,14 @@ AlcovePerspective perspective() {
           .height = 200};
 }
 
-TEST(CCamera, PerspectiveFromNumbersEqualsGlm) {
+TEST(CCamera, PerspectiveMadeFromAngleAndPlanesEqualsThatOfGlm) {
   const AlcovePerspective given = perspective();
   float clip[16];
   ASSERT_EQ(alcoveMakePerspective(&given, clip), ALCOVE_SUCCESS);
   expect_near(matrix_of(clip), expected_clip());
 }
 
-TEST(CCamera, NearAndFarPlanesAreProjectedToDepthsZeroAndOne) {
+TEST(CCamera, NearAndFarPlanesProjectToDepthsZeroAndOneOrTheReverse) {
   for (const bool reversed : {false, true}) {
     for (const float far : {kFar, 0.0f, std::numeric_limits<float>::infinity()}) {
       AlcovePerspective given = perspective();
@@ -121,7 +121,7 @@ TEST(CCamera, NearAndFarPlanesAreProjectedToDepthsZeroAndOne) {
   }
 }
 
-TEST(CCamera, JitterShiftsTheImageByThatManyPixels) {
+TEST(CCamera, JitterGivenInPixelsShiftsTheImageByThatManyPixels) {
   AlcovePerspective given = perspective();
   float still[16], moved[16];
   ASSERT_EQ(alcoveMakePerspective(&given, still), ALCOVE_SUCCESS);
@@ -138,7 +138,7 @@ TEST(CCamera, JitterShiftsTheImageByThatManyPixels) {
   EXPECT_NEAR(shift.y, -0.5f, 1e-3f);
 }
 
-TEST(CCamera, NumbersOutOfRangeAreErrors) {
+TEST(CCamera, PerspectiveParametersOutOfRangeAreErrors) {
   const auto result = [](void (*spoil)(AlcovePerspective&)) {
     AlcovePerspective given = perspective();
     spoil(given);

@@ -38,7 +38,7 @@ class CCommands : public CInterface {
   VkCommandPool pool_ = VK_NULL_HANDLE;
 };
 
-TEST_F(CCommands, FrameInASecondaryCommandBufferHasTheSameContents) {
+TEST_F(CCommands, FrameRecordedIntoASecondaryCommandBufferGivesTheSameImages) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 32, 24, ball_on_floor());
   AlcoveSettings settings;
@@ -64,7 +64,7 @@ TEST_F(CCommands, FrameInASecondaryCommandBufferHasTheSameContents) {
 // plan must name no others. The states of the images are those that INTEGRATION.md gives for images
 // that other queues use before and after, ordered by semaphores. The plan is checked by the
 // verifier, and the contents are those of a frame on a queue with graphics.
-TEST_F(CCommands, FrameForAComputeQueueIsVerifiedAndNamesNoGraphicsStage) {
+TEST_F(CCommands, FrameForAComputeOnlyQueueUsesNoGraphicsPipelineStage) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 32, 24, ball_on_floor());
   given.settings.bent_normal = true;
@@ -99,7 +99,7 @@ TEST_F(CCommands, FrameForAComputeQueueIsVerifiedAndNamesNoGraphicsStage) {
   }
 }
 
-TEST_F(CCommands, ImageOfSeveralSamplesIsRefused) {
+TEST_F(CCommands, MultisampledInputImageIsRefused) {
   const Context context = create_context();
   AlcoveSettings settings;
   AlcoveView view = view_of(given_view(test_views()[2], 16, 12, ball_on_floor()), settings);

@@ -47,7 +47,7 @@ std::string said_of(const std::function<void(AlcoveFrame&, AlcoveView&)>& spoil,
   return observer.describe();
 }
 
-TEST(CDiagnose, CorrectCallsAreNotReported) {
+TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
   for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f}) {
     EXPECT_EQ(said_of([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
   }
@@ -60,7 +60,7 @@ TEST(CDiagnose, CorrectCallsAreNotReported) {
             "");
 }
 
-TEST(CDiagnose, ConstantFrameIndexIsReported) {
+TEST(CDiagnose, FrameIndexThatNeverChangesIsReported) {
   EXPECT_THAT(said_of([](AlcoveFrame& frame, AlcoveView&) { frame.index = 7; }),
               HasSubstr("AlcoveFrame::index has been 7 in 20 frames in a row"));
 }
@@ -83,7 +83,7 @@ TEST(CDiagnose, JitterInOnlyOneOfTheTwoCamerasIsReported) {
       HasSubstr("jitter included"));
 }
 
-TEST(CDiagnose, StaticFramesWhileTheCameraMovesAndResetsInEveryFrameAreReported) {
+TEST(CDiagnose, StaticFrameCountWhileTheCameraMovesAndHistoryResetInEveryFrameAreReported) {
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.static_frames = 1; }),
               HasSubstr("View 3: static_frames"));
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.reset_history = VK_TRUE; }),
@@ -92,7 +92,7 @@ TEST(CDiagnose, StaticFramesWhileTheCameraMovesAndResetsInEveryFrameAreReported)
 
 class CDiagnoseFrames : public CInterface {};
 
-TEST_F(CDiagnoseFrames, TextIsTruncatedToTheBufferAndCoversRecordedFramesOnly) {
+TEST_F(CDiagnoseFrames, DiagnosisTextIsTruncatedToTheBufferOfTheCaller) {
   const Context context = create_context();
   EXPECT_EQ(alcoveDiagnose(context.get(), nullptr, 0), 0u);
   EXPECT_EQ(alcoveDiagnose(nullptr, nullptr, 0), 0u);

@@ -79,7 +79,7 @@ class CFailure : public CInterface {
   }
 };
 
-TEST_F(CFailure, MissingFeaturesAndFunctionsAreReported) {
+TEST_F(CFailure, VulkanFeaturesAndFunctionsThatTheDeviceLacksAreReported) {
   AlcoveContextInfo info = engine().context_info();
   info.get_instance_proc_addr = get_instance_proc_addr;
   EXPECT_EQ(error_of_context(info, ALCOVE_SUCCESS), "");
@@ -106,7 +106,7 @@ TEST_F(CFailure, MissingFeaturesAndFunctionsAreReported) {
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("instance"));
 }
 
-TEST_F(CFailure, FeatureThatWasNotEnabledIsReported) {
+TEST_F(CFailure, VulkanFeatureThatTheEngineDidNotEnableIsReported) {
   AlcoveContextInfo info = engine().context_info();
   VkPhysicalDeviceVulkan13Features vulkan13{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
@@ -154,7 +154,7 @@ Outcome run_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine
   return outcome;
 }
 
-TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorWithoutLeaks) {
+TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorAndLeaksNothing) {
   GivenView given = given_view(test_views()[2], 8, 6, groove(0.8));
   given.settings.advanced.estimator = Estimator::horizons;
   AlcoveSettings settings;
@@ -175,7 +175,7 @@ TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorWithoutLeaks) {
   }
 }
 
-TEST(CResult, NamesMatchTheEnumerators) {
+TEST(CResult, ResultNamesMatchTheEnumerators) {
 #define ALCOVE_NAMED(value) \
   std::pair { value, #value }
   for (const auto& [value, name] :
@@ -202,7 +202,7 @@ bool call_without_memory(std::size_t which, const Call& call) {
   return failed;
 }
 
-TEST_F(CFailure, OutOfHostMemoryInCreateContextIsAnErrorWithoutLeaks) {
+TEST_F(CFailure, OutOfHostMemoryWhileCreatingAContextIsAnErrorAndLeaksNothing) {
   AlcoveContextInfo info = engine().context_info();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
   bool failed = true;

@@ -146,7 +146,7 @@ class Block {
   AlcoveMemoryBlock block_{};
 };
 
-class CHost : public CInterface {
+class CAllocators : public CInterface {
  protected:
   static Context create(const AlcoveContextInfo& info) {
     AlcoveContext* made = nullptr;
@@ -178,7 +178,7 @@ class CHost : public CInterface {
   }
 };
 
-TEST_F(CHost, HostAllocationsAreUsedAndFreed) {
+TEST_F(CAllocators, EverythingAllocatedThroughTheEnginesAllocatorsIsFreed) {
   HostMemory host;
   const VkAllocationCallbacks callbacks = host.callbacks();
   DeviceMemory memory{gpu().device()};
@@ -199,7 +199,7 @@ TEST_F(CHost, HostAllocationsAreUsedAndFreed) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, MemoryBlockOfTheEngineHoldsEveryImageThroughSizeChanges) {
+TEST_F(CAllocators, AllImagesArePlacedInTheEnginesMemoryBlockWhileSizesChange) {
   const Block block(gpu().device(), 1 << 20);
   DeviceMemory memory{gpu().device()};
   {
@@ -222,7 +222,7 @@ TEST_F(CHost, MemoryBlockOfTheEngineHoldsEveryImageThroughSizeChanges) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, FrameThatDoesNotFitIntoTheBlockIsReportedAndASmallerOneStillWorks) {
+TEST_F(CAllocators, FrameTooLargeForTheEnginesMemoryBlockIsReportedAndASmallerFrameStillWorks) {
   const Block block(gpu().device(), 200000);
   Said said;
   AlcoveContextInfo info = engine().context_info();
@@ -249,7 +249,7 @@ TEST_F(CHost, FrameThatDoesNotFitIntoTheBlockIsReportedAndASmallerOneStillWorks)
   engine().wait();
 }
 
-TEST_F(CHost, RefusedAllocationIsAnErrorAndTheNextFrameWorks) {
+TEST_F(CAllocators, AllocationThatTheEngineRefusesIsAnErrorAndTheNextFrameWorks) {
   AlcoveSettings settings;
   const AlcoveView view = view_of(given_of(16, 12), settings);
   DeviceMemory memory{gpu().device()};
@@ -280,7 +280,7 @@ TEST_F(CHost, RefusedAllocationIsAnErrorAndTheNextFrameWorks) {
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
-TEST_F(CHost, LogCallbackGetsEveryMessage) {
+TEST_F(CAllocators, LogCallbackGetsErrorsWarningsAndInformation) {
   Said said;
   AlcoveContextInfo info = engine().context_info();
   info.log = said.log();
@@ -308,7 +308,7 @@ TEST_F(CHost, LogCallbackGetsEveryMessage) {
   engine().wait();
 }
 
-TEST_F(CHost, IncompleteAllocatorIsReported) {
+TEST_F(CAllocators, IncompleteMemoryFunctionsAndInvalidMemoryBlockAreReported) {
   const auto message_of = [&](const AlcoveContextInfo& info) {
     AlcoveContext* made = nullptr;
     char message[ALCOVE_MAX_MESSAGE];

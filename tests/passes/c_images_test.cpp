@@ -37,7 +37,7 @@ void copy(VkCommandBuffer commands, const AlcoveImage& image, const sample::Host
 
 // The two eyes of a stereo view are two layers of one array image. The library makes an image view
 // for each.
-TEST_F(CImages, LayersOfAnArrayAreIndependentImages) {
+TEST_F(CImages, LayersOfAnArrayImageCanBeOutputsOfDifferentViews) {
   const Context context = create_context();
   constexpr VkImageUsageFlags kStored =
       VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
@@ -68,7 +68,7 @@ TEST_F(CImages, LayersOfAnArrayAreIndependentImages) {
   }
 }
 
-TEST_F(CImages, DepthFormatAndLayoutsOfAttachmentsAreAccepted) {
+TEST_F(CImages, DepthImageInDepthFormatAndAttachmentLayoutIsAccepted) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   AlcoveSettings settings;
@@ -90,7 +90,7 @@ TEST_F(CImages, DepthFormatAndLayoutsOfAttachmentsAreAccepted) {
   expect_equal(results_of(view), run_by_cpp(given, 0));
 }
 
-TEST_F(CImages, OneImageMayServeAsSeveralInputs) {
+TEST_F(CImages, OneImageMayBeGivenAsBothAlbedoAndRoughness) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   given.roughness = given.albedo;  // packed: roughness is its green
@@ -103,7 +103,7 @@ TEST_F(CImages, OneImageMayServeAsSeveralInputs) {
   expect_equal(results_of(view), run_by_cpp(given, 0));
 }
 
-TEST_F(CImages, ForgottenImageMayBeDestroyed) {
+TEST_F(CImages, ImageMayBeDestroyedAfterTheEngineCalledForgetImage) {
   const Context context = create_context();
   const GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   AlcoveSettings settings;

@@ -68,7 +68,7 @@ class CInputs : public CInterface {
   }
 };
 
-TEST_F(CInputs, EveryNormalEncodingGivesTheSameImages) {
+TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
   const GivenView plain = given();
   const Results expected = results(plain, 2, [](AlcoveView&) {});
   struct Case {
@@ -90,7 +90,7 @@ TEST_F(CInputs, EveryNormalEncodingGivesTheSameImages) {
   }
 }
 
-TEST_F(CInputs, NormalsOfAForwardZCameraAreMirroredInAndOut) {
+TEST_F(CInputs, NormalsOfACameraAlongPlusZAreMirroredOnInputAndBentNormalsOnOutput) {
   const GivenView plain = given();
   const Results expected = results(plain, 2, [](AlcoveView&) {});
   const auto mirrored = [](const HostImage& image) {
@@ -108,7 +108,7 @@ TEST_F(CInputs, NormalsOfAForwardZCameraAreMirroredInAndOut) {
   EXPECT_LT(rms(found.specular, expected.specular), 1e-5);
 }
 
-TEST_F(CInputs, MotionVectorsOfAnyUnitGiveTheSameResult) {
+TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
   // All planes face the eye, so that the history has the same depth everywhere. If motion vectors
   // were misread, history from the wrong place would therefore be used, and the images would
   // differ.
@@ -147,7 +147,7 @@ TEST_F(CInputs, MotionVectorsOfAnyUnitGiveTheSameResult) {
   EXPECT_GT(rms(wrong.visibility, expected.visibility), 1e-3) << "the sign makes no difference";
 }
 
-TEST_F(CInputs, PowerAndIntensityChangeWrittenVisibilityAlone) {
+TEST_F(CInputs, PowerAndIntensityChangeOnlyTheWrittenVisibility) {
   GivenView plain = given();
   plain.settings.specular = Specular::slices;
   const Results open = results(plain, 3, [](AlcoveView&) {});
@@ -162,7 +162,7 @@ TEST_F(CInputs, PowerAndIntensityChangeWrittenVisibilityAlone) {
   EXPECT_EQ(shaped.specular.texels, open.specular.texels);
 }
 
-TEST_F(CInputs, UnknownEncodingAndZeroMotionScaleAreReported) {
+TEST_F(CInputs, UnknownNormalEncodingAndZeroScaleOfMotionVectorsAreReported) {
   GivenView plain = given();
   plain.motion = {kWidth, kHeight, std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
   const Context context = create_context();

@@ -102,7 +102,7 @@ HostImage in_world(const HostImage& normals, const Matrix& view_from_world) {
   return result;
 }
 
-TEST_F(CInspect, CorrectInputsAreNotReported) {
+TEST_F(CInspect, CorrectDepthAndNormalsAreNotReportedAsMistakes) {
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(view.name + ", " + scene.name);
@@ -123,7 +123,7 @@ TEST_F(CInspect, CorrectInputsAreNotReported) {
   EXPECT_EQ(said_of(without), "");
 }
 
-TEST_F(CInspect, EachMistakeIsReportedByItsOwnSentenceAlone) {
+TEST_F(CInspect, EachMistakeInDepthOrNormalsIsReportedByItsOwnMessageOnly) {
   struct Planted {
     const char* name;
     std::function<void(GivenView&)> plant;
@@ -212,7 +212,7 @@ TEST_F(CInspect, EachMistakeIsReportedByItsOwnSentenceAlone) {
   }
 }
 
-TEST_F(CInspect, SlotThatIsReusedBeforeItsFrameHasFinishedIsReported) {
+TEST_F(CInspect, FrameSlotReusedBeforeItsFrameHasFinishedIsReported) {
   const Context context = create_context();
   AlcoveSettings settings;
   AlcoveView view = view_of(right_view(), settings);
@@ -223,7 +223,7 @@ TEST_F(CInspect, SlotThatIsReusedBeforeItsFrameHasFinishedIsReported) {
   EXPECT_THAT(text_of(*context), HasSubstr("AlcoveFrame::slot was recorded again before"));
 }
 
-TEST_F(CInspect, DiscardedFramesAreNotCounted) {
+TEST_F(CInspect, DiscardedFramesAreNotReportedAsMistakes) {
   const Context context = create_context();
   AlcoveSettings settings;
   AlcoveView view = view_of(right_view(), settings);

@@ -27,7 +27,7 @@ GivenView frame_of(std::uint32_t frame, std::uint32_t width, std::uint32_t heigh
   return given;
 }
 
-TEST_F(CInterface, FramesWithHistoryEqualThoseOfTheCppInterface) {
+TEST_F(CInterface, FramesWithHistoryEqualThoseRecordedByTheCppInterface) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 5; ++i) {
     GivenView given = frame_of(i, 33, 17, 3);
@@ -38,7 +38,7 @@ TEST_F(CInterface, FramesWithHistoryEqualThoseOfTheCppInterface) {
   }
 }
 
-TEST_F(CInterface, StaticViewEqualsThatOfTheCppInterface) {
+TEST_F(CInterface, FramesOfAStaticViewEqualThoseRecordedByTheCppInterface) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 20; ++i) {
     GivenView given = frame_of(0, 33, 17);
@@ -49,7 +49,7 @@ TEST_F(CInterface, StaticViewEqualsThatOfTheCppInterface) {
   }
 }
 
-TEST_F(CInterface, EverySettingReachesThePasses) {
+TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
   struct Case {
     const char* name;
     void (*change)(GivenView&);
@@ -144,7 +144,7 @@ TEST_F(CInterface, EverySettingReachesThePasses) {
   }
 }
 
-TEST_F(CInterface, EachOutputRequestedAloneEqualsThatOfTheCppInterface) {
+TEST_F(CInterface, EachOutputRequestedAloneEqualsThatRecordedByTheCppInterface) {
   const std::array<void (*)(GivenView&), 4> only{
       [](GivenView& g) { g.settings.visibility = true; },
       [](GivenView& g) { g.settings.bent_normal = true; },
@@ -163,7 +163,7 @@ TEST_F(CInterface, EachOutputRequestedAloneEqualsThatOfTheCppInterface) {
   }
 }
 
-TEST_F(CInterface, ImagesOfAnySizeEqualThoseOfTheCppInterface) {
+TEST_F(CInterface, ImagesOfAnySizeEqualThoseRecordedByTheCppInterface) {
   const Context context = create_context();
   const std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1}, {1, 7}, {5, 1}, {3, 2}, {31, 9}};
   std::uint32_t index = 0;
@@ -176,7 +176,7 @@ TEST_F(CInterface, ImagesOfAnySizeEqualThoseOfTheCppInterface) {
   }
 }
 
-TEST_F(CInterface, ViewsOfAFrameEqualThoseRecordedAlone) {
+TEST_F(CInterface, ViewsRecordedInOneFrameEqualViewsRecordedInSeparateFrames) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 4; ++i) {
     std::vector<GivenView> views(3, frame_of(i, 16, 12));
@@ -196,7 +196,7 @@ TEST_F(CInterface, ViewsOfAFrameEqualThoseRecordedAlone) {
 
 // The world of a left-handed engine is the mirror image of a right-handed one. If positions,
 // normals and the view matrix are all mirrored, the image must be the same.
-TEST_F(CInterface, LeftHandedWorldGivesTheSameImage) {
+TEST_F(CInterface, MirroringTheWorldAndItsCameraGivesTheSameImage) {
   const Context context = create_context();
   const auto mirror = [](HostImage& image) {
     for (std::size_t i = 2; i < image.texels.size(); i += image.channels) {
@@ -219,7 +219,7 @@ TEST_F(CInterface, LeftHandedWorldGivesTheSameImage) {
   }
 }
 
-TEST_F(CInterface, FrameMayHaveEightViewsWithAllOutputs) {
+TEST_F(CInterface, EightViewsWithAllOutputsCanBeRecordedInOneFrame) {
   const Context context = create_context();
   std::vector<GivenView> views;
   for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
@@ -238,7 +238,7 @@ TEST_F(CInterface, FrameMayHaveEightViewsWithAllOutputs) {
   expect_same_both_ways(*context, views, 0);
 }
 
-TEST_F(CInterface, EveryImageOfEightViewsIsAccepted) {
+TEST_F(CInterface, EightViewsWithAllInputsAndOutputsCanBeRecordedInOneFrame) {
   const Context context = create_context();
   std::vector<GivenView> views;
   for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
@@ -254,7 +254,7 @@ TEST_F(CInterface, EveryImageOfEightViewsIsAccepted) {
 // Visibility is an output that the library itself reads to make other outputs, and that the engine
 // reads after the frame. The next frame writes the same image while the previous one is still in
 // flight; synchronisation validation reports an error if it does not wait.
-TEST_F(CInterface, FramesInFlightMayUseTheSameImages) {
+TEST_F(CInterface, FramesInFlightMayWriteTheSameImagesWithoutAHazard) {
   const Context context = create_context();
   GivenView given = frame_of(0, 33, 17);
   given.settings.bent_normal = true;
@@ -270,7 +270,7 @@ TEST_F(CInterface, FramesInFlightMayUseTheSameImages) {
 
 // An engine discards a frame that it recorded and does not submit, for example because the window
 // was closed.
-TEST_F(CInterface, DiscardedFrameDoesNotAffectLaterFrames) {
+TEST_F(CInterface, FrameDiscardedBeforeSubmissionDoesNotAffectLaterFrames) {
   const Context context = create_context();
   EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "before there is one";
   std::uint32_t index = 0;
@@ -298,7 +298,7 @@ TEST_F(CInterface, DiscardedFrameDoesNotAffectLaterFrames) {
 // In the middle of a sequence, one frame is recorded with other settings, outputs or sizes, and
 // then discarded, or refused as invalid. The next frame must equal that of the C++ functions, which
 // were never given the frame in between.
-TEST_F(CInterface, FrameThatIsNotSubmittedDoesNotChangeTheHistory) {
+TEST_F(CInterface, DiscardedOrRefusedFrameWithOtherSettingsDoesNotChangeTheHistory) {
   struct Case {
     const char* name;
     void (*change)(GivenView&);
@@ -348,14 +348,14 @@ TEST_F(CInterface, FrameThatIsNotSubmittedDoesNotChangeTheHistory) {
   }
 }
 
-TEST_F(CInterface, ReferenceQualityEqualsThatOfTheCppInterface) {
+TEST_F(CInterface, ImageOfReferenceQualityEqualsThatRecordedByTheCppInterface) {
   const Context context = create_context();
   GivenView given = frame_of(0, 6, 4);
   given.settings = quality_settings(Quality::reference, 0.5f);
   expect_same_both_ways(*context, {&given, 1}, 0);
 }
 
-TEST_F(CInterface, CProgramRecordsAFrame) {
+TEST_F(CInterface, ProgramCompiledAsCRecordsTheSameFrameAsTheCppInterface) {
   const AlcoveContextInfo info = engine().context_info();
   GivenView given = frame_of(0, 16, 12);
   given.settings = quality_settings(Quality::high, 0.5f);

@@ -13,7 +13,7 @@ namespace {
 
 class CMemory : public CInterface {};
 
-TEST_F(CMemory, EstimatedMemoryEqualsThatOfRecordedFrames) {
+TEST_F(CMemory, EstimatedMemoryIsWithinFivePercentOfThatOfRecordedFrames) {
   constexpr std::uint32_t kWidth = 256, kHeight = 128;
   struct Case {
     const char* name;
@@ -68,7 +68,7 @@ TEST_F(CMemory, EstimatedMemoryEqualsThatOfRecordedFrames) {
   }
 }
 
-TEST_F(CMemory, InvalidArgumentsAreErrors) {
+TEST_F(CMemory, InvalidArgumentsOfTheMemoryEstimateAreErrors) {
   AlcoveSettings settings{.struct_size = sizeof settings};
   ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
   AlcoveMemory memory{.struct_size = sizeof memory};

@@ -166,7 +166,7 @@ Bytes with_channel(Bytes texels, const SharedFormat& format, std::size_t channel
   return texels;
 }
 
-TEST_F(COutputs, VisibilityInOneChannelLeavesEveryBitOfTheOtherChannels) {
+TEST_F(COutputs, WritingVisibilityToOneChannelKeepsEveryBitOfTheOtherChannels) {
   const std::uint32_t seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
@@ -200,7 +200,7 @@ TEST_F(COutputs, VisibilityInOneChannelLeavesEveryBitOfTheOtherChannels) {
 }
 
 // With dynamic resolution the image may be larger than the part that Alcove writes.
-TEST_F(COutputs, VisibilityInOneChannelLeavesPixelsBeyondItsPart) {
+TEST_F(COutputs, WritingVisibilityToOneChannelKeepsPixelsOutsideTheRenderedPart) {
   const std::uint32_t seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
@@ -222,7 +222,7 @@ TEST_F(COutputs, VisibilityInOneChannelLeavesPixelsBeyondItsPart) {
   }
 }
 
-TEST_F(COutputs, PassesThatReadVisibilityReadItsChannel) {
+TEST_F(COutputs, PassesThatReadVisibilityReadItFromTheChannelThatTheEngineChose) {
   for (const Specular model : {Specular::table, Specular::cone}) {
     GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
     given.settings.specular = model;
@@ -240,7 +240,7 @@ TEST_F(COutputs, PassesThatReadVisibilityReadItsChannel) {
   }
 }
 
-TEST_F(COutputs, OneChannelAddsNoPassAndNoMemory) {
+TEST_F(COutputs, WritingVisibilityToOneChannelAddsNoPassAndNoMemory) {
   GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   AlcoveSettings settings;
   AlcoveView view = view_of(given, settings);
@@ -256,7 +256,7 @@ TEST_F(COutputs, OneChannelAddsNoPassAndNoMemory) {
   EXPECT_EQ(memory_of(context()).allocated, memory.allocated);
 }
 
-TEST_F(COutputs, ImagesOfWhichOneChannelCannotBeWrittenAreRefused) {
+TEST_F(COutputs, ImagesOfWhichASingleChannelCannotBeWrittenAreRefused) {
   AlcoveSettings settings;
   const AlcoveView good = view_of(given_view(test_views()[2], 16, 12, open_plane()), settings);
   const auto error = [&](VkFormat format, AlcoveChannel channel, VkImageUsageFlags usage,
@@ -283,7 +283,7 @@ TEST_F(COutputs, ImagesOfWhichOneChannelCannotBeWrittenAreRefused) {
               HasSubstr("visibility_channel is 5"));
 }
 
-TEST_F(COutputs, OneChannelByTheCppFunctionsEqualsAnImageOfItsOwn) {
+TEST_F(COutputs, VisibilityInOneChannelOfAnImageEqualsVisibilityInAnImageOfItsOwn) {
   const GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   const HostImage alone = run_by_cpp(given, 0).visibility;
   HostImage before{16, 12, {}, 4};
@@ -316,7 +316,7 @@ GivenView half_view(std::uint32_t width, std::uint32_t height, const Scene& scen
   return given;
 }
 
-TEST_F(COutputs, OutputsOfHalfSizeRunNoUpsamplingPass) {
+TEST_F(COutputs, HalfSizeOutputsRunNoUpsamplingPass) {
   AlcoveSettings settings;
   AlcoveView view = view_of(half_view(17, 11, ball_on_floor()), settings);
   run_alone(view);
@@ -324,7 +324,7 @@ TEST_F(COutputs, OutputsOfHalfSizeRunNoUpsamplingPass) {
   EXPECT_THAT(plan_of(context()), Not(HasSubstr("upsample")));
 }
 
-TEST_F(COutputs, OutputsOfHalfSizeAreTheSameByBothInterfacesAtAnySize) {
+TEST_F(COutputs, HalfSizeOutputsOfTheCAndCppInterfacesAreEqualAtAnySize) {
   for (const VkExtent2D size : {VkExtent2D{1, 1}, {3, 1}, {1, 4}, {17, 11}, {18, 12}, {33, 8}}) {
     SCOPED_TRACE(testing::Message() << size.width << "x" << size.height);
     GivenView given = half_view(size.width, size.height, ball_on_floor());
@@ -337,7 +337,7 @@ TEST_F(COutputs, OutputsOfHalfSizeAreTheSameByBothInterfacesAtAnySize) {
   }
 }
 
-TEST_F(COutputs, OutputsOfHalfSizeAreOpenOnAnOpenPlane) {
+TEST_F(COutputs, HalfSizeOutputsOfAnUnoccludedPlaneAreUnoccluded) {
   GivenView given = half_view(17, 11, open_plane());
   given.settings.specular = Specular::slices;
   given.reset = true;
@@ -349,7 +349,7 @@ TEST_F(COutputs, OutputsOfHalfSizeAreOpenOnAnOpenPlane) {
 }
 
 // Away from depth edges a texel is about the mean of its four upsampled pixels.
-TEST_F(COutputs, OutputsOfHalfSizeAgreeWithUpsampledOnes) {
+TEST_F(COutputs, HalfSizeOutputsAgreeWithTheMeanOfUpsampledOutputs) {
   GivenView given = half_view(64, 48, groove(0.8));
   given.settings.bent_normal = true;
   given.settings.specular = Specular::slices;
@@ -376,7 +376,7 @@ TEST_F(COutputs, OutputsOfHalfSizeAgreeWithUpsampledOnes) {
 
 // The radius of this test is so small that nothing occludes. Each bent normal is then the normal of
 // its pixel, and shows which pixel a texel belongs to.
-TEST_F(COutputs, TexelOfHalfSizeBelongsToTheNearestOrFarthestOfItsPixelsInTurn) {
+TEST_F(COutputs, HalfSizeTexelsShowTheNearestOrFarthestOfFourPixelsInACheckerboard) {
   GivenView given = half_view(33, 23, ball_on_floor());
   given.settings.bent_normal = true;
   given.settings.radius = 1e-4f;
@@ -418,7 +418,7 @@ TEST_F(COutputs, TexelOfHalfSizeBelongsToTheNearestOrFarthestOfItsPixelsInTurn) 
   EXPECT_GT(told_apart, 100u);
 }
 
-TEST_F(COutputs, WrongSizesAndSettingsOfHalfSizeAreRefused) {
+TEST_F(COutputs, HalfSizeOutputsOfWrongSizeOrWithUnsuitableSettingsAreRefused) {
   AlcoveSettings settings;
   const GivenView given = half_view(17, 11, open_plane());
   AlcoveView view = view_of(given, settings);

@@ -98,7 +98,7 @@ class CPipelines : public CInterface {
   }
 };
 
-TEST_F(CPipelines, PipelinesComeFromTheCacheOfTheEngineWhichOutlivesTheContext) {
+TEST_F(CPipelines, PipelinesAreCreatedWithTheEnginesPipelineCacheWhichIsNotDestroyed) {
   GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
   (void)run_by_c(*create_counted(), {&given, 1}, 0);
   EXPECT_THAT(caches, testing::ElementsAre(VkPipelineCache{VK_NULL_HANDLE})) << "by default";
@@ -117,7 +117,7 @@ TEST_F(CPipelines, PipelinesComeFromTheCacheOfTheEngineWhichOutlivesTheContext) 
 
 // The number of pipelines that alcovePrepareFrame creates equals the number that recording creates
 // for a view that was not prepared. Recording a prepared view creates none.
-TEST_F(CPipelines, PrepareFrameCreatesAllPipelinesOfAView) {
+TEST_F(CPipelines, PreparingAFrameCreatesAllPipelinesThatItsViewsEverNeed) {
   struct Case {
     const char* name;
     void (*change)(GivenView&);
@@ -169,7 +169,7 @@ TEST_F(CPipelines, PrepareFrameCreatesAllPipelinesOfAView) {
   }
 }
 
-TEST_F(CPipelines, PrepareFrameDoesNotAffectRecordedFrames) {
+TEST_F(CPipelines, PreparingAFrameDoesNotAffectRecordedFrames) {
   const Context context = create_counted();
   for (std::uint32_t i = 0; i < 4; ++i) {
     GivenView given = given_view(test_views()[2], 33, 17, ball_on_floor());

@@ -41,7 +41,7 @@ class CPlan : public CInterface {
   std::uint32_t index_ = 0;
 };
 
-TEST_F(CPlan, SingleOutputNeedsNoPassOrMemoryOfTheOthers) {
+TEST_F(CPlan, SingleRequestedOutputNeedsNoPassOrMemoryOfOtherOutputs) {
   const Context context = create_context();
   GivenView visibility = least();
   visibility.settings.visibility = true;
@@ -80,7 +80,7 @@ TEST_F(CPlan, SingleOutputNeedsNoPassOrMemoryOfTheOthers) {
 
 // If only a part of an output image is written, the library must not begin with a transition from
 // VK_IMAGE_LAYOUT_UNDEFINED, because the driver may then discard the other pixels.
-TEST_F(CPlan, PixelsOutsideTheWrittenPartKeepTheirContents) {
+TEST_F(CPlan, OutputImageWithContentsIsNotDiscardedByItsFirstLayoutTransition) {
   const Context context = create_context();
   for (const Specular specular : {Specular::slices, Specular::table}) {
     GivenView given = least();
@@ -111,7 +111,7 @@ TEST_F(CPlan, PixelsOutsideTheWrittenPartKeepTheirContents) {
   }
 }
 
-TEST_F(CPlan, HistoryTakesMemoryOnlyWhileItIsOn) {
+TEST_F(CPlan, HistoryTakesMemoryOnlyForViewsInWhichHistoryIsOn) {
   const Context context = create_context();
   GivenView given = least();
   given.settings.bent_normal = true;
@@ -158,7 +158,7 @@ TEST_F(CPlan, FailedFrameHasNoMemoryReportAndNoPlan) {
   engine().wait();
 }
 
-TEST_F(CPlan, DroppedViewBeginsANewHistory) {
+TEST_F(CPlan, ViewRecordedAgainAfterItWasDroppedBeginsANewHistory) {
   const Context context = create_context();
   GivenView given = least();
   given.settings.visibility = true;
@@ -196,7 +196,7 @@ TEST_F(CPlan, TimingsListThePassesOfAFinishedFrame) {
   EXPECT_EQ(count, 1u);
 }
 
-TEST_F(CPlan, TimingsContainTheViewOfEachPass) {
+TEST_F(CPlan, TimingsNameTheViewOfEachPass) {
   const Context context = create_context();
   std::array<GivenView, 3> given;
   for (GivenView& view : given) {
@@ -224,7 +224,7 @@ TEST_F(CPlan, TimingsContainTheViewOfEachPass) {
   EXPECT_EQ(passes[given[2].id], plain);
 }
 
-TEST(CSettings, SettingsCanBeFilledPrintedAndPassedBack) {
+TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
   for (int quality = ALCOVE_QUALITY_CONSOLE; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
     AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
     ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
@@ -242,7 +242,7 @@ TEST(CSettings, SettingsCanBeFilledPrintedAndPassedBack) {
 }
 
 // Each printed value reads back as the same number.
-TEST(CSettings, SettingsArePrintedShortAndExactInEveryLocale) {
+TEST(CSettings, SettingValuesArePrintedShortAndExactInEveryLocale) {
   const CommaLocale comma;
   AlcoveSettings settings{.struct_size = sizeof settings};
   ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.15f, &settings), ALCOVE_SUCCESS);
@@ -266,7 +266,7 @@ TEST(CSettings, SettingsArePrintedShortAndExactInEveryLocale) {
 class CSteadyFrame : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(FramesInFlight, CSteadyFrame, testing::Values(1u, 2u, 3u));
 
-TEST_P(CSteadyFrame, AllocatesNothingCreatesNothingAndUpdatesNoDescriptor) {
+TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesNoDescriptor) {
   const auto device = sample::VulkanDevice::create();
   ASSERT_TRUE(device) << device.error();
   Engine engine(**device);

@@ -381,7 +381,7 @@ void CResize::run_for(std::chrono::seconds time) {
   }
 }
 
-TEST_F(CResize, ResultsStayInRangeAndMemoryBoundedWhileEverythingChanges) {
+TEST_F(CResize, ResultsStayInRangeAndMemoryBoundedWhileSizesSettingsAndViewsChangeAtRandom) {
   run_for(wanted_time());
 }
 

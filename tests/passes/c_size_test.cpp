@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class CSize : public CInterface {
+class CDynamicResolution : public CInterface {
  protected:
   // Makes an image of `larger` pixels. The part that is used holds `contents`.
   AlcoveImage part(const HostImage& contents, VkExtent2D larger) {
@@ -23,7 +23,7 @@ class CSize : public CInterface {
   }
 };
 
-TEST_F(CSize, PartOfAnImageGivesTheSameResultAsAnImageOfThatSize) {
+TEST_F(CDynamicResolution, RenderingToAPartOfAnImageGivesTheSameResultAsAnImageOfThatSize) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 21, 14, ball_on_floor());
   given.settings.bent_normal = true;
@@ -48,7 +48,7 @@ TEST_F(CSize, PartOfAnImageGivesTheSameResultAsAnImageOfThatSize) {
   }
 }
 
-TEST_F(CSize, LargestSizeDoesNotChangeTheResult) {
+TEST_F(CDynamicResolution, DeclaringALargestImageSizeDoesNotChangeTheResult) {
   const Context context = create_context();
   for (std::uint32_t i = 0; i < 4; ++i) {
     GivenView given = given_view(test_views()[2], 21, 14, ball_on_floor());
@@ -64,7 +64,7 @@ TEST_F(CSize, LargestSizeDoesNotChangeTheResult) {
 
 // A view whose size changes in every frame accumulates history like a view of constant size, both
 // if history is found by the camera alone and if it is found by motion vectors.
-TEST_F(CSize, HistoryContinuesWhileTheSizeChanges) {
+TEST_F(CDynamicResolution, HistoryKeepsAccumulatingWhileTheRenderedSizeChangesInEveryFrame) {
   constexpr std::array<VkExtent2D, 4> kSizes{{{48, 36}, {40, 30}, {56, 42}, {44, 33}}};
   constexpr VkExtent2D kLargest{56, 42};
   constexpr std::uint32_t kFrames = 17;  // the last frame has the first of the sizes
@@ -108,7 +108,7 @@ TEST_F(CSize, HistoryContinuesWhileTheSizeChanges) {
   }
 }
 
-TEST_F(CSize, SizesAboveTheLargestAreRefused) {
+TEST_F(CDynamicResolution, RenderedSizesAboveTheDeclaredLargestSizeAreRefused) {
   const Context context = create_context();
   GivenView given = given_view(test_views()[2], 21, 14, ball_on_floor());
   AlcoveSettings settings;

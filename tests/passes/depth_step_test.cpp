@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kWidth = 96;
 constexpr std::uint32_t kHeight = 64;
 
-class DepthStep : public PassTest {
+class DepthPrecision : public PassTest {
  protected:
   // Returns the visibility of the last of `frames` frames with a depth buffer of `format`.
   HostImage visibility(const TestView& view, const Drawing& drawing, VkFormat format,
@@ -74,7 +74,7 @@ Drawing with_fixed_point_depth(Drawing drawing, double levels) {
 }
 
 // The ground lies 60 units below the eye and is seen 500 units away with a telephoto lens.
-TEST_F(DepthStep, FlatGroundIsUnoccludedWithFloatDepthThatIsNotReversed) {
+TEST_F(DepthPrecision, DistantGroundIsUnoccludedWithFloatDepthThatIsNotReversed) {
   const double scale = 1.0 / std::tan(1.5 * std::numbers::pi / 180.0);
   const TestView view = perspective_view("", scale / 1.5, scale, 0.01, 5000.0, false);
   const double slope = std::atan2(60.0, 500.0);
@@ -85,7 +85,7 @@ TEST_F(DepthStep, FlatGroundIsUnoccludedWithFloatDepthThatIsNotReversed) {
   }
 }
 
-TEST_F(DepthStep, FloorFiftyUnitsAwayIsUnoccludedWith16BitDepth) {
+TEST_F(DepthPrecision, FloorFiftyUnitsAwayIsUnoccludedWith16BitDepth) {
   const TestView view = perspective_view("", 1.2, 1.8, 0.1, 1000.0, false);
   const Drawing drawing = with_fixed_point_depth(
       draw(view, kWidth, kHeight, {plane({0.0, 0.0, -50.0}, {0.0, 0.8, 0.6})}), 65535.0);
@@ -94,7 +94,7 @@ TEST_F(DepthStep, FloorFiftyUnitsAwayIsUnoccludedWith16BitDepth) {
   }
 }
 
-TEST_F(DepthStep, FloorIsUnoccludedInAnOrthographicViewWithReversedDepth) {
+TEST_F(DepthPrecision, FloorIsUnoccludedInADeepOrthographicViewWithReversedDepth) {
   TestView view = orthographic_view("", 6.0, 4.0, 0.1, 1e6);
   view.view.clip_from_view[10] = -view.view.clip_from_view[10];
   view.view.clip_from_view[14] = 1.0f - view.view.clip_from_view[14];
@@ -105,7 +105,7 @@ TEST_F(DepthStep, FloorIsUnoccludedInAnOrthographicViewWithReversedDepth) {
 }
 
 // The tolerance must not remove occlusion that the depth buffer resolves.
-TEST_F(DepthStep, GrooveDeeperThanManyDepthStepsKeepsItsOcclusion) {
+TEST_F(DepthPrecision, GrooveKeepsItsOcclusionWith16BitDepth) {
   const TestView view = perspective_view("", 1.2, 1.8, 0.1, 100.0, false);
   const Drawing exact = draw(view, kWidth, kHeight, groove(0.8));
   const OcclusionSettings settings = quality_settings(Quality::high, 0.5f);

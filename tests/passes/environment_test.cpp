@@ -93,7 +93,7 @@ vec3 prefiltered(vec3 normal, float alpha) {
   return vec3(sum / weights);
 }
 
-TEST_F(EnvironmentPass, HarmonicsAgreeWithQuadrature) {
+TEST_F(EnvironmentPass, SphericalHarmonicsOfAnEnvironmentMapAgreeWithQuadrature) {
   const HostImage source = equirectangular(512, sky);
   run_environment(source, {.size = kSize, .levels = kLevels});
   for (std::uint32_t i = 0; i < maths::kHarmonics; ++i) {
@@ -104,7 +104,7 @@ TEST_F(EnvironmentPass, HarmonicsAgreeWithQuadrature) {
   }
 }
 
-TEST_F(EnvironmentPass, MipLevelsAgreeWithQuadratureOfTheLobe) {
+TEST_F(EnvironmentPass, PrefilteredMipLevelsAgreeWithQuadratureOfTheGgxLobe) {
   const HostImage source = equirectangular(512, sky);
   run_environment(source, {.size = kSize, .levels = kLevels});
   maths_test::RandomInput random(1);  // a fixed set, because the mean of so few directions varies
@@ -130,7 +130,7 @@ TEST_F(EnvironmentPass, MipLevelsAgreeWithQuadratureOfTheLobe) {
   }
 }
 
-TEST_F(EnvironmentPass, WhiteEnvironmentStaysWhiteInEveryTexel) {
+TEST_F(EnvironmentPass, WhiteEnvironmentMapIsPrefilteredToWhiteInEveryTexel) {
   const HostImage source = equirectangular(64, [](vec3) { return vec3(1); });
   run_environment(source, {.size = 32, .levels = 4, .samples = 16});
   for (std::size_t level = 0; level < 4; ++level) {
@@ -142,7 +142,7 @@ TEST_F(EnvironmentPass, WhiteEnvironmentStaysWhiteInEveryTexel) {
   }
 }
 
-TEST_F(EnvironmentPass, InvalidRadianceIsBlackAndInfinityBecomesTheLargestHalfFloat) {
+TEST_F(EnvironmentPass, InvalidRadianceIsReadAsBlackAndInfinityAsTheLargestHalfFloat) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   const HostImage source = equirectangular(
@@ -156,7 +156,7 @@ TEST_F(EnvironmentPass, InvalidRadianceIsBlackAndInfinityBecomesTheLargestHalfFl
   EXPECT_EQ(result(0).at(13, 8, 2), 65504.0f);
 }
 
-TEST_F(EnvironmentPass, IsCulledWhenItsOutputIsNotRead) {
+TEST_F(EnvironmentPass, EnvironmentPassIsCulledIfNobodyReadsItsOutput) {
   const HostImage source = equirectangular(32, sky);
   run([&](Graph& graph) {
     const auto light = upload(graph, source);
@@ -168,7 +168,7 @@ TEST_F(EnvironmentPass, IsCulledWhenItsOutputIsNotRead) {
   }
 }
 
-TEST_F(EnvironmentPass, InvalidInputsAreReportedByName) {
+TEST_F(EnvironmentPass, InvalidInputOfTheEnvironmentPassIsReportedByName) {
   const HostImage source = equirectangular(32, sky);
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), {}, 0};

@@ -71,7 +71,7 @@ class Extremes : public PassTest {
   }
 };
 
-TEST_F(Extremes, HistoryIsIndependentOfTheUnitOfLength) {
+TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
   constexpr std::array<std::pair<Quality, bool>, 4> kCases{{{Quality::medium, false},
                                                             {Quality::medium, true},
                                                             {Quality::console, false},
@@ -121,7 +121,7 @@ TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
   }
 }
 
-TEST_F(Extremes, OccludersBehindTheEyeOfAnOrthographicViewHaveThickness) {
+TEST_F(Extremes, PlaneBehindTheEyeOfAnOrthographicViewDoesNotOccludeItself) {
   for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
     OcclusionSettings settings = everything(Quality::medium, 1.0f);
     settings.advanced.estimator = estimator;
@@ -173,7 +173,7 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
   EXPECT_LT(rms(visibility_at(1e6), visibility_at(0.0)), 1e-3);
 }
 
-TEST_F(Extremes, InvalidNormalsAndRoughnessDoNotPersistInHistory) {
+TEST_F(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
   constexpr std::array kHoles{0u, 20 * kWidth + 28, 20 * kWidth + 29, 7 * kWidth + 40};
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing clean = draw(view, kWidth, kHeight, ball_on_floor());
@@ -224,7 +224,7 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessDoNotPersistInHistory) {
 
 // Every traced pixel of a tile lies on a surface that is 10^10 times nearer than the other pixels.
 // The weights of the traced pixels for the other pixels are tiny, and must not become zero.
-TEST_F(Extremes, SurfacesFarBehindTracedPixelsKeepTheirVisibility) {
+TEST_F(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
   constexpr std::uint32_t kSide = 64;
   const TestView view = perspective_view("", 1.2, 1.2, 0.01, kInfinity, true);
   std::vector<double> means;
@@ -252,7 +252,7 @@ TEST_F(Extremes, SurfacesFarBehindTracedPixelsKeepTheirVisibility) {
   EXPECT_NEAR(means[1], means[0], 1e-4);
 }
 
-TEST_F(Extremes, AnyRadiusGivesFiniteValuesInRange) {
+TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
     std::vector<HostImage> largest;
@@ -311,7 +311,7 @@ TEST_F(Extremes, PlaneIsUnoccludedAtTheNarrowestAndWidestFieldOfView) {
   }
 }
 
-TEST_F(Extremes, ImageSizeMayChangeToOnePixelAndBack) {
+TEST_F(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
   constexpr VkExtent2D kLargest{64, 48};
   constexpr std::array<VkExtent2D, 9> kSizes{
       {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};

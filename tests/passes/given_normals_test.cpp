@@ -70,7 +70,7 @@ TEST_F(GivenNormals, UnoccludedPlaneWithNormalsThatFaceAwayStaysUnoccluded) {
   }
 }
 
-TEST_F(GivenNormals, InvertedNormalsGiveTheSameImages) {
+TEST_F(GivenNormals, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacingOnes) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   for (const Specular specular : {Specular::slices, Specular::table}) {
@@ -83,7 +83,7 @@ TEST_F(GivenNormals, InvertedNormalsGiveTheSameImages) {
   }
 }
 
-TEST_F(GivenNormals, MissingNormalsAreTakenFromDepth) {
+TEST_F(GivenNormals, ZeroAndNonFiniteNormalsAreReplacedByNormalsFromDepth) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(40.0, 4.0)});
     const OcclusionSettings settings = all_outputs(Quality::medium);
@@ -102,7 +102,7 @@ TEST_F(GivenNormals, MissingNormalsAreTakenFromDepth) {
   }
 }
 
-TEST_F(GivenNormals, MissingNormalsNextToTheSkyOrInTinyImagesGiveValidResults) {
+TEST_F(GivenNormals, NaNNormalsNextToTheSkyOrInTinyImagesGiveValidResults) {
   const TestView view = test_views()[2];
   Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
   post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };

@@ -52,7 +52,7 @@ Difference difference(const HostImage& a, const HostImage& b) {
   return found;
 }
 
-TEST_F(GtaoInvariance, ResultIsIndependentOfTheUnitOfLength) {
+TEST_F(GtaoInvariance, VisibilityIsIndependentOfTheUnitOfLength) {
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView one = perspective_view("one", 1.2, 1.8, 0.1, kInfinity, true);
@@ -72,7 +72,7 @@ TEST_F(GtaoInvariance, ResultIsIndependentOfTheUnitOfLength) {
   }
 }
 
-TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthAgree) {
+TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthBuffersGiveTheSameVisibility) {
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView reversed = perspective_view("", 1.2, 1.8, 0.5, kInfinity, true);
@@ -93,7 +93,7 @@ TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthAgree) {
   }
 }
 
-TEST_F(GtaoInvariance, OrthographicViewEqualsANarrowPerspectiveFromAfar) {
+TEST_F(GtaoInvariance, OrthographicViewGivesTheVisibilityOfANarrowPerspectiveFromAfar) {
   const double away = 2000.0;
   const TestView flat = orthographic_view("orthographic", 3.0, 2.0, 0.1, 20.0);
   const TestView narrow =
@@ -113,7 +113,7 @@ TEST_F(GtaoInvariance, OrthographicViewEqualsANarrowPerspectiveFromAfar) {
 
 // The sizes are not multiples of the tile size, so that the border cuts tiles. Every pixel must be
 // written.
-TEST_F(GtaoInvariance, EverySizeTileSizeAndPatternCoversEveryPixel) {
+TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeTileSizeAndSamplingPattern) {
   const TestView view = test_views()[2];
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1}, {3, 5}, {17, 9}, {33, 1}};
   for (const auto& [width, height] : sizes) {
@@ -155,7 +155,7 @@ TEST_F(GtaoInvariance, EverySizeTileSizeAndPatternCoversEveryPixel) {
   }
 }
 
-TEST_F(GtaoInvariance, EveryPatternHasTheSameMeanInAGroove) {
+TEST_F(GtaoInvariance, AllSamplingPatternsAndTileSizesGiveTheSameMeanVisibilityInAGroove) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 64, 48, groove(0.8));
   for (const Estimator estimator : kEstimators) {
@@ -179,7 +179,7 @@ TEST_F(GtaoInvariance, EveryPatternHasTheSameMeanInAGroove) {
   }
 }
 
-TEST_F(GtaoInvariance, NaNDepthOnlyAffectsNearbyPixelsAndGivesFiniteResults) {
+TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteResults) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : kEstimators) {
     OcclusionSettings settings = unfiltered(estimator, 0.5f);
@@ -254,7 +254,7 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
 
 // The noise depends only on the pixel and the frame number. Pixels that show the same to both eyes
 // must get the same values.
-TEST_F(GtaoInvariance, BothEyesOfAFrameGetTheSameNoise) {
+TEST_F(GtaoInvariance, BothEyesOfAStereoFrameGetTheSameNoise) {
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, kWidth, kHeight, gtao_scenes().front().scene);
   for (const Pattern pattern : {Pattern::golden, Pattern::hilbert, Pattern::paper}) {

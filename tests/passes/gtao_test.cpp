@@ -58,7 +58,7 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
 }
 
 // Tests the setting snap_to_texels: without it, tilted planes occlude themselves.
-TEST_F(GtaoPass, TiltedPlaneOccludesItselfIfSamplesAreNotSnapped) {
+TEST_F(GtaoPass, TiltedPlaneOccludesItselfIfSamplesAreNotSnappedToTexelCentres) {
   const TestView view = test_views()[2];
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     OcclusionSettings settings = precise(Quality::medium);

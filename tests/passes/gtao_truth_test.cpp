@@ -87,7 +87,7 @@ double mean_bent_error(const HostImage& bent, const Drawing& drawing, double rad
   return sum / count * 180.0 / std::numbers::pi;
 }
 
-TEST_F(GtaoTruth, HorizonsAgreeWithBruteForceInEverySceneAndView) {
+TEST_F(GtaoTruth, EstimatorHorizonsAgreesWithBruteForceInEverySceneAndView) {
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name);
@@ -100,7 +100,7 @@ TEST_F(GtaoTruth, HorizonsAgreeWithBruteForceInEverySceneAndView) {
   }
 }
 
-TEST_F(GtaoTruth, ConnectedSamplesAgreeWithBruteForceWhenHiddenVolumeIsSolid) {
+TEST_F(GtaoTruth, EstimatorConnectedAgreesWithBruteForceIfVolumeBehindOccludersIsSolid) {
   for (const NamedScene& scene : gtao_scenes()) {
     SCOPED_TRACE(scene.name);
     const Errors errors = errors_of(Estimator::connected, test_views()[2], scene.scene);
@@ -110,7 +110,7 @@ TEST_F(GtaoTruth, ConnectedSamplesAgreeWithBruteForceWhenHiddenVolumeIsSolid) {
 }
 
 // Visibility of a floor at distance d from a long platform of height h: (1 + cos atan(h / d)) / 2.
-TEST_F(GtaoTruth, FloorInFrontOfAPlatformMatchesTheClosedForm) {
+TEST_F(GtaoTruth, VisibilityOfAFloorInFrontOfAPlatformMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
@@ -131,7 +131,7 @@ TEST_F(GtaoTruth, FloorInFrontOfAPlatformMatchesTheClosedForm) {
 
 // The visibility of a wall of a groove with the angle a between its walls is (1 - cos a) / 2 near
 // the bottom.
-TEST_F(GtaoTruth, GrooveMatchesTheClosedFormNearItsBottom) {
+TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   for (const double half_angle : {0.5, std::numbers::pi / 4.0, 1.2}) {
     const Drawing drawing = draw(view, 128, 128, groove(half_angle, 9.0));
@@ -149,7 +149,7 @@ TEST_F(GtaoTruth, GrooveMatchesTheClosedFormNearItsBottom) {
 
 // The unoccluded sky above a platform's edge is a spherical lune. Its fraction of the hemisphere is
 // its angle divided by pi.
-TEST_F(GtaoTruth, UniformWeightingMeasuresSolidAngle) {
+TEST_F(GtaoTruth, UniformWeightingGivesTheVisibleSolidAngleAsVisibility) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5, half_angle = std::numbers::pi / 4.0;
   const Drawing platform = draw(view, 128, 128, step(0.0, height));
@@ -184,7 +184,7 @@ double mean_of(const HostImage& image) {
   return sum / (image.width * image.height);
 }
 
-TEST_F(GtaoTruth, FalloffFadesOccludersTowardsTheRadius) {
+TEST_F(GtaoTruth, LargerFalloffFadesOccludersTowardsTheRadiusAndKeepsNearOnes) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, groove(0.8));
   OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
@@ -200,7 +200,7 @@ TEST_F(GtaoTruth, FalloffFadesOccludersTowardsTheRadius) {
   }
 }
 
-TEST_F(GtaoTruth, HeuristicWithBlendZeroEqualsHorizons) {
+TEST_F(GtaoTruth, EstimatorHeuristicWithBlendZeroEqualsEstimatorHorizons) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
   const auto run_with = [&](Estimator estimator, float blend) {
@@ -220,7 +220,7 @@ TEST_F(GtaoTruth, HeuristicWithBlendZeroEqualsHorizons) {
   EXPECT_GT(mean_of(thinner), mean_of(horizons));
 }
 
-TEST_F(GtaoTruth, BitmaskOfThickOccludersEqualsHorizons) {
+TEST_F(GtaoTruth, EstimatorBitmaskWithThickOccludersEqualsEstimatorHorizons) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
   OcclusionSettings thick = exact(Estimator::bitmask, 1.2f);
@@ -238,7 +238,7 @@ TEST_F(GtaoTruth, BitmaskOfThickOccludersEqualsHorizons) {
 }
 
 // All occluders have the same distance from the eye.
-TEST_F(GtaoTruth, ThicknessUnitsGiveTheSameImageIfTheyMeanTheSameThickness) {
+TEST_F(GtaoTruth, EqualThicknessGivenInRadiiOrInDistancesGivesTheSameMeanVisibility) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5, 4.0));
   const float radius = 1.2f, distance = 3.5f;
@@ -261,7 +261,7 @@ TEST_F(GtaoTruth, ThicknessUnitsGiveTheSameImageIfTheyMeanTheSameThickness) {
 }
 
 // A slat in front of a wall occludes little of the volume behind it, and a board occludes much.
-TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
+TEST_F(GtaoTruth, VolumeBehindAWideOccluderOccludesMoreThanBehindANarrowOne) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     // Returns the occlusion behind slats that begin at x = 0 and are `apart` from each other.
@@ -295,7 +295,7 @@ TEST_F(GtaoTruth, HiddenVolumeIsMoreSolidBehindWideOccluders) {
 
 // A strip as wide as one sample is at most as thick as it is wide, whatever the setting. A board as
 // wide as many samples has the thickness of the setting.
-TEST_F(GtaoTruth, OccludersAreAtMostAsThickAsTheyAreWide) {
+TEST_F(GtaoTruth, ThicknessSettingHardlyDarkensBesideAnOccluderAsNarrowAsOneSample) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     const auto darkened_by_thickness = [&](double width) {
@@ -340,7 +340,7 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
 }
 
 // A groove whose right wall is mostly outside the image, and the same groove completely inside it.
-TEST_F(GtaoTruth, WallThatLeavesTheImageOccludesAsIfVisible) {
+TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible) {
   constexpr std::uint32_t kWhole = 192, kPart = 108, kHeight = 40;
   constexpr float kRadius = 1.2f;
   for (const TestView& view : {perspective_view("perspective", 1.2, 5.8, 0.1, 100.0, true),
@@ -372,7 +372,7 @@ TEST_F(GtaoTruth, WallThatLeavesTheImageOccludesAsIfVisible) {
   }
 }
 
-TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForce) {
+TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForceInEveryScene) {
   const float radius = 1.2f;
   for (const TestView& view : {test_views()[2], test_views()[5]}) {
     for (const NamedScene& scene : gtao_scenes()) {

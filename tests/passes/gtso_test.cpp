@@ -125,7 +125,7 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Specul
   }
 }
 
-TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
+TEST_F(GtsoPass, SpecularOcclusionAgreesWithTheFormulasOnTheCpuInEveryKindOfView) {
   const Inputs inputs = random_inputs();
   for (const TestView& view : test_views()) {
     for (const Specular model : kModels) {
@@ -142,7 +142,7 @@ TEST_F(GtsoPass, AgreesWithTheFormulasInEveryView) {
 }
 
 // At each pixel one or several of the inputs are invalid.
-TEST_F(GtsoPass, InvalidInputsGiveValuesInRange) {
+TEST_F(GtsoPass, InvalidTexelsInAnyInputGiveSpecularOcclusionInRange) {
   constexpr std::array kWrong{kNaN, std::numeric_limits<float>::infinity(), 0.0f, -1e30f};
   Inputs inputs = random_inputs();
   for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
@@ -191,7 +191,7 @@ float lowest_of(const HostImage& image, const PlaneScene& plane, const View& vie
   return lowest;
 }
 
-TEST_F(GtsoPass, UnoccludedSurfaceStaysUnoccludedAtAnyRoughness) {
+TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
   const std::array roughness{0.0f, 0.1f, 0.3f, 0.6f, 1.0f};
   for (const TestView& view : test_views()) {
     for (const float degrees : {0.0f, 30.0f, 60.0f, 84.0f}) {
@@ -245,7 +245,7 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   EXPECT_EQ(in_view_space.texels, with(view, true).texels);
 }
 
-TEST_F(GtsoPass, IsCulledWhenItsOutputIsNotRead) {
+TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
   const Inputs inputs = random_inputs();
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
@@ -263,7 +263,7 @@ TEST_F(GtsoPass, IsCulledWhenItsOutputIsNotRead) {
   }
 }
 
-TEST_F(GtsoPass, OnlyTheModelTableCreatesALookupTable) {
+TEST_F(GtsoPass, LookupTableIsCreatedOnlyForTheSpecularModelTable) {
   const Inputs inputs = random_inputs();
   const auto run_with = [&](Specular model) {
     run([&](Graph& graph) {
@@ -280,7 +280,7 @@ TEST_F(GtsoPass, OnlyTheModelTableCreatesALookupTable) {
   EXPECT_EQ(run_with(Specular::table), maths::kGtsoEntries);
 }
 
-TEST_F(GtsoPass, InvalidInputsAreReportedByName) {
+TEST_F(GtsoPass, InvalidInputOfTheSpecularOcclusionPassIsReportedByName) {
   const Inputs inputs = random_inputs();
   const HostImage small{2, 2, std::vector<float>(4), 1};
   run([&](Graph& graph) {

@@ -24,7 +24,7 @@ OcclusionSettings half_resolution(std::uint32_t history_frames) {
   return settings;
 }
 
-TEST(HalfTexelPacking, PackedValuesFitTheSignedNormalisedFormat) {
+TEST(HalfTexelPacking, PackedTexelsOfHalfResolutionFitTheRangeMinusOneToOne) {
   maths::HalfTexel texel;
   texel.occlusion = 1.0f;
   texel.weight = static_cast<float>(maths::kMaxHistoryFrames);
@@ -36,7 +36,7 @@ TEST(HalfTexelPacking, PackedValuesFitTheSignedNormalisedFormat) {
   EXPECT_EQ(packed.w, -1.0f);
 }
 
-TEST(HalfTexelPacking, PackingKeepsDepthAndRecentOcclusion) {
+TEST(HalfTexelPacking, PackingKeepsInverseDepthAndRecentOcclusionApproximately) {
   for (const float inverse_depth : {1e-12f, 0.013f, 0.7f, 20.0f, 1e12f}) {
     const float unknown = maths::half_texel_depth(inverse_depth, 0.5f, false);
     EXPECT_NEAR(unknown / inverse_depth, 1.0, 3.1e-5);
@@ -51,7 +51,7 @@ TEST(HalfTexelPacking, PackingKeepsDepthAndRecentOcclusion) {
 
 class HalfResolution : public Reconstruct {};
 
-TEST_F(HalfResolution, ConstantOcclusionStaysConstantAtOddSizes) {
+TEST_F(HalfResolution, ConstantRawOcclusionGivesConstantVisibilityAtOddImageSizes) {
   const TestView view = test_views()[2];
   std::vector<NamedScene> scenes = gtao_scenes();
   scenes.push_back({"grazing", {tilted_plane(75.0, 4.0)}});
@@ -122,7 +122,7 @@ TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
 // With dynamic resolution the history's textures are larger than the image. Beyond the image's
 // border they hold results of an earlier, larger image. history_frames is 1, so that nothing but
 // this frame and such texels could enter the result.
-TEST_F(HalfResolution, TexelsOutsideTheRenderedSizeAreNotRead) {
+TEST_F(HalfResolution, StaleHistoryTexelsOutsideTheRenderedPartOfAnImageAreNotRead) {
   constexpr VkExtent2D kLargest{kWidth, kHeight};
   const TestView view = test_views()[2];
   const Drawing large = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
@@ -148,7 +148,7 @@ TEST_F(HalfResolution, TexelsOutsideTheRenderedSizeAreNotRead) {
   EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(0.9f, kRounding)));
 }
 
-TEST_F(HalfResolution, BentNormalsAndSpecularOcclusionMatchFullResolutionOnAPlane) {
+TEST_F(HalfResolution, UnoccludedPlaneGetsItsNormalAndSpecularVisibilityOneAtHalfResolution) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 33, 23, {tilted_plane(40.0, 4.0)});
   OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
@@ -181,7 +181,7 @@ TEST_F(HalfResolution, BentNormalsAndSpecularOcclusionMatchFullResolutionOnAPlan
   }
 }
 
-TEST_F(HalfResolution, TilesOfOnePixelAreRefused) {
+TEST_F(HalfResolution, HalfResolutionWithTilesOfOnePixelIsRefused) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
   framegraph::Graph graph;

@@ -51,11 +51,11 @@ OcclusionSettings with_history(bool bent_normal) {
   return settings;
 }
 
-TEST_F(HistoryRestart, BentNormalsStartANewHistoryWhenTurnedOnAgain) {
+TEST_F(HistoryRestart, HistoryRestartsWhenBentNormalsAreTurnedOnAgain) {
   expect_a_new_beginning(with_history(true), with_history(false));
 }
 
-TEST_F(HistoryRestart, HistoryStartsWithoutContentsWhenTurnedOnAgain) {
+TEST_F(HistoryRestart, HistoryTurnedOffAndOnAgainStartsWithoutOldContents) {
   for (const bool bent_normal : {false, true}) {
     OcclusionSettings without = with_history(bent_normal);
     without.history_frames = 0;

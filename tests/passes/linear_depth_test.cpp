@@ -44,7 +44,7 @@ class LinearDepth : public PassTest {
   }
 };
 
-TEST_F(LinearDepth, EqualsTheInverseProjectionForEveryKindOfProjection) {
+TEST_F(LinearDepth, LinearDepthEqualsTheInverseProjectionOfRawDepthForEveryKindOfProjection) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const glm::dmat4 projection = clip_from_view(view);
@@ -71,7 +71,7 @@ TEST_F(LinearDepth, EqualsTheInverseProjectionForEveryKindOfProjection) {
   }
 }
 
-TEST_F(LinearDepth, InvalidDepthsBecomeSkyOrTheNearPlane) {
+TEST_F(LinearDepth, RawDepthsOutOfRangeBecomeTheSkyOrTheNearPlaneAndNaNBecomesTheSky) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const glm::dmat4 projection = clip_from_view(view);
@@ -90,7 +90,7 @@ TEST_F(LinearDepth, InvalidDepthsBecomeSkyOrTheNearPlane) {
   }
 }
 
-TEST_F(LinearDepth, EveryPixelIsWrittenAtAnySize) {
+TEST_F(LinearDepth, EveryPixelIsWrittenAtAnyImageSize) {
   const TestView view = test_views()[2];
   const double expected = linear_depth(clip_from_view(view), 0.5f);
   for (const auto& [width, height] :

@@ -30,7 +30,7 @@ Inputs random_inputs() {
   return inputs;
 }
 
-TEST_F(MultiBouncePass, AgreesWithTheFormulaInEachChannel) {
+TEST_F(MultiBouncePass, MultiBounceImageAgreesWithTheFormulaInEachColourChannel) {
   const Inputs inputs = random_inputs();
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), {}, 0};
@@ -52,7 +52,7 @@ TEST_F(MultiBouncePass, AgreesWithTheFormulaInEachChannel) {
   }
 }
 
-TEST_F(MultiBouncePass, IsCulledWhenItsOutputIsNotRead) {
+TEST_F(MultiBouncePass, MultiBouncePassIsCulledIfNobodyReadsItsOutput) {
   const Inputs inputs = random_inputs();
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), {}, 0};
@@ -65,7 +65,7 @@ TEST_F(MultiBouncePass, IsCulledWhenItsOutputIsNotRead) {
   }
 }
 
-TEST_F(MultiBouncePass, InputsOfDifferentSizesAreRefused) {
+TEST_F(MultiBouncePass, MissingAlbedoAndInputsOfDifferentSizesAreRefused) {
   const Inputs inputs = random_inputs();
   const HostImage small{2, 2, std::vector<float>(16), 4};
   run([&](Graph& graph) {

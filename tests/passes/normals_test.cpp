@@ -14,7 +14,7 @@ using framegraph::Graph;
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-class Normals : public PassTest {
+class NormalsFromDepth : public PassTest {
  protected:
   HostImage normals(const View& view, const HostImage& depth_ndc) {
     run([&](Graph& graph) {
@@ -66,7 +66,7 @@ double largest_error(const HostImage& normals, const Drawing& drawing) {
   return largest;
 }
 
-TEST_F(Normals, PlanesGetTheExactNormalAtAnyTiltUpToTheBorder) {
+TEST_F(NormalsFromDepth, PlanesGetTheirExactNormalAtAnyTiltUpToTheImageBorder) {
   for (const TestView& view : test_views()) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
       SCOPED_TRACE(testing::Message() << view.name << " tilted " << tilt << " degrees");
@@ -77,7 +77,7 @@ TEST_F(Normals, PlanesGetTheExactNormalAtAnyTiltUpToTheBorder) {
   }
 }
 
-TEST_F(Normals, NormalsAreNotBlurredAcrossADepthStep) {
+TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossADepthStep) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     // The front of a box in front of a wall. Both face the eye, and their depths differ by at least
@@ -89,7 +89,7 @@ TEST_F(Normals, NormalsAreNotBlurredAcrossADepthStep) {
   }
 }
 
-TEST_F(Normals, NormalsAreNotBlurredAcrossACrease) {
+TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossACrease) {
   const TestView view = test_views()[5];
   Surface left = plane({0.0, 0.0, -5.0}, {1.0, 0.0, 1.0});
   left.keep = [](const glm::dvec3& p) { return p.x < 0.0; };
@@ -99,7 +99,7 @@ TEST_F(Normals, NormalsAreNotBlurredAcrossACrease) {
   EXPECT_LT(largest_error(normals(view.view, drawing.depth_ndc), drawing), 0.5);
 }
 
-TEST_F(Normals, SkyFacesTheEyeAndDoesNotAffectItsNeighbours) {
+TEST_F(NormalsFromDepth, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbouringNormals) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
@@ -117,7 +117,7 @@ TEST_F(Normals, SkyFacesTheEyeAndDoesNotAffectItsNeighbours) {
   }
 }
 
-TEST_F(Normals, StripTwoPixelsWideGetsItsOwnNormal) {
+TEST_F(NormalsFromDepth, SurfaceTwoPixelsWideGetsItsOwnNormal) {
   for (const TestView& view : test_views()) {
     for (const double n_dot_v : {-0.5, 0.5}) {
       SCOPED_TRACE(testing::Message() << view.name << ", n.v " << n_dot_v);
@@ -135,7 +135,7 @@ TEST_F(Normals, StripTwoPixelsWideGetsItsOwnNormal) {
   }
 }
 
-TEST_F(Normals, NaNDepthAffectsItsPixelOnly) {
+TEST_F(NormalsFromDepth, PixelWithNaNDepthAffectsNoOtherNormal) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Drawing drawing = draw(view, 40, 30, {tilted_plane(50.0, 4.0)});
@@ -150,7 +150,7 @@ TEST_F(Normals, NaNDepthAffectsItsPixelOnly) {
   }
 }
 
-TEST_F(Normals, ImagesOfOneRowOrColumnGetUnitVectors) {
+TEST_F(NormalsFromDepth, ImagesOfOneRowOrColumnGetNormalsOfUnitLength) {
   const TestView view = test_views()[2];
   for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}}) {
     SCOPED_TRACE(testing::Message() << width << " x " << height);

@@ -94,7 +94,7 @@ OcclusionSettings least() {
   return settings;
 }
 
-TEST_F(OcclusionPlan, SmallestFrameHasTwoPassesAndTwoTextures) {
+TEST_F(OcclusionPlan, FrameThatOnlyComputesVisibilityHasTwoPassesAndTwoTextures) {
   const Kept frame = kept(least());
   EXPECT_THAT(frame.passes, ElementsAre("gtao", "reconstruct"));
   EXPECT_THAT(frame.transients, testing::UnorderedElementsAre("raw occlusion", "visibility"));
@@ -102,7 +102,7 @@ TEST_F(OcclusionPlan, SmallestFrameHasTwoPassesAndTwoTextures) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), 2u);
 }
 
-TEST_F(OcclusionPlan, NormalsPassRunsOnlyWithoutGivenNormals) {
+TEST_F(OcclusionPlan, PassThatComputesNormalsFromDepthRunsOnlyIfNoNormalsAreGiven) {
   EXPECT_THAT(kept(least()).passes, Not(Contains("normals")));
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   const Kept made = kept(least(), {}, {.normals = false});
@@ -112,7 +112,7 @@ TEST_F(OcclusionPlan, NormalsPassRunsOnlyWithoutGivenNormals) {
       << "the pipelines of normals and linear depth";
 }
 
-TEST_F(OcclusionPlan, BentNormalsAndHistoryCostNothingWhenOff) {
+TEST_F(OcclusionPlan, BentNormalsAndHistoryAddTexturesOnlyWhenTheyAreOn) {
   const Kept without = kept(least());
   OcclusionSettings bent = least();
   bent.bent_normal = true;
@@ -128,7 +128,7 @@ TEST_F(OcclusionPlan, BentNormalsAndHistoryCostNothingWhenOff) {
 }
 
 // Motion vectors are only needed to reproject the history.
-TEST_F(OcclusionPlan, MotionVectorsAreNotReadWithoutAHistory) {
+TEST_F(OcclusionPlan, MotionVectorsAreNotReadIfHistoryIsOff) {
   const Given moving{.motion = true};
   OcclusionSettings history = least();
   history.history_frames = 8;
@@ -139,7 +139,7 @@ TEST_F(OcclusionPlan, MotionVectorsAreNotReadWithoutAHistory) {
   EXPECT_EQ(kept(history, {}, moving).uploads, 3u);
 }
 
-TEST_F(OcclusionPlan, BackFaceDepthCostsNothingUnlessTheThicknessUnitNeedsIt) {
+TEST_F(OcclusionPlan, BackFaceDepthIsReadOnlyIfTheSettingsTakeThicknessFromBackFaces) {
   const Kept horizons = kept(least());
   OcclusionSettings settings = least();
   settings.advanced.thickness_unit = ThicknessUnit::back_faces;
@@ -166,7 +166,7 @@ TEST_F(OcclusionPlan, BackFaceDepthCostsNothingUnlessTheThicknessUnitNeedsIt) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
-TEST_F(OcclusionPlan, TurningOffPartsOfTheSearchAddsOnlyAPipeline) {
+TEST_F(OcclusionPlan, TurningOffSnappingOrExtrapolationAddsOnlyAPipelineAndNoPass) {
   const Kept as_it_is = kept(least());
   std::size_t pipelines = gpu().kernels().pipeline_count();
   (void)kept(least());
@@ -185,7 +185,7 @@ TEST_F(OcclusionPlan, TurningOffPartsOfTheSearchAddsOnlyAPipeline) {
   }
 }
 
-TEST_F(OcclusionPlan, SecondLayerCostsNothingWhenItIsNotSearched) {
+TEST_F(OcclusionPlan, SecondDepthLayerCostsNothingUnlessTheSettingsSearchIt) {
   const Kept horizons = kept(least());
   OcclusionSettings settings = least();
   settings.depth_layers = 2;
@@ -209,7 +209,7 @@ TEST_F(OcclusionPlan, SecondLayerCostsNothingWhenItIsNotSearched) {
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
 }
 
-TEST_F(OcclusionPlan, SpecularOcclusionCostsNothingWhenOff) {
+TEST_F(OcclusionPlan, SpecularOcclusionAddsMemoryAndPassesOnlyWhenItIsOnAndRead) {
   const Kept without = kept(least());
   OcclusionSettings settings = least();
   settings.roughness = 0.2f;  // no pass reads it
@@ -227,7 +227,7 @@ TEST_F(OcclusionPlan, SpecularOcclusionCostsNothingWhenOff) {
   EXPECT_THAT(unread.passes, Not(Contains("specular occlusion")));
 }
 
-TEST_F(OcclusionPlan, RoughnessChannelWithoutATextureCreatesNoPipeline) {
+TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsRead) {
   for (const Specular specular : {Specular::none, Specular::slices, Specular::cone}) {
     OcclusionSettings settings = least();
     settings.specular = specular;
@@ -246,7 +246,7 @@ TEST_F(OcclusionPlan, RoughnessChannelWithoutATextureCreatesNoPipeline) {
   }
 }
 
-TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyWhenItsResultIsRead) {
+TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyIfItsResultIsRead) {
   const Kept without = kept(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings asked = least();
@@ -259,13 +259,13 @@ TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyWhenItsResultIsRead) {
   EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("linear depth"));
 }
 
-TEST_F(OcclusionPlan, LargerTilesTakeLessMemory) {
+TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
   OcclusionSettings half = least();
   half.tile_size = 2;
   EXPECT_LT(kept(half).bytes, kept(least()).bytes);
 }
 
-TEST_F(OcclusionPlan, UnreadOutputsAreCulledWithTheirProducers) {
+TEST_F(OcclusionPlan, OutputsThatNobodyReadsAreCulledWithTheirPasses) {
   const Kept depth_only =
       kept(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
   EXPECT_THAT(depth_only.passes, ElementsAre("linear depth"));
@@ -274,7 +274,7 @@ TEST_F(OcclusionPlan, UnreadOutputsAreCulledWithTheirProducers) {
 }
 
 // The frame is prepared in a separate graph that is never recorded.
-TEST_F(OcclusionPlan, PreparedFramesCreateNoPipelineWhateverTheHistory) {
+TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistory) {
   const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
   OcclusionSettings settings = least();
   settings.history_frames = 8;
@@ -316,7 +316,7 @@ TEST_F(OcclusionPlan, PreparedFramesCreateNoPipelineWhateverTheHistory) {
   }
 }
 
-TEST_F(OcclusionPlan, RepeatedFrameCreatesNoPipeline) {
+TEST_F(OcclusionPlan, ChangedRadiusOrFilterToleranceCreatesNoNewPipeline) {
   (void)kept(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings other = least();

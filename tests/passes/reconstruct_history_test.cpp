@@ -40,7 +40,7 @@ TEST_F(Reconstruct, NoiseOfAStaticViewDecreasesOverFrames) {
 
 // A view that has been static for 16 frames averages up to 127 of them, independent of
 // history_frames.
-TEST_F(Reconstruct, StaticViewAveragesUpTo127Frames) {
+TEST_F(Reconstruct, StaticViewAveragesMoreFramesThanTheHistoryFramesSetting) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const auto variance_after = [&](bool still) {
@@ -87,7 +87,7 @@ TEST_F(Reconstruct, MotionVectorsOfAStaticViewAreNotRead) {
 // Accumulates many more frames than the history's largest weight. Visibility is stored in steps of
 // 2^-10 with dithering, so that single pixels may differ by a few steps. The mean over all pixels
 // must not drift, and it must still follow a change.
-TEST_F(Reconstruct, HistoryDoesNotDriftOverHundredsOfEqualFrames) {
+TEST_F(Reconstruct, AccumulatedVisibilityDoesNotDriftOverHundredsOfEqualFrames) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 9, 7, {tilted_plane(30.0, 4.0)});
   for (const float visibility : {0.013f, 0.37f, 0.985f, 1.0f}) {
@@ -122,7 +122,7 @@ TEST_F(Reconstruct, HistoryDoesNotDriftOverHundredsOfEqualFrames) {
   }
 }
 
-TEST_F(Reconstruct, ResetDiscardsTheHistory) {
+TEST_F(Reconstruct, ResetOrChangedImageSizeDiscardsTheHistory) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const Drawing smaller = draw(view, kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});

@@ -75,7 +75,7 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
 // A dark and a bright wall meet, and the camera moves along slowly: neither wall may get the
 // history of the other. The view is narrow, because differences of depth between the walls then are
 // small.
-TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
+TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
   TestView view = test_views()[2];
   const float zoom = 2.0f;
   view.view.clip_from_view[0] *= zoom;
@@ -117,7 +117,7 @@ TEST_F(Reconstruct, HistoryDoesNotLeakAcrossACrease) {
 // The camera rotates in front of a corner of two walls, which bend each other's bent normals. The
 // accumulated bent normals must rotate with the camera: their mean must be that of frames without a
 // history.
-TEST_F(Reconstruct, BentNormalsRotateWithTheCamera) {
+TEST_F(Reconstruct, AccumulatedBentNormalsRotateWithTheCamera) {
   OcclusionSettings settings = quality_settings(Quality::high, 4.0f);
   settings.slices = 3;  // two leave too much noise in a frame without history
   settings.bent_normal = true;
@@ -171,7 +171,7 @@ TEST_F(Reconstruct, BentNormalsRotateWithTheCamera) {
 
 // A plane with a pattern moves by three pixels per frame. With motion vectors the pattern stays
 // sharp, without them it is blurred.
-TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
+TEST_F(Reconstruct, MotionVectorsKeepThePatternOfAMovingPlaneSharp) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
   const std::uint32_t speed = 3;
@@ -220,7 +220,7 @@ TEST_F(Reconstruct, MotionVectorsFollowAMovingPlane) {
 // A plane moves by one pixel per frame and comes nearer by a hundredth of its distance, which
 // motion vectors do not tell: it keeps its history. Then a static plane appears as far behind it as
 // an uncovered surface would: it starts a new history.
-TEST_F(Reconstruct, HistoryFollowsApproachingSurfaces) {
+TEST_F(Reconstruct, ApproachingSurfaceKeepsItsHistory) {
   const TestView view = test_views()[2];
   const double nearer = 0.99;
   const std::uint32_t frames = 24;
@@ -276,7 +276,7 @@ TEST_F(Reconstruct, HistoryFollowsApproachingSurfaces) {
 // An occluder moves away from a static plane, and later comes back. Motion vectors, even if they
 // are 0, tell the pass that occluders may move, so that the plane's visibility changes within a few
 // frames.
-TEST_F(Reconstruct, MovingOccludersLeaveNoTrail) {
+TEST_F(Reconstruct, VisibilityAdaptsWithinTwelveFramesOfAnOccludersMotionIfMotionVectorsAreGiven) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const HostImage motion = no_motion();
@@ -318,7 +318,7 @@ TEST_F(Reconstruct, MovingOccludersLeaveNoTrail) {
 }
 
 // In the second frame another surface is visible, without motion vectors that would tell it.
-TEST_F(Reconstruct, PixelsWithoutHistoryUseTheFilterRadiusOfAFirstFrame) {
+TEST_F(Reconstruct, PixelsWhoseHistoryIsRejectedAreFilteredAsInAFirstFrame) {
   const TestView view = test_views()[2];
   const Drawing before = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const Drawing now = draw(view, kWidth, kHeight, {tilted_plane(30.0, 9.0)});

@@ -64,7 +64,7 @@ double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_
 
 // The filter reads as many traced pixels on each side as its radius, at any tile size, up to the
 // last row and column.
-TEST_F(Reconstruct, PixelsWithoutHistoryAverageTheTracedPixelsAroundThem) {
+TEST_F(Reconstruct, PixelWithoutHistoryIsTheWeightedMeanOfTheTracedPixelsAroundIt) {
   constexpr std::uint32_t kOddWidth = 33;
   constexpr std::uint32_t kOddHeight = 23;
   const TestView view = test_views()[2];
@@ -105,7 +105,7 @@ TEST_F(Reconstruct, PixelsWithoutHistoryAverageTheTracedPixelsAroundThem) {
   }
 }
 
-TEST_F(Reconstruct, ConstantOcclusionStaysConstantInAnySceneAtAnyResolution) {
+TEST_F(Reconstruct, ConstantRawOcclusionGivesConstantVisibilityInAnySceneAtAnyTileSize) {
   const TestView view = test_views()[2];
   std::vector<NamedScene> scenes = gtao_scenes();
   scenes.push_back({"grazing", {tilted_plane(75.0, 4.0)}});
@@ -145,7 +145,7 @@ TEST_F(Reconstruct, ConstantOcclusionStaysConstantInAnySceneAtAnyResolution) {
   }
 }
 
-TEST_F(Reconstruct, FilterReducesNoiseOnATiltedPlane) {
+TEST_F(Reconstruct, SpatialFilterReducesNoiseOnATiltedPlane) {
   const TestView view = test_views()[2];
   const std::uint32_t seed = 5;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -160,7 +160,7 @@ TEST_F(Reconstruct, FilterReducesNoiseOnATiltedPlane) {
 }
 
 // With more slices the filter is narrower, so that stripes of four pixels keep more contrast.
-TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
+TEST_F(Reconstruct, SpatialFilterBlursLessWithMoreSlicesPerPixel) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
   const HostImage raw_occlusion = raw_occlusion_of(
@@ -179,7 +179,7 @@ TEST_F(Reconstruct, FilterNarrowsWithMoreSlices) {
 // A pixel without history is also averaged with neighbours on the other side of a crease, which are
 // a fraction of a pixel away from its tangent plane. Their weight must decrease with the number of
 // slices and of frames.
-TEST_F(Reconstruct, LeakAcrossACreaseDecreasesWithSlicesAndFrames) {
+TEST_F(Reconstruct, LeakOfVisibilityAcrossACreaseDecreasesWithMoreSlicesAndFrames) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5));
   const HostImage raw_occlusion =
@@ -217,7 +217,7 @@ TEST_F(Reconstruct, LeakAcrossACreaseDecreasesWithSlicesAndFrames) {
 }
 
 // Tests neighbours that lie on the pixel's tangent plane but have another normal.
-TEST_F(Reconstruct, NeighboursWithOtherNormalsGetSmallerWeights) {
+TEST_F(Reconstruct, NeighboursWithOtherNormalsGetSmallerFilterWeights) {
   const TestView view = test_views()[2];
   const Drawing flat = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
   const std::uint32_t half = kWidth / 2;

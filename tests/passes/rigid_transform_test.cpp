@@ -98,7 +98,7 @@ void expect_accepted(const glm::mat4& view_from_world, const glm::dmat4& exact) 
   }
 }
 
-TEST(RigidTransform, InverseMatricesOfAnyPrecisionFarFromTheOriginAreAccepted) {
+TEST(RigidTransform, ViewMatricesInvertedInFloatOrDoubleFarFromTheOriginAreAccepted) {
   RandomInput random;
   int inexact_rows = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -119,7 +119,7 @@ TEST(RigidTransform, InverseMatricesOfAnyPrecisionFarFromTheOriginAreAccepted) {
   EXPECT_GT(inexact_rows, 100) << "the sweep has to meet last rows that are not exactly 0 0 0 1";
 }
 
-TEST(RigidTransform, ErrorsOfAFewUlpsInEveryElementAreAccepted) {
+TEST(RigidTransform, ViewMatricesWithErrorsOfAFewUlpsInEveryElementAreAccepted) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const glm::dmat4 exact = glm::inverse(random_pose(random, random.log_uniform(1e-2f, 1e6f)));
@@ -136,7 +136,7 @@ TEST(RigidTransform, ErrorsOfAFewUlpsInEveryElementAreAccepted) {
   }
 }
 
-TEST(RigidTransform, ScaledTransposedAndNonFiniteMatricesAreRefused) {
+TEST(RigidTransform, ScaledTransposedAndNonFiniteViewMatricesAreRefused) {
   RandomInput random;
   for (int i = 0; i < 1000; ++i) {
     const glm::mat4 good(glm::inverse(random_pose(random, random.log_uniform(0.1f, 1e6f))));
@@ -152,14 +152,14 @@ TEST(RigidTransform, ScaledTransposedAndNonFiniteMatricesAreRefused) {
   }
 }
 
-TEST(RigidTransform, ExactMatricesAreNotChanged) {
+TEST(RigidTransform, ExactlyRigidMatricesAreNotChanged) {
   Matrix exact = kIdentity;
   exact[12] = 1e6f;
   exact[13] = -0.3f;
   EXPECT_EQ(maths::mat4(to_rigid(exact)), to_mat4(exact));
 }
 
-TEST(Transposed, OnlyRowMajorProjectionsAreFoundTransposed) {
+TEST(TransposedProjection, OnlyRowMajorProjectionsAreDetectedAsTransposed) {
   // If the near plane is at 1, the depth offset is -1, like the factor of w. The matrix must not be
   // taken for a transposed one, even if rounding errors have changed the factor of w.
   for (const float w_from_z : {-1.0f, -0.9999999f, -1.0000002f}) {

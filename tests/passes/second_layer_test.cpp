@@ -10,7 +10,7 @@
 namespace alcove::passes {
 namespace {
 
-class SecondLayer : public HiddenDepthTest {};
+class SecondDepthLayer : public HiddenDepthTest {};
 
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
@@ -27,7 +27,7 @@ OcclusionSettings of_layers(OcclusionSettings settings, std::uint32_t layers) {
 //
 //                   _______  a step: from a point of the floor it occludes all directions that are
 //   ____x__________|         lower than its edge
-TEST_F(SecondLayer, StepUnderAPlateMatchesTheClosedForm) {
+TEST_F(SecondDepthLayer, VisibilityBesideAStepHiddenUnderAPlateMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double step = 0.35, height = 0.3, floor = 4.0;
   Scene scene = box({step, -100.0, -2.0 * floor}, {100.0, 100.0, height - floor});
@@ -62,7 +62,7 @@ Scene tilted_and_box() {
 }
 
 // Tests second layers without a hidden surface: the sky, NaN, and a copy of the first layer.
-TEST_F(SecondLayer, SecondLayerWithoutHiddenSurfacesChangesNothing) {
+TEST_F(SecondDepthLayer, SecondLayerWithoutHiddenSurfacesDoesNotChangeVisibility) {
   const Scene scene = tilted_and_box();
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
@@ -86,7 +86,7 @@ TEST_F(SecondLayer, SecondLayerWithoutHiddenSurfacesChangesNothing) {
 }
 
 // A second layer adds occluded sectors and removes none.
-TEST_F(SecondLayer, SecondLayerNeverRaisesVisibility) {
+TEST_F(SecondDepthLayer, SecondLayerNeverRaisesVisibility) {
   Scene scene = tilted_and_box();
   scene.push_back(sphere({0.36, 0.1, -2.2}, 0.35));
   for (const TestView& view : test_views()) {
@@ -107,7 +107,7 @@ TEST_F(SecondLayer, SecondLayerNeverRaisesVisibility) {
   }
 }
 
-TEST_F(SecondLayer, EstimatorHorizonsIgnoresTheSecondLayer) {
+TEST_F(SecondDepthLayer, EstimatorHorizonsIgnoresTheSecondLayer) {
   const Scene scene = tilted_and_box();
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, scene);

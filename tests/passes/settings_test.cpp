@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 static_assert(std::is_aggregate_v<OcclusionSettings> && std::is_aggregate_v<AdvancedSettings>);
 
-TEST(Settings, DefaultsAreThePresetMedium) {
+TEST(Settings, DefaultSettingsAreThoseOfTheMediumPreset) {
   const OcclusionSettings settings;
   EXPECT_EQ(settings, quality_settings(Quality::medium, settings.radius));
   EXPECT_EQ(settings.slices, 1u);
@@ -25,7 +25,7 @@ TEST(Settings, DefaultsAreThePresetMedium) {
   EXPECT_EQ(settings.history_frames, 32u);
 }
 
-TEST(Settings, OnlyThePresetReferenceChangesAdvancedSettings) {
+TEST(Settings, OnlyTheReferencePresetChangesAdvancedSettings) {
   for (std::size_t i = 0; i < kNames<Quality>.size(); ++i) {
     const auto quality = static_cast<Quality>(i);
     const OcclusionSettings settings = quality_settings(quality, 1.0f);
@@ -34,7 +34,7 @@ TEST(Settings, OnlyThePresetReferenceChangesAdvancedSettings) {
   }
 }
 
-TEST(Settings, NamesAreUniqueAndHelpTextsAreSentences) {
+TEST(Settings, SettingNamesAreUniqueAndHelpTextsAreSentences) {
   std::set<std::string> names;
   const OcclusionSettings settings;
   for_each_setting(settings, [&](const SettingInfo& info, const auto&) {
@@ -72,7 +72,7 @@ void expect_refused(const SettingInfo& info, Value value) {
   EXPECT_THAT(said, HasSubstr("; it must be " + info.range.text() + "."));
 }
 
-TEST(Settings, ValidateEnforcesExactlyTheStatedRange) {
+TEST(Settings, ValidationEnforcesExactlyTheStatedRangeOfEachSetting) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   int numbers = 0;
   const OcclusionSettings settings;
@@ -136,7 +136,7 @@ TEST(Settings, SliderRangesContainOnlyAcceptedValues) {
   });
 }
 
-TEST(Settings, RangeTextsSayTheLimitsInWords) {
+TEST(Settings, RangeTextsStateMinimumAndMaximumInWords) {
   EXPECT_EQ((SettingRange{.minimum = 1, .maximum = 64}).text(), "1 to 64");
   EXPECT_EQ((SettingRange{.minimum = 1, .maximum = 4, .power_of_two = true}).text(), "1, 2 or 4");
   EXPECT_EQ((SettingRange{.above_minimum = true}).text(), "above 0 and finite");

@@ -28,7 +28,7 @@ std::vector<Shader> all_shaders() {
   return shaders;
 }
 
-TEST(ShaderInterface, BindingNamesNumbersAndTypesAreThoseOfTheGlslFile) {
+TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslFile) {
   const ShaderInterface found = read_shader_interface(shader_source(Shader::gtso_by_table).code);
   std::vector<std::string> bindings, constants;
   for (const ShaderBinding& binding : found.bindings) {
@@ -62,7 +62,7 @@ TEST(ShaderInterface, CombinedImageSamplersAreDistinguishedFromSampledImages) {
   }
 }
 
-TEST(ShaderInterface, EveryShaderHasUniqueNumbersKnownTypesAndOneParameterBlock) {
+TEST(ShaderInterface, EveryShaderHasUniqueBindingNumbersKnownTypesAndOneParameterBlock) {
   for (const Shader shader : all_shaders()) {
     SCOPED_TRACE(shader_source(shader).name);
     const ShaderInterface found = read_shader_interface(shader_source(shader).code);
@@ -112,7 +112,7 @@ class KernelsByName : public PassTest {
   }
 };
 
-TEST_F(KernelsByName, ConstantWithoutAValueIsReportedByName) {
+TEST_F(KernelsByName, SpecialisationConstantWithoutAValueIsReportedByName) {
   const auto kernel = gpu().kernels().get(
       Shader::gtso,
       std::to_array<NamedConstant>(
@@ -123,7 +123,7 @@ TEST_F(KernelsByName, ConstantWithoutAValueIsReportedByName) {
                         "which its pass gives no value"));
 }
 
-TEST_F(KernelsByName, ConstantsMayBeGivenInAnyOrderWithThoseOfOtherShaders) {
+TEST_F(KernelsByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithThoseOfOtherShaders) {
   const auto ordered =
       gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kRoughnessTexture", 1},
                                                                       {"kRoughnessChannel", 2},
@@ -139,7 +139,7 @@ TEST_F(KernelsByName, ConstantsMayBeGivenInAnyOrderWithThoseOfOtherShaders) {
   EXPECT_EQ(ordered->pipeline, shuffled->pipeline);
 }
 
-TEST_F(KernelsByName, ConstantThatNoShaderDeclaresIsReportedByName) {
+TEST_F(KernelsByName, SpecialisationConstantThatNoShaderDeclaresIsReportedByName) {
   const auto kernel =
       gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kRoughnessTexture", 1},
                                                                       {"kRoughnessChannel", 2},
@@ -152,14 +152,14 @@ TEST_F(KernelsByName, ConstantThatNoShaderDeclaresIsReportedByName) {
                         "'kTilesize', which no shader declares"));
 }
 
-TEST_F(KernelsByName, BindingWithoutAViewIsReportedByName) {
+TEST_F(KernelsByName, ShaderBindingWithoutAnImageViewIsReportedByName) {
   const auto done = run_linear_depth({"depth_ndc_image", "linear_image"});
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(),
               HasSubstr("view of the binding 'linear_depth_image' of the shader 'linear_depth'"));
 }
 
-TEST_F(KernelsByName, ViewThatNoShaderDeclaresIsReportedByName) {
+TEST_F(KernelsByName, ImageViewForABindingThatNoShaderDeclaresIsReportedByName) {
   const auto done = run_linear_depth({"depth_ndc_image", "linear_depth_image", "linear_image"});
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(), HasSubstr("view 'linear_image' of the shader 'linear_depth', a name "

@@ -11,7 +11,7 @@
 namespace alcove::passes {
 namespace {
 
-using SpecularSlices = PassTest;
+using SpecularOcclusionFromSlices = PassTest;
 using glm::dvec3;
 
 OcclusionSettings settings_of(Quality quality, float radius, float roughness) {
@@ -65,7 +65,7 @@ double mean_error(const HostImage& specular, const Drawing& drawing, double radi
   return sum / count;
 }
 
-TEST_F(SpecularSlices, SpecularOcclusionAgreesWithRayCastLobesOnExactSurfaces) {
+TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTheLobe) {
   const float radius = 1.2f;
   // Tests a perspective and an orthographic view of scenes whose occluders extend as far back as
   // the estimator assumes.
@@ -89,7 +89,7 @@ TEST_F(SpecularSlices, SpecularOcclusionAgreesWithRayCastLobesOnExactSurfaces) {
   }
 }
 
-TEST_F(SpecularSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
+TEST_F(SpecularOcclusionFromSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
   for (const TestView& view : test_views()) {
     for (const float degrees : {0.0f, 60.0f, 85.0f}) {
       const PlaneScene plane = plane_scene(view, 64, 48, degrees);
@@ -114,7 +114,7 @@ TEST_F(SpecularSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
 }
 
 // The error decreases over several frames. In a single frame few slices cross a narrow lobe.
-TEST_F(SpecularSlices, ErrorOfNarrowLobesDecreasesOverFrames) {
+TEST_F(SpecularOcclusionFromSlices, ErrorOfNarrowSpecularLobesDecreasesOverAccumulatedFrames) {
   const float radius = 1.2f, roughness = 0.2f;
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, groove(0.8));

@@ -120,7 +120,7 @@ std::vector<std::vector<float>> run_frames(std::uint32_t threads, std::uint32_t 
   return found;
 }
 
-TEST(ThreadsPass, FourRecordingThreadsGiveTheSameResultAsOne) {
+TEST(PassesOnSeveralThreads, OcclusionRecordedByFourThreadsEqualsThatRecordedByOneThread) {
   constexpr std::uint32_t kFrames = 100;
   const auto by_one = run_frames(1, kFrames);
   const auto by_four = run_frames(4, kFrames);

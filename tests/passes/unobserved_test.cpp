@@ -10,7 +10,7 @@
 namespace alcove::passes {
 namespace {
 
-class UnobservedPass : public PassTest {
+class UnobservedDirectionsPass : public PassTest {
  protected:
   static constexpr float kRadius = 1.2f;
   static constexpr std::uint32_t kWidth = 96, kHeight = 40;
@@ -64,7 +64,8 @@ double mean_difference(const HostImage& a, const HostImage& b, std::uint32_t fro
 
 // A plate hides one half of a trench. Excluding the hidden directions must bring the visibility of
 // the floor at least three times closer to that of the whole trench.
-TEST_F(UnobservedPass, HiddenHalfOfATrenchIsEstimatedFromTheVisibleHalf) {
+TEST_F(UnobservedDirectionsPass,
+       VisibilityOfATrenchHalfHiddenByAPlateIsEstimatedFromItsVisibleHalf) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
@@ -80,7 +81,7 @@ TEST_F(UnobservedPass, HiddenHalfOfATrenchIsEstimatedFromTheVisibleHalf) {
   }
 }
 
-TEST_F(UnobservedPass, TrenchIsAssumedToContinueBeyondTheImageBorder) {
+TEST_F(UnobservedDirectionsPass, ExcludingDirectionsBeyondTheImageBorderReducesTheErrorInATrench) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()), true);
@@ -98,7 +99,7 @@ TEST_F(UnobservedPass, TrenchIsAssumedToContinueBeyondTheImageBorder) {
 
 // A ball on a floor, with a radius wider than the image. Hardly any direction is observed, and the
 // occlusion that is visible must not be amplified.
-TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
+TEST_F(UnobservedDirectionsPass, FewDirectionsAreExcludedIfTheRadiusIsWiderThanTheImage) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
@@ -114,7 +115,7 @@ TEST_F(UnobservedPass, WideRadiusExcludesFewDirections) {
   }
 }
 
-TEST_F(UnobservedPass, BackgroundIsAssumedToContinueBeyondTheImageBorder) {
+TEST_F(UnobservedDirectionsPass, BackgroundAtTheImageBorderIsAssumedToContinueBeyondIt) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
     // The scene is half a trench, with nothing beside its floor.
@@ -133,7 +134,8 @@ TEST_F(UnobservedPass, BackgroundIsAssumedToContinueBeyondTheImageBorder) {
   }
 }
 
-TEST_F(UnobservedPass, PlaneBesideAForegroundPlateStaysUnoccluded) {
+TEST_F(UnobservedDirectionsPass,
+       PlaneBehindAForegroundPlateStaysUnoccludedIfHiddenDirectionsAreExcluded) {
   for (const TestView& view : test_views()) {
     for (const double tilt : {0.0, 30.0, 60.0}) {
       SCOPED_TRACE(testing::Message() << view.name << ", " << tilt);
@@ -152,7 +154,7 @@ TEST_F(UnobservedPass, PlaneBesideAForegroundPlateStaysUnoccluded) {
   }
 }
 
-TEST_F(UnobservedPass, DirectionsThatTheSecondLayerShowsAreNotExcluded) {
+TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondLayerShowsAreNotExcluded) {
   const TestView view = two_views()[1];
   Scene covered = trench();
   covered.push_back(plate(0.05));
@@ -177,7 +179,7 @@ TEST_F(UnobservedPass, DirectionsThatTheSecondLayerShowsAreNotExcluded) {
   EXPECT_LT(left_out(2), 0.2 * left_out(1));
 }
 
-TEST_F(UnobservedPass, OnlyTheConnectedEstimatorExcludesDirections) {
+TEST_F(UnobservedDirectionsPass, OnlyTheConnectedEstimatorExcludesUnobservedDirections) {
   const TestView view = two_views()[0];
   Scene covered = trench();
   covered.push_back(plate(0.05));

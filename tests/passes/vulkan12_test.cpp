@@ -30,7 +30,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance insta
              : vkGetInstanceProcAddr(instance, name);
 }
 
-TEST(CVulkan12, FramesAreRecordedWithSynchronization2) {
+TEST(CVulkan12, FramesRunOnAVulkan12DeviceWithTheSynchronization2Extension) {
   Vulkan12Device device;
   {
     AlcoveContextInfo info = device.context_info();
@@ -89,7 +89,7 @@ TEST(CVulkan12, FramesAreRecordedWithSynchronization2) {
   EXPECT_EQ(device.messages(), "");
 }
 
-TEST(CVulkan12, MissingExtensionIsReported) {
+TEST(CVulkan12, MissingSynchronization2ExtensionIsReported) {
   const Vulkan12Device device(false);
   const AlcoveContextInfo info = device.context_info();
   AlcoveContext* made = nullptr;

@@ -21,7 +21,7 @@ namespace {
 using passes::OcclusionSettings;
 using passes::Quality;
 
-TEST(Variants, EachDiffersFromTheBaseAndHasAUniqueName) {
+TEST(AblationVariants, EachVariantDiffersFromTheBaseSettingsAndHasAUniqueName) {
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     std::set<std::string> names, parts;
@@ -39,7 +39,7 @@ TEST(Variants, EachDiffersFromTheBaseAndHasAUniqueName) {
   }
 }
 
-TEST(Variants, OnlyHorizonEstimatorsHaveAFalloff) {
+TEST(AblationVariants, OnlyVariantsWithHorizonEstimatorsHaveAFalloff) {
   OcclusionSettings base = passes::quality_settings(Quality::medium, 0.5f);
   base.advanced.estimator = passes::Estimator::horizons;
   base.advanced.falloff = 0.5f;
@@ -77,7 +77,7 @@ class AblationTest : public testing::Test {
   const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
 };
 
-TEST_F(AblationTest, ConnectedSamplesHaveTheSmallestError) {
+TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
@@ -100,7 +100,7 @@ TEST_F(AblationTest, ConnectedSamplesHaveTheSmallestError) {
   }
 }
 
-TEST_F(AblationTest, BackFacesAndSecondLayerDoNotIncreaseTheError) {
+TEST_F(AblationTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesTheError) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
@@ -157,7 +157,7 @@ TEST_F(AblationTest, MoreStepsAndSlicesDoNotRaiseTheErrorByMoreThanTwoPercent) {
   check({error_of(16, 1), error_of(16, 2), error_of(16, 4), error_of(16, 8)});
 }
 
-TEST_F(AblationTest, SnappingKeepsOpenSurfacesOpen) {
+TEST_F(AblationTest, SnappingToTexelCentresKeepsUnoccludedSurfacesUnoccluded) {
   const auto gpu = open_validated();
   const auto other = open_validated();
   ASSERT_TRUE(gpu && other);
@@ -179,7 +179,7 @@ TEST_F(AblationTest, SnappingKeepsOpenSurfacesOpen) {
 }
 
 // One renderer alternates between settings with and without hidden depths.
-TEST_F(AblationTest, HiddenDepthsAreRenderedWhenRequested) {
+TEST_F(AblationTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThem) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   OcclusionSettings backs = base_;
@@ -208,7 +208,7 @@ TEST_F(AblationTest, HiddenDepthsAreRenderedWhenRequested) {
   EXPECT_NE(images[1].pixels, images[3].pixels);
 }
 
-TEST_F(AblationTest, DisablingHistoryReducesMemory) {
+TEST_F(AblationTest, DisablingHistoryReducesMemoryToLessThanHalf) {
   const auto gpu = open_validated();
   const auto other = open_validated();
   ASSERT_TRUE(gpu && other);
@@ -221,7 +221,7 @@ TEST_F(AblationTest, DisablingHistoryReducesMemory) {
   EXPECT_LT(result->cost.bytes, ablation->base_bytes() / 2);
 }
 
-TEST_F(AblationTest, InvariancePairsGiveEqualImages) {
+TEST_F(AblationTest, PairsOfViewsThatShouldLookEqualGiveNearlyEqualImages) {
   const auto gpu = open_validated();
   ASSERT_TRUE(gpu);
   for (const InvariancePair& pairs : invariance_pairs_of(setup_.camera, setup_.height)) {

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(CameraOf, OptionsOverrideTheSceneCamera) {
+TEST(CameraFromOptions, CommandLineOptionsOverrideTheSceneCamera) {
   const Scene scene = builtin_scene();
   ViewOptions view;
   view.camera = "court";
@@ -21,7 +21,7 @@ TEST(CameraOf, OptionsOverrideTheSceneCamera) {
   EXPECT_EQ(camera->fov_y, 0.5f);
 }
 
-TEST(CameraOf, UnknownCameraNameIsReportedWithTheKnownOnes) {
+TEST(CameraFromOptions, UnknownCameraNameIsReportedWithTheCameraNamesOfTheScene) {
   ViewOptions view;
   view.camera = "kitchen";
   const auto camera = camera_of(view, builtin_scene());
@@ -29,7 +29,7 @@ TEST(CameraOf, UnknownCameraNameIsReportedWithTheKnownOnes) {
   EXPECT_THAT(camera.error(), HasSubstr("court"));
 }
 
-TEST(CameraOf, KnownCameraNamesAreQuoted) {
+TEST(CameraFromOptions, CameraNamesInTheErrorMessageAreQuoted) {
   Scene scene;
   scene.cameras = {{.name = "great hall"}, {.name = "roof"}};
   ViewOptions view;
@@ -38,7 +38,7 @@ TEST(CameraOf, KnownCameraNamesAreQuoted) {
             "the scene has no camera \"hall\"; it has \"great hall\", \"roof\"");
 }
 
-TEST(CameraOf, AtMostTenCameraNamesAreListed) {
+TEST(CameraFromOptions, AtMostTenCameraNamesAreListedInTheErrorMessage) {
   Scene scene;
   for (const char digit : {'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'}) {
     scene.cameras.push_back({.name = {'c', digit}});
@@ -52,7 +52,7 @@ TEST(CameraOf, AtMostTenCameraNamesAreListed) {
             "\"c5\", \"c6\", \"c7\", \"c8\", \"c9\" and 1990 more");
 }
 
-TEST(CameraOf, ViewFromOptionsIsUprightWhateverTheSceneCamera) {
+TEST(CameraFromOptions, ViewWithGivenEyeOrTargetIsUprightWhateverTheSceneCamera) {
   Scene scene;
   scene.cameras = {{.name = "tilted", .up_ws = {0.6f, 0.8f, 0.0f}}};
   ViewOptions view;
@@ -67,13 +67,13 @@ TEST(CameraOf, ViewFromOptionsIsUprightWhateverTheSceneCamera) {
   EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 0, 1));
 }
 
-TEST(CameraOf, EyeAtTheTargetIsRefused) {
+TEST(CameraFromOptions, EyeAtTheTargetIsRefused) {
   ViewOptions view;
   view.eye = view.target = glm::dvec3(1.0);
   EXPECT_FALSE(camera_of(view, builtin_scene()));
 }
 
-TEST(CameraOf, PerspectiveViewNeedsANearPlaneInFrontOfTheEye) {
+TEST(CameraFromOptions, PerspectiveViewNeedsANearPlaneInFrontOfTheEye) {
   Scene scene;
   scene.cameras = {{.name = "plan", .orthographic = true, .near_plane = -3.0f}};
   ViewOptions view;
@@ -86,7 +86,7 @@ TEST(CameraOf, PerspectiveViewNeedsANearPlaneInFrontOfTheEye) {
   EXPECT_TRUE(camera_of(view, scene));
 }
 
-TEST(CameraOf, VectorsWhoseSquaredLengthsOverflowOrUnderflowAreRefused) {
+TEST(CameraFromOptions, CameraVectorsWhoseSquaredLengthsOverflowOrUnderflowAreRefused) {
   ViewOptions view;
   view.eye = glm::dvec3(0.0, 0.0, 1.0);
   view.target = glm::dvec3(0.0);
@@ -101,7 +101,7 @@ TEST(CameraOf, VectorsWhoseSquaredLengthsOverflowOrUnderflowAreRefused) {
   }
 }
 
-TEST(CameraOf, DepthIsReversedInPerspectiveOnlyUnlessAnOptionSaysOtherwise) {
+TEST(CameraFromOptions, DepthIsReversedByDefaultOnlyInPerspectiveViews) {
   const Scene scene = builtin_scene();
   ViewOptions view;
   EXPECT_TRUE(camera_of(view, scene)->reversed_z);
@@ -114,7 +114,7 @@ TEST(CameraOf, DepthIsReversedInPerspectiveOnlyUnlessAnOptionSaysOtherwise) {
   EXPECT_TRUE(camera_of(view, scene)->reversed_z);
 }
 
-TEST(CameraOf, PositionsFromOptionsAreCoordinatesOfTheFile) {
+TEST(CameraFromOptions, PositionsInOptionsAreInTheCoordinatesOfTheSceneFile) {
   Scene scene = builtin_scene();
   scene.origin = {1e7, 0.0, -3e7};
   ViewOptions view;

@@ -32,7 +32,7 @@ TEST(Camera, NearAndFarPlaneProjectToTheEndsOfTheDepthRange) {
   }
 }
 
-TEST(Camera, ViewDepthInvertsEveryProjection) {
+TEST(Camera, DistanceComputedFromProjectedDepthIsTheOriginalOneForEveryProjection) {
   for (const bool orthographic : {false, true}) {
     for (const bool reversed : {false, true}) {
       for (const float far : {20.0f, INFINITY}) {
@@ -47,7 +47,7 @@ TEST(Camera, ViewDepthInvertsEveryProjection) {
   }
 }
 
-TEST(Camera, InfiniteFarPlaneIsInfinitelyFar) {
+TEST(Camera, FarDepthValueOfAnInfiniteProjectionConvertsToInfinity) {
   for (const bool reversed : {false, true}) {
     const Camera camera = camera_of_kind(false, reversed, INFINITY);
     const glm::mat4 clip = camera_matrices(camera, 160, 90).clip_from_view;
@@ -55,12 +55,12 @@ TEST(Camera, InfiniteFarPlaneIsInfinitelyFar) {
   }
 }
 
-TEST(Camera, UpVectorPointsToTheTopOfTheFramebuffer) {
+TEST(Camera, PointsInTheDirectionOfTheUpVectorProjectToTheTopOfTheFramebuffer) {
   EXPECT_LT(project(Camera(), {0, 1, -5}).y, 0.0f);
   EXPECT_GT(project(Camera(), {1, 0, -5}).x, 0.0f);
 }
 
-TEST(Camera, JitterMovesTheImageByPixels) {
+TEST(Camera, JitterGivenInPixelsMovesTheImageByThatManyPixels) {
   for (const bool orthographic : {false, true}) {
     Camera camera = camera_of_kind(orthographic, false, 50.0f);
     const glm::vec3 before = project(camera, {0.2f, 0.3f, -4});
@@ -71,7 +71,7 @@ TEST(Camera, JitterMovesTheImageByPixels) {
   }
 }
 
-TEST(Camera, RayThroughAPixelProjectsBackOntoIt) {
+TEST(Camera, PointOnTheRayThroughAPixelProjectsBackOntoThatPixel) {
   Camera camera = camera_of_kind(false, true, INFINITY);
   camera.eye_ws = {1, 2, 3};
   camera.target_ws = {-2, 0, -1};
@@ -89,7 +89,7 @@ TEST(Camera, RayThroughAPixelProjectsBackOntoIt) {
   }
 }
 
-TEST(Camera, ViewAlongTheUpVectorHasValidAxes) {
+TEST(Camera, CameraThatLooksAlongItsUpVectorStillHasAValidViewRotation) {
   Camera camera;
   camera.eye_ws = {0, 5, 0};
   camera.target_ws = {0, 0, 0};
@@ -97,7 +97,7 @@ TEST(Camera, ViewAlongTheUpVectorHasValidAxes) {
   EXPECT_NEAR(glm::determinant(glm::mat3(view)), 1.0f, 1e-5f);
 }
 
-TEST(Camera, OrbitByZeroIsTheSameView) {
+TEST(Camera, OrbitByZeroDegreesKeepsTheEyeExactly) {
   // The target's coordinates are so large that the eye and the offset from the target cannot be
   // computed from each other in floats.
   Camera camera;
@@ -106,7 +106,7 @@ TEST(Camera, OrbitByZeroIsTheSameView) {
   EXPECT_EQ(orbited(camera, 0.0f).eye_ws, camera.eye_ws);
 }
 
-TEST(Camera, FullOrbitReturnsToTheStart) {
+TEST(Camera, FullOrbitReturnsTheEyeToItsStart) {
   Camera camera;
   camera.eye_ws = {3, 1, 2};
   camera.target_ws = {0, 0.5f, 0};

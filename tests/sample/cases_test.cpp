@@ -45,12 +45,12 @@ double root_mean_square(const Image<float>& a, const Image<float>& b) {
   return std::sqrt(sum / static_cast<double>(a.pixels.size()));
 }
 
-class Cases : public testing::Test {
+class RenderedFile : public testing::Test {
  protected:
   TemporaryFolder folder_;
 };
 
-TEST_F(Cases, SkinnedMeshIsDrawnWhereItsJointsAreAndNotByItsNode) {
+TEST_F(RenderedFile, SkinnedMeshIsDrawnAtItsJointsAndNotAtItsNode) {
   Triangles cube, floor;
   cube.add_box({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f});
   floor.add_box({-4, -0.1f, -4}, {4, 0, 4});
@@ -82,7 +82,7 @@ TEST_F(Cases, SkinnedMeshIsDrawnWhereItsJointsAreAndNotByItsNode) {
   EXPECT_FLOAT_EQ(drawn->settings.radius, right->settings.radius);
 }
 
-TEST_F(Cases, FarSliverChangesNeitherFramingNorPlanesNorRadius) {
+TEST_F(RenderedFile, TinyTriangleFarAwayHardlyChangesCameraNearPlaneAndRadius) {
   Triangles sliver;
   sliver.positions = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
   sliver.indices = {0, 1, 2};
@@ -105,7 +105,7 @@ TEST_F(Cases, FarSliverChangesNeitherFramingNorPlanesNorRadius) {
   }
 }
 
-TEST_F(Cases, SceneFarFromTheOriginIsDrawnAsAtTheOrigin) {
+TEST_F(RenderedFile, SceneFarFromTheOriginIsDrawnLikeOneAtTheOrigin) {
   const auto drawn_at = [&](const glm::dvec3& offset) {
     ModelMaker maker;
     maker.node({{"mesh", maker.mesh(room())}, {"translation", {offset.x, offset.y, offset.z}}});
@@ -122,7 +122,7 @@ TEST_F(Cases, SceneFarFromTheOriginIsDrawnAsAtTheOrigin) {
   EXPECT_LE(greatest_difference(drawn->images.visibility, right->images.visibility), 1.01f * kStep);
 }
 
-TEST_F(Cases, OpenGroundIsOpenInANarrowViewOverALargeDepthRange) {
+TEST_F(RenderedFile, OpenGroundIsUnoccludedInANarrowViewOverALargeDepthRange) {
   Triangles ground;
   constexpr int kCells = 40;
   for (int z = 0; z < kCells; ++z) {
@@ -150,7 +150,7 @@ TEST_F(Cases, OpenGroundIsOpenInANarrowViewOverALargeDepthRange) {
   }
 }
 
-TEST_F(Cases, RoomOfInwardFacesIsOpenFromOutsideUnlessItIsDoubleSided) {
+TEST_F(RenderedFile, RoomWithInwardFacesShowsItsInsideFromOutsideUnlessItIsDoubleSided) {
   const auto least = [&](bool double_sided, bool both_sides) {
     Triangles walls;
     walls.add_box({-3, 0, -2}, {3, 2.5f, 2}, true);
@@ -168,7 +168,7 @@ TEST_F(Cases, RoomOfInwardFacesIsOpenFromOutsideUnlessItIsDoubleSided) {
   EXPECT_GT(least(false, true), 0.95);
 }
 
-TEST_F(Cases, SpecularGlossinessDiffuseTextureGivesColourAndCutOut) {
+TEST_F(RenderedFile, SpecularGlossinessTextureGivesColourAndCutsOutTransparentTexels) {
   // A card whose texture is red and opaque on the left, and transparent on the right.
   PngRecipe recipe{2, 1, PNG_COLOR_TYPE_RGB_ALPHA, 8, false};
   recipe.samples = {255, 0, 0, 255, 0, 255, 0, 0};
@@ -195,7 +195,7 @@ TEST_F(Cases, SpecularGlossinessDiffuseTextureGivesColourAndCutOut) {
   EXPECT_LT(glm::distance(drawn->images.albedo.at(70, 45), glm::vec3(1, 0, 0)), 0.02f);
 }
 
-TEST_F(Cases, FileThatRequiresLightsIsLoaded) {
+TEST_F(RenderedFile, FileThatRequiresTheLightsExtensionIsLoadedAndDrawn) {
   ModelMaker maker;
   maker.add(room());
   maker.gltf.json["extensionsUsed"] = {"KHR_lights_punctual"};
@@ -206,7 +206,7 @@ TEST_F(Cases, FileThatRequiresLightsIsLoaded) {
   EXPECT_LT(shares_of(*drawn).sky, 0.9);
 }
 
-TEST_F(Cases, EveryInstanceOfAnInstancedNodeIsDrawn) {
+TEST_F(RenderedFile, EveryInstanceOfAnInstancedNodeIsDrawn) {
   Triangles post;
   post.add_box({-0.2f, 0, -0.2f}, {0.2f, 1, 0.2f});
   ModelMaker maker;

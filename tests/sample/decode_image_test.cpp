@@ -70,7 +70,7 @@ PngRecipe random_png(int colour_type, int bits, bool interlaced, uint32_t width,
 // Colour type, bits a sample, interlaced.
 class PngKind : public testing::TestWithParam<std::tuple<int, int, bool>> {};
 
-TEST_P(PngKind, DecodesToItsSamplesAtAnySize) {
+TEST_P(PngKind, PngDecodesToItsSamplesAtAnySize) {
   const auto& [colour_type, bits, interlaced] = GetParam();
   for (const auto& [width, height] : {std::pair{1u, 1u}, {3u, 5u}, {13u, 7u}, {600u, 9u}}) {
     const PngRecipe recipe = random_png(colour_type, bits, interlaced, width, height);
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         std::tuple{PNG_COLOR_TYPE_RGB_ALPHA, 8, false},
         std::tuple{PNG_COLOR_TYPE_RGB_ALPHA, 16, true}));
 
-TEST(DecodeImage, OneBitPngOf4096PixelsASideDecodes) {
+TEST(DecodeImage, OneBitPngOf4096PixelsPerSideIsDecoded) {
   PngRecipe recipe{4096, 4096, PNG_COLOR_TYPE_GRAY, 1};
   recipe.samples.assign(size_t{4096} * 4096, 1);
   const auto image = decoded(make_png(recipe), 64);
@@ -156,7 +156,7 @@ TEST(DecodeImage, JpegOfEveryKindDecodesToItsPixels) {
   }
 }
 
-TEST(DecodeImage, ReductionAveragesBlocksAlsoAtTheEdges) {
+TEST(DecodeImage, ReducedImageAveragesBlocksOfPixelsAlsoAtTheEdges) {
   PngRecipe recipe{5, 3, PNG_COLOR_TYPE_GRAY, 8};
   recipe.samples = {0, 10, 20, 30, 40, 20, 30, 40, 50, 60, 7, 9, 11, 13, 15};
   for (const bool interlaced : {false, true}) {
@@ -176,7 +176,7 @@ TEST(DecodeImage, ReductionAveragesBlocksAlsoAtTheEdges) {
   EXPECT_NEAR(jpeg->rgba[0], 90, 1);
 }
 
-TEST(DecodeImage, OnlyPngAndJpegAreRecognised) {
+TEST(DecodeImage, ImagesOtherThanPngAndJpegAreRefused) {
   for (const std::string& text :
        {std::string("P5 8000 8000 65535\n") + std::string(100, '\0'), std::string("GIF89a"),
         std::string("BM"), std::string("#?RADIANCE\n"), std::string("\0\0\2", 3), std::string()}) {
@@ -221,7 +221,7 @@ TEST(DecodeImage, DamagedBytesDoNotCrashTheDecoder) {
   }
 }
 
-TEST(DecodeImage, MorePixelsThanTheBytesCanHoldAreRefusedByTheHeader) {
+TEST(DecodeImage, ImageThatClaimsMorePixelsThanItsBytesCanHoldIsRefusedFromItsHeader) {
   EXPECT_FALSE(read_image_header(make_png_promise(16384, 16384, 100'000)));
   EXPECT_TRUE(read_image_header(make_png_promise(16384, 16384, 300'000)));
 }
@@ -234,7 +234,7 @@ size_t marker(const std::vector<uint8_t>& jpeg, uint8_t kind, size_t start = 2) 
                              jpeg.begin());
 }
 
-TEST(DecodeImage, JpegOfThousandsOfScansIsRefused) {
+TEST(DecodeImage, JpegWithHundredsOfScansIsRefused) {
   auto jpeg = make_jpeg(64, 64, JCS_GRAYSCALE, gradient(64, 64, 1), true);
   // Refine the last scan over and over: 0xda begins a scan, 0xd9 ends the image.
   const size_t end = jpeg.size() - 2;
@@ -248,7 +248,7 @@ TEST(DecodeImage, JpegOfThousandsOfScansIsRefused) {
   EXPECT_FALSE(decoded(jpeg));
 }
 
-TEST(DecodeImage, LargeProgressiveJpegIsRefusedBeforeItTakesMemory) {
+TEST(DecodeImage, LargeProgressiveJpegIsRefusedBeforeItsMemoryIsAllocated) {
   auto jpeg = make_jpeg(64, 64, JCS_RGB, gradient(64, 64, 3), true);
   const size_t frame = marker(jpeg, 0xc2);  // then length, precision, height, width
   jpeg[frame + 5] = jpeg[frame + 7] = 0x40;

@@ -30,7 +30,7 @@ std::string radiance_file(int width, int height, const std::string& pixel) {
   return text;
 }
 
-TEST(Environment, SkyHasMeanOneAndIsBrighterThanTheGround) {
+TEST(Environment, BuiltInSkyHasMeanRadianceAboutOneAndIsBrighterThanTheGround) {
   const auto sky = load_environment({});
   ASSERT_TRUE(sky);
   const glm::vec3 mean = mean_radiance(*sky);
@@ -38,7 +38,7 @@ TEST(Environment, SkyHasMeanOneAndIsBrighterThanTheGround) {
   EXPECT_GT(radiance(*sky, {0, 1, 0}).z, radiance(*sky, {0, -1, 0}).z);
 }
 
-TEST(Environment, PlusXIsAtAQuarterOfTheWidthAndColumnsWrapAround) {
+TEST(Environment, DirectionPlusXIsAtAQuarterOfTheImageWidthAndColumnsWrapAround) {
   EnvironmentImage image(64, 32);
   image.at(16, 16) = glm::vec3(5);  // a quarter to the right: +X, just under the horizon
   const glm::vec3 there = glm::normalize(glm::vec3(1.0f, -0.05f, 0.05f));
@@ -50,7 +50,7 @@ TEST(Environment, PlusXIsAtAQuarterOfTheWidthAndColumnsWrapAround) {
   EXPECT_NEAR(radiance(image, seam).x, 2.5f, 0.3f);
 }
 
-TEST(Environment, ExrAndRadianceFilesAreRead) {
+TEST(Environment, EnvironmentMapsInExrAndRadianceHdrFormatAreRead) {
   const TemporaryFolder folder;
   EnvironmentImage image(8, 4, glm::vec3(0.5f, 1.0f, 2.0f));
   image.at(3, 1) = {std::numeric_limits<float>::quiet_NaN(), -1.0f,
@@ -68,7 +68,7 @@ TEST(Environment, ExrAndRadianceFilesAreRead) {
   EXPECT_NEAR(hdr->at(5, 2).y, 1.0f, 0.01f);
 }
 
-TEST(Environment, LargeFilesAreReducedToTheirMean) {
+TEST(Environment, LargeEnvironmentMapsAreReducedByAveragingPixels) {
   const TemporaryFolder folder;
   EnvironmentImage image(4096, 4);
   for (uint32_t y = 0; y < 4; ++y) {
@@ -82,7 +82,7 @@ TEST(Environment, LargeFilesAreReducedToTheirMean) {
 }
 
 // Rows are coded by channel: a run of one value, then single values.
-TEST(Environment, RadianceRunsByChannelAreRead) {
+TEST(Environment, RunLengthEncodedRadianceRowsByChannelAreRead) {
   const TemporaryFolder folder;
   std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
   text += std::string("\x02\x02\x00\x08", 4);
@@ -98,7 +98,7 @@ TEST(Environment, RadianceRunsByChannelAreRead) {
 }
 
 // In the older coding, the pixel (1, 1, 1, n) repeats the previous pixel n times.
-TEST(Environment, RadianceRunsOfWholePixelsAreRead) {
+TEST(Environment, OldStyleRadianceRunsOfWholePixelsAreRead) {
   const TemporaryFolder folder;
   std::string text = "#?RGBE\n\n-Y 2 +X 300\n";
   const std::string pixel("\x80\x40\x00\x81", 4), other("\x40\x40\x40\x81", 4);
@@ -113,7 +113,7 @@ TEST(Environment, RadianceRunsOfWholePixelsAreRead) {
   EXPECT_EQ(image->at(0, 1), glm::vec3(0.5f));
 }
 
-TEST(Environment, EveryTruncationOfARadianceFileIsRefused) {
+TEST(Environment, EveryTruncationOfARadianceHdrFileIsRefused) {
   const TemporaryFolder folder;
   std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n";
   for (int row = 0; row < 2; ++row) {
@@ -128,7 +128,7 @@ TEST(Environment, EveryTruncationOfARadianceFileIsRefused) {
   }
 }
 
-TEST(Environment, RunsPastTheEndOfARowAreRefused) {
+TEST(Environment, RadianceRunsPastTheEndOfARowAreRefused) {
   const TemporaryFolder folder;
   const std::string header = "#?RADIANCE\n\n-Y 1 +X 8\n";
   for (const std::string& row :
@@ -142,7 +142,7 @@ TEST(Environment, RunsPastTheEndOfARowAreRefused) {
   }
 }
 
-TEST(Environment, SidesOverTheLimitAreRefusedBeforeReading) {
+TEST(Environment, ImagesWithASideOverTheLimitAreRefusedFromTheirHeader) {
   const TemporaryFolder folder;
   write_file(folder.path / "a.hdr", "#?RADIANCE\n\n-Y 20000 +X 40000\n");
   const auto image = load_environment(folder.path / "a.hdr");
@@ -151,7 +151,7 @@ TEST(Environment, SidesOverTheLimitAreRefusedBeforeReading) {
 }
 
 // OpenEXR would allocate as much memory as the attribute's size field says.
-TEST(Environment, ExrAttributesOfAWrongSizeAreRefused) {
+TEST(Environment, ExrFileWithAnAttributeOfWrongSizeIsRefused) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4)));
   std::ifstream in(folder.path / "a.exr", std::ios::binary);
@@ -168,7 +168,7 @@ TEST(Environment, ExrAttributesOfAWrongSizeAreRefused) {
   }
 }
 
-TEST(Environment, EveryTruncationOfAnExrIsRefused) {
+TEST(Environment, EveryTruncationOfAnExrFileIsRefused) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4, glm::vec3(0.5f))));
   std::ifstream in(folder.path / "a.exr", std::ios::binary);
@@ -179,7 +179,7 @@ TEST(Environment, EveryTruncationOfAnExrIsRefused) {
   }
 }
 
-TEST(Environment, InvalidFilesAreRefusedInOneSentence) {
+TEST(Environment, InvalidEnvironmentFilesAreRefusedInOneSentence) {
   const TemporaryFolder folder;
   const std::string good = radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4));
   const std::vector<std::pair<std::string, std::string>> files{

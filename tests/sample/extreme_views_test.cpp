@@ -73,7 +73,7 @@ bool in_unit_range(const Image<float>& image) {
   return std::ranges::all_of(image.pixels, [](float v) { return v >= 0.0f && v <= 1.0f; });
 }
 
-TEST(ExtremeViews, OutputsAreFiniteAndInRange) {
+TEST(ExtremeViews, OutputsOfRandomExtremeViewsAreFiniteAndInRange) {
   const ValidatedGpu gpu = open_validated();
   ASSERT_TRUE(gpu);
   const Scene scene = builtin_scene();

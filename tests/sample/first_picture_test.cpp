@@ -155,7 +155,7 @@ const Newcomer kFiles[] = {
 
 class FirstPicture : public testing::TestWithParam<Newcomer> {};
 
-TEST_P(FirstPicture, ShowsTheModelWithOcclusion) {
+TEST_P(FirstPicture, ImageOfAModelFileWithoutOptionsShowsTheModelWithOcclusion) {
   const Newcomer& file = GetParam();
   const TemporaryFolder folder;
   ModelMaker maker;

@@ -59,7 +59,7 @@ Scene scene_of(std::vector<Mesh> meshes) {
 
 double size_of(const Bounds& bounds) { return glm::length(bounds.high - bounds.low); }
 
-TEST(SceneCore, CoreOfAnOrdinarySceneIsItsBoundingBox) {
+TEST(SceneCore, FramedCoreOfAnOrdinarySceneIsItsWholeBoundingBox) {
   const Scene scene = builtin_scene();
   const SceneCore core = scene_core(scene.meshes);
   EXPECT_EQ(core.triangles_outside, 0u);
@@ -67,7 +67,7 @@ TEST(SceneCore, CoreOfAnOrdinarySceneIsItsBoundingBox) {
   EXPECT_EQ(core.bounds_ws.high, scene.bounds_ws.high);
 }
 
-TEST(SceneCore, FarSliverDoesNotEnlargeTheCore) {
+TEST(SceneCore, TinyMeshFarAwayDoesNotEnlargeTheFramedCore) {
   Mesh sliver;
   sliver.positions = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
   sliver.indices = {0, 1, 2};
@@ -76,7 +76,7 @@ TEST(SceneCore, FarSliverDoesNotEnlargeTheCore) {
   EXPECT_LT(size_of(core.bounds_ws), 9.0);
 }
 
-TEST(SceneCore, StrayTrianglesOfTheSameMeshDoNotEnlargeTheCore) {
+TEST(SceneCore, StrayTrianglesOfTheSameMeshDoNotEnlargeTheFramedCore) {
   Mesh mesh = grid(3.0f, 30);
   const auto first = static_cast<uint32_t>(mesh.positions.size());
   for (const glm::vec3 stray : {glm::vec3(0, 9e4f, 0), glm::vec3(50, 9e4f, 0), {0, 9e4f, 50}}) {
@@ -88,14 +88,14 @@ TEST(SceneCore, StrayTrianglesOfTheSameMeshDoNotEnlargeTheCore) {
   EXPECT_LT(size_of(core.bounds_ws), 9.0);
 }
 
-TEST(SceneCore, SkyDomeAndGroundPlaneAreOutsideOfTheCore) {
+TEST(SceneCore, SkyDomeAndGroundPlaneAreOutsideTheFramedCore) {
   const Mesh character = sphere(1.0f, {0, 1, 0}, 16);
   const SceneCore core = scene_core({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), character});
   EXPECT_EQ(core.triangles_outside, 4u * 16 * 16 + 2);
   EXPECT_NEAR(size_of(core.bounds_ws), 2.0 * std::sqrt(3.0), 0.1);
 }
 
-TEST(SceneCore, LargeDetailedTerrainAroundASmallModelBelongsToTheCore) {
+TEST(SceneCore, LargeDetailedTerrainAroundASmallModelBelongsToTheFramedCore) {
   Mesh terrain = grid(500.0f, 100);
   for (size_t i = 0; i < terrain.positions.size(); ++i) {
     terrain.positions[i].y = 100.0f * std::sin(0.37f * float(i));
@@ -104,7 +104,7 @@ TEST(SceneCore, LargeDetailedTerrainAroundASmallModelBelongsToTheCore) {
   EXPECT_EQ(core.triangles_outside, 0u);
 }
 
-TEST(Framing, CoreIsInTheImageAndBetweenNearAndFarPlane) {
+TEST(Framing, DefaultCameraShowsTheWholeSceneCoreBetweenNearAndFarPlane) {
   const Scene scene =
       scene_of({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), sphere(1.0f, {0, 1, 0}, 16)});
   const Camera camera = with_fitted_planes(scene, framing_camera(scene, 16.0 / 9.0), 16.0 / 9.0);
@@ -118,7 +118,7 @@ TEST(Framing, CoreIsInTheImageAndBetweenNearAndFarPlane) {
   }
 }
 
-TEST(Framing, CoreFillsNineTenthsOfTheImageInOneDirection) {
+TEST(Framing, SceneCoreFillsNineTenthsOfTheWidthOrHeightOfTheImage) {
   for (const glm::vec3 size : {glm::vec3(1, 1, 1), glm::vec3(20, 1, 1), glm::vec3(1, 30, 1)}) {
     for (const double aspect : {0.5, 1.0, 16.0 / 9.0}) {
       Mesh box = sphere(0.5f, {0, 0, 0}, 8);
@@ -136,7 +136,7 @@ TEST(Framing, CoreFillsNineTenthsOfTheImageInOneDirection) {
   }
 }
 
-TEST(Framing, EyeIsInsideTheRoomThatEnclosesTheCore) {
+TEST(Framing, DefaultCameraIsInsideTheRoomThatEnclosesTheSceneCore) {
   Mesh walls = sphere(10.0f, {-8, 0, -8}, 4);
   const Scene scene = scene_of({walls, sphere(0.5f, {-3, 0, -3}, 16)});
   const glm::vec3 eye = framing_camera(scene, 16.0 / 9.0).eye_ws;
@@ -144,7 +144,7 @@ TEST(Framing, EyeIsInsideTheRoomThatEnclosesTheCore) {
   EXPECT_LT(eye.z, 2.0f);
 }
 
-TEST(DepthInView, TrianglesOutsideOfTheImageDoNotCount) {
+TEST(DepthInView, TrianglesOutsideTheImageDoNotExtendTheDepthRange) {
   // A floor that reaches behind the eye: the nearest visible point is on the image's lower edge.
   const Scene scene = scene_of({grid(100.0f, 1)});
   Camera camera;
@@ -159,7 +159,7 @@ TEST(DepthInView, TrianglesOutsideOfTheImageDoNotCount) {
   EXPECT_FALSE(depth_in_view(scene, camera, 1.0));
 }
 
-TEST(DepthInView, InstancesCountAtTheirOwnPositions) {
+TEST(DepthInView, InstancesExtendTheDepthRangeAtTheirOwnPositions) {
   Mesh mesh = sphere(1.0f, {0, 0, 0}, 16);
   for (const float z : {-10.0f, -30.0f}) {
     glm::mat4x3 placed(1.0f);
@@ -172,7 +172,7 @@ TEST(DepthInView, InstancesCountAtTheirOwnPositions) {
   EXPECT_NEAR(range->farthest, 31.0, 0.05);
 }
 
-TEST(DepthInView, LargeTrianglesAreClippedToTheSidesOfTheImage) {
+TEST(DepthInView, LargeTrianglesAreClippedToTheImageBeforeTheirDepthCounts) {
   Mesh mesh;
   mesh.positions = {{-100, 0, -1}, {100, 0, -1}, {0, 0, -201}};
   mesh.indices = {0, 1, 2};
@@ -187,7 +187,7 @@ TEST(DepthInView, LargeTrianglesAreClippedToTheSidesOfTheImage) {
 }
 
 // A million instances of 4096 triangles: 4 * 10^9 triangles, of which few can be the nearest.
-TEST(DepthInView, InstancesThatCannotChangeTheRangeAreNotSearched) {
+TEST(DepthInView, DepthRangeOfAMillionInstancesIsFoundWithoutSearchingAllTheirTriangles) {
   Mesh mesh = sphere(0.4f, {0, 0, 0}, 32);
   for (int z = 0; z < 1000; ++z) {
     for (int x = -500; x < 500; ++x) {
@@ -204,7 +204,7 @@ TEST(DepthInView, InstancesThatCannotChangeTheRangeAreNotSearched) {
 
 // The bounds of every instance are in view, but none of its triangles: each lies in two opposite
 // corners of the bounds.
-TEST(DepthInView, BeyondTheLimitOnTrianglesTheBoundsOfInstancesCount) {
+TEST(DepthInView, BeyondTheSearchLimitBoundingBoxesOfInstancesCountInsteadOfTriangles) {
   Mesh mesh;
   for (const float side : {-1.0f, 1.0f}) {
     const Mesh corner = sphere(0.1f, {50 * side, 50 * side, 0}, 64);

@@ -21,7 +21,7 @@ TEST(GltfAccessor, IndicesOfEveryUnsignedTypeGiveTheSameTriangles) {
   }
 }
 
-TEST(GltfAccessor, NormalizedIntegersMapToTheUnitRange) {
+TEST(GltfAccessor, NormalizedIntegersAreReadAsFloatsFromMinusOneToOne) {
   GltfMaker maker = GltfMaker::triangle();
   const int bytes = maker.view<int8_t>({0, 0, 0, 0, 127, 0, 0, 0, 0, -128, 0, 0}, 4);
   const int shorts = maker.view<uint16_t>({0, 0, 65535, 0, 0, 32768});
@@ -40,7 +40,7 @@ TEST(GltfAccessor, NormalizedIntegersMapToTheUnitRange) {
   EXPECT_NEAR(scene.meshes[0].uvs[2].y, 0.5f, 1e-4f);
 }
 
-TEST(GltfAccessor, InterleavedAttributesReadThroughTheirStride) {
+TEST(GltfAccessor, InterleavedAttributesAreReadWithTheirStride) {
   GltfMaker maker = GltfMaker::triangle();
   const int view = maker.view<float>({0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 2, 0, 1, 0, 0, 0, 2}, 24);
   const int position = maker.accessor(view, 5126, "VEC3", 3);
@@ -53,7 +53,7 @@ TEST(GltfAccessor, InterleavedAttributesReadThroughTheirStride) {
   EXPECT_EQ(scene.meshes[0].normals[2], glm::vec3(0, 0, 1));
 }
 
-TEST(GltfAccessor, SparseValuesReplaceAndZeroesFillTheRest) {
+TEST(GltfAccessor, SparseAccessorHasItsSparseValuesAndZeroesElsewhere) {
   GltfMaker maker = GltfMaker::triangle();
   const int indices = maker.view<uint8_t>({1, 2});
   const int values = maker.view<float>({3, 0, 0, 0, 4, 0});

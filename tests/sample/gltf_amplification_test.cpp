@@ -49,7 +49,7 @@ GltfMaker skinned_triangle(int sets) {
   return maker;
 }
 
-TEST(GltfAmplification, InstancesCountOnceForEachPrimitive) {
+TEST(GltfRepeatedData, InstancesCountTowardsTheLimitOnceForEachPrimitive) {
   GltfLimits limits;
   limits.instances = 40;
   EXPECT_TRUE(parsed_within(repeated_triangle(10, 4), limits));
@@ -58,7 +58,7 @@ TEST(GltfAmplification, InstancesCountOnceForEachPrimitive) {
   EXPECT_THAT(scene.error(), HasSubstr("past the number of instances"));
 }
 
-TEST(GltfAmplification, SetsOfJointsCountAsVertices) {
+TEST(GltfRepeatedData, EachSetOfJointsAndWeightsCountsTowardsTheVertexLimit) {
   GltfLimits limits;
   limits.vertices = 6;
   EXPECT_TRUE(parsed_within(skinned_triangle(2), limits));
@@ -67,7 +67,7 @@ TEST(GltfAmplification, SetsOfJointsCountAsVertices) {
   EXPECT_THAT(scene.error(), HasSubstr("too many joints and weights: 3 sets for 3 vertices"));
 }
 
-TEST(GltfAmplification, JointsOfASkinCountOnceHoweverManyNodesHaveIt) {
+TEST(GltfRepeatedData, JointsOfASkinCountOnceTowardsTheLimitHoweverManyNodesUseTheSkin) {
   GltfMaker maker = skinned_triangle(1);
   const nlohmann::json node = maker.json["nodes"][0];
   maker.json["nodes"] = nlohmann::json(20, node);
@@ -82,14 +82,14 @@ TEST(GltfAmplification, JointsOfASkinCountOnceHoweverManyNodesHaveIt) {
 }
 
 // 5 * 10^8 uses of primitives would take 16 GB.
-TEST(GltfAmplification, OriginIsChosenFromAMillionPartsAtMost) {
+TEST(GltfRepeatedData, FileWithHalfABillionInstancesIsRefused) {
   const auto scene = parsed_within(repeated_triangle(50'000, 10'000), {});
   ASSERT_FALSE(scene);
   EXPECT_THAT(scene.error(), HasSubstr("past the number of instances"));
 }
 
 // Three meshes of three vertices: the first is a thousand units away, the others are at the origin.
-TEST(GltfAmplification, OriginIsChosenFromTheVerticesWithinTheLimit) {
+TEST(GltfRepeatedData, SceneOriginIsChosenFromVerticesUpToALimit) {
   tinygltf::Model model;
   Layout layout;
   std::vector<float> positions = {1000, 0, 0, 1001, 0, 0, 1000, 1, 0};
@@ -119,20 +119,20 @@ TEST(GltfAmplification, OriginIsChosenFromTheVerticesWithinTheLimit) {
   EXPECT_NEAR(chosen_origin(model, layout, 3).x, 1000.5, 1.0);
 }
 
-TEST(GltfAmplification, EmptyEmbeddedImageIsLeftOutWithANote) {
+TEST(GltfRepeatedData, EmptyEmbeddedImageIsLeftOutWithAWarning) {
   GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
   maker.json["images"][0] = {{"uri", "data:image/png;base64,"}};
   EXPECT_THAT(parsed(maker.gltf()).warnings,
               testing::Contains("image 0 (data:...) is empty and is left out."));
 }
 
-TEST(GltfAmplification, EmptyFileIsCalledEmpty) {
+TEST(GltfRepeatedData, ErrorForAnEmptyFileSaysThatTheFileIsEmpty) {
   const auto scene = parse_gltf({}, "empty.gltf", "");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error(), "cannot read empty.gltf: it is empty");
 }
 
-TEST(SceneNotes, OnlyTheFirstTwentyArePrinted) {
+TEST(SceneNotes, OnlyTheFirstTwentyNotesOnASceneArePrinted) {
   GltfMaker maker = GltfMaker::triangle();
   for (int i = 100; i < 150; ++i)
     maker.json["extensionsUsed"].push_back("EXT_" + std::to_string(i));

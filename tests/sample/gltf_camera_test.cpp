@@ -48,7 +48,7 @@ Scene seen_at(double scale, double offset) {
   return parsed(maker.gltf());
 }
 
-TEST(GltfCamera, CameraDirectionDoesNotDependOnScaleAndPosition) {
+TEST(GltfCamera, CameraDirectionDoesNotDependOnScaleAndPositionOfTheScene) {
   const Scene plain = seen_at(1, 0);
   ASSERT_EQ(plain.cameras.size(), 1u);
   const auto direction = [](const Camera& camera) {
@@ -64,7 +64,7 @@ TEST(GltfCamera, CameraDirectionDoesNotDependOnScaleAndPosition) {
   }
 }
 
-TEST(GltfCamera, TargetIsAsFarAheadAsTheCentreOfTheScene) {
+TEST(GltfCamera, CameraTargetIsAsFarAheadAsTheCentreOfTheScene) {
   for (const double scale : {1.0, 1e10, 1e-9}) {
     const Scene scene = seen_at(scale, 0);
     ASSERT_EQ(scene.cameras.size(), 1u);

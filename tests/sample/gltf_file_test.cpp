@@ -22,7 +22,7 @@ TEST(GltfFile, BinaryFileGivesTheSameSceneAsTheTextFile) {
   EXPECT_EQ(corners(parsed(maker.glb())), corners(parsed(maker.gltf())));
 }
 
-TEST(GltfFile, ExternalBufferIsReadFromTheFolderAndNowhereElse) {
+TEST(GltfFile, ExternalBufferIsReadOnlyFromTheFolderOfTheSceneFile) {
   const TemporaryFolder folder;
   GltfMaker maker = GltfMaker::triangle();
   std::filesystem::create_directories(folder.path / "inside");
@@ -45,7 +45,7 @@ TEST(GltfFile, ExternalBufferIsReadFromTheFolderAndNowhereElse) {
   }
 }
 
-TEST(GltfFile, FileOutsideTheFolderIsNotCalledMissing) {
+TEST(GltfFile, FileOutsideTheFolderOfTheSceneIsReportedAsOutsideAndNotAsMissing) {
   const TemporaryFolder folder;
   const std::filesystem::path inside = folder.path / "inside";
   std::filesystem::create_directories(inside);
@@ -69,7 +69,7 @@ TEST(GltfFile, FileOutsideTheFolderIsNotCalledMissing) {
               testing::Contains(HasSubstr("image 0 (../t.png) lies outside the scene's folder")));
 }
 
-TEST(GltfFile, ReasonThatAFileCannotBeOpenedIsReported) {
+TEST(GltfFile, ErrorForAFileThatCannotBeOpenedGivesTheReasonOfTheSystem) {
   const TemporaryFolder folder;
   std::filesystem::create_symlink("loop.gltf", folder.path / "loop.gltf");
   const auto scene = load_gltf(folder.path / "loop.gltf");
@@ -79,13 +79,13 @@ TEST(GltfFile, ReasonThatAFileCannotBeOpenedIsReported) {
       testing::EndsWith(std::make_error_code(std::errc::too_many_symbolic_link_levels).message()));
 }
 
-TEST(GltfFile, MissingFileIsNamed) {
+TEST(GltfFile, ErrorForAMissingFileNamesTheFile) {
   const auto scene = load_gltf("no/such/scene.glb");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error(), "cannot read no/such/scene.glb: there is no such file");
 }
 
-TEST(GltfFile, OnlyVersionTwoIsRead) {
+TEST(GltfFile, OnlyGltfVersionTwoIsRead) {
   GltfMaker maker = GltfMaker::triangle();
   for (const char* version : {"1.0", "3.0", "20.0"}) {
     maker.json["asset"]["version"] = version;
@@ -112,7 +112,7 @@ tl::expected<Scene, std::string> scene_with(const std::string& uri, const std::s
 }
 
 // RFC 3986 section 2.1: only %XX is decoded.
-TEST(GltfFile, UriIsDecodedAfterRfc3986) {
+TEST(GltfFile, UriIsDecodedAccordingToRfc3986) {
   const std::pair<const char*, const char*> names[] = {
       {"a+b.bin", "a+b.bin"},
       {"c%2Bd.bin", "c+d.bin"},
@@ -137,7 +137,7 @@ TEST(GltfFile, UriIsDecodedAfterRfc3986) {
   EXPECT_THAT(missing.error(), HasSubstr("buffers[0] (a b.bin) is not in the scene's folder"));
 }
 
-TEST(GltfFile, EncodedPathsOutOfTheFolderAreRefused) {
+TEST(GltfFile, UrisThatLeadOutOfTheFolderOfTheSceneAreRefused) {
   for (const char* uri : {"%2e%2e/own.bin", "..\\own.bin", "/etc/passwd", "file:///etc/passwd",
                           "https://example.org/a.bin", "inside/../../own.bin", "a%00.bin"}) {
     const auto scene = scene_with(uri, "own.bin");
@@ -146,7 +146,7 @@ TEST(GltfFile, EncodedPathsOutOfTheFolderAreRefused) {
   }
 }
 
-TEST(GltfFile, NamedPipesAndFoldersInPlaceOfInputsAreRefused) {
+TEST(GltfFile, NamedPipesAndFoldersInPlaceOfInputFilesAreRefused) {
   const TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder.path / "pipe").c_str(), 0600), 0);
   const auto scene = load_gltf(folder.path / "pipe");
@@ -197,7 +197,7 @@ TEST(GltfFile, EmbeddedDataMayHaveAnyMediaTypeAndEncoding) {
 }
 
 // glTF 2.0 section 3.6.1: a buffer may have no URI, as a placeholder for an extension.
-TEST(GltfFile, BufferWithoutDataIsAllowedUnlessItIsRead) {
+TEST(GltfFile, BufferWithoutDataIsAllowedUnlessABufferViewUsesIt) {
   GltfMaker maker = GltfMaker::triangle();
   nlohmann::json root = nlohmann::json::parse(maker.gltf());
   root["buffers"].push_back({{"byteLength", 1000}});
@@ -213,7 +213,7 @@ TEST(GltfFile, BufferWithoutDataIsAllowedUnlessItIsRead) {
 
 // glTF 2.0 section 3.6.2.1: an accessor without a buffer view is zeroes, which sparse values
 // replace.
-TEST(GltfFile, IndicesWithoutABufferViewAreRead) {
+TEST(GltfFile, IndexAccessorWithoutABufferViewIsReadAsZeroesAndSparseValues) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["accessors"].push_back(
       {{"componentType", 5123},
@@ -228,7 +228,7 @@ TEST(GltfFile, IndicesWithoutABufferViewAreRead) {
   EXPECT_EQ(corners(parsed(maker.gltf())), expected);
 }
 
-TEST(GltfFile, ExtensionsThatChangeNoShapeMayBeRequired) {
+TEST(GltfFile, RequiredExtensionsThatDoNotChangeGeometryAreAccepted) {
   GltfMaker maker = GltfMaker::triangle();
   for (const char* name : {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_xmp_json_ld"}) {
     maker.json["extensionsRequired"] = {name};

@@ -21,9 +21,9 @@ struct Hostile {
   const char* word;
 };
 
-class HostileGltf : public testing::TestWithParam<Hostile> {};
+class MalformedGltf : public testing::TestWithParam<Hostile> {};
 
-TEST_P(HostileGltf, IsRefusedInOneSentence) {
+TEST_P(MalformedGltf, FileWithOneFaultIsRefusedInOneSentence) {
   GltfMaker maker = GltfMaker::triangle();
   GetParam().spoil(maker);
   EXPECT_THAT(refusal(maker.gltf()), HasSubstr(GetParam().word));
@@ -126,7 +126,7 @@ const Hostile kHostile[] = {
      "asset.version is \"two\""},
     {"NoTriangles", [](GltfMaker& m) { m.primitive()["mode"] = 0; }, "no triangles"},
 };
-INSTANTIATE_TEST_SUITE_P(All, HostileGltf, testing::ValuesIn(kHostile),
+INSTANTIATE_TEST_SUITE_P(All, MalformedGltf, testing::ValuesIn(kHostile),
                          [](const auto& param) { return std::string(param.param.name); });
 
 // A triangle with one image, given as an embedded PNG whatever the bytes are.
@@ -136,7 +136,7 @@ GltfMaker with_image(const std::string& base64) {
   return maker;
 }
 
-TEST(GltfLimits, EveryTruncationIsRefused) {
+TEST(GltfLimits, EveryTruncationOfABinaryFileIsRefused) {
   const auto glb = GltfMaker::triangle().glb();
   for (size_t size = 0; size < glb.size(); ++size) {
     const std::vector<uint8_t> cut(glb.begin(), glb.begin() + static_cast<std::ptrdiff_t>(size));
@@ -144,7 +144,7 @@ TEST(GltfLimits, EveryTruncationIsRefused) {
   }
 }
 
-TEST(GltfImage, ImagesThatAreLargeTogetherAreReduced) {
+TEST(GltfImage, ImagesThatTogetherExceedThePixelLimitAreReduced) {
   GltfMaker maker = textured({{"index", 0}}, {{"index", 1}});
   maker.json.erase("textures");
   for (const uint32_t side : {64u, 16u}) {
@@ -162,7 +162,7 @@ TEST(GltfImage, ImagesThatAreLargeTogetherAreReduced) {
   EXPECT_THAT(scene->warnings, testing::Contains(HasSubstr("over 16 pixels a side are reduced")));
 }
 
-TEST(GltfImage, MorePixelsThanAreDecodedAreRefusedFromTheHeaders) {
+TEST(GltfImage, ImagesWithMorePixelsThanTheDecodingLimitAreRefusedFromTheirHeaders) {
   GltfMaker maker = with_image(GltfMaker::base64(make_png_promise(1024, 1024, 2000)));
   GltfLimits limits;
   limits.images.decoded = 1 << 19;
@@ -179,7 +179,7 @@ TEST(GltfImage, ImagesThatNoMeshUsesAreNotRead) {
   EXPECT_THAT(scene.warnings, testing::IsEmpty());
 }
 
-TEST(GltfLimits, InstancesBeyondTheLimitAreRefused) {
+TEST(GltfLimits, InstancesWithMoreTrianglesThanTheLimitAreRefused) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["nodes"].clear();
   for (int i = 0; i < 100; ++i) {
@@ -193,7 +193,7 @@ TEST(GltfLimits, InstancesBeyondTheLimitAreRefused) {
 }
 
 // Triangles without area take as long to read as others.
-TEST(GltfLimits, InstancesWithoutAreaCountTowardsTheLimit) {
+TEST(GltfLimits, TrianglesWithoutAreaCountTowardsTheTriangleLimit) {
   for (const bool indexed : {false, true}) {
     GltfMaker maker = GltfMaker::triangle();
     maker.json["accessors"][0].erase("bufferView");  // zeroes
@@ -214,7 +214,7 @@ TEST(GltfLimits, InstancesWithoutAreaCountTowardsTheLimit) {
   }
 }
 
-TEST(GltfLimits, PrimitivesThatAreLeftOutCountTowardsTheLimit) {
+TEST(GltfLimits, PrimitivesThatAreNotTrianglesCountTowardsThePrimitiveLimit) {
   GltfMaker maker = GltfMaker::triangle();
   maker.primitive()["mode"] = 1;
   const nlohmann::json lines = maker.primitive();
@@ -226,20 +226,20 @@ TEST(GltfLimits, PrimitivesThatAreLeftOutCountTowardsTheLimit) {
   EXPECT_THAT(scene.error(), HasSubstr("parts"));
 }
 
-TEST(GltfImage, DamagedJpegIsLeftOutWithANote) {
+TEST(GltfImage, DamagedJpegIsLeftOutWithAWarning) {
   const Scene scene = parsed(with_image(kJpegOfBadHuffmanTable).gltf());
   EXPECT_THAT(scene.warnings, testing::ElementsAre("image 0 is damaged and is left out."));
   EXPECT_TRUE(scene.images.empty());
 }
 
-TEST(GltfImage, OtherFormatsThanPngAndJpegAreLeftOutWithANote) {
+TEST(GltfImage, ImagesOtherThanPngAndJpegAreLeftOutWithAWarning) {
   const std::string pgm = "P5 8000 8000 65535\n" + std::string(20'000, '\0');
   const Scene scene = parsed(with_image(GltfMaker::base64({pgm.begin(), pgm.end()})).gltf());
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_THAT(scene.warnings[0], HasSubstr("image 0 is not a PNG or JPEG"));
 }
 
-TEST(GltfImage, SideOverTheLimitIsRefusedFromTheHeader) {
+TEST(GltfImage, ImageWithASideOverTheLimitIsRefusedFromItsHeader) {
   const auto png = make_png_promise(22'000, 22'000, 500'000);
   EXPECT_THAT(refusal(with_image(GltfMaker::base64(png)).gltf()),
               HasSubstr("22000x22000 pixels; make it at most 16384 a side"));

@@ -53,7 +53,7 @@ TEST(GltfMesh, TransformsOfParentAndChildNodesAreMultiplied) {
   EXPECT_NEAR(glm::distance(read[2], glm::vec3(8, 2, 0)), 0.0f, 1e-5f);
 }
 
-TEST(GltfMesh, WindingIsReversedUnderAMirroringNode) {
+TEST(GltfMesh, TriangleWindingIsReversedUnderANodeThatMirrors) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["nodes"][0]["scale"] = {-1, 1, 1};
   const Scene scene = parsed(maker.gltf());
@@ -61,7 +61,7 @@ TEST(GltfMesh, WindingIsReversedUnderAMirroringNode) {
   EXPECT_EQ(face_normal(scene, 0), glm::vec3(0, 0, 1));
 }
 
-TEST(GltfMesh, TangentsAreRotatedAndMirroredWithTheNode) {
+TEST(GltfMesh, TangentsAreMirroredWithTheNodeAndInvalidOnesBecomeZero) {
   GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
   const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int tangents = maker.view<float>({1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});
@@ -76,7 +76,7 @@ TEST(GltfMesh, TangentsAreRotatedAndMirroredWithTheNode) {
   EXPECT_EQ(scene.meshes[0].tangents[2], glm::vec4(0, 0, 0, 1));
 }
 
-TEST(GltfMesh, BoundsAreThoseOfTheTriangles) {
+TEST(GltfMesh, SceneBoundsContainOnlyVerticesThatTrianglesUse) {
   GltfMaker maker = GltfMaker::triangle();
   const int positions = maker.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e6, 0, 0});
   const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});

@@ -39,7 +39,7 @@ GltfMaker skinned_triangle() {
   return maker;
 }
 
-TEST(GltfSkin, JointsTransformVerticesAndTheNodeOfTheMeshDoesNot) {
+TEST(GltfSkin, VerticesOfASkinnedMeshAreTransformedByJointsAndNotByItsNode) {
   const Scene scene = parsed(skinned_triangle().gltf());
   const auto read = corners(scene);
   ASSERT_EQ(read.size(), 3u);
@@ -60,7 +60,7 @@ TEST(GltfSkin, MissingInverseBindMatricesAreTheIdentity) {
   EXPECT_LT(glm::distance(corners(parsed(maker.gltf()))[0], glm::vec3(10, 0, 5)), 1e-5f);
 }
 
-TEST(GltfSkin, JointThatDoesNotExistIsRefused) {
+TEST(GltfSkin, JointOrSkinThatDoesNotExistIsRefused) {
   GltfMaker maker = skinned_triangle();
   maker.json["skins"][0]["joints"] = {1};
   EXPECT_THAT(refusal(maker.gltf()), HasSubstr("joint"));
@@ -78,7 +78,7 @@ TEST(GltfSkin, FewerInverseBindMatricesThanJointsAreRefused) {
   EXPECT_THAT(refusal(maker.gltf()), HasSubstr("inverse bind"));
 }
 
-TEST(GltfInstances, NodesOfOneMeshShareIt) {
+TEST(GltfInstances, NodesThatDrawTheSameMeshBecomeInstancesOfIt) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["nodes"] = {{{"mesh", 0}},
                          {{"mesh", 0}, {"translation", {5, 0, 0}}},
@@ -92,7 +92,7 @@ TEST(GltfInstances, NodesOfOneMeshShareIt) {
   EXPECT_EQ(scene.bounds_ws.high, glm::vec3(6, 2, 0));
 }
 
-TEST(GltfInstances, FlatTransformIsNotAnInstance) {
+TEST(GltfInstances, NodeScaledToZeroAlongAnAxisBecomesAMeshOfItsOwn) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}}, {{"mesh", 0}, {"scale", {1, 1, 0}}}};
   maker.json["scenes"][0]["nodes"] = {0, 1, 2};
@@ -101,7 +101,7 @@ TEST(GltfInstances, FlatTransformIsNotAnInstance) {
   EXPECT_EQ(triangle_count(scene), 3u);
 }
 
-TEST(GltfInstances, GpuInstancesAreThoseOfTheExtension) {
+TEST(GltfInstances, InstancesOfTheGpuInstancingExtensionAreRead) {
   GltfMaker maker = GltfMaker::triangle();
   const int translations = maker.view<float>({0, 0, 0, 3, 0, 0});
   const int scales = maker.view<float>({1, 1, 1, 2, 2, 2});
@@ -118,7 +118,7 @@ TEST(GltfInstances, GpuInstancesAreThoseOfTheExtension) {
   EXPECT_THAT(refusal(maker.gltf()), HasSubstr("differ in number"));
 }
 
-TEST(GltfNodes, HiddenNodesAreNotDrawn) {
+TEST(GltfNodes, NodesHiddenByTheVisibilityExtensionAreNotDrawn) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["nodes"] = {
       {{"mesh", 0}},
@@ -128,7 +128,7 @@ TEST(GltfNodes, HiddenNodesAreNotDrawn) {
   EXPECT_EQ(triangle_count(parsed(maker.gltf())), 1u);
 }
 
-TEST(GltfNodes, ExtensionsThatChangeNoShapeMayBeRequired) {
+TEST(GltfNodes, RequiredExtensionsAreAcceptedOnlyIfKnownNotToChangeGeometry) {
   GltfMaker maker = GltfMaker::triangle();
   for (const char* name : {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_xmp_json_ld"}) {
     maker.json["extensionsRequired"] = {name};
@@ -154,7 +154,7 @@ GltfMaker scene_at(const glm::dvec3& offset) {
   return maker;
 }
 
-TEST(GltfNodes, SceneFarFromTheOriginIsMovedToTheOrigin) {
+TEST(GltfNodes, SceneFarFromTheOriginIsMovedCloseToTheOrigin) {
   const Scene near_scene = parsed(scene_at(glm::dvec3(0.0)).gltf());
   EXPECT_EQ(near_scene.origin, glm::dvec3(0.0));
   const glm::dvec3 offset(100000.3, -4e6, 2e8 + 0.7);
@@ -190,7 +190,7 @@ TEST(GltfMaterial, MaterialsAreSingleSidedUnlessTheFileSaysOtherwise) {
   EXPECT_TRUE(only_material({{"doubleSided", true}}).double_sided);
 }
 
-TEST(GltfMaterial, SpecularGlossinessGivesBaseColourAlphaAndRoughness) {
+TEST(GltfMaterial, SpecularGlossinessMaterialGivesBaseColourAlphaAndRoughness) {
   const Material material = only_material({{"alphaMode", "MASK"},
                                            {"extensions",
                                             {{"KHR_materials_pbrSpecularGlossiness",
@@ -220,13 +220,13 @@ bool is_hit(const std::vector<uint8_t>& colors) {
   return cast_gbuffer(*rays, camera, 1, 1).material.pixels[0] == 0;
 }
 
-TEST(GltfMaterial, AlphaOfVertexColoursCutsOut) {
+TEST(GltfMaterial, AlphaOfVertexColoursCutsHolesIntoMaskedMaterials) {
   EXPECT_TRUE(is_hit({9, 9, 9, 255, 9, 9, 9, 255, 9, 9, 9, 255}));
   EXPECT_FALSE(is_hit({9, 9, 9, 0, 9, 9, 9, 0, 9, 9, 9, 0}));
   EXPECT_TRUE(is_hit({9, 9, 9, 255, 9, 9, 9, 0, 9, 9, 9, 0}));
 }
 
-TEST(GltfMaterial, BlendingWithAnAlphaOfZeroIsNotDrawn) {
+TEST(GltfMaterial, BlendedMaterialWithAlphaZeroIsReportedAndNotDrawn) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["materials"] = {{{"name", "ghost"},
                               {"alphaMode", "BLEND"},

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(GltfNotes, PartsThatAreLeftOutAreReported) {
+TEST(GltfNotes, TexturesAndExtensionsThatAreLeftOutAreReported) {
   GltfMaker maker = textured({{"index", 0}}, {{"index", 0}, {"texCoord", 2}});
   maker.json["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_unlit"};
   maker.primitive()["attributes"]["COLOR_0"] = maker.primitive()["attributes"]["POSITION"];
@@ -28,7 +28,7 @@ TEST(GltfNotes, PartsThatAreLeftOutAreReported) {
           "texture 0 has no image that is read here and is left out."));
 }
 
-TEST(GltfNotes, BlendedMaterialIsOpaqueOrCutOutAndBothAreReported) {
+TEST(GltfNotes, BlendedMaterialIsDrawnOpaqueOrCutOutAndTheChoiceIsReported) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["materials"] = {{{"name", "leaf"}, {"alphaMode", "BLEND"}}};
   maker.primitive()["material"] = 0;
@@ -45,7 +45,7 @@ TEST(GltfNotes, BlendedMaterialIsOpaqueOrCutOutAndBothAreReported) {
   }
 }
 
-TEST(GltfNotes, SentenceStaysShortForLongNamesAndUris) {
+TEST(GltfNotes, WarningsAndErrorsStayShortForLongNamesAndUris) {
   GltfMaker maker = GltfMaker::triangle();
   nlohmann::json json = maker.json;
   json["buffers"] = {
@@ -78,7 +78,7 @@ TEST(GltfNotes, SceneNameIsUtf8ForAnyFileName) {
 
 // Names of a mesh, a node, a material and a camera, which four different parts of the loader
 // report.
-TEST(GltfNotes, NamesAreOneShortLine) {
+TEST(GltfNotes, NamesFromTheFileAreShortenedToOneShortLine) {
   const std::string name = "a\nb\x1b[31m" + std::string(1000, 'x');
   GltfMaker maker = GltfMaker::triangle();
   maker.json["materials"] = {{{"name", name}, {"alphaMode", "BLEND"}}};

@@ -261,7 +261,7 @@ const Property kProperties[] = {
 class GltfProperty : public testing::TestWithParam<Property> {};
 
 // Reads the valid value of complete(). An integer such as 4 may also be written as 4.0.
-TEST_P(GltfProperty, ValidValueIsRead) {
+TEST_P(GltfProperty, ValidValueOfThePropertyIsRead) {
   const json::json_pointer pointer(GetParam().pointer);
   GltfMaker maker = complete();
   const Scene expected = parsed(maker.gltf());
@@ -274,7 +274,7 @@ TEST_P(GltfProperty, ValidValueIsRead) {
   EXPECT_EQ(scene.cameras.size(), expected.cameras.size());
 }
 
-TEST_P(GltfProperty, WrongValuesAreRefusedByName) {
+TEST_P(GltfProperty, WrongValuesOfThePropertyAreRefusedWithItsName) {
   for (const json& wrong : wrong_values(GetParam().kind)) {
     GltfMaker maker = complete();
     maker.json[json::json_pointer(GetParam().pointer)] = wrong;
@@ -292,7 +292,7 @@ std::string test_name(const testing::TestParamInfo<Property>& info) {
 
 INSTANTIATE_TEST_SUITE_P(All, GltfProperty, testing::ValuesIn(kProperties), test_name);
 
-TEST(GltfProperties, BuffersAreCheckedToo) {
+TEST(GltfProperties, WrongLengthAndUriOfABufferAreRefused) {
   const GltfMaker maker = GltfMaker::triangle();
   const auto with = [&](const char* member, const json& value) {
     json root = json::parse(maker.gltf());
@@ -306,7 +306,7 @@ TEST(GltfProperties, BuffersAreCheckedToo) {
   EXPECT_THAT(with("uri", 5), HasSubstr("buffers[0].uri is 5; it must be a string"));
 }
 
-TEST(GltfProperties, MissingRequiredPropertyIsNamed) {
+TEST(GltfProperties, ErrorForAMissingRequiredPropertyNamesTheProperty) {
   const std::pair<const char*, const char*> missing[] = {
       {"/asset", "asset is missing"},
       {"/asset/version", "asset.version is missing"},
@@ -328,7 +328,7 @@ TEST(GltfProperties, MissingRequiredPropertyIsNamed) {
   }
 }
 
-TEST(GltfProperties, NamesOfEnumerationsAreChecked) {
+TEST(GltfProperties, UnknownEnumerationValueIsRefusedWithTheNameOfTheProperty) {
   const std::pair<const char*, const char*> wrong[] = {
       {"/accessors/0/type", "accessors[0].type is \"VEC\"; it must be one of SCALAR, VEC2"},
       {"/materials/0/alphaMode", "materials[0].alphaMode is \"VEC\""},
@@ -341,7 +341,7 @@ TEST(GltfProperties, NamesOfEnumerationsAreChecked) {
 }
 
 // Extras and unknown extensions may hold anything.
-TEST(GltfProperties, PropertiesThatAreNotReadAreNotChecked) {
+TEST(GltfProperties, PropertiesThatTheLoaderDoesNotReadAreNotChecked) {
   GltfMaker maker = complete();
   maker.json["extras"] = {{"nodes", -5}};
   maker.json["nodes"][0]["extras"] = "text";
@@ -353,7 +353,7 @@ TEST(GltfProperties, PropertiesThatAreNotReadAreNotChecked) {
   EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("Animations are left out")));
 }
 
-TEST(GltfProperties, DeepNestingIsRead) {
+TEST(GltfProperties, JsonNestedAMillionLevelsDeepIsRead) {
   const GltfMaker maker = GltfMaker::triangle();
   const std::vector<uint8_t> gltf = maker.gltf();
   std::string text(gltf.begin(), gltf.end() - 1);
@@ -361,7 +361,7 @@ TEST(GltfProperties, DeepNestingIsRead) {
   EXPECT_EQ(corners(parsed({text.begin(), text.end()})), corners(parsed(gltf)));
 }
 
-TEST(GltfProperties, DamagedJsonIsNamedByItsByte) {
+TEST(GltfProperties, ErrorForDamagedJsonGivesTheBytePositionOfTheFault) {
   const std::string text = R"({"asset": {"version": "2.0"}, "nodes": [}])";
   EXPECT_THAT(refusal({text.begin(), text.end()}), HasSubstr("cannot be read at byte 41"));
   const std::string number = R"({"asset": {"version": "2.0"}, "scene": 1e999})";

@@ -11,7 +11,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(GltfTexture, TransformScalesThenRotatesCounterClockwiseThenTranslates) {
+TEST(GltfTexture, TextureTransformScalesThenRotatesCounterClockwiseThenTranslates) {
   // The example of the extension's specification: the lower left quarter of the image, rotated.
   const nlohmann::json quarter = {
       {"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}};
@@ -32,7 +32,7 @@ TEST(GltfTexture, TransformScalesThenRotatesCounterClockwiseThenTranslates) {
             1e-5f);
 }
 
-TEST(GltfTexture, TextureUsesTheSetOfItsReferenceOrTransform) {
+TEST(GltfTexture, TextureUsesTheUvSetNamedByItsReferenceOrItsTransform) {
   nlohmann::json overridden = transformed({{"texCoord", 1}});
   overridden["texCoord"] = 0;
   for (const nlohmann::json& second : {nlohmann::json{{"index", 0}, {"texCoord", 1}}, overridden}) {
@@ -49,12 +49,12 @@ TEST(GltfTexture, TextureUsesTheSetOfItsReferenceOrTransform) {
   }
 }
 
-TEST(GltfTexture, SecondSetOfTextureCoordinatesThatNoTextureUsesIsDropped) {
+TEST(GltfTexture, SecondUvSetThatNoTextureUsesIsDropped) {
   const Scene scene = parsed(painted({{"index", 0}}, {{"index", 0}}).gltf());
   EXPECT_TRUE(scene.meshes[0].second_uvs.empty());
 }
 
-TEST(GltfTexture, MissingSetIsReported) {
+TEST(GltfTexture, MissingUvSetIsReportedAndReadAsZero) {
   for (const std::string set : {"0", "1"}) {
     GltfMaker maker = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
     maker.primitive()["attributes"].erase("TEXCOORD_" + set);
@@ -67,7 +67,7 @@ TEST(GltfTexture, MissingSetIsReported) {
   }
 }
 
-TEST(GltfTexture, SamplersAreReadAndMissingFiltersAreLinear) {
+TEST(GltfTexture, SamplersAreReadAndMissingFiltersDefaultToLinear) {
   GltfMaker maker = painted({{"index", 0}}, {{"index", 1}});
   maker.white_texture();
   maker.json["samplers"] = {
@@ -92,7 +92,7 @@ TEST(GltfTexture, SamplersAreReadAndMissingFiltersAreLinear) {
   }
 }
 
-TEST(GltfTexture, SamplersOfValuesUnknownToGltfAreLeftOut) {
+TEST(GltfTexture, SamplersWithWrapModesOrFiltersUnknownToGltfAreLeftOut) {
   const std::pair<nlohmann::json, std::string> samplers[] = {
       {{{"wrapS", 33070}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},
       {{{"wrapT", 0}}, "sampler 0 has a wrap mode unknown to glTF and is left out."},

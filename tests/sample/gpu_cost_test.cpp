@@ -50,7 +50,7 @@ CompiledShader shader_of(const char* aco, const char* assembly = "not supported"
   return shader;
 }
 
-TEST(GpuCost, LoopsAreFoundWithTheirNestingAndContents) {
+TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
   const auto blocks = blocks_of(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
   const std::vector<Loop> loops = loops_of(*blocks);
@@ -77,7 +77,7 @@ TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
   EXPECT_EQ(work.texture_cycles, 15 * 16 * 2 + 16);
 }
 
-TEST(GpuCost, DisassemblyIsPreferredToTheIntermediateRepresentation) {
+TEST(GpuCost, InstructionsAreCountedInTheDisassemblyIfTheCompilerGivesOne) {
   const auto blocks = blocks_of(shader_of(kNestedLoops,
                                           "BB0:\n"
                                           "\tv_cndmask_b32_e32 v0, v1, v2, vcc ; 02000300\n"
@@ -95,7 +95,7 @@ TEST(GpuCost, DisassemblyIsPreferredToTheIntermediateRepresentation) {
   EXPECT_EQ(work.instructions, 1 + 2 * 2 + 1);
 }
 
-TEST(GpuCost, TextOfAnotherCompilerIsReported) {
+TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
   CompiledShader shader;
   shader.texts = {{"Final Assembly", "mov r0, r1\n"}};
   const auto none = blocks_of(shader);
@@ -118,7 +118,7 @@ std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
   return found;
 }
 
-TEST(GpuCost, LoopsOfTheSearchAreToldApartByTheirFetches) {
+TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   passes::OcclusionSettings settings;
   settings.slices = 2;
   settings.steps = 16;
@@ -141,7 +141,7 @@ TEST(GpuCost, LoopsOfTheSearchAreToldApartByTheirFetches) {
       << "visibility has no loop over occluder runs";
 }
 
-TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
+TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
   const passes::OcclusionSettings settings;
   const CompiledLoop loop{.index = 0, .depth = 1, .instructions = 7};
   const PassWork work{"normals", settings, FrameState::moving, {&loop, 1}};
@@ -153,7 +153,7 @@ TEST(GpuCost, LoopWithoutDeclaredIterationsIsReported) {
 
 // Rows of 8 texels of 4 or 8 bytes lie in one line each. A gather of adjacent texels reads 9 rows
 // of 9 texels, and one of every second texel 16 rows of 16.
-TEST(GpuCost, CacheLinesOfALoadFollowFromItsAddressPattern) {
+TEST(GpuCost, NumberOfCacheLinesOfALoadFollowsFromItsAddressPattern) {
   using passes::cost::cache_lines;
   EXPECT_EQ(cache_lines({}), 8);
   EXPECT_EQ(cache_lines({.texel_bytes = 8}), 8);
@@ -165,7 +165,7 @@ TEST(GpuCost, CacheLinesOfALoadFollowFromItsAddressPattern) {
 
 // The limit of 12 holds for pixels that load 4 or 8 bytes each. Texels of 2x2 pixels read 16 rows
 // of depth with every gather.
-TEST(GpuCost, ReconstructionAtFullResolutionTouchesFewCacheLines) {
+TEST(GpuCost, LoadsOfTheReconstructPassAtFullResolutionTouchAtMost12CacheLines) {
   for (const auto quality :
        {passes::Quality::low, passes::Quality::medium, passes::Quality::high}) {
     const passes::OcclusionSettings settings = passes::quality_settings(quality, 0.5f);
@@ -186,7 +186,7 @@ SettingsCost one_pass(double instructions, double registers, double waves, doubl
   return {"medium", "navi21", {{FrameState::moving, {pass}}}, ""};
 }
 
-TEST(GpuBudget, EachFigureThatExceedsItsBudgetIsReported) {
+TEST(GpuBudget, EachModelledCostThatExceedsItsBudgetIsReported) {
   const auto budget = budget_of({one_pass(100, 64, 8, 0)}, "compiler");
   EXPECT_THAT(over_budget(budget, {one_pass(100.9, 64, 8, 0)}), IsEmpty());
   EXPECT_THAT(over_budget(budget, {one_pass(80, 48, 10, 0)}), IsEmpty());
@@ -214,7 +214,7 @@ SettingsCost frames_of(const std::string& label, const std::string& family, doub
           label_without};
 }
 
-TEST(CostReport, TimeWithAnOutputIsComparedWithTheSameFrameAndGpuWithoutIt) {
+TEST(CostReport, TimeWithAnOptionalOutputIsComparedWithTheTimeWithoutItOnTheSameGpu) {
   const std::vector<SettingsCost> costs{
       frames_of("low", "navi21", 1, 1), frames_of("medium", "bonaire", 10, 10),
       frames_of("medium", "navi21", 2, 4),
@@ -229,7 +229,7 @@ TEST(CostReport, TimeWithAnOutputIsComparedWithTheSameFrameAndGpuWithoutIt) {
   EXPECT_EQ(to_json(costs)[1]["settings"][2]["frames"][0]["of_time_without_output"], 1.5);
 }
 
-TEST(CostReport, EachOutputIsAddedAlone) {
+TEST(CostReport, EachOptionalOutputIsAddedToAPresetAlone) {
   const LabelledSettings plain{"high", {}, ""};
   const auto [bent, specular] = with_each_output(plain);
   EXPECT_EQ(bent.label, "high with bent normals");
@@ -265,7 +265,7 @@ std::string name_of_test(const testing::TestParamInfo<Budgeted>& info) {
 
 class ShippedPresets : public testing::TestWithParam<Budgeted> {};
 
-TEST_P(ShippedPresets, StayWithinTheirGpuBudget) {
+TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   const auto device = create_null_device(GetParam().part->family);
   if (!device) {
     GTEST_SKIP() << device.error();
@@ -301,7 +301,7 @@ tl::expected<double, std::string> instructions_of(const GpuPart& part, const Nul
   return sum;
 }
 
-TEST(NormalEncodings, DecodingStaysWithinItsInstructionsPerPixel) {
+TEST(NormalEncodings, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPixel) {
   using passes::NormalEncoding;
   struct Named {
     const char* name;

@@ -67,7 +67,7 @@ Scene separate_cubes() {
 
 class GpuMeshesTest : public QuadTest {};
 
-TEST_F(GpuMeshesTest, MeshIsSplitWhereABufferWouldExceedTheLimit) {
+TEST_F(GpuMeshesTest, MeshIsSplitIfABufferWouldExceedTheSizeLimit) {
   auto sphere = analytic_scene("sphere");
   ASSERT_TRUE(sphere);
   constexpr VkDeviceSize kLimit = 4096;
@@ -83,7 +83,7 @@ TEST_F(GpuMeshesTest, MeshIsSplitWhereABufferWouldExceedTheLimit) {
   EXPECT_LE((*split)->bytes(), kLimit * (*split)->buffers());
 }
 
-TEST_F(GpuMeshesTest, BufferOverTheAllocationLimitIsRefusedWithTheLimit) {
+TEST_F(GpuMeshesTest, ErrorForABufferOverTheAllocationLimitNamesTheLimit) {
   const VkDeviceSize limit = gpu().device().max_allocation();
   const auto buffer =
       HostBuffer::create(gpu().device(), limit + 1, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
@@ -91,7 +91,7 @@ TEST_F(GpuMeshesTest, BufferOverTheAllocationLimitIsRefusedWithTheLimit) {
   EXPECT_THAT(buffer.error(), testing::HasSubstr(std::to_string(limit)));
 }
 
-TEST_F(GpuMeshesTest, GridTakesFortyBytesForEachTriangleAndInstancesFortyEightBytes) {
+TEST_F(GpuMeshesTest, GridTakesUnder40BytesPerTriangleAndAbout48BytesPerInstance) {
   Mesh grid;
   constexpr std::uint32_t kSide = 300;
   for (std::uint32_t y = 0; y < kSide; ++y) {
@@ -116,7 +116,7 @@ TEST_F(GpuMeshesTest, GridTakesFortyBytesForEachTriangleAndInstancesFortyEightBy
   EXPECT_NEAR((bytes(100'001) - bytes(1)) / 1e5, 48.0, 5.0);
 }
 
-TEST_F(GpuMeshesTest, SharedVerticesLeaveEachTriangleItsGeometricNormal) {
+TEST_F(GpuMeshesTest, TrianglesWithSharedVerticesKeepTheirOwnGeometricNormals) {
   const Scene scene = scene_of({cube()});
   Camera camera = camera_at(3.0f);
   camera.eye_ws = {2.0f, 1.5f, 3.0f};
@@ -130,7 +130,7 @@ TEST_F(GpuMeshesTest, SharedVerticesLeaveEachTriangleItsGeometricNormal) {
   EXPECT_GT(faces, 100);
 }
 
-TEST_F(GpuMeshesTest, InstancesAreDrawnAndTracedAsSeparateMeshesAre) {
+TEST_F(GpuMeshesTest, InstancesAreDrawnAndTracedLikeSeparateMeshes) {
   const Scene instanced = instanced_cubes();
   const Scene separate = separate_cubes();
   Camera camera = camera_at(3.0f);

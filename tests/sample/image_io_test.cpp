@@ -30,7 +30,7 @@ TEST(ImageIo, GreyExrIsReadBackExactly) {
   EXPECT_EQ(folder.files(), 1);
 }
 
-TEST(ImageIo, ColourExrKeepsChannelsAndRows) {
+TEST(ImageIo, ColourExrIsReadBackWithChannelsAndRowsInOrder) {
   const TemporaryFolder folder;
   Image<glm::vec3> image(2, 2);
   image.at(0, 0) = {1, 2, 3};
@@ -41,13 +41,13 @@ TEST(ImageIo, ColourExrKeepsChannelsAndRows) {
   EXPECT_EQ(read->pixels, image.pixels);
 }
 
-TEST(ImageIo, MissingFolderIsNamed) {
+TEST(ImageIo, ErrorForAMissingOutputFolderNamesTheFile) {
   const auto written = write_png("no/such/folder/a.png", Image<float>(2, 2));
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error(), testing::HasSubstr("no/such/folder/a.png"));
 }
 
-TEST(ImageIo, ImageWithoutPixelsIsRefused) {
+TEST(ImageIo, WritingAnImageWithoutPixelsIsRefused) {
   EXPECT_FALSE(write_exr("a.exr", Image<float>()));
   EXPECT_FALSE(write_png("a.png", Image<glm::vec3>()));
 }
@@ -68,14 +68,14 @@ TEST(ImageIo, NamedPipeIsRefusedWithoutWaiting) {
   EXPECT_THAT(read.error(), testing::HasSubstr("not a regular file"));
 }
 
-TEST(ImageIo, NamedPipeInPlaceOfAnOutputIsReplaced) {
+TEST(ImageIo, NamedPipeInPlaceOfAnOutputFileIsReplacedByTheFile) {
   const TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder.path / "a.png").c_str(), 0600), 0);
   ASSERT_TRUE(write_png(folder.path / "a.png", Image<float>(2, 2)));
   EXPECT_TRUE(std::filesystem::is_regular_file(folder.path / "a.png"));
 }
 
-TEST(ImageIo, FolderInPlaceOfAnOutputIsAnErrorThatNamesIt) {
+TEST(ImageIo, FolderInPlaceOfAnOutputFileIsAnErrorThatNamesTheFile) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path / "a.png");
   const auto written = write_png(folder.path / "a.png", Image<float>(2, 2));

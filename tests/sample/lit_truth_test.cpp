@@ -39,7 +39,7 @@ LitTruth light(const char* name, const glm::vec3& albedo, float roughness, float
                    {static_cast<float>(analytic.closed_form_radius), 2048, 1});
 }
 
-TEST(LitTruth, WhiteDielectricConservesEnergyInAnyShape) {
+TEST(LitTruth, WhiteDielectricOfAnyShapeReflectsAllLightOfAWhiteEnvironment) {
   for (const char* name : {"plane:30", "groove:90", "pit"}) {
     for (const float roughness : {0.1f, 0.5f, 1.0f}) {
       const LitTruth lit = light(name, glm::vec3(1.0f), roughness, 0.0f);
@@ -52,7 +52,7 @@ TEST(LitTruth, WhiteDielectricConservesEnergyInAnyShape) {
   }
 }
 
-TEST(LitTruth, BlackSurfacesOnlyReflectBySpecularFresnel) {
+TEST(LitTruth, BlackMetalReflectsOnlyFresnelLight) {
   const LitTruth lit = light("groove:90", glm::vec3(0.0f), 0.5f, 1.0f);
   for (size_t i = 0; i < lit.diffuse.pixels.size(); ++i) {
     EXPECT_EQ(lit.diffuse.pixels[i].x, 0.0f);
@@ -60,7 +60,7 @@ TEST(LitTruth, BlackSurfacesOnlyReflectBySpecularFresnel) {
   }
 }
 
-TEST(LitTruth, ReportedNoiseMatchesTheSpreadOfTheResult) {
+TEST(LitTruth, ReportedNoiseOfDiffuseAndSpecularLightIsBelowTwoPercent) {
   const LitTruth a = light("groove:90", glm::vec3(0.5f), 0.5f, 0.0f);
   for (size_t i = 0; i < a.diffuse.pixels.size(); ++i) {
     EXPECT_LT(std::abs(a.diffuse_noise.pixels[i].x), 0.02f);
@@ -68,7 +68,7 @@ TEST(LitTruth, ReportedNoiseMatchesTheSpreadOfTheResult) {
   }
 }
 
-TEST(LitTruth, SkippedPointsAreBlack) {
+TEST(LitTruth, PointWithoutANormalIsBlack) {
   const auto analytic = analytic_scene("plane:30").value();
   const auto rays = RayScene::create(analytic.scene);
   SurfacePoints points = points_of(analytic);

@@ -46,7 +46,7 @@ Camera camera_at(float x) {
 
 glm::vec3 unmoved(const glm::vec3& position) { return position; }
 
-TEST(MotionErrors, StaticSurfaceIsReprojectedAfterAnyCameraStep) {
+TEST(MotionErrors, StaticSurfaceIsReprojectedCorrectlyAfterAnyCameraStep) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
@@ -64,7 +64,7 @@ TEST(MotionErrors, StaticSurfaceIsReprojectedAfterAnyCameraStep) {
   }
 }
 
-TEST(MotionErrors, AgesDistinguishUncoveredSurfacesFromEnteringOnes) {
+TEST(MotionErrors, AgeOfAPixelDistinguishesUncoveredSurfacesFromThoseEnteringTheImage) {
   // The camera moves to the right, so that the near wall leaves to the left and uncovers the far
   // one.
   RenderedFrame before = walls(camera_at(0.0f), 0.0f);
@@ -111,7 +111,7 @@ TEST(MotionErrors, MovingSurfaceIsReprojectedByItsPreviousPosition) {
   EXPECT_NEAR(change(unmoved), 0.03, 1e-5);
 }
 
-TEST(MotionErrors, SkyHasNeitherAgeNorChangeNorSpeed) {
+TEST(MotionErrors, SkyPixelsHaveNoAgeNoVisibilityChangeAndNoSpeed) {
   RenderedFrame sky = walls(camera_at(0.0f), -100.0f);
   std::ranges::fill(sky.depth.pixels, std::numeric_limits<float>::infinity());
   const Reprojection reprojection = reproject(sky, sky, unmoved);
@@ -120,7 +120,7 @@ TEST(MotionErrors, SkyHasNeitherAgeNorChangeNorSpeed) {
   EXPECT_EQ(speed_of(reprojection).mean, 0.0);
 }
 
-TEST(MotionErrors, SpeedIsMeasuredInPixelsPerFrame) {
+TEST(MotionErrors, ImageMotionIsMeasuredInPixelsPerFrame) {
   const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
   const RenderedFrame now = walls(camera_at(0.5f), -100.0f);
   const float expected = 0.5f * 0.5f * kHeight / std::tan(0.5f * now.camera.fov_y) / 10.0f;
@@ -130,7 +130,7 @@ TEST(MotionErrors, SpeedIsMeasuredInPixelsPerFrame) {
 }
 
 // The noise of this truth would increase the error several times if it were not subtracted.
-TEST(MotionErrors, NoiseOfTheTruthIsSubtractedFromTheError) {
+TEST(MotionErrors, NoiseOfTheRayTracedTruthIsSubtractedFromTheVisibilityError) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
@@ -150,7 +150,7 @@ TEST(MotionErrors, NoiseOfTheTruthIsSubtractedFromTheError) {
 }
 
 // The directions are about 4 degrees off the truth, whose halves have a noise of 12 degrees each.
-TEST(MotionErrors, NoiseOfReferenceDirectionsIsSubtractedFromTheError) {
+TEST(MotionErrors, NoiseOfRayTracedBentNormalsIsSubtractedFromTheBentNormalError) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
@@ -173,7 +173,7 @@ TEST(MotionErrors, NoiseOfReferenceDirectionsIsSubtractedFromTheError) {
 
 // One truth is constant and the other changes by 0.03, with halves as noisy as that. The lower
 // bound of the change is about 0 for the first, and most of 0.03 but not more for the second.
-TEST(MotionErrors, NoiseOfTheTruthDoesNotCountAsChange) {
+TEST(MotionErrors, NoiseOfTheRayTracedTruthIsNotCountedAsChangeOfVisibility) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);

@@ -26,7 +26,7 @@ glm::vec2 on_image(const Camera& camera, const glm::vec3& position) {
   return 0.5f * glm::vec2(clip) / clip.w;
 }
 
-TEST(MotionPaths, EveryPathBeginsWithTheGivenView) {
+TEST(MotionPaths, EveryCameraPathBeginsWithTheGivenView) {
   const MotionStart start = builtin_start();
   const glm::vec3 ahead = glm::normalize(start.camera.target_ws - start.camera.eye_ws);
   for (const MotionKind kind : kMotionKinds) {
@@ -37,7 +37,7 @@ TEST(MotionPaths, EveryPathBeginsWithTheGivenView) {
   }
 }
 
-TEST(MotionPaths, AddedMeshesAreCompleteInTinyScenes) {
+TEST(MotionPaths, MeshesThatACameraPathAddsAreCompleteInTinyScenes) {
   const auto triangles_at = [](float scale) {
     MotionStart start = builtin_start();
     for (glm::vec3* position : {&start.camera.eye_ws, &start.camera.target_ws, &start.ground_ws}) {
@@ -59,7 +59,7 @@ TEST(MotionPaths, AddedMeshesAreCompleteInTinyScenes) {
   EXPECT_EQ(triangles_at(1e-5f), expected);
 }
 
-TEST(MotionPaths, StepsAreEqualAndSmallExceptAtTheCut) {
+TEST(MotionPaths, CameraStepsAreSmallExceptAtTheCut) {
   const MotionStart start = builtin_start();
   for (const MotionKind kind : kMotionKinds) {
     SCOPED_TRACE(name_of(kind));
@@ -77,7 +77,7 @@ TEST(MotionPaths, StepsAreEqualAndSmallExceptAtTheCut) {
   }
 }
 
-TEST(MotionPaths, OrbitKeepsTheDistanceToTheMiddleOfTheView) {
+TEST(MotionPaths, OrbitingCameraKeepsItsDistanceToTheMiddleOfTheView) {
   const MotionStart start = builtin_start();
   const MotionPath path(MotionKind::kOrbit, start, kFrames);
   const Camera first = path.camera(0);
@@ -87,7 +87,7 @@ TEST(MotionPaths, OrbitKeepsTheDistanceToTheMiddleOfTheView) {
   EXPECT_GT(glm::distance(first.eye_ws, last.eye_ws), 0.1f * start.depth);
 }
 
-TEST(MotionPaths, ColumnCrossesTheImageOfTheStrafingCamera) {
+TEST(MotionPaths, ColumnAddedForTheStrafingCameraCrossesTheImage) {
   const MotionStart start = builtin_start();
   const MotionPath path(MotionKind::kStrafe, start, kFrames);
   Scene scene = builtin_scene();
@@ -103,7 +103,7 @@ TEST(MotionPaths, ColumnCrossesTheImageOfTheStrafingCamera) {
   EXPECT_LT(on_image(path.camera(kFrames - 1), middle).x, -0.2f);
 }
 
-TEST(MotionPaths, BlockMovesOverTheGroundWithoutTouchingIt) {
+TEST(MotionPaths, MovingBlockStaysAboveTheGroundWithoutTouchingIt) {
   const MotionStart start = builtin_start();
   const MotionPath path(MotionKind::kObject, start, kFrames);
   Scene scene = builtin_scene();
@@ -126,7 +126,7 @@ TEST(MotionPaths, BlockMovesOverTheGroundWithoutTouchingIt) {
   }
 }
 
-TEST(MotionPaths, OnlyPointsOfTheBlockHaveAnotherPreviousPosition) {
+TEST(MotionPaths, OnlyPointsOfTheMovingBlockHaveAnotherPreviousPosition) {
   const MotionPath path(MotionKind::kObject, builtin_start(), kFrames);
   Scene then = builtin_scene();
   path.add_to(then);
@@ -146,7 +146,7 @@ TEST(MotionPaths, OnlyPointsOfTheBlockHaveAnotherPreviousPosition) {
   EXPECT_TRUE(path.is_near_object(left, kFrames - 1, kFrames - 1));
 }
 
-TEST(MotionPaths, ViewWithoutSurfacesIsRefused) {
+TEST(MotionPaths, CameraPathFromAViewWithoutSurfacesIsRefused) {
   const Scene scene = builtin_scene();
   const auto rays = RayScene::create(scene);
   ASSERT_TRUE(rays);

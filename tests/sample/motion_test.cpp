@@ -35,7 +35,7 @@ class Motion : public GpuTest {
   }
 };
 
-TEST_F(Motion, CameraMotionHardlyIncreasesTheError) {
+TEST_F(Motion, CameraMotionIncreasesTheErrorByLessThan15Percent) {
   for (const MotionKind kind : {MotionKind::kOrbit, MotionKind::kDolly, MotionKind::kStrafe}) {
     SCOPED_TRACE(name_of(kind));
     const MotionReport report = run(kind);
@@ -52,7 +52,7 @@ TEST_F(Motion, CameraMotionHardlyIncreasesTheError) {
   }
 }
 
-TEST_F(Motion, MovingObjectLeavesNoLongTrail) {
+TEST_F(Motion, OcclusionOfAMovingObjectLeavesNoLongTrail) {
   const MotionReport report = run(MotionKind::kObject);
   EXPECT_GT(report.near_object.pixels, 500u);
   // The error that motion adds to that of the static image.
@@ -62,7 +62,7 @@ TEST_F(Motion, MovingObjectLeavesNoLongTrail) {
   EXPECT_LT(report.all.ratio(), 1.15);
 }
 
-TEST_F(Motion, HistoryFromBeforeACutIsRejected) {
+TEST_F(Motion, HistoryFromBeforeACameraCutIsRejected) {
   const auto report = run_cut(gpu(), builtin_scene(), path_of(MotionKind::kCut, 32), setup());
   ASSERT_TRUE(report) << report.error();
   ASSERT_GE(report->after.size(), 4u);

@@ -53,9 +53,11 @@ class NormalMap : public QuadTest {
   }
 };
 
-TEST_F(NormalMap, RedTiltsNormalsAlongUAndGreenAgainstV) { expect_normal(draw(quad()), kTilt); }
+TEST_F(NormalMap, RedChannelTiltsNormalsAlongUAndGreenAgainstV) {
+  expect_normal(draw(quad()), kTilt);
+}
 
-TEST_F(NormalMap, ScaleMultipliesXAndYOnly) {
+TEST_F(NormalMap, NormalScaleMultipliesOnlyXAndYOfTheMappedNormal) {
   for (const float scale : {-1.0f, 0.0f, 0.5f, 1e6f}) {
     Scene scene = quad();
     scene.materials[0].normal_scale = scale;
@@ -63,7 +65,7 @@ TEST_F(NormalMap, ScaleMultipliesXAndYOnly) {
   }
 }
 
-TEST_F(NormalMap, TangentsOfTheFileAgreeWithGeneratedOnes) {
+TEST_F(NormalMap, TangentsGivenByTheMeshDetermineTheDirectionOfTheTilt) {
   Scene scene = quad();
   scene.meshes[0].tangents.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
   expect_normal(draw(scene), kTilt);
@@ -71,7 +73,7 @@ TEST_F(NormalMap, TangentsOfTheFileAgreeWithGeneratedOnes) {
   expect_normal(draw(scene), kTilt * glm::vec3(-1.0f, 1.0f, 1.0f));
 }
 
-TEST_F(NormalMap, MirroredHalvesWithSharedVerticesTiltInOppositeDirections) {
+TEST_F(NormalMap, MirroredTextureHalvesWithSharedVerticesTiltInOppositeDirections) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv.x = std::abs(uv.x - 0.5f);
   const FrameImages images = draw(scene);
@@ -83,18 +85,18 @@ TEST_F(NormalMap, MirroredHalvesWithSharedVerticesTiltInOppositeDirections) {
   }
 }
 
-TEST_F(NormalMap, TextureTransformRotatesTheNormals) {
+TEST_F(NormalMap, TextureTransformRotatesTheTiltOfMappedNormals) {
   Scene scene = quad();
   // The transform maps u of the mesh to -v of the map, and v of the mesh to u of the map.
   scene.materials[0].normal_texture.texture_from_mesh_uv = {0.0f, -1.0f, 1.0f, 0.0f, 0.0f, 1.0f};
   expect_normal(draw(scene), {kTilt.y, -kTilt.x, kTilt.z});
 }
 
-TEST_F(NormalMap, NormalsAreFlippedOnBackFaces) {
+TEST_F(NormalMap, MappedNormalsAreFlippedOnBackFaces) {
   expect_normal(draw(quad(), camera_at(-3.0f)), -kTilt);
 }
 
-TEST_F(NormalMap, VertexNormalIsKeptWhereTextureCoordinatesHaveNoArea) {
+TEST_F(NormalMap, VertexNormalIsKeptWhereTextureCoordinatesSpanNoAreaOrTangentsAreInvalid) {
   Scene scene = quad();
   for (glm::vec2& uv : scene.meshes[0].uvs) uv = glm::vec2(0.25f);
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
@@ -105,7 +107,7 @@ TEST_F(NormalMap, VertexNormalIsKeptWhereTextureCoordinatesHaveNoArea) {
   expect_normal(draw(scene), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, NormalsAreLimitedToTheSideOfTheFace) {
+TEST_F(NormalMap, MappedNormalsAreLimitedToTheHemisphereOfTheFace) {
   expect_normal(draw(quad({0.6f, 0.0f, -0.8f})), {1.0f, 0.0f, 0.0f});
   // The normal in the map points straight into the surface, so that rounding decides its direction
   // in the surface.
@@ -115,7 +117,7 @@ TEST_F(NormalMap, NormalsAreLimitedToTheSideOfTheFace) {
   }
 }
 
-TEST_F(NormalMap, OppositeTiltsCancelWhereTexelsAreSmallerThanPixels) {
+TEST_F(NormalMap, OppositeNormalTiltsCancelWhereTexelsAreSmallerThanPixels) {
   Scene scene = quad();
   TextureImage& map = scene.images[0];
   const TextureImage right = map_of(kTilt), left = map_of(kTilt * glm::vec3(-1.0f, -1.0f, 1.0f));
@@ -131,7 +133,7 @@ TEST_F(NormalMap, NormalMapAffectsShadingNormalsOnly) {
   expect_normal(draw(quad(), camera_at(3.0f), NormalSource::kGeometric), {0.0f, 0.0f, 1.0f});
 }
 
-TEST_F(NormalMap, TruthUsesTheNormalsThatThePassWasGiven) {
+TEST_F(NormalMap, RayTracedTruthUsesTheMappedNormalsThatTheOcclusionPassIsGiven) {
   const Scene scene = quad();
   const Camera camera = camera_at(3.0f);
   const FrameImages images = draw(scene, camera);
@@ -144,7 +146,7 @@ TEST_F(NormalMap, TruthUsesTheNormalsThatThePassWasGiven) {
   EXPECT_NEAR(truth.visibility.at(kSize / 2, kSize / 2), 0.5f * (1.0f + kTilt.z), 0.01f);
 }
 
-TEST_F(NormalMap, AlphaMasksFollowTheirTransformInRasteriserAndRayTracer) {
+TEST_F(NormalMap, AlphaMasksFollowTheirTextureTransformInRasteriserAndRayTracer) {
   Scene scene = quad();
   Material& material = scene.materials[0];
   material.normal_texture = {};
@@ -168,7 +170,7 @@ TEST_F(NormalMap, AlphaMasksFollowTheirTransformInRasteriserAndRayTracer) {
   }
 }
 
-TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
+TEST(Tangents, TangentsOfACurvedMeshAreUnitVectorsPerpendicularToItsNormals) {
   Scene scene = quad();
   Mesh& mesh = scene.meshes[0];
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -188,7 +190,7 @@ TEST(Tangents, AreUnitOrZeroAndPerpendicularToNormalsOfACurvedMesh) {
 
 // MikkTSpace merges corners with equal values, so that shared and unshared vertices give the same
 // tangents.
-TEST(Tangents, SharedAndUnsharedVerticesHaveTheSameTangents) {
+TEST(Tangents, MeshesWithSharedAndWithUnsharedVerticesGetTheSameTangents) {
   Scene scene = quad();
   const Mesh shared = scene.meshes[0];
   Mesh apart = shared;
@@ -207,7 +209,7 @@ TEST(Tangents, SharedAndUnsharedVerticesHaveTheSameTangents) {
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i], other[i]);
 }
 
-TEST(Tangents, TrianglesThatMeetInAVertexAloneDoNotShareItsTangent) {
+TEST(Tangents, TrianglesThatMeetOnlyInAVertexDoNotShareItsTangent) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
   mesh.normals.assign(5, glm::vec3(0, 0, 1));

@@ -16,7 +16,7 @@ tl::expected<Options, Stop> parse(std::vector<const char*> arguments) {
   return parse_options(static_cast<int>(arguments.size()), arguments.data());
 }
 
-TEST(Options, DefaultsAreTheBuiltInSceneAt960By540) {
+TEST(Options, RenderCommandWithoutOptionsUsesTheBuiltInSceneAt960By540) {
   const auto options = parse({"render"});
   ASSERT_TRUE(options);
   EXPECT_EQ(options->command, Command::kRender);
@@ -25,7 +25,7 @@ TEST(Options, DefaultsAreTheBuiltInSceneAt960By540) {
   EXPECT_EQ(options->view.height, 540u);
 }
 
-TEST(Options, ViewWithoutFramesAndOutputStaysOpenAndWritesNothing) {
+TEST(Options, ViewCommandByDefaultHasNoFrameLimitAndNoOutputFolder) {
   const auto plain = parse({"view", "scene.glb"});
   ASSERT_TRUE(plain) << plain.error().text;
   EXPECT_EQ(plain->command, Command::kView);
@@ -38,7 +38,7 @@ TEST(Options, ViewWithoutFramesAndOutputStaysOpenAndWritesNothing) {
   EXPECT_FALSE(parse({"view", "--frames", "0"}));
 }
 
-TEST(Options, ClockOfBenchAndRecommendIsParsed) {
+TEST(Options, ClockOptionOfBenchAndRecommendIsParsedAndUnknownClocksAreRefused) {
   EXPECT_FALSE(parse({"bench"})->clock);
   EXPECT_EQ(parse({"bench", "--clock", "processor"})->clock, Clock::processor);
   EXPECT_EQ(parse({"recommend", "--tolerance", "0.1", "--clock", "modelled"})->clock,
@@ -48,12 +48,12 @@ TEST(Options, ClockOfBenchAndRecommendIsParsed) {
   EXPECT_THAT(wrong.error().text, HasSubstr("--clock"));
 }
 
-TEST(Options, CostIsComparedWithAndWithoutOutputsOnRequest) {
+TEST(Options, OutputsOptionOfTheCostCommandIsParsed) {
   EXPECT_FALSE(parse({"cost"})->cost.outputs);
   EXPECT_TRUE(parse({"cost", "--outputs"})->cost.outputs);
 }
 
-TEST(Options, CommandLineWithEveryOptionIsParsed) {
+TEST(Options, CommandLineWithManyOptionsIsParsed) {
   const auto options =
       parse({"compare",  "scene.glb", "--eye",         "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",
              "--fov-y",  "60",        "--near",        "0.1",         "--far",       "inf",
@@ -78,7 +78,7 @@ TEST(Options, CommandLineWithEveryOptionIsParsed) {
   EXPECT_EQ(options->out, "x");
 }
 
-TEST(Options, InvalidValuesAreRefusedInASentenceThatNamesTheOption) {
+TEST(Options, InvalidOptionValuesAreRefusedInASentenceThatNamesTheOption) {
   const std::vector<std::vector<const char*>> wrong = {
       {"render", "--size", "0x540"},     {"render", "--size", "960"},
       {"render", "--size", "99999x2"},   {"render", "--radius", "0"},
@@ -99,7 +99,7 @@ TEST(Options, InvalidValuesAreRefusedInASentenceThatNamesTheOption) {
   }
 }
 
-TEST(Options, MotionAcceptsACameraPathAndRefusesTooFewFrames) {
+TEST(Options, MotionCommandAcceptsACameraPathAndRefusesTooFewFrames) {
   const auto all = parse({"motion"});
   ASSERT_TRUE(all);
   EXPECT_EQ(all->command, Command::kMotion);
@@ -119,7 +119,7 @@ TEST(Options, MotionAcceptsACameraPathAndRefusesTooFewFrames) {
   }
 }
 
-TEST(Options, BenchAcceptsAnyNumberOfScenes) {
+TEST(Options, BenchCommandAcceptsAnyNumberOfScenes) {
   const auto none = parse({"bench"});
   ASSERT_TRUE(none) << none.error().text;
   EXPECT_EQ(none->command, Command::kBench);
@@ -130,7 +130,7 @@ TEST(Options, BenchAcceptsAnyNumberOfScenes) {
   EXPECT_EQ(two->scenes, (std::vector<std::string>{"step", "corner"}));
 }
 
-TEST(Options, RecommendNeedsATimeOrAnError) {
+TEST(Options, RecommendCommandNeedsEitherATimeBudgetOrAnErrorTolerance) {
   const auto time = parse({"recommend", "step", "--budget-ms", "0.5"});
   ASSERT_TRUE(time) << time.error().text;
   EXPECT_EQ(time->budget_ms, 0.5);
@@ -148,7 +148,7 @@ TEST(Options, RecommendNeedsATimeOrAnError) {
   }
 }
 
-TEST(Options, NearPlaneMustBeInFrontOfTheFarPlane) {
+TEST(Options, NearPlaneOptionMustBeNearerThanTheFarPlane) {
   const auto options = parse({"render", "--near", "5", "--far", "2"});
   ASSERT_FALSE(options);
   EXPECT_THAT(options.error().text, HasSubstr("--near"));
@@ -170,13 +170,13 @@ TEST(Options, OrthographicNearPlaneMayBeBehindTheEye) {
   EXPECT_FALSE(parse({"render", "--ortho-height", "4", "--near", "inf"}));
 }
 
-TEST(Options, FieldOfViewHasTheRangeOfCamerasInFiles) {
+TEST(Options, FieldOfViewOptionAcceptsVeryNarrowAndVeryWideAnglesButNotZero) {
   EXPECT_EQ(*parse({"render", "--fov-y", "174.75"})->view.fov_y, glm::radians(174.75f));
   EXPECT_EQ(*parse({"render", "--fov-y", "0.573"})->view.fov_y, glm::radians(0.573f));
   EXPECT_FALSE(parse({"render", "--fov-y", "0"}));
 }
 
-TEST(Options, OrbitIsAtMostAFullRotationPerFrame) {
+TEST(Options, OrbitOptionIsAtMostAFullRotationPerFrame) {
   for (const char* angle : {"360", "-360", "1e-3", "0"}) {
     const auto options = parse({"render", "--orbit", angle});
     ASSERT_TRUE(options) << options.error().text;
@@ -191,13 +191,13 @@ TEST(Options, OrbitIsAtMostAFullRotationPerFrame) {
   }
 }
 
-TEST(Options, LastOfRepeatedOptionsCounts) {
+TEST(Options, LastOccurrenceOfARepeatedOptionCounts) {
   const auto options = parse({"render", "--size", "1x1", "--eye", "1,2,3", "--size", "640x360"});
   ASSERT_TRUE(options) << options.error().text;
   EXPECT_EQ(options->view.width, 640u);
 }
 
-TEST(Options, OptionsWithoutEffectAreRefused) {
+TEST(Options, OptionsWithoutEffectOnTheCommandAreRefused) {
   EXPECT_FALSE(parse({"view", "--spp", "16"}));
   for (const char* command : {"render", "graph"}) {
     EXPECT_TRUE(parse({command, "--spp", "16"})) << "a line for compare serves " << command;
@@ -211,14 +211,14 @@ TEST(Options, OptionsWithoutEffectAreRefused) {
   EXPECT_TRUE(parse({"graph", "--roughness", "0.3"}));
 }
 
-TEST(Options, RoughnessValuesWithTheSameFileNameAreRefused) {
+TEST(Options, RoughnessValuesThatWouldGiveTheSameFileNameAreRefused) {
   const auto options = parse({"render", "--roughness", "0.3,0.1,0.3"});
   ASSERT_FALSE(options);
   EXPECT_THAT(options.error().text, HasSubstr("0.3,0.1,0.3: give"));
   EXPECT_TRUE(parse({"render", "--roughness", "0.3,0.301"}));
 }
 
-TEST(Options, SettingsAreCheckedBeforeASceneIsLoaded) {
+TEST(Options, UnknownSettingsAndValuesOutOfRangeAreRefusedByTheParser) {
   const struct {
     const char* given;
     const char* wanted;
@@ -237,7 +237,7 @@ TEST(Options, SettingsAreCheckedBeforeASceneIsLoaded) {
   }
 }
 
-TEST(Options, HelpIsPrintedWithoutRunningTheCommand) {
+TEST(Options, HelpOptionPrintsHelpInsteadOfRunningTheCommand) {
   const auto all = parse({"--help"});
   ASSERT_FALSE(all);
   EXPECT_EQ(all.error().status, 0);
@@ -250,11 +250,11 @@ TEST(Options, HelpIsPrintedWithoutRunningTheCommand) {
   EXPECT_EQ(after_a_mistake.error().text, one.error().text);
 }
 
-TEST(Options, HelpShowsTheUsageOfTheCommand) {
+TEST(Options, HelpOfACommandShowsItsUsage) {
   EXPECT_THAT(parse({"render", "--help"}).error().text, HasSubstr("Usage: alcove render "));
 }
 
-TEST(Options, HelpListsTheSettings) {
+TEST(Options, HelpOfEveryCommandThatTakesSettingsListsTheSettings) {
   for (const char* command :
        {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
     const std::string help = parse({command, "--help"}).error().text;
@@ -265,20 +265,20 @@ TEST(Options, HelpListsTheSettings) {
   EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
 }
 
-TEST(Options, VersionIsThatOfTheProject) {
+TEST(Options, VersionOptionPrintsTheProgramNameAndAVersionNumber) {
   const auto version = parse({"--version"});
   ASSERT_FALSE(version);
   EXPECT_EQ(version.error().status, 0);
   EXPECT_THAT(version.error().text, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+"));
 }
 
-TEST(Options, MissingAndUnknownCommandsAreRefused) {
+TEST(Options, MissingOrUnknownCommandsAndUnknownOptionsAreRefused) {
   EXPECT_EQ(parse({}).error().status, 2);
   EXPECT_EQ(parse({"paint"}).error().status, 2);
   EXPECT_EQ(parse({"render", "--colour", "red"}).error().status, 2);
 }
 
-TEST(Options, ErrorSentencePointsToTheHelpOfTheCommand) {
+TEST(Options, ErrorMessagePointsToTheHelpOfTheCommand) {
   EXPECT_EQ(parse({"paint", "--size", "2x2"}).error().text,
             "there is no command paint; see alcove --help");
   EXPECT_EQ(parse({}).error().text, "name a command; see alcove --help");
@@ -287,7 +287,7 @@ TEST(Options, ErrorSentencePointsToTheHelpOfTheCommand) {
   EXPECT_THAT(unknown, testing::EndsWith("; see alcove render --help"));
 }
 
-TEST(Options, EmptyFolderNameIsRefused) {
+TEST(Options, EmptyNameOfTheOutputFolderIsRefused) {
   for (const char* command : {"render", "compare", "view"}) {
     const auto options = parse({command, "--out", ""});
     ASSERT_FALSE(options);
@@ -295,7 +295,7 @@ TEST(Options, EmptyFolderNameIsRefused) {
   }
 }
 
-TEST(Options, MessagesReplaceControlCharactersAndShortenLongArguments) {
+TEST(Options, ErrorMessagesReplaceControlCharactersAndShortenLongArguments) {
   const std::string text = "\x1b[31m" + std::string(5000, 'x');
   const auto options = parse({"render", "--radius", text.c_str()});
   ASSERT_FALSE(options);

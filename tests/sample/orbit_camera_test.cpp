@@ -26,7 +26,7 @@ glm::vec2 ndc(const Camera& camera, const glm::vec3& point_ws) {
   return glm::vec2(clip) / clip.w;
 }
 
-TEST(OrbitCamera, OrbitingKeepsTheTargetAndTheDistance) {
+TEST(OrbitCamera, OrbitingKeepsTheTargetAndTheDistanceOfTheCamera) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -70,7 +70,7 @@ TEST(OrbitCamera, PanningMovesTheTargetWithTheMouse) {
   }
 }
 
-TEST(OrbitCamera, DollyingScalesTheDistanceAndNeverReachesTheTarget) {
+TEST(OrbitCamera, DollyingScalesTheDistanceToTheTargetAndNeverReachesTheTarget) {
   Camera camera = some_camera();
   EXPECT_NEAR(arm(dollied(camera, 0.5f)), 0.5f * arm(camera), 1e-5f);
   for (int i = 0; i < 1000; ++i) {

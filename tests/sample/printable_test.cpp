@@ -19,7 +19,7 @@ TEST(Printable, ControlCharactersBecomeSpaces) {
   EXPECT_EQ(printable(std::string("a\nb\x1b[31m\x7f\0c", 11)), "a b [31m  c");
 }
 
-TEST(Printable, EachByteOutsideACharacterIsReplaced) {
+TEST(Printable, EachByteOfInvalidUtf8IsReplaced) {
   const std::string stand_in = "\xef\xbf\xbd";
   EXPECT_EQ(printable("caf\xe9.gltf"), "caf" + stand_in + ".gltf");
   EXPECT_EQ(printable("\xe2\x82"), stand_in + stand_in);                 // cut short
@@ -28,7 +28,7 @@ TEST(Printable, EachByteOutsideACharacterIsReplaced) {
   EXPECT_EQ(printable("\xf4\x90\x80\x80").size(), 4 * stand_in.size());  // above U+10FFFF
 }
 
-TEST(Printable, AnyBytesCanBeWrittenAsJson) {
+TEST(Printable, AnyBytesMadePrintableCanBeWrittenAsJson) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -42,7 +42,7 @@ TEST(Printable, AnyBytesCanBeWrittenAsJson) {
   }
 }
 
-TEST(Printable, LongTextKeepsItsBeginningAndItsEnd) {
+TEST(Printable, ShortenedTextKeepsItsBeginningAndItsEnd) {
   EXPECT_EQ(shortened("short", 16), "short");
   EXPECT_EQ(shortened("a\x1b[31mb", 16), "a [31mb");
   const std::string sentence = "cannot read " + std::string(5000, 'x') + ": it is damaged";
@@ -52,7 +52,7 @@ TEST(Printable, LongTextKeepsItsBeginningAndItsEnd) {
   EXPECT_TRUE(cut.ends_with("xxx: it is damaged"));
 }
 
-TEST(Printable, TextIsNotCutWithinACharacter) {
+TEST(Printable, ShortenedTextIsNotCutWithinACharacter) {
   std::string text;
   for (int i = 0; i < 100; ++i) text += "\xc3\xa9";
   for (size_t most = 16; most < 40; ++most) {

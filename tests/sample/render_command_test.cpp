@@ -74,9 +74,11 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   EXPECT_EQ(read->occlusion.roughness, roughness);
 }
 
-TEST(CommandLine, ShotIsParsedBackUnchanged) { expect_round_trip(kDefaults, some_shot()); }
+TEST(PrintedRenderCommand, PrintedCommandParsesBackToTheSameViewAndSettings) {
+  expect_round_trip(kDefaults, some_shot());
+}
 
-TEST(CommandLine, EverySettingIsParsedBack) {
+TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   Shot shot = some_shot();
   shot.roughness = 0.3f;
   passes::OcclusionSettings& settings = shot.settings;
@@ -105,7 +107,7 @@ TEST(CommandLine, EverySettingIsParsedBack) {
   expect_round_trip(kDefaults, shot);
 }
 
-TEST(CommandLine, SceneLightAndNormalsComeFromTheOptions) {
+TEST(PrintedRenderCommand, PrintedCommandKeepsTheSceneEnvironmentAndNormalsOptions) {
   Options options;
   options.scene = "a scene's file.glb";
   options.environment = "sky.hdr";
@@ -113,7 +115,7 @@ TEST(CommandLine, SceneLightAndNormalsComeFromTheOptions) {
   expect_round_trip(options, some_shot());
 }
 
-TEST(CommandLine, OrthographicViewIsGivenByItsHeight) {
+TEST(PrintedRenderCommand, PrintedCommandReproducesAnOrthographicView) {
   Shot shot = some_shot();
   shot.camera.orthographic = true;
   shot.camera.ortho_height = 3.3f;
@@ -121,7 +123,7 @@ TEST(CommandLine, OrthographicViewIsGivenByItsHeight) {
   expect_round_trip(kDefaults, shot);
 }
 
-TEST(CommandLine, OrthographicNearPlaneMayBeAtOrBehindTheEye) {
+TEST(PrintedRenderCommand, PrintedCommandReproducesAnOrthographicNearPlaneAtOrBehindTheEye) {
   Shot shot = some_shot();
   shot.camera.orthographic = true;
   shot.camera.ortho_height = 3.3f;
@@ -134,7 +136,7 @@ TEST(CommandLine, OrthographicNearPlaneMayBeAtOrBehindTheEye) {
   expect_round_trip(kDefaults, shot);
 }
 
-TEST(CommandLine, FramesOptionIsThatOfTheShotOrElseTheHistoryLength) {
+TEST(PrintedRenderCommand, PrintedFrameCountIsTheGivenOneOrElseTheHistoryFramesSetting) {
   Shot shot = some_shot();
   shot.settings.history_frames = 17;
   EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 17u);
@@ -144,14 +146,14 @@ TEST(CommandLine, FramesOptionIsThatOfTheShotOrElseTheHistoryLength) {
   EXPECT_EQ(parse(render_arguments(kDefaults, shot))->view.frames, 1u);
 }
 
-TEST(CommandLine, DeviceIsThatOfTheOptions) {
+TEST(PrintedRenderCommand, PrintedCommandKeepsTheDeviceOption) {
   Options options;
   EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, options.device);
   options.device = 3;
   EXPECT_EQ(parse(render_arguments(options, some_shot()))->device, 3);
 }
 
-TEST(CommandLine, TreatmentOfMaterialsIsParsedBack) {
+TEST(PrintedRenderCommand, PrintedCommandKeepsTheMaterialOptions) {
   for (const MaterialTreatment treatment :
        {MaterialTreatment{}, MaterialTreatment{.cut_blends = true},
         MaterialTreatment{.both_sides = true}}) {
@@ -164,7 +166,7 @@ TEST(CommandLine, TreatmentOfMaterialsIsParsedBack) {
   }
 }
 
-TEST(CommandLine, DepthDirectionIsParsedBack) {
+TEST(PrintedRenderCommand, PrintedCommandKeepsReversedOrStandardDepth) {
   Shot shot = some_shot();
   for (const bool reversed : {false, true}) {
     shot.camera.reversed_z = reversed;
@@ -172,7 +174,7 @@ TEST(CommandLine, DepthDirectionIsParsedBack) {
   }
 }
 
-TEST(CommandLine, PositionsFarFromTheOriginAreParsedBackExactly) {
+TEST(PrintedRenderCommand, PrintedCoordinatesFarFromTheOriginParseBackToTheSamePosition) {
   const glm::dvec3 origin(100000.0, -3.0, 2e7);
   for (const float value : {2.3f, -0.1f, 1e-7f, 12345.678f}) {
     for (int c = 0; c < 3; ++c) {
@@ -184,7 +186,7 @@ TEST(CommandLine, PositionsFarFromTheOriginAreParsedBackExactly) {
   EXPECT_EQ(shown_coordinate(2.3f, 100000.0), "100002.3");
 }
 
-TEST(CommandLine, AnyAngleOfViewIsParsedBack) {
+TEST(PrintedRenderCommand, AnyFieldOfViewInAPrintedCommandParsesBackUnchanged) {
   Shot shot = some_shot();
   // The range of angles that a file's camera may have.
   for (const float fov_y : {2e-5f, 0.01f, 3.05f, 3.1f}) {
@@ -202,14 +204,14 @@ TEST(CommandLine, AnyAngleOfViewIsParsedBack) {
   }
 }
 
-TEST(CommandLine, PresetNeedsNoSetOption) {
+TEST(PrintedRenderCommand, PrintedCommandOfAnUnchangedPresetHasNoSetOption) {
   const std::string line = shell_line(render_arguments(kDefaults, some_shot()));
   EXPECT_NE(line.find("--quality high --radius 0.7"), std::string::npos) << line;
   EXPECT_EQ(line.find("--set"), std::string::npos) << line;
   EXPECT_NE(line.find("--fov-y 60 "), std::string::npos) << line;
 }
 
-TEST(CommandLine, QuotedArgumentsAreReadByTheShell) {
+TEST(PrintedRenderCommand, ArgumentsOfAPrintedCommandAreQuotedForTheShell) {
   EXPECT_EQ(shell_line({"alcove", "it's a file.glb", "", "$x"}),
             R"(alcove 'it'\''s a file.glb' '' '$x')");
 }

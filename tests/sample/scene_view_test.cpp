@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class SceneViewTest : public testing::Test {
+class ViewerWindowTest : public testing::Test {
  protected:
   void SetUp() override {
     options_.command = Command::kView;
@@ -70,7 +70,7 @@ bool is_plain(const Image<glm::vec3>& image) {
                              [&](const glm::vec3& x) { return x == image.pixels.front(); });
 }
 
-TEST_F(SceneViewTest, EveryPictureIsDrawnAloneAndBesideAnother) {
+TEST_F(ViewerWindowTest, EveryKindOfImageIsDrawnAloneAndBesideAComparisonImage) {
   view_->show_panel(false);
   for (std::size_t i = 0; i < kPictureNames.size(); ++i) {
     SCOPED_TRACE(kPictureNames[i]);
@@ -85,7 +85,7 @@ TEST_F(SceneViewTest, EveryPictureIsDrawnAloneAndBesideAnother) {
   }
 }
 
-TEST_F(SceneViewTest, ChoicesMayChangeWhileFramesAreInFlight) {
+TEST_F(ViewerWindowTest, ShownImageAndSettingsMayChangeWhileFramesAreInFlight) {
   for (const std::uint32_t frames : {1, 2}) {
     for (std::size_t i = 0; i < kPictureNames.size(); ++i) {
       view_->state().picture = static_cast<Picture>(i);
@@ -99,7 +99,7 @@ TEST_F(SceneViewTest, ChoicesMayChangeWhileFramesAreInFlight) {
   }
 }
 
-TEST_F(SceneViewTest, PictureEqualsThatOfRender) {
+TEST_F(ViewerWindowTest, ShownVisibilityEqualsThatOfTheOffscreenRenderer) {
   view_->show_panel(false);
   const Image<glm::vec3> seen = draw_and_look();
   const ViewState& state = view_->state();
@@ -122,7 +122,7 @@ TEST_F(SceneViewTest, PictureEqualsThatOfRender) {
   }
 }
 
-TEST_F(SceneViewTest, ImagesFollowTheSizeOfTheWindow) {
+TEST_F(ViewerWindowTest, RenderedImageFollowsTheSizeOfTheWindow) {
   draw(2);
   for (const VkExtent2D size : {VkExtent2D{320, 200}, {97, 61}, {240, 135}}) {
     view_->window().resize(size);
@@ -135,7 +135,7 @@ TEST_F(SceneViewTest, ImagesFollowTheSizeOfTheWindow) {
   }
 }
 
-TEST_F(SceneViewTest, RefusedSettingIsReportedAndThePictureStays) {
+TEST_F(ViewerWindowTest, InvalidSettingIsReportedAndAnImageStaysVisible) {
   view_->show_panel(false);
   draw(3);
   view_->state().settings.slices = 900;
@@ -147,7 +147,7 @@ TEST_F(SceneViewTest, RefusedSettingIsReportedAndThePictureStays) {
   EXPECT_EQ(view_->facts().refusal, "");
 }
 
-TEST_F(SceneViewTest, HiddenDepthsAndAKeptComparisonAreDrawn) {
+TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDepthLayer) {
   ViewState& state = view_->state();
   state.kept = state.settings;
   state.kept.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
@@ -158,7 +158,7 @@ TEST_F(SceneViewTest, HiddenDepthsAndAKeptComparisonAreDrawn) {
   EXPECT_EQ(view_->facts().refusal, "");
 }
 
-TEST_F(SceneViewTest, MovingCameraAndNormalsFromDepthAreDrawn) {
+TEST_F(ViewerWindowTest, ImagesAreDrawnWithAMovingCameraAndNormalsFromDepth) {
   options_.occlusion.normals = NormalSource::kDepth;
   options_.view.orbit = 0.02f;
   ASSERT_NO_FATAL_FAILURE(open());
@@ -169,13 +169,13 @@ TEST_F(SceneViewTest, MovingCameraAndNormalsFromDepthAreDrawn) {
   }
 }
 
-TEST_F(SceneViewTest, TimesAndMemoryAreReported) {
+TEST_F(ViewerWindowTest, PassTimesAndMemoryOfTheFrameAreReported) {
   draw(4);
   EXPECT_GT(view_->facts().times.total_ms(), 0.0);
   EXPECT_GT(view_->facts().memory.aliased, 0u);
 }
 
-TEST_F(SceneViewTest, ClosedWindowDrawsNothing) {
+TEST_F(ViewerWindowTest, NoFrameIsDrawnAfterTheWindowIsClosed) {
   draw(1);
   view_->window().close();
   const auto drawn = view_->draw();
@@ -207,7 +207,7 @@ std::string write_large_triangle(const std::filesystem::path& folder) {
   return file;
 }
 
-TEST_F(SceneViewTest, DroppedFileReplacesTheSceneAndItsFirstView) {
+TEST_F(ViewerWindowTest, FileDroppedOnTheWindowReplacesSceneCameraAndRadius) {
   draw(2);
   const float radius = view_->state().settings.radius;
   drop(view_->window(), write_large_triangle(folder_.path));
@@ -219,7 +219,7 @@ TEST_F(SceneViewTest, DroppedFileReplacesTheSceneAndItsFirstView) {
   EXPECT_FALSE(is_plain(draw_and_look()));
 }
 
-TEST_F(SceneViewTest, ScenesAreReplacedWhileFramesAreInFlight) {
+TEST_F(ViewerWindowTest, SceneMayBeReplacedWhileFramesAreInFlight) {
   const std::string triangle = write_large_triangle(folder_.path);
   for (int i = 0; i < 6; ++i) {
     view_->state().picture = i % 2 == 0 ? Picture::kLit : Picture::kVisibility;
@@ -232,7 +232,7 @@ TEST_F(SceneViewTest, ScenesAreReplacedWhileFramesAreInFlight) {
   }
 }
 
-TEST_F(SceneViewTest, DroppedFileThatCannotBeReadLeavesTheSceneAndSaysWhy) {
+TEST_F(ViewerWindowTest, DroppedFileThatCannotBeReadIsReportedAndTheSceneStays) {
   draw(1);
   const std::string name = view_->scene().name;
   const Camera camera = view_->state().camera;

@@ -5,13 +5,13 @@
 namespace alcove::sample {
 namespace {
 
-TEST(SmoothedTimes, FirstFrameIsNotSmoothed) {
+TEST(SmoothedTimes, TimesOfTheFirstFrameAreNotSmoothed) {
   SmoothedTimes times;
   times.add({{"gtao", 2.0}, {"picture", 1.0}});
   EXPECT_DOUBLE_EQ(times.total_ms(), 3.0);
 }
 
-TEST(SmoothedTimes, OneSlowFrameChangesTheTimesLittleAndManyChangeThemFully) {
+TEST(SmoothedTimes, OneSlowFrameChangesTheSmoothedTimesLittleAndManySlowFramesFully) {
   SmoothedTimes times;
   times.add({{"gtao", 2.0}});
   times.add({{"gtao", 12.0}});
@@ -23,7 +23,7 @@ TEST(SmoothedTimes, OneSlowFrameChangesTheTimesLittleAndManyChangeThemFully) {
   EXPECT_NEAR(times.total_ms(), 12.0, 0.01);
 }
 
-TEST(SmoothedTimes, ChangedListOfPassesRestartsTheAverageAndAFrameWithoutTimesIsIgnored) {
+TEST(SmoothedTimes, ChangedListOfPassesRestartsTheSmoothingAndAFrameWithoutTimesIsIgnored) {
   SmoothedTimes times;
   times.add({{"gtao", 2.0}});
   times.add({});

@@ -34,7 +34,7 @@ VisibilityPolynomials project(const std::function<float(const glm::vec3&)>& func
 constexpr uint32_t kDirections = 1000;
 glm::vec3 spread_direction(uint32_t i) { return cosine_direction(r2_point(i, 1)); }
 
-TEST(VisibilityPolynomials, AreOrthonormalOverACosineWeightedHemisphere) {
+TEST(VisibilityPolynomials, PolynomialsAreOrthonormalOverACosineWeightedHemisphere) {
   for (std::size_t i = 0; i < kVisibilityPolynomials; ++i) {
     const VisibilityPolynomials products =
         project([&](const glm::vec3& d) { return visibility_polynomials(d)[i]; });
@@ -44,7 +44,7 @@ TEST(VisibilityPolynomials, AreOrthonormalOverACosineWeightedHemisphere) {
   }
 }
 
-TEST(VisibilityPolynomials, VisibleFractionIsWithinZeroAndOneAndExactAtBothEnds) {
+TEST(VisibilityPolynomials, VisibleFractionOfALobeIsBetweenZeroAndOneAndExactAtBothEnds) {
   VisibilityPolynomials all{};
   all[0] = 1.0f;
   for (uint32_t i = 0; i < kDirections; ++i) {
@@ -58,7 +58,7 @@ TEST(VisibilityPolynomials, VisibleFractionIsWithinZeroAndOneAndExactAtBothEnds)
   }
 }
 
-TEST(VisibilityPolynomials, HalfAHemisphereMatchesTheClosedForm) {
+TEST(VisibilityPolynomials, ProjectionOfAHalfOccludedHemisphereMatchesTheClosedForm) {
   const VisibilityPolynomials half =
       project([](const glm::vec3& d) { return d.x > 0.0f ? 1.0f : 0.0f; });
   EXPECT_NEAR(half[0], 0.5f, 1e-4f);
@@ -78,7 +78,7 @@ TEST(VisibilityPolynomials, HalfAHemisphereMatchesTheClosedForm) {
   }
 }
 
-TEST(VisibilityPolynomials, PolynomialVisibilityIsReproducedExactly) {
+TEST(VisibilityPolynomials, VisibilityThatIsAPolynomialIsReproducedByItsProjection) {
   const auto hidden = [](const glm::vec3& d) {
     return 0.4f + 0.1f * d.x - 0.1f * d.y * d.x + 0.1f * d.x * d.x * d.y +
            0.1f * d.y * d.y * d.y * d.x;
@@ -115,7 +115,7 @@ Limits limits_of(const char* name, float roughness, const TruthSettings& setting
           specular_truth(*rays, points, image, viewer_of(camera), settings), mask};
 }
 
-TEST(SpecularBaselines, OpenPlaneIsOpenAtAnyTiltAndRoughness) {
+TEST(SpecularBaselines, UnoccludedPlaneHasSpecularVisibilityOneAtAnyTiltAndRoughness) {
   for (const char* name : {"plane:0", "plane:45", "plane:75"}) {
     for (const float roughness : {0.05f, 0.3f, 1.0f}) {
       const Limits all = limits_of(name, roughness, {0.5f, 64, 1});
@@ -130,7 +130,8 @@ TEST(SpecularBaselines, OpenPlaneIsOpenAtAnyTiltAndRoughness) {
   }
 }
 
-TEST(SpecularBaselines, AgreeWithTheTruthForWideLobesIfTheImageShowsAllOccluders) {
+TEST(SpecularBaselines,
+     BaselinesAgreeWithTheRayTracedTruthForWideLobesIfTheImageShowsAllOccluders) {
   for (const char* name : {"groove:90", "groove:120", "step"}) {
     const Limits all = limits_of(name, 0.8f, {0.4f, 256, 1});
     const Image<float> open(all.mask.width, all.mask.height, 1.0f);

@@ -102,13 +102,13 @@ TEST_F(TextureTest, MipsOfAOneRowTextureHalveOnlyItsWidth) {
   EXPECT_EQ(texel.a, 255);
 }
 
-TEST_F(TextureTest, CheckerboardFinerThanPixelsIsGrey) {
+TEST_F(TextureTest, CheckerboardWithMipsFinerThanPixelsIsDrawnGrey) {
   for (const glm::vec3& albedo : drawn(quad_of(checkerboard(8 * kSize))).albedo.pixels) {
     ASSERT_NEAR(albedo.g, 0.5f, 0.02f);
   }
 }
 
-TEST_F(TextureTest, CheckerboardWithoutMipsIsBlackOrWhite) {
+TEST_F(TextureTest, CheckerboardWithoutMipsFinerThanPixelsIsDrawnBlackOrWhite) {
   // A pixel covers eight and a third texels, so each pixel contains both colours.
   const Sampler sampler{.minify = Filter::kNearest, .mips = MipFilter::kNone};
   const FrameImages images = drawn(quad_of(checkerboard(200), sampler));
@@ -121,7 +121,7 @@ TEST_F(TextureTest, CheckerboardWithoutMipsIsBlackOrWhite) {
   EXPECT_LT(white, images.albedo.pixels.size() * 3 / 4);
 }
 
-TEST_F(TextureTest, MagnificationFilterOfTheSamplerIsUsed) {
+TEST_F(TextureTest, RasteriserAndRayTracerUseTheMagnificationFilterOfTheSampler) {
   const TextureImage image = image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; });
   for (const Filter filter : {Filter::kNearest, Filter::kLinear}) {
     const Scene scene = quad_of(image, {.wrap_u = Wrap::kClamp, .magnify = filter});
@@ -138,7 +138,7 @@ TEST_F(TextureTest, MagnificationFilterOfTheSamplerIsUsed) {
   }
 }
 
-TEST_F(TextureTest, WrapModesAgreeBetweenRasteriserAndRayTracer) {
+TEST_F(TextureTest, TextureWrapModesAgreeBetweenRasteriserAndRayTracer) {
   const TextureImage image = image_of(2, 2, [](auto x, auto y) {
     return x + y == 0 ? kBlack : x == 0 ? kGreen : y == 0 ? kRed : kWhite;
   });
@@ -164,7 +164,7 @@ TEST_F(TextureTest, WrapModesAgreeBetweenRasteriserAndRayTracer) {
   }
 }
 
-TEST_F(TextureTest, EachTextureIsReadByItsOwnSetOfCoordinates) {
+TEST_F(TextureTest, EachTextureIsReadWithItsOwnUvSet) {
   Scene scene = quad_of(image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; }),
                         {.magnify = Filter::kNearest});
   Material& material = scene.materials[0];
@@ -185,7 +185,7 @@ TEST_F(TextureTest, EachTextureIsReadByItsOwnSetOfCoordinates) {
   }
 }
 
-TEST_F(TextureTest, MissingSetOfCoordinatesReadsAsZero) {
+TEST_F(TextureTest, MissingUvSetReadsAsZero) {
   Scene scene = quad_of(image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; }),
                         {.magnify = Filter::kNearest});
   scene.materials[0].base_color_texture.uv_set = 1;
@@ -198,7 +198,7 @@ TEST_F(TextureTest, MissingSetOfCoordinatesReadsAsZero) {
 }
 
 // The number of textures exceeds the smallest limit that Vulkan allows for bound images.
-TEST_F(TextureTest, EachMaterialReadsItsOwnTexturesWithMoreTexturesThanVulkanGuaranteesToBind) {
+TEST_F(TextureTest, MaterialsReadTheirOwnTexturesEvenIfThereAreMoreThanVulkanGuaranteesToBind) {
   constexpr std::uint32_t kCells = 12;  // cells of 2x2 pixels per axis
   Scene scene = plain_quad();
   const Mesh whole = scene.meshes[0];
@@ -229,7 +229,7 @@ TEST_F(TextureTest, EachMaterialReadsItsOwnTexturesWithMoreTexturesThanVulkanGua
   }
 }
 
-TEST_F(TextureTest, AlphaMasksOfTheSecondSetAgreeWithTheRayTracerAndKeepTheirCoverage) {
+TEST_F(TextureTest, AlphaMasksReadWithTheSecondUvSetAgreeWithTheRayTracerAndKeepTheirCoverage) {
   // One texel in four is opaque, so that the mean of any mip is below the cutoff. A pixel
   // covers 1.618 periods.
   Scene scene = quad_of(

@@ -26,7 +26,7 @@ TradePoint point(const std::string& name, double time_ms, double rmse, double sp
 constexpr std::array kPresets{passes::Quality::console, passes::Quality::low,
                               passes::Quality::medium, passes::Quality::high};
 
-TEST(PresetSweep, ContainsEachPresetAndNoDuplicates) {
+TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
   for (const passes::Quality quality : kPresets) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     const std::vector<Variant> ways = preset_sweep(base);
@@ -43,7 +43,7 @@ TEST(PresetSweep, ContainsEachPresetAndNoDuplicates) {
   }
 }
 
-TEST(PresetSweep, ContainsHalfResolutionWithSeveralTileSizesAndSteps) {
+TEST(PresetSweep, SweepContainsHalfResolutionWithSeveralTileSizesAndSteps) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> half;
   for (const Variant& variant : preset_sweep({})) {
     EXPECT_TRUE(passes::validate(variant.settings)) << variant.name;
@@ -58,7 +58,7 @@ TEST(PresetSweep, ContainsHalfResolutionWithSeveralTileSizesAndSteps) {
                                            std::pair(2u, 10u)}));
 }
 
-TEST(PresetSweep, ChangesOnlyTileSizeSlicesStepsAndHalfResolution) {
+TEST(PresetSweep, SweepChangesOnlyTileSizeSlicesStepsAndHalfResolution) {
   OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
   base.history_frames = 0;
   base.advanced.estimator = passes::Estimator::horizons;
@@ -73,7 +73,7 @@ TEST(PresetSweep, ChangesOnlyTileSizeSlicesStepsAndHalfResolution) {
   }
 }
 
-TEST(Trade, ParetoFrontExcludesDominatedPoints) {
+TEST(SpeedErrorTrade, ParetoFrontOfTimeAndErrorExcludesDominatedSettings) {
   const Trade trade =
       trade_of({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
                 point("fair", 3, 0.05), point("equal", 5, 0.05)});
@@ -85,14 +85,14 @@ TEST(Trade, ParetoFrontExcludesDominatedPoints) {
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
 
-TEST(Trade, PointThatIsFasterOnlyWithinTheSpreadIsNotOnTheParetoFront) {
+TEST(SpeedErrorTrade, LessAccurateSettingFasterOnlyWithinMeasurementSpreadIsNotOnTheParetoFront) {
   const Trade trade =
       trade_of({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
                 point("surely faster", 9.0, 0.08, 0.3)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false, true}));
 }
 
-TEST(Trade, ParetoFrontDoesNotDependOnNoiseWithinTheSpread) {
+TEST(SpeedErrorTrade, ParetoFrontDoesNotChangeWithTimingNoiseWithinTheMeasuredSpread) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> noise(-0.07, 0.07);
   for (int run = 0; run < 100; ++run) {
@@ -157,7 +157,7 @@ constexpr std::array<TrueSetting, 6> kTrueSettings{{{"fast", 0.3, 0.08},
                                                     {"slow", 4.0, 0.04},
                                                     {"slow and worse", 4.0, 0.07}}};
 
-TEST(Trade, RunsOnABusyMachineGiveTheSameParetoFront) {
+TEST(SpeedErrorTrade, RepeatedMeasurementsOnABusyMachineGiveTheSameParetoFront) {
   std::mt19937 random(5);
   for (int run = 0; run < 200; ++run) {
     EXPECT_THAT(sorted_front(trade_of(measured_on_a_busy_machine(kTrueSettings, random))),
@@ -165,7 +165,7 @@ TEST(Trade, RunsOnABusyMachineGiveTheSameParetoFront) {
   }
 }
 
-TEST(Trade, SettingThatBecomesFasterEntersTheParetoFrontOnABusyMachine) {
+TEST(SpeedErrorTrade, SettingThatBecomesFasterEntersTheParetoFrontOnABusyMachine) {
   std::mt19937 random(5);
   auto settings = kTrueSettings;
   settings[3] = {"faster but worse", 0.4, 0.06};
@@ -176,7 +176,7 @@ TEST(Trade, SettingThatBecomesFasterEntersTheParetoFrontOnABusyMachine) {
   }
 }
 
-TEST(VariantCost, IsTheMedianRatioOfPairsAndHalfTheDistanceOfTheirQuartiles) {
+TEST(VariantCost, CostIsTheMedianRatioOfTimedPairsWithHalfTheInterquartileRangeAsSpread) {
   std::vector<TimedPair> pairs;
   for (const double ratio : {2.0, 1.0, 9.0, 3.0, 4.0}) {
     pairs.push_back({{10.0, 7.0}, {10.0 * ratio, 14.0 * ratio}});
@@ -190,12 +190,12 @@ TEST(VariantCost, IsTheMedianRatioOfPairsAndHalfTheDistanceOfTheirQuartiles) {
   EXPECT_EQ(cost_of({}, 5).gpu, 1.0);
 }
 
-TEST(Trade, OneOfSeveralEqualPointsIsOnTheParetoFront) {
+TEST(SpeedErrorTrade, OnlyOneOfSeveralEqualSettingsIsOnTheParetoFront) {
   const Trade trade = trade_of({point("a", 1, 0.1), point("b", 1, 0.1)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false}));
 }
 
-TEST(SamplingGrid, HasEveryPairOrderedBySteps) {
+TEST(SamplingGrid, GridHasEveryPairOfStepsAndSlicesOrderedBySteps) {
   const OcclusionSettings base = passes::quality_settings(passes::Quality::high, 0.5f);
   const std::vector<Variant> grid = sampling_grid(base);
   ASSERT_EQ(grid.size(), kGridSteps.size() * kGridSlices.size());
@@ -207,7 +207,7 @@ TEST(SamplingGrid, HasEveryPairOrderedBySteps) {
   }
 }
 
-TEST(Trade, ChoosesTheBestPointWithinTheLimit) {
+TEST(SpeedErrorTrade, RecommendedSettingIsTheBestWithinATimeBudgetOrAnErrorTolerance) {
   const std::vector<TradePoint> points{point("fast", 1, 0.1), point("fair", 3, 0.05),
                                        point("slow", 9, 0.01)};
   EXPECT_EQ(least_error_within_ms(points, 3.0)->name, "fair");
@@ -218,7 +218,7 @@ TEST(Trade, ChoosesTheBestPointWithinTheLimit) {
   EXPECT_EQ(fastest_within_rmse(points, 0.005), nullptr);
 }
 
-TEST(Trade, ScenesAreCombinedByMeanTimesAndRootMeanSquareErrors) {
+TEST(SpeedErrorTrade, SeveralScenesAreCombinedByMeanTimeAndRootMeanSquareError) {
   const std::vector<std::vector<TradePoint>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
   const std::vector<TradePoint> all = over_scenes(scenes);
   ASSERT_EQ(all.size(), 1u);
@@ -228,7 +228,7 @@ TEST(Trade, ScenesAreCombinedByMeanTimesAndRootMeanSquareErrors) {
   EXPECT_EQ(all[0].bytes, 1000u);
 }
 
-TEST(TradePlot, NamesTheParetoFrontAndEscapesText) {
+TEST(TradePlot, PlotLabelsOnlyPointsOnTheParetoFrontAndEscapesText) {
   const std::string plot =
       plot_of(trade_of({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
               "scene & size", "modelled time");
@@ -258,7 +258,7 @@ std::vector<PlacedName> placed_names(const std::string& plot, const std::string&
   return names;
 }
 
-TEST(TradePlot, NamesOfAdjacentPointsDoNotOverlap) {
+TEST(TradePlot, LabelsOfAdjacentPointsInThePlotDoNotOverlap) {
   std::vector<TradePoint> points;
   for (int i = 0; i < 9; ++i) {
     points.push_back(
@@ -277,7 +277,7 @@ TEST(TradePlot, NamesOfAdjacentPointsDoNotOverlap) {
   }
 }
 
-TEST(TradePlot, SinglePointIsPlotted) {
+TEST(TradePlot, PlotOfASinglePointIsValid) {
   const std::string plot = plot_of(trade_of({point("only", 1, 0.0)}), "one", "time");
   EXPECT_NE(plot.find("<circle"), std::string::npos);
   EXPECT_EQ(plot.find("nan"), std::string::npos);

@@ -21,7 +21,7 @@ std::filesystem::path only_file(const std::filesystem::path& folder) {
   return std::filesystem::directory_iterator(folder)->path();
 }
 
-TEST(TruthCache, EntryIsReadUnderItsOwnKeyOnly) {
+TEST(TruthCache, CachedTruthIsReadOnlyUnderItsOwnKeyAndSize) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path / "deep" / "cache");
   Image<glm::vec3> image(3, 2, glm::vec3(1, 2, 3));
@@ -33,7 +33,7 @@ TEST(TruthCache, EntryIsReadUnderItsOwnKeyOnly) {
   EXPECT_FALSE(cache.read(key_of(1), 17));
 }
 
-TEST(TruthCache, DamagedEntriesReadAsAbsent) {
+TEST(TruthCache, DamagedCacheEntriesAreTreatedAsAbsent) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);
   const std::vector<float> values(100, 0.5f);
@@ -54,7 +54,7 @@ TEST(TruthCache, DamagedEntriesReadAsAbsent) {
   EXPECT_FALSE(cache.read(key_of(1), values.size()));
 }
 
-TEST(TruthCache, EntryOfAnEarlierVersionReadsAsAbsent) {
+TEST(TruthCache, CacheEntryOfAnEarlierFormatVersionIsTreatedAsAbsent) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);
   const std::vector<float> values(100, 0.5f);
@@ -64,7 +64,7 @@ TEST(TruthCache, EntryOfAnEarlierVersionReadsAsAbsent) {
   EXPECT_FALSE(cache.read(key_of(1), values.size()));
 }
 
-TEST(TruthCache, KeyDependsOnOrderAndBoundariesOfItsParts) {
+TEST(TruthCache, CacheKeyDependsOnTheOrderAndBoundariesOfItsParts) {
   const auto key_of_texts = [](const std::vector<std::string>& texts) {
     CacheKey key;
     for (const std::string& text : texts) key.add(text);
@@ -76,7 +76,7 @@ TEST(TruthCache, KeyDependsOnOrderAndBoundariesOfItsParts) {
   EXPECT_NE(key_of_texts({"ab", "c"}), key_of_texts({"ab", "c", ""}));
 }
 
-TEST(TruthCache, NamedPipeInPlaceOfAnEntryReadsAsAbsentAndIsReplaced) {
+TEST(TruthCache, NamedPipeInPlaceOfACacheEntryIsTreatedAsAbsentAndReplaced) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);
   const std::vector<float> values(100, 0.5f);
@@ -86,21 +86,21 @@ TEST(TruthCache, NamedPipeInPlaceOfAnEntryReadsAsAbsentAndIsReplaced) {
   EXPECT_TRUE(cache.read(key_of(1), values.size()));
 }
 
-TEST(TruthCache, TemporaryFilesOfAKilledRunAreRemoved) {
+TEST(TruthCache, TemporaryCacheFilesOfAKilledRunAreRemoved) {
   const TemporaryFolder folder;
   std::ofstream(folder.path / "0123.truth.part77") << "half";
   const TruthCache cache(folder.path);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
-TEST(TruthCache, WritingLeavesNoTemporaryFiles) {
+TEST(TruthCache, WritingACacheEntryLeavesNoTemporaryFiles) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);
   for (int i = 0; i < 3; ++i) cache.write(key_of(1), std::vector<float>(5, 1.0f));
   EXPECT_EQ(folder.files(), 1);
 }
 
-TEST(TruthCache, KeyChangesWithSceneAndCamera) {
+TEST(TruthCache, CacheKeyChangesWithSceneAndCamera) {
   const Scene scene = builtin_scene();
   CacheKey key, moved, recoloured, laid, blocky, turned;
   key.add(scene);
@@ -125,7 +125,7 @@ TEST(TruthCache, KeyChangesWithSceneAndCamera) {
   EXPECT_NE(key.hex(), turned.hex());
 }
 
-TEST(TruthCache, NothingIsCachedWithoutAFolder) {
+TEST(TruthCache, NothingIsCachedIfNoCacheFolderIsGiven) {
   const TruthCache cache("");
   cache.write(key_of(1), std::vector<float>(5, 1.0f));
   EXPECT_FALSE(cache.read(key_of(1), 5));

@@ -16,7 +16,7 @@ namespace {
 
 class ClosedForm : public testing::TestWithParam<const char*> {};
 
-TEST_P(ClosedForm, RayTracedVisibilityAgreesWithinThreeStandardErrors) {
+TEST_P(ClosedForm, RayTracedVisibilityAgreesWithTheClosedFormWithinThreeStandardErrors) {
   const auto analytic = analytic_scene(GetParam());
   ASSERT_TRUE(analytic);
   const auto rays = RayScene::create(analytic->scene);
@@ -51,7 +51,7 @@ View view_of(const RayScene& rays, const Camera& camera, uint32_t width, uint32_
   return view;
 }
 
-TEST(Truth, OpenPlaneIsExactlyOpenAtAnyTilt) {
+TEST(RayTracedTruth, UnoccludedPlaneHasVisibilityExactlyOneAtAnyTilt) {
   for (const char* name : {"plane:0", "plane:45", "plane:80", "plane:88"}) {
     const auto analytic = analytic_scene(name);
     const auto rays = RayScene::create(analytic->scene);
@@ -76,7 +76,7 @@ Scene scaled(Scene scene, float scale) {
   return scene;
 }
 
-TEST(Truth, VisibilityDoesNotDependOnTheScaleOfTheScene) {
+TEST(RayTracedTruth, VisibilityDoesNotDependOnTheScaleOfTheScene) {
   const Scene scene = analytic_scene("corner")->scene;
   const auto visibility = [&](float scale) {
     const Scene other = scaled(scene, scale);
@@ -99,14 +99,14 @@ TEST(Truth, VisibilityDoesNotDependOnTheScaleOfTheScene) {
   EXPECT_THAT(too_large.error(), testing::HasSubstr("further than 1e12"));
 }
 
-TEST(Truth, MeshWithoutTrianglesIsIgnored) {
+TEST(RayTracedTruth, MeshWithoutTrianglesIsIgnored) {
   Scene scene = analytic_scene("corner")->scene;
   scene.meshes.emplace_back();
   const auto rays = RayScene::create(scene);
   EXPECT_TRUE(rays) << rays.error();
 }
 
-TEST(Truth, RaysFromBeyondTheTraceableRangeHitNothing) {
+TEST(RayTracedTruth, RaysThatStartBeyondTheTraceableRangeHitNothing) {
   const Scene scene = analytic_scene("corner")->scene;
   const auto rays = RayScene::create(scene);
   for (const float near_plane : {1e19f, 3e38f}) {
@@ -118,7 +118,7 @@ TEST(Truth, RaysFromBeyondTheTraceableRangeHitNothing) {
   }
 }
 
-TEST(Truth, BentNormalOfAnOpenPlaneIsItsNormal) {
+TEST(RayTracedTruth, BentNormalOfAnUnoccludedPlaneIsItsNormal) {
   const auto analytic = analytic_scene("plane:60");
   const auto rays = RayScene::create(analytic->scene);
   const auto points = points_of(*analytic);
@@ -126,14 +126,14 @@ TEST(Truth, BentNormalOfAnOpenPlaneIsItsNormal) {
   EXPECT_GT(glm::dot(truth.bent_normal_ws.at(0, 0), points.normal_ws.at(0, 0)), 0.99999f);
 }
 
-TEST(Truth, HitsBeyondTheRadiusDoNotOcclude) {
+TEST(RayTracedTruth, RayHitsBeyondTheRadiusDoNotOcclude) {
   const auto analytic = analytic_scene("groove:90");
   const auto rays = RayScene::create(analytic->scene);
   const auto truth = occlusion_truth(*rays, points_of(*analytic), {0.05f, 256, 1});
   EXPECT_EQ(truth.visibility.at(0, 0), 1.0f);
 }
 
-TEST(Truth, InterreflectionIsTheVisibilityForBlackWallsAndOneForWhiteWalls) {
+TEST(RayTracedTruth, InterreflectedLightEqualsVisibilityForBlackWallsAndOneForWhiteWalls) {
   for (const float albedo : {0.0f, 1.0f}) {
     auto analytic = analytic_scene("groove:90");
     analytic->scene.materials[0].base_color = glm::vec4(glm::vec3(albedo), 1.0f);
@@ -145,7 +145,7 @@ TEST(Truth, InterreflectionIsTheVisibilityForBlackWallsAndOneForWhiteWalls) {
   }
 }
 
-TEST(Truth, MirrorIsOccludedAlongTheReflectedViewDirection) {
+TEST(RayTracedTruth, MirrorIsOccludedIfAWallLiesInTheReflectedViewDirection) {
   // On the floor, a shallow ray towards the wall is reflected into it; one away from it is not.
   const auto analytic = analytic_scene("step");
   const auto rays = RayScene::create(analytic->scene);
@@ -158,7 +158,7 @@ TEST(Truth, MirrorIsOccludedAlongTheReflectedViewDirection) {
   EXPECT_GT(specular_truth(*rays, points, roughness, away, {2.0f, 512, 1}).at(0, 0), 0.99f);
 }
 
-TEST(Truth, SpecularOcclusionOfAnOpenPlaneIsOne) {
+TEST(RayTracedTruth, SpecularVisibilityOfAnUnoccludedPlaneIsOne) {
   const auto analytic = analytic_scene("plane:85");
   const auto rays = RayScene::create(analytic->scene);
   const View view = view_of(*rays, analytic->scene.cameras[0], 16, 9);
@@ -169,7 +169,7 @@ TEST(Truth, SpecularOcclusionOfAnOpenPlaneIsOne) {
   }
 }
 
-TEST(Truth, CutOutTexelsLetRaysThrough) {
+TEST(RayTracedTruth, RaysPassThroughTexelsCutOutByAnAlphaMask) {
   auto analytic = analytic_scene("plane:0");
   Scene& scene = analytic->scene;
   scene.images.push_back({"holes", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
@@ -184,7 +184,7 @@ TEST(Truth, CutOutTexelsLetRaysThrough) {
   EXPECT_EQ(g.material.at(15, 4), kNoMaterial);
 }
 
-TEST(HeightFieldTruth, OpenPlaneIsOpenWithin255thInEveryProjection) {
+TEST(HeightFieldTruth, UnoccludedPlaneHasVisibilityOneWithinOne255thInEveryProjection) {
   for (const char* name : {"plane:0", "plane:45", "plane:75"}) {
     auto analytic = analytic_scene(name);
     const auto rays = RayScene::create(analytic->scene);
@@ -206,7 +206,7 @@ TEST(HeightFieldTruth, OpenPlaneIsOpenWithin255thInEveryProjection) {
 }
 
 // If the image shows all occluders, the height field of a groove or a step equals the scene.
-TEST(HeightFieldTruth, AgreesWithTheSceneTruthIfTheImageShowsAllOccluders) {
+TEST(HeightFieldTruth, HeightFieldVisibilityAgreesWithTheRayTracedOneIfTheImageShowsAllOccluders) {
   for (const char* name : {"groove:90", "groove:120", "step"}) {
     const auto analytic = analytic_scene(name);
     const auto rays = RayScene::create(analytic->scene);
@@ -225,7 +225,7 @@ TEST(HeightFieldTruth, AgreesWithTheSceneTruthIfTheImageShowsAllOccluders) {
   }
 }
 
-TEST(BuiltinScene, HasTheDocumentedContents) {
+TEST(BuiltinScene, BuiltInSceneHasUnder50000TrianglesTwoCamerasAndValidMeshes) {
   const Scene scene = builtin_scene();
   EXPECT_LT(triangle_count(scene), 50000u);
   EXPECT_GE(scene.cameras.size(), 2u);

@@ -41,7 +41,7 @@ float diagonal(std::uint32_t x, std::uint32_t y, float amplitude) {
   return ((x + y) % 4 < 2) ? amplitude : -amplitude;
 }
 
-TEST(Weave, PatternWithAPeriodOfFourPixelsIsMeasuredByItsRms) {
+TEST(WeavePattern, ErrorPatternWithAPeriodOfFourPixelsIsMeasuredByItsRms) {
   const Weave weave =
       weave_of_error([](std::uint32_t x, std::uint32_t y) { return diagonal(x, y, 0.004f); });
   EXPECT_EQ(weave.windows, kSize * kSize / (32u * 32u));
@@ -51,14 +51,14 @@ TEST(Weave, PatternWithAPeriodOfFourPixelsIsMeasuredByItsRms) {
   EXPECT_EQ(weave.visible_windows, 0u);
 }
 
-TEST(Weave, WindowsWithAVisiblePatternAreCounted) {
+TEST(WeavePattern, ImageWindowsWithAVisiblePatternAreCounted) {
   const Weave weave = weave_of_error([](std::uint32_t x, std::uint32_t y) {
     return x < kSize / 4 ? diagonal(x, y, 0.008f) : 0.0f;
   });
   EXPECT_NEAR(weave.visible_fraction(), 0.25, 1e-9);
 }
 
-TEST(Weave, WhiteNoiseHasNoPattern) {
+TEST(WeavePattern, WhiteNoiseIsNotMeasuredAsAPattern) {
   std::mt19937 random(7);
   std::normal_distribution<float> noise(0.0f, 0.03f);
   const Weave weave = weave_of_error([&](std::uint32_t, std::uint32_t) { return noise(random); });
@@ -67,7 +67,7 @@ TEST(Weave, WhiteNoiseHasNoPattern) {
   EXPECT_EQ(weave.visible_windows, 0u);
 }
 
-TEST(Weave, PatternIsFoundBelowNoise) {
+TEST(WeavePattern, PatternWeakerThanTheNoiseIsStillMeasured) {
   std::mt19937 random(11);
   std::normal_distribution<float> noise(0.0f, 0.02f);
   const Weave weave = weave_of_error(
@@ -75,7 +75,7 @@ TEST(Weave, PatternIsFoundBelowNoise) {
   EXPECT_NEAR(weave.rms(), 0.0041, 0.0008);
 }
 
-TEST(Weave, SmoothErrorsAndOtherPeriodsAreIgnored) {
+TEST(WeavePattern, SmoothErrorsAndPatternsOfOtherPeriodsAreIgnored) {
   EXPECT_LT(weave_of_error([](std::uint32_t x, std::uint32_t) {
               return 0.05f * std::sin(0.05f * static_cast<float>(x));
             }).rms(),
@@ -86,7 +86,7 @@ TEST(Weave, SmoothErrorsAndOtherPeriodsAreIgnored) {
             4e-4);
 }
 
-TEST(Weave, WindowsWithSkyOrWithDetailInTheTruthDoNotCount) {
+TEST(WeavePattern, ImageWindowsWithSkyOrWithDetailInTheTruthAreNotCounted) {
   Mask surfaces = kEverywhere;
   surfaces.at(40, 40) = 0;  // in one window
   Image<float> truth = smooth_truth();
@@ -98,7 +98,7 @@ TEST(Weave, WindowsWithSkyOrWithDetailInTheTruthDoNotCount) {
   EXPECT_EQ(weave_of(truth, truth, surfaces).windows, kSize * kSize / (32u * 32u) - 2);
 }
 
-TEST(Weave, ImageSmallerThanAWindowHasNoWindows) {
+TEST(WeavePattern, ImageSmallerThanAMeasuringWindowHasNoWindows) {
   const Image<float> small(31, 31, 0.5f);
   const Weave weave = weave_of(small, small, Mask(31, 31, 1));
   EXPECT_EQ(weave.windows, 0u);
@@ -106,7 +106,7 @@ TEST(Weave, ImageSmallerThanAWindowHasNoWindows) {
   EXPECT_EQ(weave.visible_fraction(), 0.0);
 }
 
-TEST(Weave, NotANumberDoesNotAffectOtherPixels) {
+TEST(WeavePattern, PixelThatIsNaNDoesNotMakeTheMeasuredPatternNaN) {
   Image<float> result = smooth_truth();
   result.at(5, 5) = NAN;
   EXPECT_TRUE(std::isfinite(weave_of(result, smooth_truth(), kEverywhere).rms()));

@@ -13,7 +13,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(WholeFile, FullDiskIsReportedAndNothingIsLeft) {
+TEST(WholeFile, FullDiskIsReportedAndNoPartialFileIsLeft) {
   if (!std::filesystem::exists("/dev/full")) return;  // not Linux
   const TemporaryFolder folder;
   const auto written = write_whole(folder.path / "a", [](const std::filesystem::path&) {
@@ -41,7 +41,7 @@ TEST(WholeFile, AbandonedTemporaryFilesAreRemovedByTheNextWriteOfTheFile) {
 }
 
 // The writer is a separate process that is killed while it writes.
-TEST(WholeFile, TemporaryFileOfARunningWriterIsKept) {
+TEST(WholeFile, TemporaryFileOfAStillRunningWriterIsNotRemoved) {
   const TemporaryFolder folder;
   int pipe_ends[2];
   ASSERT_EQ(pipe(pipe_ends), 0);
@@ -68,14 +68,14 @@ TEST(WholeFile, TemporaryFileOfARunningWriterIsKept) {
   close(pipe_ends[1]);
 }
 
-TEST(OutputFolder, FolderWithoutWritePermissionIsRefused) {
+TEST(OutputFolder, OutputFolderWithoutWritePermissionIsRefused) {
   if (!std::filesystem::exists("/proc/self")) return;  // not Linux
   const auto made = OutputFolder::create("/proc/self");
   ASSERT_FALSE(made);
   EXPECT_THAT(made.error(), testing::HasSubstr("/proc/self"));
 }
 
-TEST(OutputFolder, FileInPlaceOfTheFolderIsRefused) {
+TEST(OutputFolder, FileInPlaceOfTheOutputFolderIsRefused) {
   const TemporaryFolder folder;
   std::ofstream(folder.path / "a") << "a file";
   for (const char* name : {"a", "a/b"}) {
@@ -85,7 +85,7 @@ TEST(OutputFolder, FileInPlaceOfTheFolderIsRefused) {
   }
 }
 
-TEST(OutputFolder, EmptyFoldersAreRemoved) {
+TEST(OutputFolder, OutputFoldersThatWereCreatedAndStayedEmptyAreRemoved) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path / "old");
   {
@@ -97,7 +97,7 @@ TEST(OutputFolder, EmptyFoldersAreRemoved) {
   EXPECT_FALSE(std::filesystem::exists(folder.path / "old" / "new"));
 }
 
-TEST(OutputFolder, FoldersWithFilesAndExistingFoldersAreKept) {
+TEST(OutputFolder, OutputFoldersWithFilesAndThoseThatExistedBeforeAreKept) {
   const TemporaryFolder folder;
   {
     const auto made = OutputFolder::create(folder.path / "new" / "deep");
