@@ -160,7 +160,7 @@ TEST(SteadyFrame, AccessToOneMipInThePreviousFrameIsNotReusedForAnAccessToAllMip
 
 // The caller makes a handle by incrementing the index of another handle. It must be invalid until
 // its resource is declared, even if the previous frame declared such a resource.
-TEST(SteadyFrame, HandleMadeUpByTheCallerIsRefused) {
+TEST(SteadyFrame, ResourceHandleMadeUpByTheCallerIsRefused) {
   Graph graph;
   for (int frame = 0; frame < 3; ++frame) {
     graph.reset();

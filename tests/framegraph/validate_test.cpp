@@ -179,14 +179,14 @@ TEST_F(Validate, WriteThroughAHandleThatAnEarlierWriteReplacedIsRefused) {
   EXPECT_THAT(plan.error()[0].message, HasSubstr("pass 'third' writes texture 't' version 1"));
 }
 
-TEST_F(Validate, HandleOfAnotherGraphIsRefused) {
+TEST_F(Validate, ResourceHandleOfAnotherGraphIsRefused) {
   Graph other;
   const Texture foreign = other.create_texture("foreign", kDesc);
   pass("reader").read(foreign, access::sampled_compute);
   expect(ErrorCode::foreign_handle, "'reader' reads a texture through a handle of another graph");
 }
 
-TEST_F(Validate, HandleFromBeforeGraphResetIsRefused) {
+TEST_F(Validate, ResourceHandleFromBeforeGraphResetIsRefused) {
   const Texture old = graph_.create_texture("t", kDesc);
   graph_.reset();
   PassBuilder writer = pass("writer");
@@ -194,17 +194,17 @@ TEST_F(Validate, HandleFromBeforeGraphResetIsRefused) {
   expect(ErrorCode::foreign_handle, "of a frame before reset");
 }
 
-TEST_F(Validate, NullHandleIsRefused) {
+TEST_F(Validate, NullResourceHandleIsRefused) {
   pass("reader").read(Buffer{}, buffer_access::vertex_buffer);
   expect(ErrorCode::null_handle, "'reader' reads a buffer through a null handle");
 }
 
-TEST_F(Validate, ReadingBeforeAnyWriteIsRefused) {
+TEST_F(Validate, ReadingATextureBeforeAnyWriteIsRefused) {
   pass("reader").read(graph_.create_texture("t", kDesc), access::sampled_compute);
   expect(ErrorCode::read_before_write, "'reader' reads texture 't' version 0");
 }
 
-TEST_F(Validate, ReadingAMipThatNothingWroteIsRefused) {
+TEST_F(Validate, ReadingAMipThatNoPassWroteIsRefused) {
   TextureDesc desc = kDesc;
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
@@ -338,12 +338,12 @@ TEST_F(Validate, ReadingAHistoryThatNoPassWritesIsRefused) {
   expect(ErrorCode::history_never_written, "write its current slot");
 }
 
-TEST_F(Validate, HistoryOfOneSlotIsRefused) {
+TEST_F(Validate, HistoryWithOnlyOneSlotIsRefused) {
   (void)graph_.create_texture_history("h", kDesc, 1);
   expect(ErrorCode::history_cycle, "at least 2 slots");
 }
 
-TEST_F(Validate, GraphicsStageOnTheComputeQueueIsRefused) {
+TEST_F(Validate, AccessInAGraphicsStageOnTheComputeQueueIsRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
   PassBuilder draw = pass("draw", QueueClass::compute);
   (void)draw.write(texture, access::color_attachment);

@@ -61,7 +61,7 @@ TEST(Ggx, ProjectedMicrofacetAreaIntegratesToOneOverTheHemisphere) {
   }
 }
 
-TEST(Ggx, MaskingIsOneAtNormalIncidenceAndDecreasesTowardsGrazingAngles) {
+TEST(Ggx, MaskingFunctionIsOneAtNormalIncidenceAndDecreasesTowardsGrazingAngles) {
   for (const float alpha : {0.01f, 0.3f, 1.0f}) {
     EXPECT_FLOAT_EQ(maths::ggx_masking(1.0f, alpha), 1.0f);
     float before = 1.0f;

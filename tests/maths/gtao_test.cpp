@@ -24,7 +24,7 @@ TEST(ArcCosine, ApproximationStaysWithinItsStatedErrorEverywhere) {
   EXPECT_LT(worst, 4.6e-5);
 }
 
-TEST(ArcCosine, ClampsItsArgumentToMinusOneToOne) {
+TEST(ArcCosine, ArgumentIsClampedToMinusOneToOne) {
   EXPECT_EQ(maths::arc_cosine(1.0f), 0.0f);
   EXPECT_EQ(maths::arc_cosine(7.0f), 0.0f);
   EXPECT_FLOAT_EQ(maths::arc_cosine(-7.0f), float(kPi));

@@ -14,7 +14,7 @@ TEST(MultiBounce, VisibilityZeroAndOneAreUnchangedAtAnyAlbedo) {
   }
 }
 
-TEST(MultiBounce, ResultIsAtLeastVisibilityAndIncreasesWithVisibilityAndAlbedo) {
+TEST(MultiBounce, ResultIsAtLeastTheVisibilityAndIncreasesWithVisibilityAndAlbedo) {
   for (float albedo = 0.0f; albedo <= 1.0f; albedo += 0.02f) {
     float before = 0.0f;
     for (float v = 0.0f; v <= 1.0f; v += 0.005f) {

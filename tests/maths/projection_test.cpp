@@ -249,7 +249,7 @@ TEST(Projection, NarrowPerspectiveFromAfarApproachesAnOrthographicView) {
   EXPECT_LT(distance(maths::view_direction(a, from_a), maths::view_direction(b, from_b)), 2e-4f);
 }
 
-TEST(Projection, PixelCentresAreHalfATexelFromTheEdge) {
+TEST(Projection, PixelCentresLieHalfATexelInsideTheImageEdge) {
   const Projection p = projection_of(Frustum{}, 5, 3);
   EXPECT_FLOAT_EQ(maths::pixel_centre_uv(p, glm::uvec2(0, 0)).x, 0.1f);
   EXPECT_FLOAT_EQ(maths::pixel_centre_uv(p, glm::uvec2(4, 2)).y, 2.5f / 3.0f);
@@ -294,7 +294,7 @@ TEST(MakeProjection, RoundingErrorsInZeroElementsOfTheMatrixAreAcceptedAndRemove
   }
 }
 
-TEST(MakeProjection, InvalidProjectionsAreRefusedWithAReason) {
+TEST(MakeProjection, InvalidProjectionMatricesAreRefusedWithAReason) {
   const mat4 good = matrix_of(Frustum{});
   const auto fault = [](const mat4& m) {
     const auto p = maths::make_projection(m, 16, 16);

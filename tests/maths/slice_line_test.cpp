@@ -218,7 +218,7 @@ TEST(SliceLine, RadiusInPixelsApproximatesTheSilhouetteOfASphereOfThatRadius) {
 
 const maths::DepthDiscontinuity kNone{false, false}, kConvex{true, false}, kConcave{false, true};
 
-TEST(ConnectedSamples, SamplesAreConnectedAlongPlanesAndAcrossCreasesButNotOverGaps) {
+TEST(ConnectedSamples, DepthSamplesAreConnectedAlongPlanesAndAcrossCreasesButNotOverGaps) {
   EXPECT_TRUE(maths::samples_join(kNone, kNone)) << "a plane";
   EXPECT_TRUE(maths::samples_join(kNone, kConcave)) << "a plane that ends";
   EXPECT_TRUE(maths::samples_join(kConvex, kConvex)) << "a crease between the two";

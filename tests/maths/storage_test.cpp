@@ -129,7 +129,7 @@ TEST(Octahedral, EncodingIgnoresTheLengthOfAVectorAndAcceptsTheZeroVector) {
   EXPECT_EQ(maths::octahedral_decode(maths::octahedral_encode(vec3(0))), vec3(0, 0, 1));
 }
 
-TEST(Octahedral, AnyPointIsDecodedToAUnitVector) {
+TEST(Octahedral, AnyPairOfCoordinatesIsDecodedToAUnitVector) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
     const vec2 point(random.uniform(-2, 2), random.uniform(-2, 2));

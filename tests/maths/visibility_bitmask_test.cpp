@@ -184,7 +184,7 @@ TEST(VisibilityBitmask, UniformlyWeightedVisibilityOfAMaskEqualsTheSolidAngleOfI
   }
 }
 
-TEST(VisibilityBitmask, EmptyMaskIsFullyVisibleAndFullMaskIsNotVisible) {
+TEST(VisibilityBitmask, MaskWithoutOccludedSectorsIsFullyVisibleAndFullyOccludedMaskIsNotVisible) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.1) {
     const Slice s = slice_of(0.7, gamma);
     for (const float side : {-1.0f, 1.0f}) {

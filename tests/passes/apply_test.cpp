@@ -123,7 +123,7 @@ TEST_F(LightingPass, SurfacesReflectNoMoreLightThanTheyReceiveAndWhiteDielectric
   }
 }
 
-TEST_F(LightingPass, ReflectanceTableIsCreatedOnlyWithAnEnvironmentMap) {
+TEST_F(LightingPass, ReflectanceTableIsCreatedOnlyIfAnEnvironmentMapIsGiven) {
   const LitSurfaces inputs = random_surfaces();
   const auto transients = [&](bool map, const ApplySettings& settings) {
     Kept kept;

@@ -162,7 +162,7 @@ TEST_F(BadInput, InvalidProjectionMatrixIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(BadInput, ViewMatrixThatScalesIsReported) {
+TEST_F(BadInput, ViewMatrixThatScalesOrIsNotFiniteIsReported) {
   for (const float bad : {0.0f, 2.0f, kNaN, kInfinity}) {
     const std::string said =
         error_of([&](View& view, OcclusionSettings&) { view.view_from_world[5] = bad; });

@@ -177,7 +177,7 @@ TEST_F(CBadInput, SettingsOutOfRangeAreReportedByName) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, InvalidCameraIsReported) {
+TEST_F(CBadInput, InvalidCameraMatricesAreReported) {
   struct Case {
     const char* names;
     std::function<void(AlcoveView&)> spoil;
@@ -300,7 +300,7 @@ TEST_F(CBadInput, ImageOfWrongSizeFormatUsageOrLayoutIsReported) {
   expect_a_good_frame();
 }
 
-TEST_F(CBadInput, MissingImageOfBackFaceDepthIsReported) {
+TEST_F(CBadInput, MissingBackFaceDepthIsReportedIfTheSettingsNeedIt) {
   const std::string said = error_of([](Spoilt& s) {
     s.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
     s.views[0].back_depth = {};
@@ -309,7 +309,7 @@ TEST_F(CBadInput, MissingImageOfBackFaceDepthIsReported) {
   EXPECT_PRED1(is_a_sentence, said);
 }
 
-TEST_F(CBadInput, MissingImageOfTheSecondDepthLayerIsReported) {
+TEST_F(CBadInput, MissingSecondDepthLayerIsReportedIfTheSettingsNeedIt) {
   const std::string said = error_of([](Spoilt& s) {
     s.settings.depth_layers = 2;
     s.views[0].second_depth = {};

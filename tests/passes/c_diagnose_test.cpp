@@ -65,7 +65,7 @@ TEST(CDiagnose, FrameIndexThatNeverChangesIsReported) {
               HasSubstr("AlcoveFrame::index has been 7 in 20 frames in a row"));
 }
 
-TEST(CDiagnose, PreviousCameraEqualToThisCameraIsReported) {
+TEST(CDiagnose, PreviousCameraEqualToTheCurrentOneInEveryMovingFrameIsReported) {
   EXPECT_THAT(said_of([](AlcoveFrame&, AlcoveView& view) { view.previous_camera = view.camera; }),
               HasSubstr("View 3: previous_camera is this frame's camera"));
 }
@@ -77,7 +77,7 @@ TEST(CDiagnose, PreviousCameraThatNeverEqualsTheLastFramesCameraIsReported) {
               HasSubstr("View 3: previous_camera is never"));
 }
 
-TEST(CDiagnose, JitterInOnlyOneOfTheTwoCamerasIsReported) {
+TEST(CDiagnose, JitterInOnlyOneOfCurrentAndPreviousCameraIsReported) {
   EXPECT_THAT(
       said_of([](AlcoveFrame&, AlcoveView& view) { view.camera.clip_from_view[8] += 0.5f; }),
       HasSubstr("jitter included"));

@@ -141,7 +141,7 @@ TEST_F(CPlan, HistoryTakesMemoryOnlyForViewsInWhichHistoryIsOn) {
   }
 }
 
-TEST_F(CPlan, FailedFrameHasNoMemoryReportAndNoPlan) {
+TEST_F(CPlan, FrameThatFailedToRecordHasNoMemoryReportAndNoPlan) {
   const Context context = create_context();
   GivenView given = least();
   given.settings.visibility = true;

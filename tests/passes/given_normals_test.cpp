@@ -54,7 +54,7 @@ class GivenNormals : public PassTest {
   }
 };
 
-TEST_F(GivenNormals, UnoccludedPlaneWithNormalsThatFaceAwayStaysUnoccluded) {
+TEST_F(GivenNormals, UnoccludedPlaneStaysUnoccludedIfItsNormalsFaceAwayFromTheEye) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(60.0, 4.0)});
     for (const Quality quality : {Quality::medium, Quality::reference}) {

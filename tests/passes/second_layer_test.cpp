@@ -86,7 +86,7 @@ TEST_F(SecondDepthLayer, SecondLayerWithoutHiddenSurfacesDoesNotChangeVisibility
 }
 
 // A second layer adds occluded sectors and removes none.
-TEST_F(SecondDepthLayer, SecondLayerNeverRaisesVisibility) {
+TEST_F(SecondDepthLayer, SearchingASecondDepthLayerNeverRaisesVisibility) {
   Scene scene = tilted_and_box();
   scene.push_back(sphere({0.36, 0.1, -2.2}, 0.35));
   for (const TestView& view : test_views()) {
@@ -107,7 +107,7 @@ TEST_F(SecondDepthLayer, SecondLayerNeverRaisesVisibility) {
   }
 }
 
-TEST_F(SecondDepthLayer, EstimatorHorizonsIgnoresTheSecondLayer) {
+TEST_F(SecondDepthLayer, EstimatorHorizonsIgnoresTheSecondDepthLayer) {
   const Scene scene = tilted_and_box();
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, scene);

@@ -144,7 +144,7 @@ TEST(Settings, RangeTextsStateMinimumAndMaximumInWords) {
   EXPECT_EQ((SettingRange{.maximum = 16, .above_minimum = true}).text(), "above 0 and at most 16");
 }
 
-TEST(Settings, FalloffIsRefusedWithEstimatorsOfFiniteThickness) {
+TEST(Settings, FalloffIsRefusedWithEstimatorsOfFiniteOccluderThickness) {
   for (std::size_t i = 0; i < kNames<Estimator>.size(); ++i) {
     OcclusionSettings settings;
     settings.advanced.estimator = static_cast<Estimator>(i);

@@ -154,7 +154,7 @@ TEST_F(UnobservedDirectionsPass,
   }
 }
 
-TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondLayerShowsAreNotExcluded) {
+TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExcluded) {
   const TestView view = two_views()[1];
   Scene covered = trench();
   covered.push_back(plate(0.05));

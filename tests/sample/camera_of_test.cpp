@@ -67,7 +67,7 @@ TEST(CameraFromOptions, ViewWithGivenEyeOrTargetIsUprightWhateverTheSceneCamera)
   EXPECT_EQ(camera_of(view, scene)->up_ws, glm::vec3(0, 0, 1));
 }
 
-TEST(CameraFromOptions, EyeAtTheTargetIsRefused) {
+TEST(CameraFromOptions, CameraWhoseEyeIsAtItsTargetIsRefused) {
   ViewOptions view;
   view.eye = view.target = glm::dvec3(1.0);
   EXPECT_FALSE(camera_of(view, builtin_scene()));

@@ -132,7 +132,7 @@ std::vector<uint8_t> gradient(uint32_t width, uint32_t height, uint32_t componen
   return out;
 }
 
-TEST(DecodeImage, JpegOfEveryKindDecodesToItsPixels) {
+TEST(DecodeImage, GreyRgbAndCmykJpegsDecodeToTheirPixels) {
   const uint32_t width = 37, height = 21;
   for (const bool progressive : {false, true}) {
     for (const auto& [space, components] :

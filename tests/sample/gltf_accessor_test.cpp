@@ -8,7 +8,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(GltfAccessor, IndicesOfEveryUnsignedTypeGiveTheSameTriangles) {
+TEST(GltfAccessor, VertexIndicesOfEveryUnsignedIntegerTypeGiveTheSameTriangles) {
   for (const int type : {5121, 5123, 5125}) {
     GltfMaker maker = GltfMaker::triangle();
     const int view = type == 5121   ? maker.view<uint8_t>({0, 2, 1})

@@ -167,7 +167,7 @@ tl::expected<Scene, std::string> scene_with_data(const std::string& uri, size_t 
   return parse_gltf({reinterpret_cast<const uint8_t*>(text.data()), text.size()}, "a.gltf", "");
 }
 
-TEST(GltfFile, EmbeddedDataMayHaveAnyMediaTypeAndEncoding) {
+TEST(GltfFile, EmbeddedDataUriMayHaveAnyMediaTypeAndBase64OrPercentEncoding) {
   const GltfMaker maker = GltfMaker::triangle();
   const std::string base64 = GltfMaker::base64(maker.bytes);
   std::string percent, spaced = base64;

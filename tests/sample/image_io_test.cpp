@@ -15,7 +15,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(ImageIo, GreyExrIsReadBackExactly) {
+TEST(ImageIo, GreyExrImageIsReadBackExactly) {
   const TemporaryFolder folder;
   Image<float> image(7, 3);
   for (size_t i = 0; i < image.pixels.size(); ++i) {

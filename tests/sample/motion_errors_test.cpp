@@ -95,7 +95,7 @@ TEST(MotionErrors, AgeOfAPixelDistinguishesUncoveredSurfacesFromThoseEnteringThe
   EXPECT_EQ(ages.at(1, y).frames, 4u);
 }
 
-TEST(MotionErrors, MovingSurfaceIsReprojectedByItsPreviousPosition) {
+TEST(MotionErrors, MovingSurfaceIsReprojectedFromItsPreviousPosition) {
   const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
   RenderedFrame now = before;
   // The wall moved to the right by a unit, and its visibility with it.

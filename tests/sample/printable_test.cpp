@@ -8,7 +8,7 @@
 namespace alcove::sample {
 namespace {
 
-TEST(Printable, ValidTextIsUnchanged) {
+TEST(Printable, ValidUtf8TextIsUnchanged) {
   for (const std::string text :
        {"", "hall.glb", "caf\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xed\x9f\xbf"}) {
     EXPECT_EQ(printable(text), text);
