@@ -1,5 +1,6 @@
-# Fails where an archive defines or needs a global symbol of Vulkan's: the functions are the
-# caller's, and come through vkGetInstanceProcAddr. Run with -DNM=... -DARCHIVES=...
+# Fails if an archive defines or needs a global symbol of Vulkan. The libraries must get Vulkan's
+# functions from the caller through vkGetInstanceProcAddr.
+# Run with -DNM=... -DARCHIVES=...
 foreach(archive IN LISTS ARCHIVES)
   execute_process(COMMAND ${NM} --extern-only ${archive} OUTPUT_VARIABLE symbols
     COMMAND_ERROR_IS_FATAL ANY)

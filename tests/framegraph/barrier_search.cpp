@@ -12,8 +12,8 @@ namespace {
 
 using Changes = std::vector<std::vector<Transition>>;  // indexed by position
 
-// Returns the plan's layout changes. Each is moved to the last position in the mask that is not
-// after the pass that needs it.
+// Returns the plan's layout changes by position. Each change is moved to the last position whose
+// bit is set in `mask` and that is not after the pass that needs the change.
 Changes moved_changes(const Plan& plan, std::uint32_t mask) {
   Changes changes(plan.passes.size() + 1);
   const auto move = [&](std::uint32_t first, std::uint32_t count, std::size_t position) {

@@ -14,9 +14,9 @@
 namespace alcove::framegraph {
 namespace {
 
-// The graphs have no transient buffers. A transient buffer's dependency on the previous frame could
-// sometimes be met by a barrier of that frame, but the compiler always adds a barrier in the
-// current frame.
+// The graphs of this test have no transient buffers. A transient buffer's dependency on the
+// previous frame could sometimes be met by a barrier of that frame, but the compiler always adds a
+// barrier in the current frame.
 TEST(Barriers, CompiledPlanHasTheFewestBarrierCommandsOfAllValidPlans) {
   Graph graph;
   std::uint32_t tried = 0;

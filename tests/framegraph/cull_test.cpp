@@ -187,8 +187,8 @@ TEST_F(CullReadModifyWrite, PassIsCulledIfItsTextureIsOnlyWrittenAgainWithoutBei
 TEST_F(CullReadModifyWrite, VerifierRefusesAPlanThatLacksTheWriterOfAReadModifyWritesInput) {
   Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
                                access::storage_read_write_compute);
-  // This plan is that of the same frame with an update that does not read `acc`, so that the clear
-  // is culled.
+  // `wrong` is the plan of the same frame, except that its update does not read `acc`. The pass
+  // that clears `acc` is therefore culled in that plan.
   const GraphDescription& description = graph_.description();
   GraphDescription not_reading = description;
   not_reading.accesses[1].access = access::storage_write_compute.access;

@@ -44,7 +44,7 @@ void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
 }
 
 // Several graphs run in turn on one executor. If the cache has room for the plans of all of them,
-// each graph is compiled once.
+// each graph is compiled once; otherwise each is compiled every time.
 TEST_F(ExecutorTest, GraphsThatRunInTurnAreCompiledOnceIfThePlanCacheHasRoomForAllOfThem) {
   for (const std::uint32_t graphs : {60u, 3u}) {
     ExecutorOptions options;
@@ -276,8 +276,8 @@ TEST_F(ExecutorTest, ExecutorRunsOnAVulkan12DeviceWithTheSynchronization2Extensi
                                  "vkCmdBeginRendering"));
 }
 
-// Declares in turn a transient without a device address, a transient with an address in the same
-// heap, and a history.
+// The three frames declare, in this order, a transient buffer without a device address, a transient
+// buffer with an address in the same heap, and a history buffer with an address.
 TEST_F(ExecutorTest, BuffersUsedByDeviceAddressGetMemoryThatAllowsDeviceAddresses) {
   VkPhysicalDeviceVulkan12Features v12{};
   v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;

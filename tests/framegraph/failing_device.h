@@ -6,8 +6,8 @@
 
 namespace alcove::framegraph::failing {
 
-// Makes a call that creates an object fail with VK_ERROR_OUT_OF_DEVICE_MEMORY: the call with this
-// number, counted from 1 from now on. 0: none fails.
+// Makes one call that creates an object fail with VK_ERROR_OUT_OF_DEVICE_MEMORY: call number
+// `call`, where number 1 is the first such call from now on. With 0, no call fails.
 void fail_at(int call);
 // Returns the number of calls that create objects since fail_at().
 int calls();

@@ -68,8 +68,9 @@ Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const L
   return counts;
 }
 
-// Fails for accepted mutants of kinds that are not listed. Mutants of the listed kinds may be
-// accepted if something else in the plan meets the same dependency.
+// Fails the test if the verifier accepted a mutant of a kind that is not in `kinds`. Mutants of the
+// kinds in `kinds` may be accepted, because something else in the plan may meet the same
+// dependency.
 void expect_harmless_only(const Counts& counts, std::initializer_list<const char*> kinds) {
   for (const auto& [kind, count] : counts) {
     const bool may =
@@ -124,9 +125,12 @@ TEST(Mutation, VerifierRefusesHarmfulMutationsOfPlansOverQueuesOfOneFamily) {
   mutate_graphs_of_several_queues(limits);
 }
 
+// Each texture is made from those to the left of it. b and c are live at the same time, and so are
+// left and right:
+//
 //        +-> b -> left  --+
-//   a ---+                +--> end         b and c are live at the same time,
-//        +-> c -> right --+                and so are left and right.
+//   a ---+                +--> end
+//        +-> c -> right --+
 struct Diamond {
   Graph graph;
   Texture a, b, c, left, right, end;

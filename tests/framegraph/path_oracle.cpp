@@ -11,8 +11,8 @@ namespace {
 
 // The stages whose next commands an operation's effects have reached.
 struct Spread {
-  // For each queue: the stages whose next commands come after the operation, and the stages for
-  // which its writes are also available.
+  // For each queue: the stages whose later commands are ordered after the operation, and the stages
+  // for which the writes of the operation are also available.
   VkPipelineStageFlags2 after[kQueueClasses] = {};
   VkPipelineStageFlags2 available[kQueueClasses] = {};
 };

@@ -40,6 +40,9 @@ class Queues : public testing::Test {
   std::size_t imports_ = 0;
 };
 
+// Pass c waits for pass b, which waits for pass a. Pass c therefore needs no wait of its own for
+// pass a:
+//
 //   a (graphics) -- x --> b (compute) -- z --> c (transfer)
 //         +--------------- y -------------------^
 TEST_F(Queues, SemaphoreWaitsImpliedByOtherWaitsAreLeftOut) {
@@ -111,8 +114,8 @@ TEST_F(Queues, ComputeQueueReleasesItsHistoryToGraphicsInAFrameWithoutComputePas
       << "the release must be in a submission of the compute queue";
 }
 
-// A part of the history is not used by any pass of the frame. The queue that owns it releases it in
-// the submission with its other passes.
+// In the second frame a pass of the compute queue updates one of the history's two mips. No pass
+// uses the other mip, which the compute queue owns too. The verifier must accept the plan.
 TEST_F(Queues, UpdatingAPartOfAHistoryOnTheQueueThatOwnsItGivesAVerifiedPlan) {
   const auto declare = [&] {
     graph_.reset();
@@ -148,8 +151,8 @@ TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForEachOthersPreviousFrame) {
 }
 
 //   scene (graphics) --> blur (compute) --> effect outside the graph
-// The texture that graphics writes first has the memory that compute read last in the previous
-// frame.
+// The pass `blur` reads the texture that the graphics queue writes. In the next frame the graphics
+// queue writes to the same memory, so that it must wait for the previous frame's `blur`.
 TEST_F(Queues, GraphicsQueueWaitsBeforeReusingMemoryThatComputeReadInThePreviousFrame) {
   PassBuilder draw = graph_.add_pass("scene");
   const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);

@@ -23,8 +23,8 @@ constexpr Access kBufferWrites[] = {buffer_access::storage_write_compute,
                                     buffer_access::storage_read_write_compute,
                                     buffer_access::transfer_destination, buffer_access::fill};
 
-// Returns the index of a random table entry. Each queue class has its own list of entries that it
-// supports.
+// Returns an index into a table of accesses, chosen at random from the list of indices that the
+// class of the queue supports.
 std::uint32_t pick(Dice& dice, QueueClass queue, std::initializer_list<std::uint32_t> graphics,
                    std::initializer_list<std::uint32_t> compute,
                    std::initializer_list<std::uint32_t> transfer) {
@@ -194,8 +194,8 @@ class Declarer {
     Known& known = known_[chosen];
     if (known.last_pass == index) return;
     const bool old = known.old;
-    // A history without contents can only be read in frames that write it. Here the read must come
-    // after the write.
+    // A frame may read a history that has no contents yet only if it also writes the history. This
+    // read of the older slot must then come after the write.
     if (old && !known.written[0] && !known_[history_ - 1].written[0]) return;
     Range range;
     const bool all =

@@ -183,8 +183,11 @@ TEST_F(Scenario, TextureLeftByOneGraphInTheStateThatAnotherGraphNeedsGetsNoFurth
   EXPECT_EQ(plan().transitions.size(), 0u);
 }
 
-// clear -> sum -> accumulate -> sum (unread)
-//                     +------> picture -> output
+// The pass `accumulate` blends into `sum`, which nobody reads afterwards, and draws `picture`,
+// which is an output:
+//
+//   clear -> sum -> accumulate -> sum (unread)
+//                      +------> picture -> output
 TEST_F(Scenario, ClearOfABlendTargetIsNotCulledIfOnlyAnotherOutputOfTheBlendingPassIsRead) {
   Texture sum = graph_.create_texture("sum", kColor);
   Texture picture = graph_.create_texture("picture", kColor);

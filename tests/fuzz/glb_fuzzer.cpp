@@ -1,6 +1,6 @@
 // Fuzzes the reading of binary glTF files with libFuzzer. Most mutations change the JSON so that it
-// stays valid JSON, and keep the chunks where the header says. One mutation in eight changes
-// arbitrary bytes, so that headers are tested too.
+// stays valid JSON, or the binary data, and rewrite the header so that it matches the chunks. One
+// mutation in eight changes arbitrary bytes of the file, so that headers are tested too.
 #include <cstring>
 #include <random>
 #include <string>

@@ -47,9 +47,9 @@ struct PipelineDescription {
 
 class Base {
  public:
-  // Opens the first device with a graphics queue. With `async`, also a second queue: of another
-  // family without graphics if the device has one, else of the same family if that has two, else
-  // both queues are the same.
+  // Opens the first device that has a graphics queue. If `async` is true, also gets a second queue:
+  // one of another family without graphics if the device has such a family, or else another queue
+  // of the same family, or else the graphics queue itself.
   void open(const VkPhysicalDeviceFeatures2& features, bool async);
   void close();
 

@@ -1,6 +1,6 @@
-// The camera of the host program, as engines with GLM have it. Compiled with fused multiply-adds
-// and -ffast-math where the compiler has them, so that its matrices have the rounding errors of
-// such builds.
+// Computes the camera matrices of the host program with GLM, as engines do. The source is compiled
+// with fused multiply-adds and -ffast-math if the compiler supports them, so that the matrices have
+// the rounding errors of such builds.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -149,8 +149,8 @@ std::string name_of(const Shot& shot) {
 // Views of other sizes, among them odd ones, and from other sides.
 const Shot kOtherShots[] = {{{0.3f, 3.1f, 4.4f}, 160, 201}, {{4.1f, 0.8f, -1.2f}, 96, 64}};
 
-// Both programs then store normals in the same ten bits, or nearly: `alcove render` keeps the
-// rounded normals in 16-bit floats.
+// The glTF file has the normals of the host program, rounded to ten bits. `alcove render` stores
+// them in 16-bit floats, which changes them very little.
 TEST(HostProgram, HostProgramDrawsTheSameImageAsAlcoveRenderWithinOneStepOfEightBits) {
   const TemporaryFolder folder;
   const std::vector<int> found = draw_by_host(folder, {}, "");
@@ -159,8 +159,8 @@ TEST(HostProgram, HostProgramDrawsTheSameImageAsAlcoveRenderWithinOneStepOfEight
   EXPECT_LT(*std::ranges::min_element(found), 150);  // the picture has occlusion
 }
 
-// Both programs store normals in 16-bit floats. The cameras differ by rounding, which changed two
-// of 32,160 pixels by two steps.
+// Both programs store normals in 16-bit floats. Their cameras differ by rounding errors, which
+// changed two of 32,160 pixels by two steps of eight bits when this limit was set.
 TEST(HostProgram, HostProgramDrawsTheSameImageAsAlcoveRenderFromOtherCamerasWithFloatNormals) {
   const TemporaryFolder folder;
   for (const Shot& shot : kOtherShots) {

@@ -39,8 +39,9 @@ static AlcoveImage describe(const Image& of, VkExtent2D size, AlcoveState from, 
 }
 
 void Renderer::record_occlusion(VkCommandBuffer commands, const CameraMatrices& camera) const {
-  // With a semaphore on either side, the stage that waits and no access; else the destination of
-  // the render pass's dependency.
+  // If Alcove runs on the asynchronous queue, semaphores order it with the graphics queue, and the
+  // state only names the stage that waits for a semaphore. Otherwise the state is the destination
+  // of the subpass dependency at the end of the g-buffer's render pass.
   const bool async = options_.async;
   const AlcoveState read{
       async ? VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT : VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,

@@ -56,8 +56,8 @@ Renderer::~Renderer() {
   base_.close();
 }
 
-// Both passes change the layouts of their attachments at their ends, ordered by the dependency on
-// what comes after them.
+// Each render pass changes the layouts of its attachments when it ends. Its second subpass
+// dependency orders the change before the commands that use the attachments afterwards.
 void Renderer::create_render_passes() {
   const auto create = [&](std::span<const VkAttachmentDescription> attachments, bool has_depth,
                           std::span<const VkSubpassDependency> dependencies) {

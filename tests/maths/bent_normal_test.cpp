@@ -101,9 +101,10 @@ TEST(BentNormal, ExpectedResidualsOfAnUnoccludedSurfaceSumToZeroOverAllSlices) {
   }
 }
 
-// A wall in a random direction occludes up to most of one half-slice. Compares the bent normal of 3
-// random slices, which weight directions unevenly, with that of 256 slices. The error is the
-// root-mean-square angle over many walls, with and without the expected residual.
+// A wall in a random direction occludes a part of one half of each slice. Compares the bent normal
+// of 3 slices at random angles, which weight directions unevenly, with that of 256 evenly spaced
+// slices. Over 2,000 walls, the root-mean-square difference must be smaller if the expected
+// residual is subtracted.
 TEST(BentNormal, SubtractingTheExpectedResidualReducesTheBentNormalErrorOfThreeSlices) {
   RandomInput random;
   double raw = 0.0;

@@ -198,8 +198,8 @@ TEST(Gtao, SphereOnAPlaneOccludesEverythingBelowItsUpperSilhouette) {
       return 0.5 * std::sin(zenith) * std::sin(zenith);
     };
     const double expected = integrate(open_sector, 0.0, 2 * kPi, 4000) / kPi;
-    // The formula for a sphere with open space below it would give less occlusion: sin^2 of its
-    // half-angle times the cosine of its axis.
+    // A sphere with open space below it would occlude less: sin^2 of its half-angle times the
+    // cosine of the angle between its centre and the normal.
     EXPECT_LT(expected, 1.0 - 1.0 / std::pow(x * x + 1.0, 1.5));
     const float a = visibility_over_slices(up, up, 4096, 0.5, [x](vec3 direction) {
       const double elevation = sphere_elevation(x, {direction.x, direction.y});
@@ -215,8 +215,7 @@ TEST(Gtao, BottomOfAGrooveHasVisibilityOfTheSineOfItsHalfAngle) {
   const vec3 up(0, 0, 1);
   for (double half : {0.2, 0.5, 1.0, 1.4}) {
     const float a = visibility_over_slices(up, up, 2048, 0.5, [&](vec3 direction) {
-      // In a slice that is rotated from the cross direction of the groove, the wall rises less
-      // steeply.
+      // In a slice that is not perpendicular to the groove, the wall rises less steeply.
       const double slope = std::abs(double(direction.x)) / std::tan(half);
       return float(slope / std::hypot(1.0, slope));
     });

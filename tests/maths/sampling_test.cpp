@@ -202,12 +202,12 @@ TEST(HilbertNoise, NoiseEqualsTheR2SequenceInExtendedPrecision) {
 }
 
 TEST(HilbertNoise, NoiseIsEvenlyDistributedOverFourByFourPixelsAndOverFrames) {
-  std::vector<float> block, frames;
+  std::vector<float> pixels, frames;
   for (unsigned k = 0; k < 16; ++k)
-    block.push_back(maths::hilbert_pattern(uvec2(8 + (k & 3u), 12 + (k >> 2u)), 0).direction);
+    pixels.push_back(maths::hilbert_pattern(uvec2(8 + (k & 3u), 12 + (k >> 2u)), 0).direction);
   for (unsigned frame = 0; frame < 64; ++frame)
     frames.push_back(maths::hilbert_pattern(uvec2(3, 5), frame).direction);
-  EXPECT_LT(largest_gap(block), 4.0f / 16);
+  EXPECT_LT(largest_gap(pixels), 4.0f / 16);
   EXPECT_LT(largest_gap(frames), 4.0f / 64);
 }
 

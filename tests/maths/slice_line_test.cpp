@@ -210,8 +210,8 @@ TEST(SliceLine, RadiusInPixelsApproximatesTheSilhouetteOfASphereOfThatRadius) {
     const vec2 imaged = uv_of_position(s.projection, touch) * s.projection.size_px;
     const float expected = distance(imaged, s.pixel);
     const float spanned = maths::slice_radius_px(s.line, radius, s.depth, s.perspective());
-    // Away from the view axis, the formula is only exact to first order in the ratio of radius to
-    // distance.
+    // Away from the view axis, slice_radius_px() is exact only to first order in the ratio of
+    // radius to distance.
     EXPECT_NEAR(spanned / expected, 1.0f, 0.35f);
   }
 }

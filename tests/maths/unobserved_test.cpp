@@ -96,7 +96,8 @@ TEST(UnobservedDirections, ExcludedPartOfAHalfSliceEqualsQuadratureOfTheExcluded
   // Rounding a cosine near 1 changes its angle by up to 3.5e-4. The weight of a direction is at
   // most 0.5, so that the error of the integral is below 2e-4.
   EXPECT_LT(worst, 2e-4);
-  // Angles that small are rare, and otherwise the error is that of light_arc(), at most 2.4e-5.
+  // Such small angles are rare. At other angles the error is that of light_arc(), which is at most
+  // 2.4e-5.
   EXPECT_LT(sum / kCases, 3e-6);
   EXPECT_LT(sum_uniform / kCases, 2e-8);
 }

@@ -115,8 +115,8 @@ TEST_F(BackFaceDepth, SolidThickerThanTheRadiusOccludesAtMostLikeAnInfinitelyThi
           EXPECT_NEAR(image.texels[i], thick.texels[i], 1e-5);
           EXPECT_NEAR(image.texels[i], horizons.texels[i], 0.02);
         } else {
-          // With the thickness of the settings the occluder is thin at its leading edge and
-          // occludes less.
+          // If the thickness comes from the setting, the estimator `connected` assumes that the
+          // occluder is thin at its leading edge, so that it occludes less than with back faces.
           EXPECT_LT(image.texels[i], thick.texels[i] + 1e-5);
         }
       }

@@ -51,8 +51,8 @@ TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
   for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f}) {
     EXPECT_EQ(said_of([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
   }
-  // Correct as well: a reset of the history in every fifth frame, and pairs of frames with the same
-  // index, as for two eyes.
+  // The following calls are correct as well: a reset of the history in every fifth frame, and pairs
+  // of frames with the same index, as for the two eyes of a stereo view.
   EXPECT_EQ(said_of([](AlcoveFrame& frame, AlcoveView& view) {
               view.reset_history = frame.index % 5 == 0 ? VK_TRUE : VK_FALSE;
               frame.index /= 2;

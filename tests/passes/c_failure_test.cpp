@@ -122,8 +122,8 @@ TEST_F(CFailure, VulkanFeatureThatTheEngineDidNotEnableIsReported) {
               HasSubstr("shaderStorageImageWriteWithoutFormat"));
 }
 
-// The first failure while a context is created, a frame is prepared and two frames are recorded:
-// the result of the failing call and its message.
+// The result and the message of the first call that failed while a context was created, a frame
+// prepared and two frames recorded.
 struct Outcome {
   AlcoveResult result = ALCOVE_SUCCESS;
   std::string message;

@@ -65,8 +65,9 @@ struct HostMemory {
   }
 };
 
-// AlcoveMemoryFunctions that allocate a device memory object for each range and place the range
-// behind its beginning, so that a forgotten offset shows.
+// AlcoveMemoryFunctions that allocate a separate device memory object for each request and return a
+// range that does not start at its beginning. A library that ignores the offset of the range then
+// fails the test.
 struct DeviceMemory {
   const sample::VulkanDevice& device;
   int fails_at = 0;  // the allocation, counted from 1, that fails; 0: none

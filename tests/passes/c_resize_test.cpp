@@ -348,8 +348,8 @@ AlcoveMemory CResize::rest() {
   }
   resting_[0].is_shown = true;
   AlcoveMemory memory{};
-  // Both specular models are recorded, so that the tables of their shaders are loaded from the
-  // first call on.
+  // Frames with two specular models are recorded, so that the tables of their shaders are loaded
+  // from the first call of this function on.
   for (const Specular specular : {Specular::table, Specular::slices}) {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
     settings.specular = specular;

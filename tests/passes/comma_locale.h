@@ -9,8 +9,8 @@ namespace alcove::passes {
 
 // During the object's lifetime, the C++ locale writes a comma as the decimal separator and points
 // between groups of three digits. The C locale does so too if the system has such a locale. Many
-// containers have none, so that tests of numbers should also contain numbers of four or more
-// digits.
+// container images have none. Tests should therefore also print numbers of four or more digits,
+// because the C++ locale always separates their groups.
 class CommaLocale {
  public:
   CommaLocale() : c_before_(std::setlocale(LC_ALL, nullptr)) {

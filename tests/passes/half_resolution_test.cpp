@@ -59,8 +59,8 @@ TEST_F(HalfResolution, ConstantRawOcclusionGivesConstantVisibilityAtOddImageSize
     const Drawing drawing = draw(view, 33, 23, scene.scene);
     for (const std::uint32_t tile_size : {2u, 4u, 8u}) {
       for (const float visibility : {0.37f, 1.0f}) {
-        const HostImage raw_occlusion =
-            constant_raw_occlusion(blocks(33, tile_size), blocks(23, tile_size), visibility);
+        const HostImage raw_occlusion = constant_raw_occlusion(
+            tile_count(33, tile_size), tile_count(23, tile_size), visibility);
         for (const std::uint32_t history : {0u, 16u}) {
           SCOPED_TRACE(testing::Message()
                        << scene.name << ", tiles of " << tile_size << ", visibility " << visibility
@@ -86,8 +86,9 @@ TEST_F(HalfResolution, ConstantRawOcclusionGivesConstantVisibilityAtOddImageSize
   }
 }
 
-// A near wall covers the left half of a far wall; each has its own visibility. The edge lies in an
-// odd column, and so within texels of 2x2 pixels.
+// A near wall covers the left half of a far wall, and each wall has its own visibility. The edge
+// between them lies in an odd column, so that some texels of 2x2 pixels contain pixels of both
+// walls.
 TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
   const TestView view = test_views()[2];
   Surface near_wall = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});

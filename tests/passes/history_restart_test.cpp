@@ -11,7 +11,7 @@ class HistoryRestart : public PassTest {
  protected:
   // Renders four frames of a groove with `settings`, four frames of a ball on a floor with
   // `meanwhile`, and one more frame of the ball with `settings`. Returns the images of the last
-  // frame. If `forgets` is true, the history is reset before it.
+  // frame. If `forgets` is true, the history is reset before the last frame.
   OcclusionImages come_back(const OcclusionSettings& settings, const OcclusionSettings& meanwhile,
                             bool forgets) {
     const TestView view = test_views()[2];

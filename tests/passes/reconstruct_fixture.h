@@ -18,7 +18,7 @@ class Reconstruct : public PassTest {
   struct Input {
     View view;
     const Drawing& drawing;
-    const HostImage& raw_occlusion;  // two channels, one texel a block
+    const HostImage& raw_occlusion;  // two channels, one texel per tile
     std::uint32_t tile_size = 1;
     std::uint32_t slices = 1;
     const HostImage* motion = nullptr;
@@ -37,11 +37,11 @@ class Reconstruct : public PassTest {
 };
 
 // Returns the number of tiles of `tile_size` pixels that cover `pixels` pixels.
-[[nodiscard]] constexpr std::uint32_t blocks(std::uint32_t pixels, std::uint32_t tile_size) {
+[[nodiscard]] constexpr std::uint32_t tile_count(std::uint32_t pixels, std::uint32_t tile_size) {
   return (pixels + tile_size - 1) / tile_size;
 }
 
-[[nodiscard]] OcclusionSettings precise(std::uint32_t reach, std::uint32_t history_frames);
+[[nodiscard]] OcclusionSettings precise(std::uint32_t filter_radius, std::uint32_t history_frames);
 
 // Returns a raw occlusion whose unoccluded part varies around 0.9, with the given visibility.
 template <typename Visibility>

@@ -13,21 +13,23 @@
 namespace alcove::passes {
 namespace {
 
-// One coordinate of a traced pixel that a pixel's filter reads. `i` counts the 2 * `reach` traced
-// pixels around it, where `reach` is the filter radius in tiles.
-struct Searched {
-  std::uint32_t block;
+// One coordinate of a traced pixel: the index of its tile, and the coordinate of the pixel.
+struct TracedCoordinate {
+  std::uint32_t tile;
   std::uint32_t pixel;
 };
 
-Searched searched_around(std::uint32_t pixel, std::uint32_t size, std::uint32_t tile_size,
-                         std::uint32_t interleave_offset, int reach, int i) {
+// Returns the coordinate of traced pixel number `i`, 0 to 2 * `filter_radius` - 1, along one axis
+// of the window of a pixel's filter. `filter_radius` is in tiles.
+TracedCoordinate traced_around(std::uint32_t pixel, std::uint32_t size, std::uint32_t tile_size,
+                               std::uint32_t interleave_offset, int filter_radius, int i) {
   const int step = static_cast<int>(tile_size);
   const int before = static_cast<int>(pixel) - static_cast<int>(interleave_offset);
-  const int cell = before >= 0 ? before / step : -1;
-  const int last = static_cast<int>(blocks(size, tile_size)) - 1;
-  const auto block = static_cast<std::uint32_t>(std::clamp(cell - (reach - 1) + i, 0, last));
-  return {block, std::min(block * tile_size + interleave_offset, size - 1)};
+  const int tile_before = before >= 0 ? before / step : -1;
+  const int last = static_cast<int>(tile_count(size, tile_size)) - 1;
+  const auto tile =
+      static_cast<std::uint32_t>(std::clamp(tile_before - (filter_radius - 1) + i, 0, last));
+  return {tile, std::min(tile * tile_size + interleave_offset, size - 1)};
 }
 
 double squared_distance(std::uint32_t a, std::uint32_t b) {
@@ -40,21 +42,25 @@ double squared_distance(std::uint32_t a, std::uint32_t b) {
 // corners of the window are left out.
 double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_t y,
                    std::uint32_t width, std::uint32_t height, std::uint32_t tile_size,
-                   InterleaveOffset interleave_offset, int reach) {
+                   InterleaveOffset interleave_offset, int filter_radius) {
   const double window_px = 1.1 * tile_size;  // half-width of the window for one slice
   double visible = 0.0;
   double open = 0.0;
-  for (int j = 0; j < 2 * reach; ++j) {
-    const Searched row = searched_around(y, height, tile_size, interleave_offset.y, reach, j);
-    for (int i = 0; i < 2 * reach; ++i) {
-      const auto outermost = [&](int place) { return place == 0 || place == 2 * reach - 1; };
-      if (reach > 1 && outermost(i) && outermost(j)) {
+  for (int j = 0; j < 2 * filter_radius; ++j) {
+    const TracedCoordinate row =
+        traced_around(y, height, tile_size, interleave_offset.y, filter_radius, j);
+    for (int i = 0; i < 2 * filter_radius; ++i) {
+      const auto outermost = [&](int place) {
+        return place == 0 || place == 2 * filter_radius - 1;
+      };
+      if (filter_radius > 1 && outermost(i) && outermost(j)) {
         continue;
       }
-      const Searched column = searched_around(x, width, tile_size, interleave_offset.x, reach, i);
+      const TracedCoordinate column =
+          traced_around(x, width, tile_size, interleave_offset.x, filter_radius, i);
       const double squared = squared_distance(column.pixel, x) + squared_distance(row.pixel, y);
       const double weight = std::pow(1.0 + 0.125 * squared / (window_px * window_px), -4.0);
-      const std::size_t texel = (std::size_t{row.block} * raw_occlusion.width + column.block) * 2;
+      const std::size_t texel = (std::size_t{row.tile} * raw_occlusion.width + column.tile) * 2;
       visible += weight * raw_occlusion.texels[texel];
       open += weight * raw_occlusion.texels[texel + 1];
     }
@@ -75,26 +81,27 @@ TEST_F(Reconstruct, PixelWithoutHistoryIsTheWeightedMeanOfTheTracedPixelsAroundI
   std::uniform_real_distribution<float> noise(0.2f, 0.8f);
   for (const std::uint32_t tile_size : {2u, 4u}) {
     const HostImage raw_occlusion =
-        raw_occlusion_of(blocks(kOddWidth, tile_size), blocks(kOddHeight, tile_size),
+        raw_occlusion_of(tile_count(kOddWidth, tile_size), tile_count(kOddHeight, tile_size),
                          [&](std::uint32_t, std::uint32_t) { return noise(random); });
-    for (const std::uint32_t reach : {1u, 2u, 3u}) {
+    for (const std::uint32_t filter_radius : {1u, 2u, 3u}) {
       for (const std::uint32_t index : {0u, 1u, 2u, 7u}) {
         for (const std::uint32_t history : {0u, 16u}) {
-          SCOPED_TRACE(testing::Message() << "by " << tile_size << ", filter radius " << reach
-                                          << ", frame " << index << ", history " << history);
+          SCOPED_TRACE(testing::Message()
+                       << "by " << tile_size << ", filter radius " << filter_radius << ", frame "
+                       << index << ", history " << history);
           const HostImage found = reconstruct({.view = view.view,
                                                .drawing = drawing,
                                                .raw_occlusion = raw_occlusion,
                                                .tile_size = tile_size,
                                                .index = index,
                                                .reset = true},
-                                              precise(reach, history));
+                                              precise(filter_radius, history));
           const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
           for (std::uint32_t y = 0; y < kOddHeight; ++y) {
             for (std::uint32_t x = 0; x < kOddWidth; ++x) {
               ASSERT_NEAR(found.at(x, y),
                           mean_around(raw_occlusion, x, y, kOddWidth, kOddHeight, tile_size,
-                                      interleave_offset, static_cast<int>(reach)),
+                                      interleave_offset, static_cast<int>(filter_radius)),
                           6e-4)  // weights are unoccluded parts, stored with an error of 1/120
                   << "at " << x << ", " << y;
             }
@@ -116,11 +123,11 @@ TEST_F(Reconstruct, ConstantRawOcclusionGivesConstantVisibilityInAnySceneAtAnyTi
     const Drawing drawing = draw(view, 33, 23, scene.scene);
     for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
       const HostImage raw_occlusion =
-          constant_raw_occlusion(blocks(33, tile_size), blocks(23, tile_size), 0.37f);
-      for (const std::uint32_t reach : {0u, 1u, 2u, 3u}) {
+          constant_raw_occlusion(tile_count(33, tile_size), tile_count(23, tile_size), 0.37f);
+      for (const std::uint32_t filter_radius : {0u, 1u, 2u, 3u}) {
         for (const std::uint32_t history : {0u, 16u}) {
           SCOPED_TRACE(testing::Message() << scene.name << " by " << tile_size << ", filter radius "
-                                          << reach << ", history " << history);
+                                          << filter_radius << ", history " << history);
           for (std::uint32_t frame = 0; frame < (history == 0 ? 1u : 4u); ++frame) {
             const HostImage found = reconstruct({.view = view.view,
                                                  .drawing = drawing,
@@ -128,12 +135,12 @@ TEST_F(Reconstruct, ConstantRawOcclusionGivesConstantVisibilityInAnySceneAtAnyTi
                                                  .tile_size = tile_size,
                                                  .index = frame,
                                                  .reset = frame == 0},
-                                                precise(reach, history));
+                                                precise(filter_radius, history));
             for (std::uint32_t y = 0; y < 23; ++y) {
               for (std::uint32_t x = 0; x < 33; ++x) {
                 const float expected = drawing.is_sky(x, y) ? 1.0f : 0.37f;
-                // The tolerance is larger with a history, because it stores the sums in 16 bits,
-                // and they are small if no traced pixel is near.
+                // With a history the tolerance is larger, because the history stores its sums in 16
+                // bits, and these sums are small if no traced pixel is near.
                 ASSERT_NEAR(found.at(x, y), expected, history == 0 ? 1e-4 : 0.02)
                     << "at " << x << ", " << y;
               }

@@ -160,8 +160,9 @@ TEST(RigidTransform, ExactlyRigidMatricesAreNotChanged) {
 }
 
 TEST(TransposedProjection, OnlyRowMajorProjectionsAreDetectedAsTransposed) {
-  // If the near plane is at 1, the depth offset is -1, like the factor of w. The matrix must not be
-  // taken for a transposed one, even if rounding errors have changed the factor of w.
+  // If the near plane of a perspective projection is at distance 1, the offset of depth, m[14], is
+  // -1, like the factor from z to w, m[11]. The matrix must not be taken for a transposed one, even
+  // if rounding errors have changed m[11].
   for (const float w_from_z : {-1.0f, -0.9999999f, -1.0000002f}) {
     Matrix m{};
     m[0] = m[5] = 1.0f;

@@ -126,10 +126,10 @@ TEST_F(AblationTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesT
   }
 }
 
-// More steps and more slices may raise the error by kRise at most, against the least error of the
-// smaller numbers. Many steps find nearly all thin occluders, each with the assumed thickness, so
-// that the error does not fall with every step. `alcove bench --grid` prints the table for any
-// view; in larger images the error rises by 3 to 8 % up to 64 steps.
+// More steps or slices may raise the error by at most the factor kRise, relative to the smallest
+// error with fewer of them. Many steps find nearly all thin occluders, each with the assumed
+// thickness, so that the error does not fall with every step. `alcove bench --grid` prints the
+// table for any view; in larger images the error rises by 3 to 8 % up to 64 steps.
 TEST_F(AblationTest, MoreStepsAndSlicesDoNotRaiseTheErrorByMoreThanTwoPercent) {
   constexpr double kRise = 1.02;
   const auto gpu = open_validated();

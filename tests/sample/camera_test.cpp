@@ -98,8 +98,8 @@ TEST(Camera, CameraThatLooksAlongItsUpVectorStillHasAValidViewRotation) {
 }
 
 TEST(Camera, OrbitByZeroDegreesKeepsTheEyeExactly) {
-  // The target's coordinates are so large that the eye and the offset from the target cannot be
-  // computed from each other in floats.
+  // The target's coordinates are so much larger than those of the eye that the eye cannot be
+  // recomputed from the target and the offset in floats.
   Camera camera;
   camera.eye_ws = {1.1e-9f, 3e-9f, 6e-9f};
   camera.target_ws = {-0.5f, -0.4f, -0.8f};

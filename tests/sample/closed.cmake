@@ -1,6 +1,7 @@
-# Runs `alcove view` with closed standard output. It renders its frame and then fails with one sentence;
-# its output must not be sent to the connection with the display. ALCOVE: the program; FOLDER: the output
-# folder.
+# Runs `alcove view` with closed standard output. It must render its frame and then fail with one
+# sentence. Its output must not be sent to the display, whose connection may have taken the number of
+# the closed file descriptor.
+# ALCOVE: the program; FOLDER: the output folder.
 file(REMOVE_RECURSE ${FOLDER})
 execute_process(
   COMMAND sh -c "exec \"$@\" >&-" sh ${ALCOVE} view --frames 1 --size 320x180 --out ${FOLDER}

@@ -202,8 +202,8 @@ TEST(DepthInView, DepthRangeOfAMillionInstancesIsFoundWithoutSearchingAllTheirTr
   EXPECT_NEAR(range->farthest, 1001.4, 1e-3);
 }
 
-// The bounds of every instance are in view, but none of its triangles: each lies in two opposite
-// corners of the bounds.
+// The bounding box of every instance is in view, but none of its triangles: they lie in two
+// opposite corners of the box, outside the image.
 TEST(DepthInView, BeyondTheSearchLimitBoundingBoxesOfInstancesCountInsteadOfTriangles) {
   Mesh mesh;
   for (const float side : {-1.0f, 1.0f}) {

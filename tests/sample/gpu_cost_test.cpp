@@ -151,8 +151,9 @@ TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
 }
 
-// Rows of 8 texels of 4 or 8 bytes lie in one line each. A gather of adjacent texels reads 9 rows
-// of 9 texels, and one of every second texel 16 rows of 16.
+// A group of invocations covers 8x8 pixels. If each pixel loads its own texel of 4 or 8 bytes, each
+// row of 8 texels lies in one cache line. A gather of 2x2 texels reads 9 rows of 9 texels if pixels
+// are one texel apart, and 16 rows of 16 texels if they are two texels apart.
 TEST(GpuCost, NumberOfCacheLinesOfALoadFollowsFromItsAddressPattern) {
   using passes::cost::cache_lines;
   EXPECT_EQ(cache_lines({}), 8);
@@ -163,8 +164,8 @@ TEST(GpuCost, NumberOfCacheLinesOfALoadFollowsFromItsAddressPattern) {
   EXPECT_EQ(cache_lines({.pitch = 2, .footprint = 2, .first = -1}), 16 * 2);
 }
 
-// The limit of 12 holds for pixels that load 4 or 8 bytes each. Texels of 2x2 pixels read 16 rows
-// of depth with every gather.
+// The limit of 12 cache lines holds at full resolution, where a pixel loads 4 or 8 bytes at a time.
+// It does not hold at half resolution, where each gather reads 16 rows of the depth buffer.
 TEST(GpuCost, LoadsOfTheReconstructPassAtFullResolutionTouchAtMost12CacheLines) {
   for (const auto quality :
        {passes::Quality::low, passes::Quality::medium, passes::Quality::high}) {

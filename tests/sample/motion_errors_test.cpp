@@ -76,8 +76,8 @@ TEST(MotionErrors, AgeOfAPixelDistinguishesUncoveredSurfacesFromThoseEnteringThe
     ages = next_ages(now, reproject(now, before, unmoved), ages);
     before = std::move(now);
   }
-  // `unit` is the number of pixels per unit at depth 1; `each` is the relative step of the two
-  // walls.
+  // `unit` is the length in pixels of one unit of the scene at distance 1. `each` is the number of
+  // pixels by which the image of the near wall moves per frame relative to that of the far wall.
   const float unit = 0.5f * kHeight / std::tan(0.5f * before.camera.fov_y);
   const float near_edge = 0.5f * kWidth - 3.0f * step * unit / 4.0f;
   const float each = step * unit * (1.0f / 4.0f - 1.0f / 10.0f);
@@ -171,8 +171,9 @@ TEST(MotionErrors, NoiseOfRayTracedBentNormalsIsSubtractedFromTheBentNormalError
       << "a missing direction counts as 90 degrees";
 }
 
-// One truth is constant and the other changes by 0.03, with halves as noisy as that. The lower
-// bound of the change is about 0 for the first, and most of 0.03 but not more for the second.
+// Each truth is given by two halves with independent noise of about the size of the change. If the
+// truth is constant, the lower bound of the change must be about 0. If it changes by 0.03, the
+// lower bound must be most of 0.03, but not more.
 TEST(MotionErrors, NoiseOfTheRayTracedTruthIsNotCountedAsChangeOfVisibility) {
   const auto seed = static_cast<std::uint32_t>(std::random_device{}());
   SCOPED_TRACE(testing::Message() << "seed " << seed);
