@@ -293,7 +293,7 @@ TEST_F(Scenario, DepthAndStencilWithTheSameTransitionShareABarrier) {
 }
 
 // gbuffer -> albedo -> light (reads albedo at its own pixel, as an input attachment)
-TEST_F(Scenario, TextureReadAsInputAttachmentGetsTheVulkanUsageForIt) {
+TEST_F(Scenario, TextureReadAsAnInputAttachmentGetsTheInputAttachmentUsage) {
   Texture albedo = graph_.create_texture("albedo", kColor);
   Texture lit = graph_.create_texture("lit", kColor);
   PassBuilder gbuffer = graph_.add_pass("gbuffer");

@@ -82,7 +82,7 @@ TEST(BentNormal, BentNormalOfAnUnoccludedSurfaceIsItsNormalEvenFromASingleSlice)
   }
 }
 
-TEST(BentNormal, ExpectedResidualsOfAnUnoccludedSurfaceSumToZeroOverAllSlices) {
+TEST(BentNormal, BentNormalResidualsOfAnUnoccludedSurfaceSumToZeroOverAllSlices) {
   RandomInput random;
   for (int i = 0; i < 200; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);

@@ -132,8 +132,8 @@ TEST(Gtao, VisibilityOfAnUnoccludedSliceEqualsTheIntegralUpToTheTangentPlane) {
   }
 }
 
-// Returns the mean visibility over `slices` slices around `view`, computed as in the pass.
-// `horizon` returns the horizon in each direction.
+// Returns the mean visibility over `slices` slices around `view`, computed as in the pass `gtao`.
+// `horizon` returns the cosine of the horizon in each direction.
 template <typename Horizon>
 float visibility_over_slices(vec3 normal, vec3 view, int slices, double offset, Horizon horizon) {
   const maths::ViewBasis basis = maths::make_view_basis(view);
@@ -262,7 +262,7 @@ TEST(Gtao, WeightOfAnOccluderFallsFromOneAtTheFalloffStartToZeroAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(0.0f, 2.0f, 1.0f), 1.0f);
 }
 
-TEST(Gtao, HeuristicRaisesTheHorizonFullyToAHigherSampleAndLowersItByTheBlendFraction) {
+TEST(Gtao, ThicknessHeuristicRaisesTheHorizonToAHigherSampleAndLowersItByTheBlendFraction) {
   EXPECT_EQ(maths::raise_horizon(0.2f, 0.5f, 0.05f), 0.5f);
   EXPECT_FLOAT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.05f), 0.48f);
   EXPECT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.0f), 0.5f);

@@ -118,7 +118,7 @@ TEST(Gtso, SpecularVisibilityIncreasesWithVisibilityAndIsAtMostOne) {
   }
 }
 
-TEST(Gtso, VisibilityWithin127thOfOneIsRoundedToOneBeforeSpecularOcclusion) {
+TEST(Gtso, AlmostUnoccludedVisibilityIsRaisedToOneAndOtherValuesChangeByUnderOnePercent) {
   EXPECT_EQ(maths::converged_visibility(0.0f), 0.0f);
   EXPECT_EQ(maths::converged_visibility(127.5f / 128.0f), 1.0f);
   for (float v = 0.0f; v <= 1.0f; v += 0.01f) {

@@ -279,7 +279,7 @@ TEST(LobeSlice, SliceThroughViewAndNormalContainsTheMirrorDirection) {
   }
 }
 
-TEST(LobeSlice, SamplingSliceAnglesNearTheSpecularLobeWithWeightsDoesNotChangeMeansOverAngles) {
+TEST(LobeSlice, WeightedSliceAnglesConcentratedOnTheLobeGiveTheSameMeanAsUniformAngles) {
   for (const float roughness : kRoughnesses) {
     double plain = 0.0, turned = 0.0, weights = 0.0;
     const auto f = [](double phi) {

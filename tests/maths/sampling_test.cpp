@@ -117,7 +117,7 @@ TEST(GoldenPattern, PatternDoesNotRepeatOverTheImageWithAnySmallPeriod) {
 // lattice, each harmonic of this dependence would be visible as parallel stripes: its spectrum over
 // the image would have one peak of 1. After the eight traces that a pixel gets in 32 frames,
 // stripes of a visible width must be weak.
-TEST(GoldenPattern, MeanOfEightFramesOfAPatternOverTheImageHasNoWideStripes) {
+TEST(GoldenPattern, SliceDirectionsOfEightFramesFormNoWideStripesInTheImage) {
   constexpr unsigned kWindow = 32;
   const auto residual = [](unsigned harmonic, unsigned x, unsigned y) {
     std::complex<double> mean;

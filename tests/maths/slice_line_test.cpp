@@ -249,7 +249,8 @@ TEST(ConnectedSamples, BackOfAnOccluderMovesAwayFromTheViewDirectionAsItsThickne
   }
 }
 
-TEST(ConnectedSamples, OnlyPointsRaisedMoreThanAFifthOfTheirDistanceAreOccluders) {
+TEST(ConnectedSamples,
+     PointsAreOccludersOnlyIfTheyRiseMoreThanAFifthOfTheirDistanceAboveTheTangentPlane) {
   for (const double gamma : {-0.8, 0.0, 0.8}) {
     const vec2 gradient(std::sin(gamma), std::cos(gamma));
     for (const double length : {0.1, 10.0}) {

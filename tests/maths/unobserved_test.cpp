@@ -129,7 +129,7 @@ TEST(UnobservedDirections, NothingIsExcludedFromAHalfSliceWhoseDirectionsAreAllO
   }
 }
 
-TEST(UnobservedDirections, ManyNarrowGapsInASliceExcludeNoMoreDirectionsThanOneGap) {
+TEST(UnobservedDirections, ManyShortUnobservedIntervalsOfASliceExcludeNoMoreThanOneInterval) {
   Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
   row = maths::add_column(row, true, 6.0f, 3.0f);
   EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "adjacent columns are one row";
@@ -157,7 +157,7 @@ TEST(UnobservedDirections, GivenFractionOfTheDirectionsBeyondTheImageBorderIsExc
 }
 
 TEST(UnobservedDirections,
-     FractionExcludedAtTheBorderFallsNearTheEyeAndIfTheOtherHalfSliceIsAlsoOutside) {
+     FractionExcludedBeyondTheBorderFallsNearTheEyeAndIfBothHalfSlicesLeaveTheImage) {
   EXPECT_EQ(maths::border_share(0.0f, 0.0f), 0.5f);
   EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
   EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);

@@ -1,5 +1,5 @@
-// Invalid input of any kind gives an error value and a sentence. Nothing is recorded then, and the
-// next frame is the same as without the invalid call.
+// Tests that invalid input of any kind gives an error value and a message of one sentence, that
+// nothing is recorded then, and that the next frame is the same as without the invalid call.
 #include <gmock/gmock.h>
 
 #include <array>

@@ -1,5 +1,5 @@
-// Tests of alcoveConvertCamera, which converts the matrices of engines with other conventions, and
-// of alcoveMakePerspective, which makes a projection from plain numbers.
+// Tests alcoveConvertCamera, which converts the matrices of engines with other conventions, and
+// alcoveMakePerspective, which makes a projection from plain numbers.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Frames that are recorded into secondary command buffers, and frames for a queue family without
-// graphics.
+// Tests frames that are recorded into secondary command buffers, and frames for a queue family
+// without graphics.
 #include <gmock/gmock.h>
 
 #include "alcove/framegraph/verify.h"

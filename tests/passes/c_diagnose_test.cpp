@@ -1,5 +1,5 @@
-// Mistakes that alcoveDiagnose finds in the arguments of calls. Each is made on purpose and must be
-// reported; correct calls must not be.
+// Tests that alcoveDiagnose reports mistakes in the arguments of calls. Each mistake is made on
+// purpose and must be reported; correct calls must not be.
 #include <gmock/gmock.h>
 
 #include <functional>

@@ -1,5 +1,5 @@
-// If the device lacks a feature or a function, or if memory runs out at any allocation, the call
-// returns an error value and a sentence. Nothing is thrown and nothing is leaked.
+// Tests that a call returns an error value and a message of one sentence if the device lacks a
+// feature or a function, or if memory runs out at any allocation. Nothing may be thrown or leaked.
 #include <gmock/gmock.h>
 
 #include <array>

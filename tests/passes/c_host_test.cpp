@@ -1,6 +1,6 @@
-// The engine's own allocators and log callback. Everything that is allocated through an allocator
-// is freed, a refused allocation is an error with a sentence, and images do not depend on the
-// allocator.
+// Tests the engine's own allocators and log callback. Everything that is allocated through an
+// allocator must be freed, a refused allocation must be an error with a message, and images must
+// not depend on the allocator.
 #include <gmock/gmock.h>
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Images that the engine gives to the C interface: layers of an array, formats, layouts, one image
-// for several inputs, and images that the engine destroys.
+// Tests images that the engine gives to the C interface: layers of an array, formats, layouts, one
+// image for several inputs, and images that the engine destroys.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,5 +1,5 @@
-// Normals and motion vectors in the conventions of different engines, and the settings `power` and
-// `intensity` of the output.
+// Tests normals and motion vectors in the conventions of different engines, and the output settings
+// `power` and `intensity`.
 #include <gmock/gmock.h>
 
 #include <algorithm>

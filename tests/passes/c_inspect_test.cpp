@@ -1,6 +1,6 @@
-// Mistakes that alcoveDiagnose finds in the pixels of depth and normals. Each is made on purpose
-// and must be reported by its own sentence alone. Correct inputs of every kind of view must not be
-// reported.
+// Tests that alcoveDiagnose reports mistakes in the pixels of depth and normals. Each mistake is
+// made on purpose and must be reported by its own sentence alone. Correct inputs of every kind of
+// view must not be reported.
 #include <gmock/gmock.h>
 
 #include <algorithm>

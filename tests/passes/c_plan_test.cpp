@@ -1,5 +1,6 @@
-// The passes and the memory of frames by the C interface. Outputs that are not requested cost
-// nothing, a frame like the one before allocates nothing, and dropped views have no memory.
+// Tests the passes and the memory of frames by the C interface. Outputs that are not requested must
+// cost nothing, a frame like the one before must allocate nothing, and dropped views must have no
+// memory.
 #include <gmock/gmock.h>
 
 #include <algorithm>

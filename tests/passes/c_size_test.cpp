@@ -1,5 +1,5 @@
-// Dynamic resolution: only a part of each image is used, and the history continues while the size
-// of that part changes.
+// Tests dynamic resolution: only a part of each image is used, and the history continues while the
+// size of that part changes.
 #include <gmock/gmock.h>
 
 #include <array>

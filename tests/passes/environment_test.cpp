@@ -75,8 +75,8 @@ void over_sphere(const Function& f) {
   }
 }
 
-// Returns the environment's light through a GGX lobe whose view direction is its normal, by
-// quadrature over the sphere.
+// Returns the mean radiance of the environment `sky` over the GGX lobe around `normal`, seen along
+// the normal, by quadrature over the sphere.
 vec3 prefiltered(vec3 normal, float alpha) {
   glm::dvec3 sum(0);
   double weights = 0.0;

@@ -13,8 +13,8 @@
 namespace alcove::passes {
 namespace {
 
-// Returns settings for which any estimator gives infinitely thick occluders, so that its result can
-// be compared with horizons.
+// Returns settings with which any estimator assumes infinitely thick occluders, so that its result
+// can be compared with that of the estimator `horizons`.
 OcclusionSettings exact(Estimator estimator, float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
   settings.advanced.estimator = estimator;

@@ -72,9 +72,9 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
   EXPECT_GT(gone_on, 200);
 }
 
-// A dark and a bright wall meet, and the camera moves along slowly: neither wall may get the
-// history of the other. The view is narrow, because differences of depth between the walls then are
-// small.
+// A dark and a bright wall meet, and the camera moves slowly sideways. Neither wall may get the
+// history of the other. The view is narrow, because the differences of depth between the walls are
+// small then.
 TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
   TestView view = test_views()[2];
   const float zoom = 2.0f;
@@ -217,9 +217,9 @@ TEST_F(Reconstruct, MotionVectorsKeepThePatternOfAMovingPlaneSharp) {
   }
 }
 
-// A plane moves by one pixel per frame and comes nearer by a hundredth of its distance, which
-// motion vectors do not tell: it keeps its history. Then a static plane appears as far behind it as
-// an uncovered surface would: it starts a new history.
+// A plane moves by one pixel per frame and comes nearer by a hundredth of its distance. Motion
+// vectors do not contain the change of distance, but the plane must keep its history. Then a static
+// plane appears as far behind it as an uncovered surface would, and must start a new history.
 TEST_F(Reconstruct, ApproachingSurfaceKeepsItsHistory) {
   const TestView view = test_views()[2];
   const double nearer = 0.99;

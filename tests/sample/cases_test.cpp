@@ -1,5 +1,5 @@
-// Small files that an earlier version drew wrongly without a message. They are drawn as `alcove
-// render` draws them.
+// Tests small files that an earlier version drew wrongly without a message. They are drawn as
+// `alcove render` draws them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

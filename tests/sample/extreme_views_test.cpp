@@ -1,6 +1,6 @@
-// Randomly generated extreme views: eyes in walls and far away, the narrowest and widest angles,
-// near and far planes millions of units apart, tiny and huge radii. Every output must be finite and
-// in range.
+// Tests randomly generated extreme views: eyes in walls and far away, the narrowest and widest
+// angles, near and far planes millions of units apart, tiny and huge radii. Every output must be
+// finite and in range.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Files as public model sites export them, drawn without options. The first picture must show the
+// Tests files as public model sites export them, drawn without options. The image must show the
 // model with occlusion, whatever its unit, axes and surroundings are.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

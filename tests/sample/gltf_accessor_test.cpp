@@ -1,5 +1,5 @@
-// The values of glTF accessors in each form of storage: types of indices, normalised integers,
-// strides and sparse accessors.
+// Tests the values read from glTF accessors in each form of storage: types of indices, normalised
+// integers, strides and sparse accessors.
 #include <gtest/gtest.h>
 
 #include "gltf_maker.h"

@@ -1,5 +1,5 @@
-// Small files that name the same data many times. Memory and time stay within the limits, which
-// count data once for each use.
+// Tests small files that name the same data many times. Memory and time must stay within the
+// limits, which count data once for each use.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>

@@ -1,5 +1,5 @@
-// The placement of meshes by the nodes, skins and instances of a glTF file, and the parts of them
-// that its materials cut out.
+// Tests how nodes, skins and instances of a glTF file place meshes, and which parts of the meshes
+// its materials cut out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Every property that the loader reads, with values of the right and of the wrong kind. The rules
-// are those of glTF 2.0 section 5 and of the extensions' schemas.
+// Tests every property that the loader reads, with values of the right and of the wrong kind. The
+// rules are those of glTF 2.0 section 5 and of the extensions' schemas.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 // A test fixture that renders a quad which fills the picture, and reads images back.
 namespace alcove::sample {
 
-// Returns two halves with shared vertices that face +Z, with u to the right, v down, and one
-// material.
+// Returns a quad that faces +Z, with u to the right, v down and one material. It consists of a left
+// and a right half, which share vertices.
 inline Scene plain_quad() {
   Scene scene;
   scene.materials.emplace_back();
