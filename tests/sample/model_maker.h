@@ -47,8 +47,9 @@ struct Triangles {
     }
   }
 
-  // A closed surface around the axis from `bottom` to `top` along y, by its radius at each of
-  // `radii.size()` heights.
+  // Adds a surface of revolution about the vertical axis through `bottom`, from there up to the
+  // height `top`. `radii` has its radius at equally spaced heights; the surface is closed if the
+  // first and the last radius are 0. With `inward`, its faces point towards the axis.
   void add_lathe(glm::vec3 bottom, float top, const std::vector<float>& radii,
                  bool inward = false) {
     constexpr int kSides = 24;
