@@ -129,7 +129,8 @@ TEST(UnobservedDirections, NothingIsExcludedFromAHalfSliceWhoseDirectionsAreAllO
   }
 }
 
-TEST(UnobservedDirections, ManyShortUnobservedIntervalsOfASliceExcludeNoMoreThanOneInterval) {
+TEST(UnobservedDirections,
+     ManyShortUnobservedIntervalsExcludeNoMoreDirectionsOfASliceThanOneInterval) {
   Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
   row = maths::add_column(row, true, 6.0f, 3.0f);
   EXPECT_EQ(maths::mean_row(row).width_px, 4.0f) << "adjacent columns are one row";

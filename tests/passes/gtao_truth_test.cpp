@@ -261,7 +261,7 @@ TEST_F(GtaoTruth, EqualThicknessGivenInRadiiOrInDistancesGivesTheSameMeanVisibil
 }
 
 // A slat in front of a wall occludes little of the volume behind it, and a board occludes much.
-TEST_F(GtaoTruth, VolumeBehindAWideOccluderOccludesMoreThanBehindANarrowOne) {
+TEST_F(GtaoTruth, LargerFractionOfTheVolumeBehindAWideOccluderIsSolidThanBehindANarrowOne) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     // Returns the occlusion behind slats that begin at x = 0 and are `apart` from each other.
@@ -295,7 +295,7 @@ TEST_F(GtaoTruth, VolumeBehindAWideOccluderOccludesMoreThanBehindANarrowOne) {
 
 // A strip as wide as one sample is at most as thick as it is wide, whatever the setting. A board as
 // wide as many samples has the thickness of the setting.
-TEST_F(GtaoTruth, ThicknessSettingHardlyDarkensBesideAnOccluderAsNarrowAsOneSample) {
+TEST_F(GtaoTruth, LargerThicknessSettingHardlyDarkensSurfacesBesideAnOccluderOneSampleWide) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     const auto darkened_by_thickness = [&](double width) {

@@ -65,7 +65,7 @@ TEST_F(NormalMap, NormalScaleMultipliesOnlyXAndYOfTheMappedNormal) {
   }
 }
 
-TEST_F(NormalMap, TangentsGivenByTheMeshDetermineTheDirectionOfTheTilt) {
+TEST_F(NormalMap, TangentsGivenByTheMeshDetermineTheDirectionInWhichNormalsTilt) {
   Scene scene = quad();
   scene.meshes[0].tangents.assign(6, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
   expect_normal(draw(scene), kTilt);
