@@ -308,8 +308,8 @@ TEST_F(Scenario, TextureReadAsAnInputAttachmentGetsTheInputAttachmentUsage) {
   EXPECT_EQ(transitions_before(result, 1), 2u);
 }
 
-// 1,000 passes, each of which reads some of the most recent textures. A debug build verifies every
-// new plan; framegraph_benchmark prints how long this takes for a plan of this size.
+// The frame has 1,000 passes, each of which reads some of the most recent textures. A debug build
+// verifies every new plan; framegraph_benchmark prints how long this takes for a plan of this size.
 TEST_F(Scenario, VerifierAcceptsAPlanOfAThousandPassesAndRefusesItIfOnePassLacksItsBarriers) {
   std::vector<Texture> textures;
   for (std::uint32_t i = 0; i < 1000; ++i) {

@@ -149,8 +149,8 @@ std::string name_of(const Shot& shot) {
 // Views of other sizes, among them odd ones, and from other sides.
 const Shot kOtherShots[] = {{{0.3f, 3.1f, 4.4f}, 160, 201}, {{4.1f, 0.8f, -1.2f}, 96, 64}};
 
-// The glTF file has the normals of the host program, rounded to ten bits. `alcove render` stores
-// them in 16-bit floats, which changes them very little.
+// The host program stores normals in ten bits per channel. The glTF file has its normals rounded in
+// the same way, and `alcove render` stores them in 16-bit floats, which changes them very little.
 TEST(HostProgram, HostProgramDrawsTheSameImageAsAlcoveRenderWithinOneStepOfEightBits) {
   const TemporaryFolder folder;
   const std::vector<int> found = draw_by_host(folder, {}, "");
@@ -173,9 +173,9 @@ TEST(HostProgram, HostProgramDrawsTheSameImageAsAlcoveRenderFromOtherCamerasWith
   }
 }
 
-// Normals of ten bits a channel turn the tangent plane by up to 0.05 degrees against normals of
-// 16-bit floats, so that a few depth samples change sides. At most 27 of 32,160 pixels differed by
-// more than one step of eight bits when this limit was set.
+// Storing normals in ten bits per channel instead of 16-bit floats rotates the tangent plane by up
+// to 0.05 degrees, so that a few depth samples move from one side of the plane to the other. At
+// most 27 of 32,160 pixels differed by more than one step of eight bits when this limit was set.
 TEST(HostProgram, StoringNormalsInTenBitsChangesFewPixels) {
   const TemporaryFolder folder;
   for (const Shot& shot : kOtherShots) {

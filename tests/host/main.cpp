@@ -1,9 +1,10 @@
-// A host for Alcove, written like a public sample renderer: see renderer.h.
+// A program that uses Alcove and is written like a public sample renderer: see renderer.h.
 //
 //   alcove_host FILE.pgm [--async] [--float-normals] [--size WxH] [--eye X,Y,Z]
 //
-// It orbits the scene in a small image, resizes to the size of scene.h or the given one, draws the
-// still view and writes the visibility of the last frame.
+// The program orbits the scene in a small image, resizes the image to WxH or to the size in
+// scene.h, draws the view with a static camera and writes the visibility of the last frame to
+// FILE.pgm.
 #include <cstdio>
 #include <cstring>
 

@@ -88,8 +88,8 @@ class LobeTruth {
   double n_dot_v_, alpha_;
 };
 
-// A surface tilted against the view direction, with slices at evenly spaced angles around the view
-// direction, for which sums over slices are tested.
+// A surface tilted against the view direction. slice() returns its slice at an angle around the
+// view direction.
 struct Surface {
   vec3 view{0, 0, 1};
   vec3 normal;

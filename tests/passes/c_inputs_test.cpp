@@ -134,8 +134,9 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
       view.motion_offset[1] = y;
     });
   };
-  // The four conventions are: pixels; from this frame to the last instead of the reverse; without
-  // jitter; and normalised device coordinates with y up.
+  // The four conventions are: motion in pixels; motion from this frame to the last one instead of
+  // the reverse; motion without the jitter of the camera; and motion in normalised device
+  // coordinates with y up.
   for (const Results& found :
        {with(1.0f / kWidth, 1.0f / kHeight, 0.0f, 0.0f), with(-1.0f, -1.0f, 0.0f, 0.0f),
         with(1.0f, 1.0f, 0.004f, -0.006f), with(0.5f, -0.5f, 0.0f, 0.0f)}) {
