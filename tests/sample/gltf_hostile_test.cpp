@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <limits>
+#include <ostream>
 
 #include "damaged_jpeg.h"
 #include "gltf_maker.h"
@@ -15,13 +16,15 @@ namespace {
 using testing::HasSubstr;
 
 // A change to a valid file, and a part of the sentence that refuses the result.
-struct Hostile {
+struct Fault {
   const char* name;
   void (*spoil)(GltfMaker&);
   const char* word;
 };
+// GoogleTest prints the fault in the names that ctest lists.
+std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
 
-class MalformedGltf : public testing::TestWithParam<Hostile> {};
+class MalformedGltf : public testing::TestWithParam<Fault> {};
 
 TEST_P(MalformedGltf, FileWithOneFaultIsRefusedInOneSentence) {
   GltfMaker maker = GltfMaker::triangle();
@@ -30,15 +33,17 @@ TEST_P(MalformedGltf, FileWithOneFaultIsRefusedInOneSentence) {
   refusal(maker.glb());
 }
 
-const Hostile kHostile[] = {
-    {"HugeCount", [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4000000000u; },
-     "accessor 0"},
-    {"CountPastTheView", [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4; }, "past the end"},
-    {"OffsetPastTheView", [](GltfMaker& m) { m.json["accessors"][0]["byteOffset"] = 4294967000u; },
+const Fault kFaults[] = {
+    {"AccessorOfFourBillionElements",
+     [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4000000000u; }, "accessor 0"},
+    {"AccessorLongerThanItsBufferView", [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4; },
      "past the end"},
-    {"ViewPastTheBuffer", [](GltfMaker& m) { m.json["bufferViews"][0]["byteLength"] = 1000; },
-     "buffer view 0"},
-    {"NoSuchView", [](GltfMaker& m) { m.json["accessors"][0]["bufferView"] = 7; }, "buffer view"},
+    {"AccessorOffsetBeyondItsBufferView",
+     [](GltfMaker& m) { m.json["accessors"][0]["byteOffset"] = 4294967000u; }, "past the end"},
+    {"BufferViewLongerThanItsBuffer",
+     [](GltfMaker& m) { m.json["bufferViews"][0]["byteLength"] = 1000; }, "buffer view 0"},
+    {"NoSuchBufferView", [](GltfMaker& m) { m.json["accessors"][0]["bufferView"] = 7; },
+     "buffer view"},
     {"NoSuchBuffer", [](GltfMaker& m) { m.json["bufferViews"][0]["buffer"] = 9; }, "buffer"},
     {"NoSuchAccessor", [](GltfMaker& m) { m.primitive()["attributes"]["POSITION"] = 12; },
      "accessor 12"},
@@ -46,7 +51,7 @@ const Hostile kHostile[] = {
     {"NoSuchMaterial", [](GltfMaker& m) { m.primitive()["material"] = 2; }, "material 2"},
     {"NoSuchNode", [](GltfMaker& m) { m.json["scenes"][0]["nodes"] = {5}; }, "node 5"},
     {"NodeCycle", [](GltfMaker& m) { m.json["nodes"][0]["children"] = {0}; }, "twice"},
-    {"IndexPastTheVertices",
+    {"IndexBeyondTheLastVertex",
      [](GltfMaker& m) {
        const int view = m.view<uint16_t>({0, 1, 3});
        m.primitive()["indices"] = m.accessor(view, 5123, "SCALAR", 3);
@@ -58,7 +63,7 @@ const Hostile kHostile[] = {
        m.primitive()["indices"] = m.accessor(view, 5126, "SCALAR", 3);
      },
      "unsigned"},
-    {"NotANumberPosition",
+    {"PositionThatIsNaN",
      [](GltfMaker& m) {
        const float nan = std::numeric_limits<float>::quiet_NaN();
        std::memcpy(m.bytes.data(), &nan, sizeof(nan));
@@ -69,12 +74,12 @@ const Hostile kHostile[] = {
     {"UnknownRequiredExtension",
      [](GltfMaker& m) { m.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
      "KHR_draco_mesh_compression"},
-    {"NormalScalePastAFloat",
+    {"NormalScaleTooLargeForAFloat",
      [](GltfMaker& m) {
        m = textured({{"index", 0}}, {{"index", 0}, {"scale", 1e300}});
      },
      "material \"tiles\" has a normal map whose scale is not finite"},
-    {"TransformPastAFloat",
+    {"TextureTransformTooLargeForAFloat",
      [](GltfMaker& m) {
        m = textured(transformed({{"offset", {0, -1e39}}}), {{"index", 0}});
      },
@@ -84,7 +89,7 @@ const Hostile kHostile[] = {
        m = textured({{"index", 0}}, {{"index", 4}});
      },
      "material \"tiles\" has no texture 4"},
-    {"ShortTangents",
+    {"FewerTangentsThanVertices",
      [](GltfMaker& m) {
        const int normals = m.accessor(0, 5126, "VEC3", 3);
        const int tangents = m.accessor(m.view<float>({1, 0, 0, 1}), 5126, "VEC4", 1);
@@ -92,7 +97,7 @@ const Hostile kHostile[] = {
        m.primitive()["attributes"]["TANGENT"] = tangents;
      },
      "tangents for some"},
-    {"ShortSecondTextureCoordinates",
+    {"FewerSecondTextureCoordinatesThanVertices",
      [](GltfMaker& m) {
        m = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
        const int uvs = m.accessor(m.view<float>({0, 0}), 5126, "VEC2", 1);
@@ -113,20 +118,20 @@ const Hostile kHostile[] = {
            {{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"mesh", 0}, {"children", {1}}}};
      },
      "twice"},
-    {"NodeOfTwoParents",
+    {"NodeWithTwoParents",
      [](GltfMaker& m) {
        m.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}};
      },
      "node 2 is reached twice"},
     {"NoSuchChild", [](GltfMaker& m) { m.json["nodes"][0]["children"] = {7}; },
      "nodes[0].children names node 7"},
-    {"LaterVersionIsNeeded", [](GltfMaker& m) { m.json["asset"]["minVersion"] = "2.1"; },
+    {"NewerMinimumVersion", [](GltfMaker& m) { m.json["asset"]["minVersion"] = "2.1"; },
      "it is glTF 2.1 (asset.minVersion)"},
-    {"VersionThatIsNone", [](GltfMaker& m) { m.json["asset"]["version"] = "two"; },
+    {"VersionThatIsNotANumber", [](GltfMaker& m) { m.json["asset"]["version"] = "two"; },
      "asset.version is \"two\""},
     {"NoTriangles", [](GltfMaker& m) { m.primitive()["mode"] = 0; }, "no triangles"},
 };
-INSTANTIATE_TEST_SUITE_P(All, MalformedGltf, testing::ValuesIn(kHostile),
+INSTANTIATE_TEST_SUITE_P(All, MalformedGltf, testing::ValuesIn(kFaults),
                          [](const auto& param) { return std::string(param.param.name); });
 
 // A triangle with one image, given as an embedded PNG whatever the bytes are.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,10 @@ struct Property {
   const char* name;     // as the error sentence spells it
   Kind kind;
 };
+// GoogleTest prints the property in the names that ctest lists.
+std::ostream& operator<<(std::ostream& out, const Property& property) {
+  return out << property.pointer;
+}
 
 std::vector<json> wrong_values(Kind kind) {
   const json too_large = 4294967297u;

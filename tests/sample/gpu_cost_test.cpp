@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <ostream>
 #include <vector>
 
 #include "alcove/passes/setting_names.h"
@@ -246,6 +247,10 @@ struct Budgeted {
   const GpuPart* part;
   LabelledSettings settings;
 };
+// GoogleTest prints the GPU and the settings in the names that ctest lists.
+std::ostream& operator<<(std::ostream& out, const Budgeted& budgeted) {
+  return out << budgeted.part->family << ", " << budgeted.settings.label;
+}
 
 std::vector<Budgeted> all_budgeted() {
   std::vector<Budgeted> all;
