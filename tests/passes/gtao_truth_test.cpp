@@ -327,8 +327,8 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
     for (std::uint32_t x = 0; x < 64; ++x) {
       // `across` is the distance along the floor to the platform's edge, and `distance` the
       // distance in space, both to within half a pixel. The estimator `connected` joins the floor
-      // to the platform by a slope, whose foot lies up to one sample interval in front of the
-      // platform's wall; the factor 1.15 allows for that.
+      // to the platform by a slope, whose foot lies in front of the platform's wall; the factor
+      // 1.15 allows for that.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
       if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius) {
