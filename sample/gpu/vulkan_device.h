@@ -12,8 +12,8 @@ namespace alcove::sample {
 
 // Options for creating a device.
 struct DeviceOptions {
-  // Enables Khronos validation with synchronisation validation, also across queue submits. It fails
-  // if the layer is not installed.
+  // Whether Khronos validation with synchronisation validation is enabled, also across queue
+  // submits. Creating the device fails if the layer is not installed.
   bool validation = false;
   // Index of the physical device in the loader's order. -1 chooses the first discrete GPU, else the
   // first integrated GPU, else any device, such as lavapipe.

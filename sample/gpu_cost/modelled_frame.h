@@ -59,9 +59,9 @@ struct ModelledFrame {
   double milliseconds() const;
 };
 
-// Returns the modelled time of one frame of each state (first, moving, static and so on) on one
-// GPU. Errors: those of record_frames(), the driver's text cannot be parsed, or the iterations of a
-// loop are not declared.
+// Returns the modelled time of one frame of each FrameState on one GPU. Errors: those of
+// record_frames(), the driver's text cannot be parsed, or the iterations of a loop are not
+// declared.
 [[nodiscard]] tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(
     const GpuPart& part, const NullDevice& device, const CostInputs& inputs);
 

@@ -38,8 +38,8 @@ struct RecordedFrame {
   std::vector<RecordedPass> passes;
 };
 
-// Returns a recorded frame for each state, in the order of the states, with the outputs that
-// `settings` enable. Errors: the passes reject the settings, or the driver rejects a pipeline.
+// Returns a recorded frame for each FrameState, in their order, with the outputs that `settings`
+// enable. Errors: the passes reject the settings, or the driver rejects a pipeline.
 [[nodiscard]] tl::expected<std::vector<RecordedFrame>, std::string> record_frames(
     RecordingDevice& device, const CostInputs& inputs);
 

@@ -61,8 +61,8 @@ ALCOVE_INLINE float map_texel_angle(vec2 uv, float size) {
   return 4.0f / (size * size * squared * sqrt(squared));
 }
 
-// Convert between roughness and mips of a prefiltered map. The perceptual roughness grows in equal
-// steps from 0 in the first mip to 1 in the last.
+// Returns the mip of a prefiltered map for a perceptual roughness; roughness_of_level() is its
+// inverse. The roughness grows in equal steps from 0 in the first mip to 1 in the last.
 ALCOVE_INLINE float level_of_roughness(float roughness, uint levels) {
   return clamp(roughness, 0.0f, 1.0f) * float(levels - 1u);
 }

@@ -113,8 +113,8 @@ struct AlcoveAdvancedSettings;  // alcove_advanced.h
 // and its range.
 typedef struct AlcoveSettings {
   uint32_t struct_size;  // sizeof(AlcoveSettings)
-  // Occluders farther away than this do not count. Scene units, above 0. A twentieth to a fifth of
-  // a room's height is usual.
+  // The largest distance at which occluders count, in scene units, above 0. A twentieth to a fifth
+  // of a room's height is usual.
   float radius;
   // Width of a tile in pixels: 1, 2, 4 or 8. In each frame, one pixel of each tile is traced
   // (searched for occluders). Another pixel of the tile is traced in the next frame, so that each

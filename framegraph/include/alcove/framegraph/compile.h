@@ -85,8 +85,9 @@ struct Limits {
   FormatOracle formats;
   ImageOracle images;  // if it has no query, every texture within the fields above is allowed
   Ordering ordering = Ordering::lower_peak;
-  // Graphs with more live passes than this keep the order of declaration, because the search for
-  // another order takes time that grows faster than the graph.
+  // The largest number of live passes for which another order is searched. Graphs with more live
+  // passes keep the order of declaration, because the search takes time that grows faster than the
+  // graph.
   std::uint32_t reorder_passes = 48;
   // How long placement searches for a lower memory peak, in comparisons of two resources, at least
   // 0. The search runs only if the first placement exceeds the lower bound; 0 always keeps the

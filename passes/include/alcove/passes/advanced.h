@@ -64,8 +64,9 @@ struct AdvancedSettings {
   // How far a sample that lies below the horizon lowers the horizon, [0,1]: 0 does not lower it, 1
   // lowers it to the sample. Only the estimator `heuristic` reads it.
   float blend = 0.05f;
-  // Occluders fade out over this last fraction of the radius, [0,1]. 0 turns fading off. It must be
-  // 0 with the estimators `bitmask` and `connected`, whose sectors are either occluded or not.
+  // The outermost part of the radius, as a fraction of it, [0,1], over which occluders fade out. 0
+  // turns fading off. It must be 0 with the estimators `bitmask` and `connected`, whose sectors are
+  // either occluded or not.
   float falloff = 0.0f;
   Pattern pattern = Pattern::golden;
   // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
@@ -81,14 +82,14 @@ struct AdvancedSettings {
 
   // Parts of the search that can be switched off to measure what they do (`alcove ablate`).
 
-  // Moves each depth sample to the centre of its texel. If this is off, tilted planes occlude
+  // Whether each depth sample is moved to the centre of its texel. If not, tilted planes occlude
   // themselves.
   bool snap_to_texels = true;
-  // Extrapolates surfaces that leave the image beyond its border (`connected` only).
+  // Whether surfaces that leave the image are extrapolated beyond its border (`connected` only).
   bool extrapolation = true;
-  // Partly excludes directions that the depth buffer does not show (behind a foreground, or beyond
-  // the image's border) from the average; see shaders/maths/unobserved.h. If this is off, such
-  // directions count as unoccluded. Only the estimator `connected` reads it.
+  // Whether directions that the depth buffer does not show (behind a foreground, or beyond the
+  // image's border) are partly excluded from the average; see shaders/maths/unobserved.h. If not,
+  // such directions count as unoccluded. Only the estimator `connected` reads it.
   bool unobserved = true;
 
   friend bool operator==(const AdvancedSettings&, const AdvancedSettings&) = default;

@@ -36,8 +36,8 @@ enum class Specular : std::uint8_t {
 };
 
 struct OcclusionSettings {
-  // Occluders beyond this distance do not count. Scene units, above 0. A twentieth to a fifth of a
-  // room's height is usual.
+  // The largest distance at which occluders count, in scene units, above 0. A twentieth to a fifth
+  // of a room's height is usual.
   float radius = 0.5f;
   // Width of a tile in pixels: 1, 2, 4 or 8. One pixel per tile is traced in a frame; the
   // interleave offset selects another pixel of the tile in each frame. 1 traces every pixel.
