@@ -28,36 +28,39 @@ uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer
   float last_px = 0.0;
   uint k = 0u;
   do {
-    SliceSample here = fetch_sample(half_slice, layer, k);
+    SliceSample here = fetch_sample(half_slice, layer, sample_offset(half_slice, float(k)));
     float front = sector_position(per_diamond_angle, here.point.xy);
     bool known = kBackFaces && here.back.y < kNoBack;
-    vec2 back = known ? here.back : here.point.xy - vec2(0.0, settings_thickness(half_slice, here));
-    bool inside = within_radius(half_slice, here);
+    vec2 back = known ? here.back : here.point.xy - vec2(0.0, settings_thickness(here));
+    bool inside = within_radius(here);
     occluded |= inside ? sectors_between(front, sector_position(per_diamond_angle, back)) : 0u;
     bool hides = front < float(kSectorCount - 1u) && (inside || here.point.y > 0.0);
-    if (layer == 0u) runs = add_run_sample(runs, hides, here.offset_px - last_px, here.offset_px);
-    last_px = here.offset_px;
+    if (layer == 0u) runs = add_run_sample(runs, hides, here.point.x - last_px, here.point.x);
+    last_px = here.point.x;
     ++k;
   } while (k < kStepCount);
-  return half_slice.reach_px > 0.0 ? occluded : 0u;
+  return occluded;
 }
 
 // Adds the part of a half-slice that its occluded sectors leave visible.
-void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe) {
+void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   float per_diamond_angle = sectors_per_diamond_angle(slice, half_slice.side);
   RunSum runs = RunSum(0.0, 0.0, 0.0, false);
   uint occluded = occluded_by_layer(half_slice, per_diamond_angle, 0u, runs);
   if (kSecondLayer) occluded |= occluded_by_layer(half_slice, per_diamond_angle, 1u, runs);
-  float way_px = kNearestStep + half_slice.reach_px - runs.before_first_px;
+  float way = half_slice.nearest + half_slice.reach - runs.before_first_px;
   float hidden_occlusion = hidden_occlusion_behind(
-      runs.width_px / (max(runs.count, 1.0) * max(way_px, 1e-3)), parameters.hidden_exponent);
+      runs.width_px /
+          (max(runs.count, 1.0) * max(way, 1e-3 * half_slice.search_line.offset_per_px)),
+      parameters.hidden_exponent);
   VisiblePart part = visible_part(slice, half_slice.side, per_diamond_angle, occluded,
                                   hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
   sum.visible += part.arc;
   sum.bent += part.bent;
   if (kLobe) {
-    sum.lobe.visible +=
-        visible_lobe(lobe, half_slice.side, per_diamond_angle, occluded, hidden_occlusion);
+    HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.lobe_width);
+    sum.lobe.open += lobe.whole;
+    sum.lobe.visible += visible_lobe(lobe, per_diamond_angle, occluded, hidden_occlusion);
   }
 }
 

@@ -7,15 +7,16 @@
 #include "gtao_horizons.h"
 
 // Adds the visible part of a half-slice.
-void add_heuristic(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe) {
+void add_heuristic(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   float horizon = -1.0;
   uint k = 0u;
   do {
-    float cosine = sample_cosine(half_slice, fetch_sample(half_slice, 0u, k).point);
+    float cosine = sample_cosine(
+        half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k))).point);
     horizon = cosine == kNoHorizon ? horizon : raise_horizon(horizon, cosine, parameters.blend);
     ++k;
   } while (k < kStepCount);
-  add_up_to_horizon(sum, half_slice, slice, lobe, half_slice.reach_px > 0.0 ? horizon : -1.0);
+  add_up_to_horizon(sum, half_slice, slice, horizon);
 }
 
 #endif

@@ -10,35 +10,38 @@ const float kNoHorizon = -2.0;
 // of the tangent plane towards the radius. -1 beyond the radius.
 float sample_cosine(HalfSlice half_slice, vec3 point) {
   float squared = squared_length(point.xy);
-  float radius = half_slice.radius * point.z;
   float inverse = inversesqrt(max(squared, 1e-30));
   float cosine = point.y * inverse;
   if (kFalloff) {
     cosine = mix(half_slice.tangent_cosine, cosine,
-                 radius_weight(squared * inverse, radius, parameters.falloff));
+                 radius_weight(squared * inverse, point.z, parameters.falloff));
   }
-  return squared <= radius * radius ? cosine : kNoHorizon;
+  return squared <= point.z * point.z ? cosine : kNoHorizon;
 }
 
 // Adds the part of a half-slice between the view direction and a horizon, given by its cosine.
-void add_up_to_horizon(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe,
-                       float horizon) {
+void add_up_to_horizon(inout SliceSum sum, HalfSlice half_slice, Slice slice, float horizon) {
   vec2 light = horizon_light(slice, half_slice.side, horizon);
   sum.visible += part_arc(slice, half_slice.side, light, kUniformWeight);
   if (kBentNormal) sum.bent += bent_light_arc(slice, half_slice.side, light);
-  if (kLobe) sum.lobe.visible += lobe_light_arc(lobe, half_slice.side, light);
+  if (kLobe) {
+    HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.lobe_width);
+    sum.lobe.open += lobe.whole;
+    sum.lobe.visible += lobe_light_arc(lobe, light);
+  }
 }
 
 // Adds the visible part of a half-slice.
-void add_horizons(inout SliceSum sum, HalfSlice half_slice, Slice slice, LobeSlice lobe) {
+void add_horizons(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   float horizon = kNoHorizon;
   uint k = 0u;
   do {
-    float cosine = sample_cosine(half_slice, fetch_sample(half_slice, 0u, k).point);
+    float cosine = sample_cosine(
+        half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k))).point);
     horizon = max(horizon, cosine);
     ++k;
   } while (k < kStepCount);
-  add_up_to_horizon(sum, half_slice, slice, lobe, half_slice.reach_px > 0.0 ? horizon : kNoHorizon);
+  add_up_to_horizon(sum, half_slice, slice, horizon);
 }
 
 #endif

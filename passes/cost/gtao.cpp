@@ -76,8 +76,7 @@ std::optional<double> sampling_iterations(const PassWork& work, std::uint32_t in
 
 // Whether a loop over the ends of occluder runs exists.
 bool integrates_runs(const OcclusionSettings& settings) {
-  return settings.advanced.estimator == Estimator::bitmask || needs_back_depth(settings) ||
-         settings.specular == Specular::slices;
+  return settings.advanced.estimator == Estimator::bitmask || needs_back_depth(settings);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ bool of_distance(const OcclusionSettings& settings) {
          settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
-std::array<NamedConstant, 19> constants_of(const GtaoInputs& inputs,
+std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   const AdvancedSettings& advanced = settings.advanced;
@@ -86,7 +86,8 @@ std::array<NamedConstant, 19> constants_of(const GtaoInputs& inputs,
            {"kExtrapolation", flag(advanced.extrapolation)},
            {"kUnobserved", flag(advanced.unobserved)},
            {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
-           {"kReversed", flag(is_reversed(projection))}}};
+           {"kReversed", flag(is_reversed(projection))},
+           {"kInfiniteFar", flag(has_infinite_far(projection))}}};
 }
 
 void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, const Reads& reads,

@@ -82,6 +82,12 @@ namespace alcove::passes {
           static_cast<float>(perspective ? std::max(offset, 0.0) : offset)};
 }
 
+// Returns whether the far plane of a perspective projection is infinitely far away, so that its
+// inverse depth is 0.
+[[nodiscard]] inline bool has_infinite_far(const maths::Projection& projection) {
+  return is_perspective(projection) && inverse_depth_from_ndc(projection).y == 0.0f;
+}
+
 // Returns the resolution of a depth buffer of this format.
 [[nodiscard]] inline maths::DepthStep depth_step(const maths::Projection& projection,
                                                  VkFormat format) {

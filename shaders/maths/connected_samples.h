@@ -22,10 +22,8 @@ const float kNoBack = 1e30f;
 
 // A depth sample of a half-slice.
 struct SliceSample {
-  float offset_px;      // from the shaded pixel along the line, growing from sample to sample
   float inverse_depth;  // of the depth buffer; linear along the image of any plane
-  float off_plane;      // inverse depth minus that of the tangent plane at this place
-  vec3 point;           // (x w, y w, w) as slice_point() returns it, x outwards
+  vec3 point;           // (x w, y w, w) of the slice's plane (slice_line.h), x outwards
   vec2 back;            // x w and y w of the occluder's end, if a back face is known
 };
 

@@ -43,19 +43,14 @@ struct LobeDensity {
 };
 
 // The lobe in one half-slice.
-struct LobeSide {
-  float knee;   // integral of the density up to three quarters of the half-slice
-  float inner;  // shadowing and masking up to the knee
-  float outer;  // shadowing and masking beyond the knee
-  float whole;  // the lobe up to the tangent plane
-};
-
-struct LobeSlice {
+struct HalfLobe {
   LobeDensity density;
+  float side;     // of the half-slice, +1 or -1
   float at_view;  // antiderivative of the density at the view direction
-  LobeSide ahead;
-  LobeSide behind;
-  float open;  // the lobe without occluders
+  float knee;     // integral of the density up to three quarters of the half-slice
+  float inner;    // shadowing and masking up to the knee
+  float outer;    // shadowing and masking beyond the knee
+  float whole;    // the lobe up to the tangent plane
 };
 
 // `alpha` at least kSmallestLobe.
@@ -108,71 +103,55 @@ ALCOVE_INLINE vec2 halfway_to_view(vec2 light, float side) {
               sqrt(max(0.5f + 0.5f * light.y, 0.0f)));
 }
 
-ALCOVE_INLINE LobeSide make_lobe_side(Slice s, LobeDensity density, float at_view, float side,
-                                      float alpha) {
+// Returns the lobe in the half-slice `side`, +1 or -1. `alpha` is the GGX width, perceptual
+// roughness squared, in [0,1].
+ALCOVE_INLINE HalfLobe make_half_lobe(Slice s, float side, float alpha) {
+  float a = max(alpha, kSmallestLobe);
   vec2 tangent = horizon_light(s, side, -1.0f);
   tangent.x *= side;
   vec2 knee = normalize(halfway_to_view(tangent, side) + tangent);
-  float integral = abs(lobe_antiderivative(density, tangent) - at_view);
-  LobeSide result;
-  result.knee = min(abs(lobe_antiderivative(density, knee) - at_view), integral);
-  result.inner = lobe_shadowing(s, halfway_to_view(knee, side), alpha);
-  // Beyond the knee, shadowing falls ever faster, so its value a little past the middle is used.
-  result.outer = lobe_shadowing(s, knee * 0.375f + tangent * 0.625f, alpha);
-  result.whole = result.inner * result.knee + result.outer * (integral - result.knee);
-  return result;
-}
-
-// `alpha` is the GGX width, perceptual roughness squared, in [0,1].
-ALCOVE_INLINE LobeSlice make_lobe_slice(Slice s, float alpha) {
-  float a = max(alpha, kSmallestLobe);
-  LobeSlice lobe;
+  HalfLobe lobe;
   lobe.density = make_lobe_density(s, a);
+  lobe.side = side;
   lobe.at_view = lobe_antiderivative(lobe.density, vec2(0.0f, 1.0f));
-  lobe.ahead = make_lobe_side(s, lobe.density, lobe.at_view, 1.0f, a);
-  lobe.behind = make_lobe_side(s, lobe.density, lobe.at_view, -1.0f, a);
-  lobe.open = lobe.ahead.whole + lobe.behind.whole;
+  float integral = abs(lobe_antiderivative(lobe.density, tangent) - lobe.at_view);
+  lobe.knee = min(abs(lobe_antiderivative(lobe.density, knee) - lobe.at_view), integral);
+  lobe.inner = lobe_shadowing(s, halfway_to_view(knee, side), a);
+  // Beyond the knee, shadowing falls ever faster, so its value a little past the middle is used.
+  lobe.outer = lobe_shadowing(s, knee * 0.375f + tangent * 0.625f, a);
+  lobe.whole = lobe.inner * lobe.knee + lobe.outer * (integral - lobe.knee);
   return lobe;
 }
 
-// Returns the integral of the lobe in a half-slice between the view direction and a light above the
-// tangent plane. The result is between 0 and LobeSide::whole of the half-slice. `light` has the
-// sine (at least 0) and the cosine of the light's angle to the view direction.
-ALCOVE_INLINE float lobe_light_arc(LobeSlice lobe, float side, vec2 light) {
+// Returns the integral of the lobe between the view direction and a light above the tangent plane,
+// from 0 to HalfLobe::whole. `light` has the sine (at least 0) and the cosine of the light's angle
+// to the view direction.
+ALCOVE_INLINE float lobe_light_arc(HalfLobe lobe, vec2 light) {
   float integral =
-      abs(lobe_antiderivative(lobe.density, vec2(side * light.x, light.y)) - lobe.at_view);
-  float inner = side > 0.0f ? lobe.ahead.inner : lobe.behind.inner;
-  float outer = side > 0.0f ? lobe.ahead.outer : lobe.behind.outer;
-  float knee = side > 0.0f ? lobe.ahead.knee : lobe.behind.knee;
-  float whole = side > 0.0f ? lobe.ahead.whole : lobe.behind.whole;
-  return min(inner * min(integral, knee) + outer * max(integral - knee, 0.0f), whole);
+      abs(lobe_antiderivative(lobe.density, vec2(lobe.side * light.x, light.y)) - lobe.at_view);
+  return min(lobe.inner * min(integral, lobe.knee) + lobe.outer * max(integral - lobe.knee, 0.0f),
+             lobe.whole);
 }
 
 // Returns lobe_light_arc() up to a horizon, which is given by its cosine as in horizon_light().
-ALCOVE_INLINE float lobe_arc(Slice s, LobeSlice lobe, float side, float horizon) {
-  return lobe_light_arc(lobe, side, horizon_light(s, side, horizon));
-}
-
-// Returns the integral of the lobe between the two horizons, in [0, lobe.open].
-ALCOVE_INLINE float horizon_lobe(Slice s, LobeSlice lobe, float ahead, float behind) {
-  return lobe_arc(s, lobe, 1.0f, ahead) + lobe_arc(s, lobe, -1.0f, behind);
+ALCOVE_INLINE float lobe_arc(Slice s, HalfLobe lobe, float horizon) {
+  return lobe_light_arc(lobe, horizon_light(s, lobe.side, horizon));
 }
 
 // Returns the integral of the lobe over the visible directions of a half-slice: over the sectors
 // whose bit in `occluded` is not set. Visible sectors behind the first occluder count by the factor
 // 1 - `hidden_occlusion`. visible_part() in visibility_bitmask.h does the same with the cosine as
 // the weight.
-ALCOVE_INLINE float visible_lobe(LobeSlice lobe, float side, float per_diamond_angle, uint occluded,
+ALCOVE_INLINE float visible_lobe(HalfLobe lobe, float per_diamond_angle, uint occluded,
                                  float hidden_occlusion) {
   float keep = 1.0f - hidden_occlusion;
-  float whole = side > 0.0f ? lobe.ahead.whole : lobe.behind.whole;
-  float sum = whole * (occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep));
+  float sum = lobe.whole * (occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep));
   uint ends = occluded ^ (occluded << 1u);
   float weight = 1.0f;
   if (ends != 0u) {
     do {
       vec2 light = diamond_angle_light(float(findLSB(ends)) / per_diamond_angle);
-      sum += weight * lobe_light_arc(lobe, side, light);
+      sum += weight * lobe_light_arc(lobe, light);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;
     } while (ends != 0u);

@@ -163,22 +163,24 @@ ALCOVE_INLINE float unresolved_occlusion(float step_length, float radius) {
   return saturate((step_length / radius - 0.25f) * (4.0f / 3.0f));
 }
 
-// Whether a sample is treated as lying on the tangent plane. `off_plane` is its inverse depth less
-// that of the plane, and `offset_px` its distance from the shaded pixel. The tolerance grows with
-// the distance: a slope of 1 / (60 (n.v)^2) relative to the plane, where n.v is the cosine between
-// the normal and the view direction.
-ALCOVE_INLINE bool lies_on_tangent_plane(TangentPlane t, float off_plane, float offset_px) {
-  return t.fading * abs(off_plane) < offset_px;
+// Whether a sample is treated as lying on the tangent plane. `off_plane` is its distance from the
+// plane and `offset` its distance from the shaded pixel. `fading` is TangentPlane::fading if these
+// are an inverse depth and pixels. The tolerance grows with the distance: a slope of 1 / (60
+// (n.v)^2) relative to the plane, where n.v is the cosine between the normal and the view
+// direction.
+ALCOVE_INLINE bool lies_on_tangent_plane(float fading, float off_plane, float offset) {
+  return fading * abs(off_plane) < offset;
 }
 
-// Returns how many pixels along the line, on one side, the sphere with this radius (scene units)
-// around the shaded point covers. In perspective its part nearer to the eye covers more than a disc
-// of the radius would. If the eye lies within the sphere the result is very large, at most 1e30.
-ALCOVE_INLINE float slice_radius_px(SliceLine slice_line, float radius, float centre_depth,
-                                    bool perspective) {
-  float across = radius / max((perspective ? centre_depth : 1.0f) * slice_line.x_per_step, 1e-30f);
-  float nearness = perspective ? radius / max(centre_depth * slice_line.y_per_depth, 1e-30f) : 0.0f;
-  return min(across * inversesqrt(max(1.0f - nearness * nearness, 1e-6f)), 1e30f);
+// Returns x w, in units of the radius, of the farthest point along the line, on one side, that the
+// sphere with this radius (scene units) around the shaded point covers. `inverse_depth` is that of
+// the shaded point. In perspective the part of the sphere that is nearer to the eye covers more
+// than a disc of the radius would. If the eye lies within the sphere, the result is 1000 times that
+// of a disc.
+ALCOVE_INLINE float sphere_reach(SliceLine slice_line, float radius, float inverse_depth,
+                                 bool perspective) {
+  float nearness = perspective ? radius * inverse_depth / slice_line.y_per_depth : 0.0f;
+  return (perspective ? inverse_depth : 1.0f) * inversesqrt(max(1.0f - nearness * nearness, 1e-6f));
 }
 
 ALCOVE_MATHS_END

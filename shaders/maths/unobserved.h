@@ -29,31 +29,32 @@
 
 ALCOVE_MATHS_BEGIN
 
-// The offset, in pixels, that means that there is no unobserved column.
-const float kNowherePx = 1e9f;
+// The offset that means that there is no unobserved column. It is larger than any other offset.
+const float kNowhere = 1e9f;
 
-// The unobserved columns of a half-slice. Columns are added from the shaded pixel outwards.
+// The unobserved columns of a half-slice. Columns are added from the shaded pixel outwards. Lengths
+// along the line are in any unit, but all in the same.
 struct Unobserved {
-  float first_px;  // distance of the nearest unobserved column from the shaded pixel
-  float width_px;  // sum of the widths of the unobserved columns
-  float rows;      // number of runs of adjacent unobserved columns
-  bool last;       // whether the column that was added last is unobserved
+  float first;  // distance of the nearest unobserved column from the shaded pixel
+  float width;  // sum of the widths of the unobserved columns
+  float rows;   // number of runs of adjacent unobserved columns
+  bool last;    // whether the column that was added last is unobserved
 };
 
 ALCOVE_INLINE Unobserved nothing_unobserved() {
   Unobserved none;
-  none.first_px = kNowherePx;
-  none.width_px = 0.0f;
+  none.first = kNowhere;
+  none.width = 0.0f;
   none.rows = 0.0f;
   none.last = false;
   return none;
 }
 
-// Adds the next column outwards. It is `offset_px` away from the shaded pixel and `width_px` wide,
+// Adds the next column outwards. It is `offset` away from the shaded pixel and `width` wide,
 // and `hides` says whether it is unobserved.
-ALCOVE_INLINE Unobserved add_column(Unobserved sum, bool hides, float offset_px, float width_px) {
-  sum.first_px = min(sum.first_px, hides ? offset_px : kNowherePx);
-  sum.width_px += hides ? width_px : 0.0f;
+ALCOVE_INLINE Unobserved add_column(Unobserved sum, bool hides, float offset, float width) {
+  sum.first = min(sum.first, hides ? offset : kNowhere);
+  sum.width += hides ? width : 0.0f;
   sum.rows += hides && !sum.last ? 1.0f : 0.0f;
   sum.last = hides;
   return sum;
@@ -63,7 +64,7 @@ ALCOVE_INLINE Unobserved add_column(Unobserved sum, bool hides, float offset_px,
 // narrow row is mostly seen in the columns beside it, so many narrow rows, such as leaves, are
 // taken to hide no more than one of them does.
 ALCOVE_INLINE Unobserved mean_row(Unobserved sum) {
-  sum.width_px = sum.width_px / max(sum.rows, 1.0f);
+  sum.width = sum.width / max(sum.rows, 1.0f);
   return sum;
 }
 
@@ -78,14 +79,14 @@ ALCOVE_INLINE float border_share(float other_outside, float nearness) {
   return 0.5f * (1.0f - other_outside) * saturate(1.0f - squared * squared);
 }
 
-// Adds the part of the radius beyond the border of the image, `beyond_px` pixels, as a column. The
-// last sample before the border is `offset_px` away from the shaded pixel; kNowherePx means that
+// Adds the part of the radius beyond the border of the image, `beyond`, as a column. The
+// last sample before the border is `offset` away from the shaded pixel; kNowhere means that
 // nothing is added. The column's width is scaled so that `share` of the directions is excluded if
 // the column is as wide as the whole radius.
-ALCOVE_INLINE Unobserved add_beyond_border(Unobserved sum, float offset_px, float beyond_px,
+ALCOVE_INLINE Unobserved add_beyond_border(Unobserved sum, float offset, float beyond,
                                            float share) {
-  bool hides = beyond_px > 0.0f && offset_px < kNowherePx;
-  return add_column(sum, hides, offset_px, share * share * beyond_px);
+  bool hides = beyond > 0.0f && offset < kNowhere;
+  return add_column(sum, hides, offset, share * share * beyond);
 }
 
 // The directions between `from` and `to`, of which a share is excluded.
@@ -101,17 +102,16 @@ const float kMostUnobserved = 0.98f;
 // Returns the arc of unobserved directions. It begins at the direction that leaves the sphere of
 // the radius exactly in the nearest unobserved column, and ends at `first`, the sine and cosine of
 // the angle between the view direction and the first occluder, or the tangent plane if nothing is
-// occluded. `radius_px` is slice_radius_px(). The share is the square root of the width of the row
+// occluded. `radius` is slice_radius(). The share is the square root of the width of the row
 // relative to the radius. In the development views the square root had a smaller error than the
 // relative width itself, and than excluding the whole arc.
-ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserved,
-                                                float radius_px) {
+ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserved, float radius) {
   UnobservedArc arc;
-  float x = min(unobserved.first_px / radius_px, 1.0f);
+  float x = min(unobserved.first / radius, 1.0f);
   arc.from = vec2(x, sqrt(1.0f - x * x));
   arc.to = first;
-  float share = min(sqrt(unobserved.width_px / radius_px), kMostUnobserved);
-  arc.share = unobserved.width_px > 0.0f && arc.to.y < arc.from.y ? share : 0.0f;
+  float share = min(sqrt(unobserved.width / radius), kMostUnobserved);
+  arc.share = unobserved.width > 0.0f && arc.to.y < arc.from.y ? share : 0.0f;
   return arc;
 }
 
@@ -121,9 +121,10 @@ ALCOVE_INLINE float unobserved_part(UnobservedArc arc, Slice s, float side, bool
          (part_arc(s, side, arc.to, uniform_weight) - part_arc(s, side, arc.from, uniform_weight));
 }
 
-// Returns the excluded part of the GGX lobe in a half-slice.
-ALCOVE_INLINE float unobserved_lobe(UnobservedArc arc, LobeSlice lobe, float side) {
-  return arc.share * (lobe_light_arc(lobe, side, arc.to) - lobe_light_arc(lobe, side, arc.from));
+// Returns the excluded part of the GGX lobe in a half-slice. `lobe_to` is lobe_light_arc() of the
+// direction at which the arc ends.
+ALCOVE_INLINE float unobserved_lobe(UnobservedArc arc, HalfLobe lobe, float lobe_to) {
+  return arc.share * (lobe_to - lobe_light_arc(lobe, arc.from));
 }
 
 ALCOVE_MATHS_END

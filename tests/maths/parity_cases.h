@@ -205,18 +205,18 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
     }
     case 21u: {
       Slice s = parity_slice(a);
-      LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
+      HalfLobe front = make_half_lobe(s, 1.0f, 0.05f + 0.95f * b.x);
+      HalfLobe rear = make_half_lobe(s, -1.0f, 0.05f + 0.95f * b.x);
       float ahead = b.y * 2.0f - 1.0f;
       float behind = b.z * 2.0f - 1.0f;
       return vec4(
-          lobe.open, horizon_lobe(s, lobe, ahead, behind),
-          visible_lobe(lobe, 1.0f, sectors_per_diamond_angle(s, 1.0f), parity_word(pixel.x), 0.4f),
-          visible_lobe(lobe, -1.0f, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.y),
-                       0.0f));
+          front.whole + rear.whole, lobe_arc(s, front, ahead) + lobe_arc(s, rear, behind),
+          visible_lobe(front, sectors_per_diamond_angle(s, 1.0f), parity_word(pixel.x), 0.4f),
+          visible_lobe(rear, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.y), 0.0f));
     }
     case 24u: {
       Slice s = parity_slice(a);
-      LobeSlice lobe = make_lobe_slice(s, 0.05f + 0.95f * b.x);
+      HalfLobe lobe = make_half_lobe(s, 1.0f, 0.05f + 0.95f * b.x);
       Unobserved unobserved =
           add_beyond_border(mean_row(add_column(nothing_unobserved(), true, b.y, b.z)), b.w, b.z,
                             border_share(b.x, b.y));
@@ -224,7 +224,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       // by a whole sector.
       UnobservedArc arc = make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
       return vec4(unobserved_part(arc, s, 1.0f, false), unobserved_part(arc, s, 1.0f, true),
-                  unobserved_lobe(arc, lobe, 1.0f), arc.share);
+                  unobserved_lobe(arc, lobe, lobe_light_arc(lobe, arc.to)), arc.share);
     }
   }
   return vec4(0.0f);

@@ -134,7 +134,7 @@ TEST(SliceLine, SampleOfATiltedPlaneSnappedToATexelCentreStillLiesOnThatPlane) {
     const float inverse_depth = tangent.inverse_depth + dot(snapped, tangent.gradient);
     const float on_plane = dot(snapped, tangent.gradient);
     const float off_plane = inverse_depth - tangent.inverse_depth - on_plane;
-    EXPECT_TRUE(maths::lies_on_tangent_plane(tangent, off_plane, length(exact)));
+    EXPECT_TRUE(maths::lies_on_tangent_plane(tangent.fading, off_plane, length(exact)));
     const float moved = inverse_depth + dot(exact - snapped, tangent.gradient);
     const float depth = s.perspective() ? 1.0f / moved : moved;
     // Skip points of the plane that are behind the eye or too far away.
@@ -173,9 +173,9 @@ TEST(SliceLine, SampleCountsAsLyingOnTheTangentPlaneOnlyIfItsDepthIsCloseToThePl
         maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
     const float offset_px = random.uniform(1.3f, 60.0f);
     const float limit = offset_px / tangent.fading;
-    EXPECT_FALSE(maths::lies_on_tangent_plane(tangent, 1.01f * limit, offset_px));
-    EXPECT_FALSE(maths::lies_on_tangent_plane(tangent, -1.01f * limit, offset_px));
-    EXPECT_TRUE(maths::lies_on_tangent_plane(tangent, 0.99f * limit, offset_px));
+    EXPECT_FALSE(maths::lies_on_tangent_plane(tangent.fading, 1.01f * limit, offset_px));
+    EXPECT_FALSE(maths::lies_on_tangent_plane(tangent.fading, -1.01f * limit, offset_px));
+    EXPECT_TRUE(maths::lies_on_tangent_plane(tangent.fading, 0.99f * limit, offset_px));
   }
 }
 
@@ -209,9 +209,11 @@ TEST(SliceLine, RadiusInPixelsApproximatesTheSilhouetteOfASphereOfThatRadius) {
                                    : s.position + s.direction * radius;
     const vec2 imaged = uv_of_position(s.projection, touch) * s.projection.size_px;
     const float expected = distance(imaged, s.pixel);
-    const float spanned = maths::slice_radius_px(s.line, radius, s.depth, s.perspective());
-    // Away from the view axis, slice_radius_px() is exact only to first order in the ratio of
-    // radius to distance.
+    const float inverse_depth = s.perspective() ? 1.0f / s.depth : s.depth;
+    const float spanned = maths::sphere_reach(s.line, radius, inverse_depth, s.perspective()) *
+                          radius / s.line.x_per_step;
+    // Away from the view axis, sphere_reach() is exact only to first order in the ratio of radius
+    // to distance.
     EXPECT_NEAR(spanned / expected, 1.0f, 0.35f);
   }
 }

@@ -269,6 +269,19 @@ std::string name_of_test(const testing::TestParamInfo<Budgeted>& info) {
   return name;
 }
 
+// Expects that every pass holds enough waves to hide the latency of its loads, and spills nothing.
+void expect_enough_waves(const GpuPart& part, const SettingsCost& cost) {
+  const double fewest = part.rdna ? 6.0 : 3.0;
+  for (const ModelledFrame& frame : cost.frames) {
+    for (const ModelledPass& pass : frame.passes) {
+      EXPECT_GE(pass.waves_per_simd, fewest)
+          << part.family << ", " << cost.label << ", " << passes::cost::name_of(frame.state) << ", "
+          << pass.pass << ": " << pass.vector_registers << " vector registers";
+      EXPECT_EQ(pass.spills, 0.0) << part.family << ", " << cost.label << ", " << pass.pass;
+    }
+  }
+}
+
 class ShippedPresets : public testing::TestWithParam<Budgeted> {};
 
 TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
@@ -286,6 +299,9 @@ TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   }
   const auto cost = cost_of(*GetParam().part, *device, GetParam().settings);
   ASSERT_TRUE(cost) << cost.error();
+  if (cost->label_without.empty()) {
+    expect_enough_waves(*GetParam().part, *cost);
+  }
   const auto complaints = over_budget(budget, {*cost});
   for (const std::string& complaint : complaints) {
     ADD_FAILURE() << complaint << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;

@@ -1,0 +1,214 @@
+// Part of gtao.comp: the line of a slice on the image, and the depth samples along it.
+//
+// maths/slice_line.h explains the points (x w, y w, w) of a slice's plane. Here x and y are in
+// units of the radius, so that a point lies within the radius if (x w)^2 + (y w)^2 <= w^2.
+// Distances along the line, which are called offsets, are x w.
+//
+// Each sample is snapped to the centre of a texel, and then lies beside the line. If it lies on the
+// tangent plane of the shaded point, its depth is moved to the line along that plane, so that a
+// tilted plane does not occlude itself. Samples off the plane keep their depth.
+#ifndef ALCOVE_GTAO_SEARCH_LINE_H
+#define ALCOVE_GTAO_SEARCH_LINE_H
+
+// A float of this size has no fraction bits, so that adding it rounds to the nearest integer, which
+// then stands in the low bits. One addition replaces a rounding and a conversion, which costs as
+// much as four additions on GCN.
+const float kRoundingBias = 12582912.0;  // 1.5 * 2^23
+const int kRoundingBits = 0x4B400000;
+
+// What both half-slices of a slice have in common.
+struct SearchLine {
+  vec2 px_per_offset;   // pixels on the image per unit of offset, along the slice's direction
+  float offset_per_px;  // offset of one pixel along the line
+  float radius;         // offset of the farthest point within the radius
+  float tangent_rise;   // change of y w per unit of offset on the tangent plane
+  vec2 y_per_px;        // change of y w per pixel between the shaded pixel and a texel
+  float y_per_depth;    // change of y w per unit of inverse depth
+  float level_rise;     // change of y w per unit of offset at constant depth
+  float fading;         // argument of lies_on_tangent_plane() for offsets and y w
+  float y_at_zero;      // y w of a sample at the shaded pixel with inverse depth 0
+};
+
+SearchLine make_search_line(Surface surface, vec3 direction) {
+  SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
+  // The tangent plane is computed anew for each slice, because it would hold registers through all
+  // slices.
+  TangentPlane tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
+                                            surface.depth, kPerspective);
+  DepthStep depth_step = DepthStep(parameters.depth_step, parameters.depth_step_per_inverse_depth);
+  float step = depth_step_at(depth_step, surface.inverse_depth);
+  float per_radius = 1.0 / parameters.radius;
+  float px_per_length = 1.0 / max(slice_line.x_per_step, 1e-30);
+  float depth = kPerspective ? surface.depth : -1.0;
+  float y_per_depth = slice_line.y_per_depth * depth;
+  SearchLine search_line;
+  search_line.px_per_offset = slice_line.direction_px * (parameters.radius * px_per_length);
+  search_line.offset_per_px = slice_line.x_per_step * per_radius;
+  search_line.radius =
+      sphere_reach(slice_line, parameters.radius, surface.inverse_depth, kPerspective);
+  search_line.tangent_rise =
+      (dot(slice_line.direction_px, tangent.gradient) * y_per_depth + slice_line.y_per_step) *
+      px_per_length;
+  search_line.level_rise = slice_line.y_per_step * px_per_length;
+  search_line.fading = tangent.fading * slice_line.x_per_step / abs(y_per_depth);
+  search_line.y_per_depth = y_per_depth * per_radius;
+  search_line.y_per_px = tangent.gradient * -search_line.y_per_depth;
+  // The plane is raised towards the eye by one step of the depth buffer. A difference smaller than
+  // that may be a rounding error, and must not occlude.
+  float in_front = kPerspective ? step * depth + 1.0 : step - surface.inverse_depth;
+  search_line.y_at_zero = -slice_line.y_per_depth * per_radius * in_front;
+  return search_line;
+}
+
+// One of the two directions of a slice, in which depth samples are taken outwards from the shaded
+// point.
+struct HalfSlice {
+  SearchLine search_line;
+  float side;            // +1 along the slice's direction, -1 against it
+  float open_arc;        // the half-slice's part of the integral without occluders
+  vec2 px_per_offset;    // SearchLine::px_per_offset outwards; zero if there is nothing to search
+  float tangent_rise;    // SearchLine::tangent_rise outwards
+  float level_rise;      // SearchLine::level_rise outwards
+  float nearest;         // offset of the nearest possible sample
+  float reach;           // offset of the last sample less `nearest`
+  float growth;          // by this much, half the interval between samples grows per sample
+  float step_offset;     // of all samples, in steps, [0,1)
+  float extrapolated;    // how far surfaces are extrapolated beyond the image's border
+  float outside;         // the part of the radius that lies beyond the image's border, [0,1]
+  float other_outside;   // `outside` of the other half-slice
+  ivec2 texel_bias;      // the shaded pixel minus kRoundingBits
+  float nearness;        // the radius divided by the distance in perspective, else 0
+  vec2 height;           // gradient of the height over the tangent plane in the slice's plane
+  float tangent_cosine;  // cosine of the tangent plane's horizon
+};
+
+// Offsets from `centre`, in pixels from the image's corner, to the border of the image: along the
+// line (x) and against it (y).
+vec2 border_offsets(vec2 centre, SearchLine search_line) {
+  vec2 direction = search_line.px_per_offset;
+  vec2 inverse = 1.0 / mix(direction, vec2(1e-9), equal(direction, vec2(0.0)));
+  vec2 low = -centre * inverse;
+  vec2 high = (vec2(size_px()) - centre) * inverse;
+  vec2 along = max(low, high);
+  vec2 against = min(low, high);
+  return vec2(min(along.x, along.y), -max(against.x, against.y)) - 0.01 * search_line.offset_per_px;
+}
+
+// `border` is the offset of the image's border in the half-slice's direction (x) and in the other
+// one (y).
+HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, float side,
+                          float open_arc, vec2 border, float step_offset) {
+  HalfSlice half_slice;
+  half_slice.search_line = search_line;
+  half_slice.side = side;
+  half_slice.open_arc = open_arc;
+  half_slice.tangent_cosine = tangent_horizon(slice, side);
+  half_slice.height = vec2(side * slice.along, slice.toward);
+  half_slice.nearest = kNearestStep * search_line.offset_per_px;
+  // If the surface faces away from the half-slice, every point above its tangent plane and within
+  // the radius lies at most radius * cos(gamma) away on the image.
+  float distance =
+      half_slice.tangent_cosine > 0.0 ? search_line.radius * slice.cosine : search_line.radius;
+  bool empty = min(distance, border.x) < half_slice.nearest;
+  // Samples stay apart if the radius spans few pixels, and inside the image in any case.
+  float apart =
+      max(distance - half_slice.nearest, 0.25 * float(kStepCount) * search_line.offset_per_px);
+  half_slice.reach =
+      max(min(apart, border.x - half_slice.nearest), 1e-3 * search_line.offset_per_px);
+  half_slice.growth = half_slice.reach * (1.0 / (float(kStepCount) * float(kStepCount)));
+  half_slice.extrapolated = clamp(distance - border.x, 0.0, kExtrapolationRatio * half_slice.reach);
+  // A radius within the nearest step is searched nowhere, whether it lies outside or not.
+  vec2 outside = max(1.0 - border / search_line.radius, 0.0);
+  bool searched = search_line.radius >= half_slice.nearest;
+  half_slice.outside = searched ? outside.x : 0.0;
+  half_slice.other_outside = searched ? outside.y : 0.0;
+  // The first step of an empty half-slice may lie outside the image. All of its samples are
+  // therefore the shaded pixel, and far below the tangent plane, where they occlude nothing.
+  half_slice.px_per_offset = search_line.px_per_offset * (empty ? 0.0 : side);
+  half_slice.tangent_rise = empty ? -1e6 : search_line.tangent_rise * side;
+  half_slice.level_rise = empty ? -1e6 : search_line.level_rise * side;
+  half_slice.step_offset = step_offset;
+  half_slice.texel_bias = surface.pixel - kRoundingBits;
+  half_slice.nearness = kPerspective ? parameters.radius * surface.inverse_depth : 0.0;
+  return half_slice;
+}
+
+// Offset of sample `k`. It grows with the square of `k`.
+float sample_offset(HalfSlice half_slice, float k) {
+  float steps = k + half_slice.step_offset;
+  return steps * steps * half_slice.growth + half_slice.nearest;
+}
+
+// Half the difference between the offsets of the samples 0 and 1. For each later pair of
+// consecutive samples, HalfSlice::growth is added.
+float first_half_interval(HalfSlice half_slice) {
+  return (half_slice.step_offset + 0.5) * half_slice.growth;
+}
+
+// The inverse depth of a sample. It is 0 for the sky if the far plane is infinitely far away, so
+// that the sky needs no test of its own; its points are then (x w, y w, 0) and never occlude.
+float sample_inverse_depth(float depth_ndc) {
+  float from_far = clamp(kReversed ? depth_ndc : 1.0 - depth_ndc, 0.0, 1.0);
+  return kInfiniteFar ? parameters.inverse_depth_from_ndc.x * from_far
+                      : inverse_depth_of(depth_ndc);
+}
+
+bool is_sky_sample(SliceSample here) {
+  return kInfiniteFar ? here.inverse_depth <= 0.0
+                      : here.inverse_depth == sky_inverse_depth(kPerspective);
+}
+
+// Subtracts kRoundingBias. `precise` keeps compilers from cancelling it against its addition. This
+// is a function of its own because `precise` would otherwise extend to that addition, which could
+// then not be fused with a multiplication.
+float subtract_rounding_bias(float biased) {
+  precise float rounded = biased - kRoundingBias;
+  return rounded;
+}
+
+// The sample at an offset, in a layer of depth: 0 is the depth buffer, 1 the layer that it hides.
+SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
+  SearchLine search_line = half_slice.search_line;
+  vec2 px = half_slice.px_per_offset * offset;
+  vec2 biased = px + kRoundingBias;
+  ivec2 texel = floatBitsToInt(biased) + half_slice.texel_bias;
+  if (kSnapToTexels) {
+    px = vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
+  }
+  SliceSample found;
+  found.inverse_depth = sample_inverse_depth(layer == 0u ? texelFetch(depth_image, texel, 0).r
+                                                         : texelFetch(second_image, texel, 0).r);
+  float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
+  float y_of_texel = offset * half_slice.level_rise + y;
+  y = px.y * search_line.y_per_px.y + y;
+  y = px.x * search_line.y_per_px.x + y;
+  bool on_plane = lies_on_tangent_plane(search_line.fading, y, offset);
+  y = on_plane ? offset * half_slice.tangent_rise + y : y_of_texel;
+  found.point = vec3(offset, y, kPerspective ? found.inverse_depth : 1.0);
+  if (kBackFaces) {
+    float back = inverse_depth_of(texelFetch(back_image, texel, 0).r);
+    // The back face may not lie in front of the front face.
+    float end = farther_inverse_depth(found.inverse_depth, back, kPerspective);
+    found.back = ends_occluder(found.inverse_depth, back, kPerspective)
+                     ? vec2(offset, y + (end - found.inverse_depth) * search_line.y_per_depth)
+                     : vec2(0.0, kNoBack);
+  }
+  return found;
+}
+
+// The thickness that the settings give an occluder at a sample, times w, in units of the radius.
+float settings_thickness(SliceSample here) {
+  // In perspective w times the distance is 1; an orthographic depth may lie behind the eye.
+  float distance = kPerspective ? 1.0 : abs(here.inverse_depth);
+  return parameters.thickness / parameters.radius *
+         (kThicknessOfDistance ? distance : here.point.z);
+}
+
+float squared_length(vec2 v) { return dot(v, v); }
+
+// Whether a sample lies within the radius around the shaded point.
+bool within_radius(SliceSample here) {
+  return squared_length(here.point.xy) <= here.point.z * here.point.z;
+}
+
+#endif

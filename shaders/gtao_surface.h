@@ -1,0 +1,53 @@
+// Part of gtao.comp: the surface that a traced pixel shows.
+#ifndef ALCOVE_GTAO_SURFACE_H
+#define ALCOVE_GTAO_SURFACE_H
+
+// The surface that a traced pixel shows.
+struct Surface {
+  ivec2 pixel;
+  float depth;  // linear, scene units
+  float inverse_depth;
+  vec3 normal;       // unit, view space
+  vec3 view;         // unit, view space, towards the eye
+  LobeSurface lobe;  // with the normal as the texture has it
+};
+
+ivec2 size_px() { return textureSize(depth_image, 0); }
+
+float fetch_roughness(ivec2 pixel) {
+#ifdef SPECULAR
+  if (kRoughnessTexture) {
+    return saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
+  }
+#endif
+  return parameters.roughness;
+}
+
+#include "load_depth.h"
+
+float load_inverse_depth(ivec2 pixel) {
+  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
+}
+
+#include "depth_normal.h"
+
+// The centre of the surface's pixel, in pixels from the image's corner.
+vec2 centre_of(Surface surface) { return vec2(surface.pixel) + 0.5; }
+
+// The surface at a pixel that is not the sky, whose inverse depth is already loaded.
+Surface fetch_surface(ivec2 pixel, float inverse_depth) {
+  Surface surface;
+  surface.pixel = pixel;
+  surface.depth = kPerspective ? 1.0 / inverse_depth : inverse_depth;
+  surface.inverse_depth = inverse_depth;
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
+  surface.view = normalize(vec3(-slope, 1.0));
+  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
+  surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
+  vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
+  surface.lobe = LobeSurface(kLobe ? normalize(own) : own, fetch_roughness(pixel));
+  return surface;
+}
+
+#endif
