@@ -77,17 +77,18 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
   switch (quality) {
     case Quality::console:
       settings.tile_size = 8;
+      settings.slices = 1;
       settings.steps = 8;
       settings.half_resolution = true;
       break;
     case Quality::low:
-      settings.tile_size = 4;
+      settings.slices = 1;
       settings.steps = 8;
       break;
     case Quality::medium:
       break;
     case Quality::high:
-      settings.slices = 2;
+      settings.tile_size = 2;
       settings.steps = 16;
       break;
     case Quality::reference:

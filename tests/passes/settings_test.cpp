@@ -19,9 +19,9 @@ static_assert(std::is_aggregate_v<OcclusionSettings> && std::is_aggregate_v<Adva
 TEST(Settings, DefaultSettingsAreThoseOfTheMediumPreset) {
   const OcclusionSettings settings;
   EXPECT_EQ(settings, quality_settings(Quality::medium, settings.radius));
-  EXPECT_EQ(settings.slices, 1u);
-  EXPECT_EQ(settings.steps, 10u);
-  EXPECT_EQ(settings.tile_size, 2u);
+  EXPECT_EQ(settings.slices, 2u);
+  EXPECT_EQ(settings.steps, 12u);
+  EXPECT_EQ(settings.tile_size, 4u);
   EXPECT_EQ(settings.history_frames, 32u);
 }
 

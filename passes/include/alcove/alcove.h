@@ -50,14 +50,14 @@ extern "C" {
 //              slices  steps  tile_size  history_frames  depth fetches per pixel and frame
 //   CONSOLE         1      8        8              32                                0.25
 //   LOW             1      8        4              32                                1
-//   MEDIUM          1     10        2              32                                5
+//   MEDIUM          2     12        4              32                                3
 //   HIGH            2     16        2              32                               16
 //   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
   ALCOVE_QUALITY_CONSOLE = 0,  // traces one of 8x8 pixels in each frame, filters at half resolution
   ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
-  ALCOVE_QUALITY_MEDIUM = 2,   // traces one of 2x2; the preset to begin with
-  ALCOVE_QUALITY_HIGH = 3,     // MEDIUM with two slices and more steps
+  ALCOVE_QUALITY_MEDIUM = 2,   // LOW with two slices and more steps; the preset to begin with
+  ALCOVE_QUALITY_HIGH = 3,     // traces one of 2x2 pixels in each frame
   ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
