@@ -26,6 +26,7 @@ struct SearchLine {
   float y_per_depth;    // change of y w per unit of inverse depth
   float level_rise;     // change of y w per unit of offset at constant depth
   float fading;         // argument of lies_on_tangent_plane() for offsets and y w
+  float rounding;       // smallest y w that is not a rounding error, in the unit of `fading` * y w
   float y_at_zero;      // y w of a sample at the shaded pixel with inverse depth 0
 };
 
@@ -52,6 +53,7 @@ SearchLine make_search_line(Surface surface, vec3 direction) {
   search_line.level_rise = slice_line.y_per_step * px_per_length;
   search_line.fading = tangent.fading * slice_line.x_per_step / abs(y_per_depth);
   search_line.y_per_depth = y_per_depth * per_radius;
+  search_line.rounding = 2.0 * step * abs(search_line.y_per_depth) * search_line.fading;
   search_line.y_per_px = tangent.gradient * -search_line.y_per_depth;
   // The plane is raised towards the eye by one step of the depth buffer. A difference smaller than
   // that may be a rounding error, and must not occlude.
@@ -182,7 +184,7 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   float y_of_texel = offset * half_slice.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;
   y = px.x * search_line.y_per_px.x + y;
-  bool on_plane = lies_on_tangent_plane(search_line.fading, y, offset);
+  bool on_plane = lies_on_tangent_plane(search_line.fading, y, offset + search_line.rounding);
   y = on_plane ? offset * half_slice.tangent_rise + y : y_of_texel;
   found.point = vec3(offset, y, kPerspective ? found.inverse_depth : 1.0);
   if (kBackFaces) {

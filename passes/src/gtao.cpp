@@ -1,5 +1,6 @@
 #include "alcove/passes/gtao.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -58,6 +59,10 @@ tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& i
   return check_inputs(frame.graph, "gtao", needed);
 }
 
+// Larger radii than this, in scene units, are treated as this radius. The shader measures lengths
+// in radii, and the squares of such lengths would underflow.
+constexpr float kLargestRadius = 1e9f;
+
 // Returns whether the thickness is a fraction of the occluder's distance.
 bool of_distance(const OcclusionSettings& settings) {
   return has_thickness(settings.advanced.estimator) &&
@@ -115,6 +120,7 @@ void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, c
 maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs,
                                     const OcclusionSettings& settings,
                                     const maths::Projection& projection) {
+  const float radius = std::min(settings.radius, kLargestRadius);
   const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
   const maths::DepthStep step = depth_step(projection, inputs.depth_format != VK_FORMAT_UNDEFINED
                                                            ? inputs.depth_format
@@ -125,9 +131,9 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
                   projection.uv_to_slope.w),
       inverse_depth_from_ndc(projection),
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
-      settings.radius,
+      radius,
       frame.index,
-      settings.thickness * (of_distance(settings) ? 1.0f : settings.radius),
+      settings.thickness * (of_distance(settings) ? 1.0f : radius),
       maths::hidden_exponent(settings.hidden_occlusion),
       settings.advanced.blend,
       settings.advanced.falloff,
