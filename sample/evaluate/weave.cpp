@@ -17,7 +17,7 @@ constexpr std::uint32_t kWindow = 32;
 constexpr std::uint32_t kStep = kWindow / 2;  // between windows
 constexpr std::size_t kBins = std::size_t{kWindow} * kWindow;
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLongestPeriod = 12.0;  // pixels
+constexpr double kLongestPeriod = 9.0;  // pixels
 // Number of next lower and of next higher frequencies with which a frequency is compared.
 constexpr std::size_t kSimilar = 60;
 // The truth of a window is smooth if the means of its 4x4 blocks, less a plane fitted to them, have
@@ -156,6 +156,31 @@ double lower_quartile(std::vector<double> values) {
   return *quartile;
 }
 
+// Returns the strongest frequency among a frequency and its eight neighbours, if it is a peak of
+// the spectrum, and otherwise the lowest frequency, 0. The edges of geometry have no peak: they
+// spread their power over a line, and thus to frequencies on both sides. A wave has hardly any
+// power at a distance of two frequencies.
+std::size_t peak_near(const std::vector<double>& powers, std::size_t bin) {
+  constexpr double kPeak = 4.0;
+  const auto neighbour = [](std::size_t of, std::uint32_t right, std::uint32_t down) {
+    return (of / kWindow + down) % kWindow * kWindow + (of + right) % kWindow;
+  };
+  std::size_t peak = bin;
+  for (const std::uint32_t down : {0u, 1u, kWindow - 1}) {
+    for (const std::uint32_t right : {0u, 1u, kWindow - 1}) {
+      const std::size_t other = neighbour(bin, right, down);
+      peak = powers[other] > powers[peak] ? other : peak;
+    }
+  }
+  const auto on_line = [&](std::uint32_t right, std::uint32_t down) {
+    return std::min(powers[neighbour(peak, right, down)],
+                    powers[neighbour(peak, kWindow - right, kWindow - down)]);
+  };
+  const double line =
+      std::max({on_line(2, 0), on_line(0, 2), on_line(2, 2), on_line(2, kWindow - 2)});
+  return powers[peak] > kPeak * line ? peak : 0;
+}
+
 struct Pattern {
   double variance = 0;
   double period = 0;  // of its strongest wave, pixels; 0 if there is none
@@ -181,18 +206,22 @@ Pattern pattern_of(const std::vector<double>& sums, double windows) {
     return powers.begin() + static_cast<std::ptrdiff_t>(std::min(i, powers.size()));
   };
   for (std::size_t i = 0; i < powers.size(); ++i) {
-    const double cycles = cycles_of(frequencies[i]);
     // The larger of both sides, because the spectrum of filtered noise falls towards high
     // frequencies.
     const double noise = std::max(lower_quartile({at(i - std::min(i, kSimilar)), at(i)}),
                                   lower_quartile({at(i + 1), at(i + 1 + kSimilar)})) /
                          quartile;
-    if (cycles * kLongestPeriod >= 1.0 && powers[i] > limit * noise) {
-      pattern.variance += powers[i] - noise;
-      if (powers[i] > strongest) {
-        strongest = powers[i];
-        pattern.period = 1.0 / cycles;
-      }
+    if (powers[i] <= limit * noise) {
+      continue;
+    }
+    const double cycles = cycles_of(peak_near(sums, frequencies[i]));
+    if (cycles * kLongestPeriod < 1.0) {
+      continue;
+    }
+    pattern.variance += powers[i] - noise;
+    if (powers[i] > strongest) {
+      strongest = powers[i];
+      pattern.period = 1.0 / cycles;
     }
   }
   return pattern;

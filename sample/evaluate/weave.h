@@ -11,7 +11,7 @@
 
 namespace alcove::sample {
 
-// Patterns with a period of 2 to 10 pixels in any direction, measured by the power spectrum of the
+// Patterns with a period of 2 to 9 pixels in any direction, measured by the power spectrum of the
 // error in overlapping windows of 32x32 pixels in which the truth is smooth. A regular pattern
 // gathers its variance at a few frequencies, whereas noise spreads it over all frequencies of a
 // similar length. The variance of the pattern is therefore the power of those frequencies that

@@ -139,6 +139,13 @@ TEST(Weave, PatternIsFoundBelowNoise) {
   EXPECT_NEAR(weave.rms(), 0.004, 0.0006);
 }
 
+TEST(Weave, EdgeIsNoPattern) {
+  const Weave weave = weave_of_error([](std::uint32_t x, std::uint32_t y) {
+    return x % 64 == 20 || (2 * y + x) % 128 == 70 ? 0.05f : 0.0f;
+  });
+  EXPECT_LT(weave.rms(), 0.001);
+}
+
 TEST(Weave, SumOfSeveralImagesIsTheMeanOverAllWindows) {
   Weave weave =
       weave_of_error([](std::uint32_t x, std::uint32_t y) { return diagonal(x, y, 0.008f); });
