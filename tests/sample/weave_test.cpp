@@ -58,7 +58,7 @@ float wave(std::uint32_t x, std::uint32_t y, float cycles_x, float cycles_y) {
                   (cycles_x * static_cast<float>(x) + cycles_y * static_cast<float>(y)));
 }
 
-TEST(Weave, DiagonalPatternIsMeasuredByItsRms) {
+TEST(WeavePattern, DiagonalPatternIsMeasuredByItsRms) {
   const Weave weave =
       weave_of_error([](std::uint32_t x, std::uint32_t y) { return diagonal(x, y, 0.004f); });
   EXPECT_EQ(weave.windows, kWindowsOnASide * kWindowsOnASide);
@@ -67,7 +67,7 @@ TEST(Weave, DiagonalPatternIsMeasuredByItsRms) {
   EXPECT_EQ(weave.visible_windows, 0u);
 }
 
-TEST(Weave, LatticesOfDotsOfAnyPeriodAreMeasuredByTheirRms) {
+TEST(WeavePattern, LatticesOfDotsOfAnyPeriodAreMeasuredByTheirRms) {
   for (const std::uint32_t period : {2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
     const Weave weave = weave_of_error(
         [&](std::uint32_t x, std::uint32_t y) { return dots(x, y, period, 0.004f); });
@@ -76,7 +76,7 @@ TEST(Weave, LatticesOfDotsOfAnyPeriodAreMeasuredByTheirRms) {
   }
 }
 
-TEST(Weave, StripesWithPeriodsOfThreeFiveAndEightPixelsAreMeasuredByTheirRms) {
+TEST(WeavePattern, StripesWithPeriodsOfThreeFiveAndEightPixelsAreMeasuredByTheirRms) {
   for (const std::uint32_t period : {3u, 5u, 8u}) {
     const Weave weave = weave_of_error([&](std::uint32_t x, std::uint32_t) {
       return 0.004f * std::sqrt(2.0f) * wave(x, 0, 1.0f / static_cast<float>(period), 0.0f);
@@ -86,14 +86,14 @@ TEST(Weave, StripesWithPeriodsOfThreeFiveAndEightPixelsAreMeasuredByTheirRms) {
   }
 }
 
-TEST(Weave, WavesWhosePeriodIsNoWholeNumberOfPixelsAreMeasuredByTheirRms) {
+TEST(WeavePattern, WavesWhosePeriodIsNoWholeNumberOfPixelsAreMeasuredByTheirRms) {
   const Weave weave = weave_of_error([](std::uint32_t x, std::uint32_t y) {
     return 0.004f * std::sqrt(2.0f) * wave(x, y, 0.3774f, 0.2849f);
   });
   EXPECT_NEAR(weave.rms(), 0.004, 0.0002);
 }
 
-TEST(Weave, WindowsWithAVisiblePatternAreCounted) {
+TEST(WeavePattern, ImageWindowsWithAVisiblePatternAreCounted) {
   const Weave weave = weave_of_error([](std::uint32_t x, std::uint32_t y) {
     return x < kSize / 2 ? diagonal(x, y, 0.008f) : 0.0f;
   });
@@ -102,7 +102,7 @@ TEST(Weave, WindowsWithAVisiblePatternAreCounted) {
   EXPECT_NEAR(weave.visible_fraction(), 8.0 / kWindowsOnASide, 1e-9);
 }
 
-TEST(Weave, WhiteNoiseHasNoPattern) {
+TEST(WeavePattern, WhiteNoiseIsNotMeasuredAsAPattern) {
   std::mt19937 random(7);
   std::normal_distribution<float> noise(0.0f, 0.03f);
   const Weave weave = weave_of_error([&](std::uint32_t, std::uint32_t) { return noise(random); });
@@ -110,7 +110,7 @@ TEST(Weave, WhiteNoiseHasNoPattern) {
   EXPECT_EQ(weave.visible_windows, 0u);
 }
 
-TEST(Weave, NoiseThatWasFilteredHasNoPattern) {
+TEST(WeavePattern, NoiseThatWasFilteredHasNoPattern) {
   std::mt19937 random(13);
   std::normal_distribution<float> noise(0.0f, 0.03f);
   Image<float> white(kSize + 4, kSize + 4);
@@ -131,7 +131,7 @@ TEST(Weave, NoiseThatWasFilteredHasNoPattern) {
   EXPECT_EQ(weave.visible_windows, 0u);
 }
 
-TEST(Weave, PatternIsFoundBelowNoise) {
+TEST(WeavePattern, PatternWeakerThanTheNoiseIsStillMeasured) {
   std::mt19937 random(11);
   std::normal_distribution<float> noise(0.0f, 0.02f);
   const Weave weave = weave_of_error(
@@ -139,14 +139,14 @@ TEST(Weave, PatternIsFoundBelowNoise) {
   EXPECT_NEAR(weave.rms(), 0.004, 0.0006);
 }
 
-TEST(Weave, EdgeIsNoPattern) {
+TEST(WeavePattern, EdgeIsNoPattern) {
   const Weave weave = weave_of_error([](std::uint32_t x, std::uint32_t y) {
     return x % 64 == 20 || (2 * y + x) % 128 == 70 ? 0.05f : 0.0f;
   });
   EXPECT_LT(weave.rms(), 0.001);
 }
 
-TEST(Weave, SumOfSeveralImagesIsTheMeanOverAllWindows) {
+TEST(WeavePattern, SumOfSeveralImagesIsTheMeanOverAllWindows) {
   Weave weave =
       weave_of_error([](std::uint32_t x, std::uint32_t y) { return diagonal(x, y, 0.008f); });
   weave += weave_of_error([](std::uint32_t, std::uint32_t) { return 0.0f; });
@@ -155,14 +155,14 @@ TEST(Weave, SumOfSeveralImagesIsTheMeanOverAllWindows) {
   EXPECT_NEAR(weave.visible_fraction(), 0.5, 1e-9);
 }
 
-TEST(Weave, SmoothErrorsAreIgnored) {
+TEST(WeavePattern, SmoothErrorsAreIgnored) {
   EXPECT_LT(weave_of_error([](std::uint32_t x, std::uint32_t) {
               return 0.05f * std::sin(0.05f * static_cast<float>(x));
             }).rms(),
             2e-4);
 }
 
-TEST(Weave, WindowsWithSkyOrWithDetailInTheTruthDoNotCount) {
+TEST(WeavePattern, ImageWindowsWithSkyOrWithDetailInTheTruthAreNotCounted) {
   Mask surfaces = kEverywhere;
   surfaces.at(40, 40) = 0;  // in four windows
   Image<float> truth = smooth_truth();
@@ -174,7 +174,7 @@ TEST(Weave, WindowsWithSkyOrWithDetailInTheTruthDoNotCount) {
   EXPECT_EQ(weave_of(truth, truth, surfaces).windows, kWindowsOnASide * kWindowsOnASide - 6);
 }
 
-TEST(Weave, ImageSmallerThanAWindowHasNoWindows) {
+TEST(WeavePattern, ImageSmallerThanAMeasuringWindowHasNoWindows) {
   const Image<float> small(31, 31, 0.5f);
   const Weave weave = weave_of(small, small, Mask(31, 31, 1));
   EXPECT_EQ(weave.windows, 0u);
@@ -182,7 +182,7 @@ TEST(Weave, ImageSmallerThanAWindowHasNoWindows) {
   EXPECT_EQ(weave.visible_fraction(), 0.0);
 }
 
-TEST(Weave, NotANumberDoesNotAffectOtherPixels) {
+TEST(WeavePattern, PixelThatIsNaNDoesNotAffectOtherWindows) {
   Image<float> result = smooth_truth();
   result.at(5, 5) = NAN;
   const Weave weave = weave_of(result, smooth_truth(), kEverywhere);
