@@ -4,72 +4,60 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <utility>
 
 namespace alcove::sample {
 namespace {
 
 constexpr std::uint32_t kWindow = 32;
-constexpr std::uint32_t kPeriod = 4;
-constexpr std::size_t kClasses = std::size_t{kPeriod} * kPeriod;
-constexpr std::uint32_t kMeanRadius = 4;  // radius of the 9x9 mean
+constexpr std::uint32_t kStep = kWindow / 2;  // between windows
+constexpr std::size_t kBins = std::size_t{kWindow} * kWindow;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kLongestPeriod = 9.0;  // pixels
+// Number of next lower and of next higher frequencies with which a frequency is compared.
+constexpr std::size_t kSimilar = 60;
 // The truth of a window is smooth if the means of its 4x4 blocks, less a plane fitted to them, have
 // at most this RMS. Contact shadows and silhouettes have more; the noise of 256 rays per pixel has
 // a quarter of it.
 constexpr double kSmooth = 0.02;
 
-// Sums over rectangles in constant time (a summed-area table).
-class RectangleSums {
- public:
-  explicit RectangleSums(const Image<double>& image)
-      : width_(image.width + 1), sums_(std::size_t{width_} * (image.height + 1), 0.0) {
-    for (std::uint32_t y = 0; y < image.height; ++y) {
-      double row = 0;
-      for (std::uint32_t x = 0; x < image.width; ++x) {
-        row += image.at(x, y);
-        sums_[std::size_t{y + 1} * width_ + x + 1] = sums_[std::size_t{y} * width_ + x + 1] + row;
-      }
-    }
-  }
-  // The sum over x0 <= x < x1, y0 <= y < y1.
-  double operator()(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1) const {
-    const auto at = [this](std::uint32_t x, std::uint32_t y) {
-      return sums_[std::size_t{y} * width_ + x];
-    };
-    return at(x1, y1) - at(x0, y1) - at(x1, y0) + at(x0, y0);
-  }
+using Window = std::array<double, kBins>;  // rows of pixels, or of frequencies
 
- private:
-  std::uint32_t width_;
-  std::vector<double> sums_;
-};
+// The values less a plane fitted to them.
+Window without_plane(const Window& values) {
+  const auto place = [](std::uint32_t i) { return i - 0.5 * (kWindow - 1); };
+  double mean = 0;
+  double slope_x = 0;
+  double slope_y = 0;
+  double squared_places = 0;
+  for (std::uint32_t i = 0; i < kBins; ++i) {
+    const double x = place(i % kWindow);
+    mean += values[i] / kBins;
+    slope_x += values[i] * x;
+    slope_y += values[i] * place(i / kWindow);
+    squared_places += x * x;
+  }
+  Window rest;
+  for (std::uint32_t i = 0; i < kBins; ++i) {
+    rest[i] = values[i] - mean -
+              (slope_x * place(i % kWindow) + slope_y * place(i / kWindow)) / squared_places;
+  }
+  return rest;
+}
 
-// The error at surfaces, less its mean over the surface pixels in the surrounding 9x9.
-Image<double> high_pass(const Image<float>& result, const Image<float>& truth,
-                        const Mask& surfaces) {
-  Image<double> error(truth.width, truth.height);
-  Image<double> counts(truth.width, truth.height);
-  for (std::size_t i = 0; i < error.pixels.size(); ++i) {
-    const double difference = double{result.pixels[i]} - truth.pixels[i];
-    if (surfaces.pixels[i] != 0 && std::isfinite(difference)) {
-      error.pixels[i] = difference;
-      counts.pixels[i] = 1;
+// The image in the window whose upper left pixel is (left, top).
+Window window_of(const Image<float>& image, std::uint32_t left, std::uint32_t top) {
+  Window window;
+  for (std::uint32_t y = 0; y < kWindow; ++y) {
+    for (std::uint32_t x = 0; x < kWindow; ++x) {
+      window[y * kWindow + x] = image.at(left + x, top + y);
     }
   }
-  const RectangleSums errors(error);
-  const RectangleSums surface_counts(counts);
-  for (std::uint32_t y = 0; y < error.height; ++y) {
-    for (std::uint32_t x = 0; x < error.width; ++x) {
-      const std::uint32_t x0 = x - std::min(x, kMeanRadius);
-      const std::uint32_t y0 = y - std::min(y, kMeanRadius);
-      const std::uint32_t x1 = std::min(x + kMeanRadius + 1, error.width);
-      const std::uint32_t y1 = std::min(y + kMeanRadius + 1, error.height);
-      if (const double count = surface_counts(x0, y0, x1, y1); count > 0) {
-        error.at(x, y) -= errors(x0, y0, x1, y1) / count;
-      }
-    }
-  }
-  return error;
+  return window;
 }
 
 bool all_surfaces(const Mask& surfaces, std::uint32_t left, std::uint32_t top) {
@@ -82,66 +70,171 @@ bool all_surfaces(const Mask& surfaces, std::uint32_t left, std::uint32_t top) {
   return true;
 }
 
-bool is_smooth(const Image<float>& truth, std::uint32_t left, std::uint32_t top) {
-  constexpr std::uint32_t kBlocks = kWindow / kPeriod;
-  std::array<std::array<double, kBlocks>, kBlocks> means{};
-  double mean = 0;
-  double slope_x = 0;
-  double slope_y = 0;
-  double squared_places = 0;
-  const auto place = [](std::uint32_t block) { return block - 0.5 * (kBlocks - 1); };
-  for (std::uint32_t y = 0; y < kWindow; ++y) {
-    for (std::uint32_t x = 0; x < kWindow; ++x) {
-      means[y / kPeriod][x / kPeriod] += truth.at(left + x, top + y) / double{kClasses};
-    }
+bool is_smooth(const Window& truth) {
+  constexpr std::uint32_t kBlock = 4;
+  constexpr std::uint32_t kBlocks = kWindow / kBlock;
+  std::array<double, std::size_t{kBlocks} * kBlocks> means{};
+  const Window rest = without_plane(truth);
+  for (std::uint32_t i = 0; i < kBins; ++i) {
+    means[i / kWindow / kBlock * kBlocks + i % kWindow / kBlock] += rest[i] / (kBlock * kBlock);
   }
-  for (std::uint32_t y = 0; y < kBlocks; ++y) {
-    for (std::uint32_t x = 0; x < kBlocks; ++x) {
-      mean += means[y][x] / (kBlocks * kBlocks);
-      slope_x += means[y][x] * place(x);
-      slope_y += means[y][x] * place(y);
-      squared_places += place(x) * place(x);
-    }
-  }
-  double squares = 0;
-  for (std::uint32_t y = 0; y < kBlocks; ++y) {
-    for (std::uint32_t x = 0; x < kBlocks; ++x) {
-      const double plane = mean + (slope_x * place(x) + slope_y * place(y)) / squared_places;
-      squares += (means[y][x] - plane) * (means[y][x] - plane);
-    }
-  }
-  return std::sqrt(squares / (kBlocks * kBlocks)) <= kSmooth;
+  const double squares = std::inner_product(means.begin(), means.end(), means.begin(), 0.0);
+  return std::sqrt(squares / means.size()) <= kSmooth;
 }
 
-// The variance of the pattern in a window, less that of white noise. It may be negative by chance.
-double pattern_variance(const Image<double>& error, std::uint32_t left, std::uint32_t top) {
-  constexpr double kPixels = kWindow * kWindow;
-  constexpr double kPixelsOfClass = kPixels / kClasses;
-  std::array<double, kClasses> means{};
-  double mean = 0;
-  double squares = 0;
+// The power at each frequency: element v * 32 + u is the part of the variance of `values` that
+// waves of u/32 cycles per pixel in x and v/32 in y have. Frequencies from 16/32 on stand for
+// negative ones. A Hann window keeps what is not periodic in the window from leaking into all
+// frequencies; it spreads a wave over 3x3 of them.
+std::vector<double> power_spectrum(const Window& values) {
+  static const auto kHann = [] {
+    std::array<double, kWindow> hann;
+    for (std::uint32_t i = 0; i < kWindow; ++i) {
+      // The factor keeps the variance of white noise.
+      hann[i] = std::sqrt(2.0 / 3.0) * (1.0 - std::cos(2.0 * kPi * (i + 0.5) / kWindow));
+    }
+    return hann;
+  }();
+  static const auto kWaves = [] {
+    std::array<std::complex<double>, kWindow> waves;
+    for (std::uint32_t i = 0; i < kWindow; ++i) {
+      waves[i] = std::polar(1.0 / kWindow, -2.0 * kPi * i / kWindow);
+    }
+    return waves;
+  }();
+  std::array<std::complex<double>, kBins> rows{};
   for (std::uint32_t y = 0; y < kWindow; ++y) {
     for (std::uint32_t x = 0; x < kWindow; ++x) {
-      const double value = error.at(left + x, top + y);
-      means[std::size_t{y % kPeriod} * kPeriod + x % kPeriod] += value / kPixelsOfClass;
-      mean += value / kPixels;
-      squares += value * value;
+      const double value = values[y * kWindow + x] * kHann[x] * kHann[y];
+      for (std::uint32_t u = 0; u < kWindow; ++u) {
+        rows[y * kWindow + u] += value * kWaves[u * x % kWindow];
+      }
     }
   }
-  double between = 0;
-  double explained = 0;
-  for (const double of_class : means) {
-    between += (of_class - mean) * (of_class - mean);
-    explained += kPixelsOfClass * of_class * of_class;
+  std::vector<double> powers(kBins);
+  for (std::uint32_t v = 0; v < kWindow; ++v) {
+    for (std::uint32_t u = 0; u < kWindow; ++u) {
+      std::complex<double> sum = 0;
+      for (std::uint32_t y = 0; y < kWindow; ++y) {
+        sum += rows[y * kWindow + u] * kWaves[v * y % kWindow];
+      }
+      powers[v * kWindow + u] = std::norm(sum);
+    }
   }
-  const double noise = (squares - explained) / (kPixels - kClasses);
-  return between / (kClasses - 1) - noise / kPixelsOfClass;
+  return powers;
+}
+
+// Cycles per pixel of a frequency.
+double cycles_of(std::size_t bin) {
+  const auto signed_cycles = [](std::size_t i) {
+    return (static_cast<double>(i) - (i >= kWindow / 2 ? kWindow : 0)) / kWindow;
+  };
+  return std::hypot(signed_cycles(bin % kWindow), signed_cycles(bin / kWindow));
+}
+
+// All frequencies in the order of their length, without the lowest ones: the plane that was
+// subtracted contained those.
+const std::vector<std::size_t>& sorted_frequencies() {
+  static const std::vector<std::size_t> sorted = [] {
+    std::vector<std::size_t> all(kBins);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    std::erase_if(all, [](std::size_t bin) { return cycles_of(bin) * kWindow < 1.5; });
+    std::stable_sort(all.begin(), all.end(),
+                     [](std::size_t a, std::size_t b) { return cycles_of(a) < cycles_of(b); });
+    return all;
+  }();
+  return sorted;
+}
+
+// The lower quartile, 0 for no values.
+double lower_quartile(std::vector<double> values) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+  std::nth_element(values.begin(), quartile, values.end());
+  return *quartile;
+}
+
+// Returns the strongest frequency among a frequency and its eight neighbours, if it is a peak of
+// the spectrum, and otherwise the lowest frequency, 0. The edges of geometry have no peak: they
+// spread their power over a line, and thus to frequencies on both sides. A wave has hardly any
+// power at a distance of two frequencies.
+std::size_t peak_near(const std::vector<double>& powers, std::size_t bin) {
+  constexpr double kPeak = 4.0;
+  const auto neighbour = [](std::size_t of, std::uint32_t right, std::uint32_t down) {
+    return (of / kWindow + down) % kWindow * kWindow + (of + right) % kWindow;
+  };
+  std::size_t peak = bin;
+  for (const std::uint32_t down : {0u, 1u, kWindow - 1}) {
+    for (const std::uint32_t right : {0u, 1u, kWindow - 1}) {
+      const std::size_t other = neighbour(bin, right, down);
+      peak = powers[other] > powers[peak] ? other : peak;
+    }
+  }
+  const auto on_line = [&](std::uint32_t right, std::uint32_t down) {
+    return std::min(powers[neighbour(peak, right, down)],
+                    powers[neighbour(peak, kWindow - right, kWindow - down)]);
+  };
+  const double line =
+      std::max({on_line(2, 0), on_line(0, 2), on_line(2, 2), on_line(2, kWindow - 2)});
+  return powers[peak] > kPeak * line ? peak : 0;
+}
+
+struct Pattern {
+  double variance = 0;
+  double period = 0;  // of its strongest wave, pixels; 0 if there is none
+};
+
+// The pattern in the mean of the spectra of `windows` windows, whose sum is `sums`.
+Pattern pattern_of(const std::vector<double>& sums, double windows) {
+  const std::vector<std::size_t>& frequencies = sorted_frequencies();
+  std::vector<double> powers(frequencies.size());
+  std::transform(frequencies.begin(), frequencies.end(), powers.begin(),
+                 [&](std::size_t bin) { return sums[bin] / windows; });
+  // The power of noise in such a mean has a gamma distribution of the order `windows`. The noise is
+  // estimated by the lower quartile of the power at similar frequencies, because a pattern with
+  // many harmonics stands out at more than half of them. By the formula of Wilson and Hilferty the
+  // quartile is this part of the mean:
+  const double quartile = std::pow(1.0 - 1.0 / (9.0 * windows) - 0.2248 / std::sqrt(windows), 3.0);
+  // Powers over this multiple of the noise stand out. Of 100 windows of noise about one has such a
+  // frequency.
+  const double limit = 1.5 + 10.5 / std::sqrt(windows);
+  Pattern pattern;
+  double strongest = 0;
+  const auto at = [&](std::size_t i) {
+    return powers.begin() + static_cast<std::ptrdiff_t>(std::min(i, powers.size()));
+  };
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    // The larger of both sides, because the spectrum of filtered noise falls towards high
+    // frequencies.
+    const double noise = std::max(lower_quartile({at(i - std::min(i, kSimilar)), at(i)}),
+                                  lower_quartile({at(i + 1), at(i + 1 + kSimilar)})) /
+                         quartile;
+    if (powers[i] <= limit * noise) {
+      continue;
+    }
+    const double cycles = cycles_of(peak_near(sums, frequencies[i]));
+    if (cycles * kLongestPeriod < 1.0) {
+      continue;
+    }
+    pattern.variance += powers[i] - noise;
+    if (powers[i] > strongest) {
+      strongest = powers[i];
+      pattern.period = 1.0 / cycles;
+    }
+  }
+  return pattern;
 }
 
 }  // namespace
 
 double Weave::rms() const {
-  return windows > 0 ? std::sqrt(std::max(variances, 0.0) / static_cast<double>(windows)) : 0.0;
+  return windows > 0 ? std::sqrt(pattern_of(powers, static_cast<double>(windows)).variance) : 0.0;
+}
+
+double Weave::period() const {
+  return windows > 0 ? pattern_of(powers, static_cast<double>(windows)).period : 0.0;
 }
 
 double Weave::visible_fraction() const {
@@ -151,20 +244,31 @@ double Weave::visible_fraction() const {
 Weave& Weave::operator+=(const Weave& more) {
   windows += more.windows;
   visible_windows += more.visible_windows;
-  variances += more.variances;
+  powers.resize(std::max(powers.size(), more.powers.size()));
+  std::transform(more.powers.begin(), more.powers.end(), powers.begin(), powers.begin(),
+                 std::plus<>());
   return *this;
 }
 
 Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask& surfaces) {
-  const Image<double> error = high_pass(result, truth, surfaces);
   Weave weave;
-  for (std::uint32_t top = 0; top + kWindow <= truth.height; top += kWindow) {
-    for (std::uint32_t left = 0; left + kWindow <= truth.width; left += kWindow) {
-      if (!all_surfaces(surfaces, left, top) || !is_smooth(truth, left, top)) {
+  for (std::uint32_t top = 0; top + kWindow <= truth.height; top += kStep) {
+    for (std::uint32_t left = 0; left + kWindow <= truth.width; left += kStep) {
+      if (!all_surfaces(surfaces, left, top)) {
         continue;
       }
-      const double variance = pattern_variance(error, left, top);
-      weave += {1, variance > Weave::kVisible * Weave::kVisible ? 1u : 0u, variance};
+      const Window true_values = window_of(truth, left, top);
+      Window error = window_of(result, left, top);
+      std::transform(error.begin(), error.end(), true_values.begin(), error.begin(),
+                     std::minus<>());
+      // The comparisons are false for NaN.
+      if (!is_smooth(true_values) ||
+          !std::isfinite(std::accumulate(error.begin(), error.end(), 0.0))) {
+        continue;
+      }
+      std::vector<double> powers = power_spectrum(without_plane(error));
+      const bool visible = pattern_of(powers, 1.0).variance > Weave::kVisible * Weave::kVisible;
+      weave += {1, visible ? 1u : 0u, std::move(powers)};
     }
   }
   return weave;
@@ -172,14 +276,17 @@ Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask
 
 std::string weave_line(const Weave& weave) {
   return fmt::format(
-      "Pattern that repeats every 4 pixels: RMS {:.4f} over {} windows in which the truth is "
-      "smooth; {:.1f} % of them exceed {:.3f}\n",
-      weave.rms(), weave.windows, 100.0 * weave.visible_fraction(), Weave::kVisible);
+      "Weave (regular patterns with periods of 2 to {:.0f} pixels): RMS {:.4f}, strongest period "
+      "{:.1f} pixels, over {} windows in which the truth is smooth; {:.1f} % of them exceed "
+      "{:.3f}\n",
+      kLongestPeriod, weave.rms(), weave.period(), weave.windows, 100.0 * weave.visible_fraction(),
+      Weave::kVisible);
 }
 
 nlohmann::ordered_json to_json(const Weave& weave) {
   return {{"windows", weave.windows},
           {"rms", weave.rms()},
+          {"period_px", weave.period()},
           {"visible_fraction", weave.visible_fraction()}};
 }
 

@@ -41,25 +41,24 @@ ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
   return noise;
 }
 
-// Returns a hash of a pixel's position, by multiplications and xor-shifts with the primes of xxHash
+// Returns a hash of a position, by multiplications and xor-shifts with the primes of xxHash
 // [Collet 2012].
-ALCOVE_INLINE uint hash_of(uvec2 pixel) {
-  uint bits = (pixel.x * 2654435761u) ^ (pixel.y * 2246822519u);
+ALCOVE_INLINE uint hash_of(uvec2 position) {
+  uint bits = (position.x * 2654435761u) ^ (position.y * 2246822519u);
   bits = (bits ^ (bits >> 15u)) * 3266489917u;
   return bits ^ (bits >> 16u);
 }
 
 // Lattices over the image whose steps from pixel to pixel are irrational. They are rotated from
-// frame to frame by the golden ratio (directions) and by an R2 number (offsets). Any few adjacent
+// frame to frame by the golden ratio (directions) and by an R2 number (offsets). Few adjacent
 // pixels cover directions and offsets evenly, and so do successive frames at one pixel. The
 // directions step by the two numbers of the R2 sequence [Roberts 2018], the offsets by the golden
 // ratio and the square root of 2.
 //
-// The error of a pixel depends on the direction of its slices. After eight traces of a pixel,
-// mainly the 5th and the 8th harmonic of this dependence remain, and a lattice would show each of
-// them as parallel stripes. Every direction is therefore shifted by a random amount of up to an
-// eighth of the angle between slices, which is constant over time. This turns the 8th harmonic into
-// noise and halves the stripes of the 5th. The spatial filter removes the lower harmonics.
+// The error of a pixel depends on the direction of its slices. A lattice over the whole image would
+// show each harmonic of this dependence as waves of one length, which the spatial filter and few
+// frames do not remove. The directions of each block of 4x4 pixels are therefore shifted by a
+// random amount, which is constant over time. A block still covers all directions evenly.
 //
 // If `moves` is true, the traced pixel moves through the pixels of a tile and returns after four
 // frames. The rotation per frame is then a quarter of such a number, so that the frames in which a
@@ -70,7 +69,7 @@ ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   // 0.7548776662, or, if `moves` is true, a quarter of 1.6180339887 and of 2.5698402910.
   uint turn = moves ? 1737350766u : 2654435769u;
   uint shift = moves ? 2759345001u : 3242174889u;
-  uint random_shift = (hash_of(pixel) >> 16u) << 13u;  // below an eighth
+  uint random_shift = hash_of(uvec2(pixel.x >> 2u, pixel.y >> 2u));
   // Steps to the right and downwards: 0.7548776662 and 0.5698402910 for directions, 0.6180339887
   // and 0.4142135624 for offsets.
   uint direction_bits = random_shift + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * turn;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "evaluate/errors.h"
+#include "evaluate/weave.h"
 #include "gpu_test.h"
 #include "reference/ray_scene.h"
 #include "reference/surface_points.h"
@@ -98,6 +99,23 @@ TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
     EXPECT_GT(result->cost.processor, 0.0);
     EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
   }
+}
+
+// The noise of few traces per pixel must not form a regular pattern. The limit is an eighth of the
+// weave that a lattice of directions over the whole image has here, .019.
+TEST_F(AblationTest, FirstFramesOfAHistoryHaveNoWeave) {
+  const auto gpu = open_validated();
+  ASSERT_TRUE(gpu);
+  StaticSetup setup = setup_;
+  setup.width = 480;
+  setup.height = 270;
+  setup.frames = 8;
+  auto ablation = VariantRunner::create(*gpu, scene_, setup, base_);
+  ASSERT_TRUE(ablation) << ablation.error();
+  const auto [truth, surfaces] = truth_of(ablation->base());
+  const Weave weave = weave_of(ablation->base().visibility, truth, surfaces);
+  EXPECT_GT(weave.windows, 30u);
+  EXPECT_LT(weave.rms(), 0.0024);
 }
 
 TEST_F(AblationTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesTheError) {

@@ -51,7 +51,8 @@ typedef enum AlcoveThicknessUnit {
 
 // How the directions of slices differ between neighbouring pixels and successive frames.
 typedef enum AlcovePattern {
-  // A lattice over the image that never repeats; the next frame adds the golden ratio.
+  // Lattices in blocks of 4x4 traced pixels, with a random shift of each block; the next frame adds
+  // the golden ratio.
   ALCOVE_PATTERN_GOLDEN = 0,
   // The R2 sequence, in which pixels are numbered along a Hilbert curve.
   ALCOVE_PATTERN_HILBERT = 1,

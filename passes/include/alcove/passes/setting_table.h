@@ -188,10 +188,10 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "pattern",
-          .help =
-              "How slice directions and step offsets vary over pixels and frames: lattices without "
-              "a period (golden), the R2 sequence along a Hilbert curve (hilbert), or tiles of 4x4 "
-              "pixels whose directions repeat every six frames, as in Jimenez et al. 2016 (paper).",
+          .help = "How slice directions and step offsets vary over pixels and frames: lattices in "
+                  "blocks with a random shift (golden), the R2 sequence along a Hilbert curve "
+                  "(hilbert), or tiles of 4x4 pixels whose directions repeat every six frames, as "
+                  "in Jimenez et al. 2016 (paper).",
           .group = advanced},
       settings.advanced.pattern);
   visit(SettingInfo{.name = "filter_radius",
