@@ -61,7 +61,7 @@ tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& i
 
 // Larger radii than this, in scene units, are treated as this radius. The shader measures lengths
 // in radii, and the squares of such lengths would underflow.
-constexpr float kLargestRadius = 1e9f;
+constexpr float kLargestRadius = 1e12f;
 
 // Returns whether the thickness is a fraction of the occluder's distance.
 bool of_distance(const OcclusionSettings& settings) {
