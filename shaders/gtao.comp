@@ -284,7 +284,7 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
                      : uvec2(0u);
   RawOcclusion raw_occlusion =
       RawOcclusion(sum.raw_occlusion.visible * mean, sum.raw_occlusion.open * mean);
-  uint normal = make_quantised_normal(surface.normal).bits;
+  uint normal = quantise_normal(surface.normal);
   return SearchResult(
       uvec4(pack_raw_occlusion(raw_occlusion, normal), floatBitsToUint(inverse_depth), lobe),
       kBentNormal

@@ -97,12 +97,9 @@ struct Surface {
   // The change of inverse_depth per pixel along the tangent plane, times n_dot_v. In perspective it
   // is divided by inverse_depth.
   vec2 slope;
-  // The view-space normal (x, y, z), stored as (x, y, 1 + z). The stereographic coordinates of a
-  // QuantisedNormal times the stored 1 + z, minus (x, y), have about the length of the angle
-  // between the two normals.
-  vec3 stereographic;
-  LobeSurface lobe;  // normal as it was given
-  vec2 tilt;         // HalfTexel::tilt; only with HALF
+  vec3 stereographic;  // (x, y, 1 + z) of the unit normal in view space, for squared_angle()
+  LobeSurface lobe;    // normal as it was given
+  vec2 tilt;           // HalfTexel::tilt; only with HALF
   TracedPixels around;
   // Coefficients of the distance of a neighbour from the tangent plane, in units of the tolerance:
   // its inverse depth times per_inverse_depth, minus plane.xy times its offset in pixels, minus

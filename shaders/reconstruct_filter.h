@@ -47,9 +47,8 @@ void add_traced(inout Sums sums, Surface surface, Window window, int i, int j) {
   float near = 1.0 + (offset.y * offset.y + offset.x * offset.x) * window.inverse_squared_width;
   float level = 1.0 + off_plane * off_plane * window.squared_plane_factor;
   if (kByNormal) {
-    vec2 apart = vec2(found.w, traced_stereographic_y[index]) * surface.stereographic.z -
-                 surface.stereographic.xy;
-    level += min(dot(apart, apart), kLargestSquaredAngle);
+    vec2 other = vec2(found.w, traced_stereographic_y[index]);
+    level += min(squared_angle(surface.stereographic, other), kLargestSquaredAngle);
   }
   float both = near * near * level;
   float weight = 1.0 / (both * both);

@@ -122,8 +122,8 @@ History read_moving(Surface surface) {
       texels.distances = follow_depth(texels.distances, moved_distance(surface));
     }
   }
-  vec4 linear = clamp(1.0 + history_slack(surface) - abs(texels.distances), 0.0, 1.0);
-  vec4 weights = bilinear_weights(part) * (linear * linear);
+  vec4 weights =
+      bilinear_weights(part) * history_agreement(texels.distances, history_slack(surface));
   float total = sum_of(weights);
   bool known = previous.seen && total >= 0.05;
   float scale = 1.0 / max(total, 0.05);

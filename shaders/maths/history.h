@@ -70,11 +70,11 @@ ALCOVE_INLINE float history_depth(vec2 scale_and_offset, float log_inverse_depth
   return clamp(log_inverse_depth * scale_and_offset.x + scale_and_offset.y, 0.0f, 1.0f);
 }
 
-// Returns the weight, [0,1], of a history texel whose depth differs from the expected one by
-// `difference` (any unit). It is 1 if the difference is at most `slack`, the rounding error of a
-// stored depth, and 0 if it is at least `slack` + 1/`sharpness`.
-ALCOVE_INLINE float history_agreement(float difference, float slack, float sharpness) {
-  float linear = clamp(1.0f - (abs(difference) - slack) * sharpness, 0.0f, 1.0f);
+// Returns the weights, [0,1], of four texels of the history, whose depths lie at `distances` from
+// the pixel's tangent plane. A weight is 1 if the distance is at most `slack`, the rounding error
+// of a stored depth, and 0 if it is at least `slack` + 1.
+ALCOVE_INLINE vec4 history_agreement(vec4 distances, float slack) {
+  vec4 linear = clamp(1.0f + slack - abs(distances), 0.0f, 1.0f);
   return linear * linear;
 }
 

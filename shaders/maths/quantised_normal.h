@@ -5,18 +5,12 @@
 // where `angle` is the angle between the normal and the view axis. Stereographic projection is
 // conformal, so that small distances between coordinates are proportional to angles without
 // decoding.
-#ifndef ALCOVE_MATHS_COARSE_NORMAL_H
-#define ALCOVE_MATHS_COARSE_NORMAL_H
+#ifndef ALCOVE_MATHS_QUANTISED_NORMAL_H
+#define ALCOVE_MATHS_QUANTISED_NORMAL_H
 
 #include "language.h"
 
 ALCOVE_MATHS_BEGIN
-
-struct QuantisedNormal {
-  uint bits;            // 8 bits; equal normals have equal bits
-  vec2 stereographic;   // stereographic coordinates, each in [-1,1]
-  float squared_scale;  // factor from squared distances of coordinates to squared angles
-};
 
 // Returns the stereographic coordinates that the lowest eight bits of `bits` encode.
 ALCOVE_INLINE vec2 stereographic_of_bits(uint bits) {
@@ -24,26 +18,21 @@ ALCOVE_INLINE vec2 stereographic_of_bits(uint bits) {
               (float((bits >> 4u) & 15u) - 7.0f) * (1.0f / 7.0f));
 }
 
-// Quantises a unit normal in view space. Stereographic coordinates are clamped to those of
-// directions 90 degrees from the view axis. Each coordinate has 15 values, so the error is at most
-// 12 degrees.
-ALCOVE_INLINE QuantisedNormal make_quantised_normal(vec3 normal) {
+// Quantises a unit normal in view space to 8 bits. Stereographic coordinates are clamped to those
+// of directions 90 degrees from the view axis. Each coordinate has 15 values, so the error is at
+// most 12 degrees.
+ALCOVE_INLINE uint quantise_normal(vec3 normal) {
   vec2 stereographic = vec2(normal.x, normal.y) * (1.0f / max(1.0f + normal.z, 0.1f));
-  QuantisedNormal coarse;
-  coarse.bits = uint(clamp(stereographic.x, -1.0f, 1.0f) * 7.0f + 7.5f) |
-                (uint(clamp(stereographic.y, -1.0f, 1.0f) * 7.0f + 7.5f) << 4u);
-  coarse.stereographic = stereographic_of_bits(coarse.bits);
-  float scale = 2.0f / (1.0f + dot(coarse.stereographic, coarse.stereographic));
-  coarse.squared_scale = scale * scale;
-  return coarse;
+  return uint(clamp(stereographic.x, -1.0f, 1.0f) * 7.0f + 7.5f) |
+         (uint(clamp(stereographic.y, -1.0f, 1.0f) * 7.0f + 7.5f) << 4u);
 }
 
-// Returns the approximate squared angle, in radians squared, between this normal and one with the
-// stereographic coordinates `other`. It is 0 for equal normals, grows with the angle, and is above
-// 0.5 for angles of 60 degrees or more.
-ALCOVE_INLINE float squared_turn(QuantisedNormal own, vec2 other) {
-  vec2 apart = other - own.stereographic;
-  return dot(apart, apart) * own.squared_scale;
+// Returns the approximate squared angle, in radians squared, between the normal (x, y, z) and one
+// with the stereographic coordinates `other`. `own` is (x, y, 1 + z). The result is 0 for equal
+// normals, grows with the angle, and is above 0.5 for angles of 60 degrees or more.
+ALCOVE_INLINE float squared_angle(vec3 own, vec2 other) {
+  vec2 apart = other * own.z - vec2(own.x, own.y);
+  return dot(apart, apart);
 }
 
 ALCOVE_MATHS_END

@@ -33,7 +33,7 @@ ALCOVE_INLINE uint pack_open(float open) {
 ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
 
 // Packs the raw occlusion and the normal of a traced pixel: the visibility (13 bits, with an error
-// of at most 2^-14), the unoccluded part (11 bits), and the QuantisedNormal (8 bits).
+// of at most 2^-14), the unoccluded part (11 bits), and the quantised normal (8 bits).
 ALCOVE_INLINE uint pack_raw_occlusion(RawOcclusion raw_occlusion, uint quantised_normal) {
   return pack_unorm(mean_visibility(raw_occlusion), 13u) | (pack_open(raw_occlusion.open) << 13u) |
          (quantised_normal << 24u);

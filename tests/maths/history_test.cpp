@@ -31,7 +31,7 @@ constexpr float kMaxWeight = float(maths::kMaxHistoryFrames);
 // The root of a weight in steps of its five bits.
 float weight_code(float weight) { return 31.0f * std::sqrt(weight / kMaxWeight); }
 
-TEST(History, TexelKeepsItsValuesWithinTheirQuantisationSteps) {
+TEST(History, PackedHistoryTexelKeepsItsValuesWithinTheirQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     const maths::HistoryTexel texel = texel_of(random.uniform(0, 1), random.uniform(0, 1),
@@ -44,7 +44,7 @@ TEST(History, TexelKeepsItsValuesWithinTheirQuantisationSteps) {
   }
 }
 
-TEST(History, TexelKeepsZeroAndTheLargestValuesExactlyAtAnyDither) {
+TEST(History, PackedHistoryTexelKeepsZeroAndTheLargestValuesExactlyAtAnyDither) {
   for (const float dither : {0.0f, 0.3f, 0.9999f}) {
     const maths::HistoryTexel least = stored(texel_of(0, 0, 0, 0), dither);
     EXPECT_EQ(least.depth, 0.0f);
@@ -64,7 +64,7 @@ TEST(History, TexelKeepsZeroAndTheLargestValuesExactlyAtAnyDither) {
 
 // The mean of the weight is up to a quarter of a squared step of its root too large, which is 0.033
 // frames.
-TEST(History, DitherKeepsTheMean) {
+TEST(History, DitheredPackingKeepsTheMeanOfOcclusionAndWeight) {
   constexpr int kSteps = 1000;
   for (const float value : {0.0004f, 0.1234f, 0.5f, 0.9871f}) {
     for (const float weight : {0.3f, 2.0f, 17.0f, 100.0f}) {
@@ -82,7 +82,7 @@ TEST(History, DitherKeepsTheMean) {
   }
 }
 
-TEST(History, MantissaBitsAreUnpackedAtAnyPosition) {
+TEST(History, BitFieldAtAnyPositionOfAWordIsUnpackedToZeroToOne) {
   for (unsigned bits = 1; bits <= 16; ++bits) {
     for (unsigned first = 0; first + bits <= 32; ++first) {
       const unsigned last = (1u << bits) - 1u;
@@ -96,7 +96,7 @@ TEST(History, MantissaBitsAreUnpackedAtAnyPosition) {
   }
 }
 
-TEST(History, PackedLobeTexelKeepsValuesWithinQuantisationSteps) {
+TEST(History, PackedSpecularTexelKeepsItsValuesWithinQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
     maths::LobeTexel texel;
@@ -115,16 +115,16 @@ TEST(History, PackedLobeTexelKeepsValuesWithinQuantisationSteps) {
   EXPECT_EQ(back.open, 0.0f);
 }
 
-TEST(History, HistoryTexelsWithAnotherDepthAreRejected) {
-  EXPECT_EQ(maths::history_agreement(0.0f, 0.001f, 100.0f), 1.0f);
-  EXPECT_EQ(maths::history_agreement(-0.001f, 0.001f, 100.0f), 1.0f)
-      << "rounding of a stored depth";
-  EXPECT_NEAR(maths::history_agreement(0.006f, 0.001f, 100.0f), 0.25f, 1e-5f);
-  EXPECT_EQ(maths::history_agreement(0.011f, 0.001f, 100.0f), 0.0f);
-  EXPECT_EQ(maths::history_agreement(-1e30f, 0.001f, 100.0f), 0.0f);
+TEST(History, HistoryTexelsWithAnotherDepthThanThePixelAreRejected) {
+  const maths::vec4 near = maths::history_agreement({0.0f, -0.1f, 0.6f, -1.1f}, 0.1f);
+  EXPECT_EQ(near.x, 1.0f);
+  EXPECT_EQ(near.y, 1.0f) << "rounding of a stored depth";
+  EXPECT_NEAR(near.z, 0.25f, 1e-5f);
+  EXPECT_NEAR(near.w, 0.0f, 1e-12f);
+  EXPECT_EQ(maths::history_agreement(maths::vec4(-1e30f), 0.1f).x, 0.0f);
 }
 
-TEST(History, SpreadIsTheMeanAndTheStandardDeviation) {
+TEST(History, MeanAndStandardDeviationAreComputedFromSums) {
   const maths::Spread s = maths::spread_of_sums(1.0f + 2.0f + 3.0f, 1.0f + 4.0f + 9.0f, 3.0f);
   EXPECT_FLOAT_EQ(s.mean, 2.0f);
   EXPECT_NEAR(s.deviation, std::sqrt(2.0f / 3.0f), 1e-6f);
@@ -132,7 +132,7 @@ TEST(History, SpreadIsTheMeanAndTheStandardDeviation) {
   EXPECT_GE(maths::spread_of_sums(9 * 0.1f, 9 * 0.01f - 1e-6f, 9.0f).deviation, 0.0f);
 }
 
-TEST(History, ClampingReducesTheWeightOnlyOfValuesOutOfRange) {
+TEST(History, ClampingReducesTheHistoryWeightOnlyIfTheHistoryValueWasOutOfRange) {
   maths::Spread now;
   now.mean = 0.5f;
   now.deviation = 0.1f;
@@ -143,7 +143,7 @@ TEST(History, ClampingReducesTheWeightOnlyOfValuesOutOfRange) {
   EXPECT_FLOAT_EQ(maths::weight_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
 }
 
-TEST(History, InterpolationAddsItsVarianceToThatOfTheNoise) {
+TEST(History, HistoryWeightFallsByTheVarianceThatInterpolationAddsToTheNoise) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float weight = random.uniform(1.0f, 127.0f);
@@ -158,7 +158,7 @@ TEST(History, InterpolationAddsItsVarianceToThatOfTheNoise) {
   EXPECT_EQ(maths::weight_after_blur(0.0f, 0.2f, 1.0f), 0.0f);
 }
 
-TEST(History, VisibilityChangesAreDistinguishedFromNoiseWithinAFewFrames) {
+TEST(History, LargeVisibilityChangesAreRecognisedAndSmallOnesAreTakenForNoise) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const float a = random.uniform(0.0f, 1.0f);
@@ -177,7 +177,7 @@ TEST(History, VisibilityChangesAreDistinguishedFromNoiseWithinAFewFrames) {
   EXPECT_EQ(maths::visibility_changed(0.2f, 0.8f), 1.0f);
 }
 
-TEST(History, RecentOcclusionAveragesOnlyAFewFrames) {
+TEST(History, RecentOcclusionIsAMeanOverOnlyAFewFrames) {
   EXPECT_EQ(maths::update_recent(0.3f, 0.0f, 0.9f, 1.0f), 0.9f);
   EXPECT_FLOAT_EQ(maths::update_recent(0.2f, 1.0f, 0.4f, 1.0f), 0.3f);
   const auto after_a_dozen = [](float open) {

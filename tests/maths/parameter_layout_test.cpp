@@ -92,7 +92,7 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(UpsampleParameters, intensity)}},
 };
 
-TEST(ParameterStructs, HaveTheSameLayoutInUniformBlocksAndInCpp) {
+TEST(ShaderParameters, StructsHaveTheSameLayoutInUniformBlocksAndInCpp) {
   std::map<std::string, int> seen;
   for (const StructLayout& layout : struct_layouts(kParameterLayouts)) {
     const auto match = kExpected.find(layout.name);
@@ -103,7 +103,7 @@ TEST(ParameterStructs, HaveTheSameLayoutInUniformBlocksAndInCpp) {
   for (const auto& [name, offsets] : kExpected) EXPECT_EQ(seen[name], 1) << name;
 }
 
-TEST(ParameterStructs, ProjectionSizeIsAMultipleOf16Bytes) {
+TEST(ShaderParameters, ProjectionSizeIsAMultipleOf16Bytes) {
   EXPECT_EQ(sizeof(maths::Projection) % 16, 0u);
 }
 

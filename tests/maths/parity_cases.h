@@ -95,7 +95,7 @@ ALCOVE_INLINE vec4 parity_of_cameras(uint which, vec4 a, vec4 b, Projection p) {
       return vec4(position.x, position.y, position.z, linear_depth(p, b.x));
     case 6u:
       return vec4(
-          history_agreement(history_depth(vec2(0.05f, 0.5f), log2(depth)) - b.w, 0.001f, 2.0f),
+          history_agreement(vec4(history_depth(vec2(0.05f, 0.5f), log2(depth)) - b.w), 0.001f).x,
           visibility_changed(b.x, b.y), view.x, view.z);
   }
   return vec4(0.0f);
@@ -145,8 +145,7 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
     case 14u: {
       uint word = pack_unorm(a.x, 12u);
       return vec4(unpack_unorm(word, 12u), unpack_unorm(pack_unorm(a.y, 8u), 8u),
-                  squared_turn(make_quantised_normal(vec3(0.0f, 0.6f, 0.8f)),
-                               stereographic_of_bits(uint(a.z * 255.0f))),
+                  squared_angle(vec3(0.0f, 0.6f, 1.8f), stereographic_of_bits(uint(a.z * 255.0f))),
                   unpack_open(uint(a.w * 1000.0f)));
     }
     case 15u:

@@ -34,8 +34,8 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
       maths::RawOcclusion sums;
       sums.visible = texel[0];
       sums.open = texel[1];
-      texel[0] = std::bit_cast<float>(
-          maths::pack_raw_occlusion(sums, maths::make_quantised_normal(normal).bits));
+      texel[0] =
+          std::bit_cast<float>(maths::pack_raw_occlusion(sums, maths::quantise_normal(normal)));
       texel[1] = maths::inverse_depth_of_ndc(from_ndc, ndc, is_perspective(projection.value()),
                                              is_reversed(projection.value()));
     }
