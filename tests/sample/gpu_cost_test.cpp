@@ -303,7 +303,7 @@ TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   const auto cost = cost_of(*GetParam().part, *device, GetParam().settings);
   ASSERT_TRUE(cost) << cost.error();
   if (cost->label_without.empty()) {
-    expect_enough_waves(*GetParam().part, GetParam().settings.settings.slices, *cost);
+    expect_enough_waves(*GetParam().part, GetParam().settings.inputs.settings.slices, *cost);
   }
   const auto complaints = over_budget(budget, {*cost});
   for (const std::string& complaint : complaints) {
