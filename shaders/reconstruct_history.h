@@ -140,10 +140,12 @@ History read_moving(Surface surface) {
     history.recent = dot(weights, texels.recents) * scale;
   }
   if (kBentNormal) {
-    vec3 stored = vec3(dot(weights, textureGather(bent_history_image, uv, 0)),
-                       dot(weights, textureGather(bent_history_image, uv, 1)),
-                       dot(weights, textureGather(bent_history_image, uv, 2)));
-    history.residual = known ? unpack_half_residual(stored * scale) : vec3(0.0);
+    // The difference from 0 is weighted, so that the rounding of weights does not change a 0.
+    vec4 x = textureGather(bent_history_image, uv, 0) - kZeroHalfResidual;
+    vec4 y = textureGather(bent_history_image, uv, 1) - kZeroHalfResidual;
+    vec4 z = textureGather(bent_history_image, uv, 2) - kZeroHalfResidual;
+    vec3 sum = vec3(dot(weights, x), dot(weights, y), dot(weights, z));
+    history.residual = known ? sum * (scale * kHalfResidualUnit) : vec3(0.0);
     // From the view space of the previous frame.
     history.residual = history.residual * mat3(parameters.previous_from_view);
   }

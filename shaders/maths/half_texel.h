@@ -58,8 +58,12 @@ ALCOVE_INLINE vec4 pack_half_residual(vec3 residual, float dither) {
               0.0f);
 }
 
+// The stored value of a residual of 0, and the residual for a stored difference of 1.
+const float kZeroHalfResidual = 512.0f / 1023.0f;
+const float kHalfResidualUnit = 1023.0f / 511.0f * kLargestResidual;
+
 ALCOVE_INLINE vec3 unpack_half_residual(vec3 stored) {
-  return (stored - 512.0f / 1023.0f) * (1023.0f / 511.0f * kLargestResidual);
+  return (stored - kZeroHalfResidual) * kHalfResidualUnit;
 }
 
 ALCOVE_MATHS_END

@@ -255,7 +255,7 @@ TEST(CSettings, SettingValuesArePrintedShortAndExactInEveryLocale) {
   settings.advanced = &advanced;
   std::string text(alcovePrintSettings(&settings, nullptr, 0), '\0');
   alcovePrintSettings(&settings, text.data(), text.size() + 1);
-  EXPECT_THAT(text, testing::StartsWith("radius = 0.15\ntile_size = 2\n"));
+  EXPECT_THAT(text, testing::StartsWith("radius = 0.15\ntile_size = 4\n"));
   EXPECT_THAT(text, HasSubstr("\nthickness = 0.12345678\n"));
   EXPECT_THAT(text, HasSubstr("\nhidden_occlusion = 1e-07\n"));
   EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));
