@@ -51,8 +51,7 @@ enum class Weighting : std::uint8_t {
 // How slice directions and step offsets vary over pixels and frames (shaders/maths/sampling.h).
 enum class Pattern : std::uint8_t {
   // Lattices in blocks of 4x4 traced pixels, with a random shift of each block, rotated by the
-  // golden
-  // ratio each frame.
+  // golden ratio each frame.
   golden,
   hilbert,  // The R2 sequence along a Hilbert curve.
   paper,    // 16 directions in tiles of 4x4 pixels, rotated over six frames [Jimenez 2016].
