@@ -79,10 +79,11 @@ ALCOVE_INLINE float border_share(float other_outside, float nearness) {
   return 0.5f * (1.0f - other_outside) * saturate(1.0f - squared * squared);
 }
 
-// Adds the part of the radius beyond the border of the image, `beyond`, as a column. The
-// last sample before the border is `offset` away from the shaded pixel; kNowhere means that
-// nothing is added. The column's width is scaled so that `share` of the directions is excluded if
-// the column is as wide as the whole radius.
+// Adds the part of the radius beyond the border of the image as an unobserved column. `beyond` is
+// the length of that part along the line, and `offset` the distance of the last sample before the
+// border from the shaded pixel, in the unit of the other lengths; with kNowhere nothing is added.
+// The column's width is scaled so that `share` of the directions is excluded if the column is as
+// wide as the whole radius.
 ALCOVE_INLINE Unobserved add_beyond_border(Unobserved sum, float offset, float beyond,
                                            float share) {
   bool hides = beyond > 0.0f && offset < kNowhere;

@@ -211,7 +211,8 @@ TEST(VisibilityBitmask, VisibilityEndsAtTheFirstOccludedSectorIfVolumeBehindOccl
   }
 }
 
-TEST(VisibilityBitmask, SolidFractionBehindAnOccluderGrowsWithItsWidthAndAveragesToTheSetting) {
+TEST(VisibilityBitmask,
+     ShareOfHiddenVolumeTakenAsSolidGrowsWithOccluderWidthAndAveragesToHiddenOcclusion) {
   for (const float hidden_occlusion : {0.1f, 0.35f, 0.5f, 0.9f}) {
     const float exponent = maths::hidden_exponent(hidden_occlusion);
     constexpr int kSteps = 4000;

@@ -181,7 +181,7 @@ void HappensBefore::spread(const Barrier& barrier, const Reached& reached) {
 }
 
 // Records a semaphore signal. It comes after all earlier work of its queue and after everything
-// that is ordered before that work, and makes all writes of this work available.
+// that is ordered before that work, and makes the writes of all of these available.
 void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
   if (signalled_.size() <= submission) signalled_.resize(submission + 1);
   std::vector<Time>& times = signalled_[submission];
