@@ -94,8 +94,8 @@ struct Surface {
   float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
   float depth;          // 1/inverse_depth in perspective, 1 otherwise
   float n_dot_v;        // cosine between normal and view direction, on the camera's axis
-  // The change of inverse_depth per pixel along the tangent plane, times n_dot_v. In perspective it
-  // is divided by inverse_depth.
+  // In perspective the relative change of 1/depth per pixel along the tangent plane, in
+  // orthographic views the change of the depth, both times n_dot_v.
   vec2 slope;
   vec3 stereographic;  // (x, y, 1 + z) of the unit normal in view space, for squared_angle()
   LobeSurface lobe;    // normal as it was given

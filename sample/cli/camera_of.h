@@ -12,10 +12,10 @@ namespace alcove::sample {
 // Returns the camera that the options choose in this scene. Near and far planes that are not given
 // as options are those of the scene's camera. They are instead fitted to the geometry in view if
 // the eye, the target or the height of an orthographic view is given, or if the scene has no
-// camera, so that the whole scene is framed. Depth is reversed in perspective views unless the
-// options say otherwise. Errors: the scene has no camera of that name (its cameras are listed), the
-// eye is at the target, the near plane is not in front of the far plane or, in perspective, not in
-// front of the eye.
+// camera. Without a camera and an eye, the view frames the whole scene. Depth is reversed in
+// perspective views unless the options say otherwise. Errors: the scene has no camera of that name
+// (its cameras are listed), the eye is at the target, the near plane is not in front of the far
+// plane or, in perspective, not in front of the eye.
 [[nodiscard]] tl::expected<Camera, std::string> camera_of(const ViewOptions& view,
                                                           const Scene& scene);
 

@@ -51,8 +51,8 @@ size_t count_of_surroundings(const std::vector<Mesh>& meshes,
   return surroundings;
 }
 
-// The smallest part that is left out or kept as a whole: a triangle of a mesh that has one
-// instance, or one of several instances.
+// The smallest part of a scene that the bounds of its core include or leave out as a whole: a
+// triangle of a mesh that has one instance, or one instance of a mesh that has several.
 struct Unit {
   Bounds bounds_ws;
   uint64_t triangles;

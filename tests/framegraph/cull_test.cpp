@@ -172,7 +172,7 @@ TEST_F(CullReadModifyWrite, DepthPrepassIsNotCulledIfALaterPassTestsAgainstItsDe
                              access::depth_attachment));
 }
 
-TEST_F(CullReadModifyWrite, OptionalWriteIsNotCulledIfOnlyAReadModifyWriteReadsIt) {
+TEST_F(CullReadModifyWrite, WriteMarkedAsOptionalIsKeptIfOnlyAReadModifyWriteReadsItsResult) {
   expect_both(plan_of_update(access::storage_write_compute, Contents::keep, Need::optional,
                              access::storage_read_write_compute));
 }
