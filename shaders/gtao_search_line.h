@@ -16,7 +16,7 @@
 const float kRoundingBias = 12582912.0;  // 1.5 * 2^23
 const int kRoundingBits = 0x4B400000;
 
-// What both half-slices of a slice have in common.
+// The values of a slice that its two half-slices share.
 struct SearchLine {
   vec2 px_per_offset;   // pixels on the image per unit of offset, along the slice's direction
   float offset_per_px;  // offset of one pixel along the line

@@ -94,7 +94,7 @@ vec4 follow_depth(vec4 differences, float limit) {
   return differences - shift;
 }
 
-// What the history has at the four texels around a position, in the order of textureGather.
+// The values of the history at the four texels around a position, in the order of textureGather.
 struct HistoryTexels {
   // From the surface's tangent plane, in units at which a texel of another depth no longer counts.
   vec4 distances;

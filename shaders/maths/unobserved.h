@@ -103,9 +103,9 @@ const float kMostUnobserved = 0.98f;
 // Returns the arc of unobserved directions. It begins at the direction that leaves the sphere of
 // the radius exactly in the nearest unobserved column, and ends at `first`, the sine and cosine of
 // the angle between the view direction and the first occluder, or the tangent plane if nothing is
-// occluded. `radius` is slice_radius(). The share is the square root of the width of the row
-// relative to the radius. In the development views the square root had a smaller error than the
-// relative width itself, and than excluding the whole arc.
+// occluded. `radius` is the result of sphere_reach(). The share is the square root of the width of
+// the row relative to the radius. In the development views the square root had a smaller error than
+// the relative width itself, and than excluding the whole arc.
 ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserved, float radius) {
   UnobservedArc arc;
   float x = min(unobserved.first / radius, 1.0f);
