@@ -151,9 +151,11 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
     HalfSlice half_slice =
-        make_half_slice(surface, search_line, slice, side, i == 0u ? open_arcs.x : open_arcs.y,
-                        i == 0u ? border.xy : border.yx, step_offset);
+        make_half_slice(surface, search_line, slice, side, open_arcs.x, border, step_offset);
     add_half_slice(sum, half_slice, slice);
+    search_line = opposite(search_line);
+    open_arcs = open_arcs.yx;
+    border = border.yx;
     ++i;
   }
   while (i < 2u)

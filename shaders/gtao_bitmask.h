@@ -39,7 +39,7 @@ uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer
     last_px = here.point.x;
     ++k;
   } while (k < kStepCount);
-  return occluded;
+  return is_empty(half_slice) ? 0u : occluded;
 }
 
 // Adds the part of a half-slice that its occluded sectors leave visible.
@@ -48,7 +48,7 @@ void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   RunSum runs = RunSum(0.0, 0.0, 0.0, false);
   uint occluded = occluded_by_layer(half_slice, per_diamond_angle, 0u, runs);
   if (kSecondLayer) occluded |= occluded_by_layer(half_slice, per_diamond_angle, 1u, runs);
-  float way = half_slice.nearest + half_slice.reach - runs.before_first_px;
+  float way = nearest_offset(half_slice) + reach_of(half_slice) - runs.before_first_px;
   float hidden_occlusion = hidden_occlusion_behind(
       runs.width_px /
           (max(runs.count, 1.0) * max(way, 1e-3 * half_slice.search_line.offset_per_px)),

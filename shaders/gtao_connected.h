@@ -12,7 +12,6 @@ struct SegmentState {
   float rise;                        // change of y (times w) over the last sample interval
   float half_interval;               // half the width of the last sample interval
   DepthDiscontinuity discontinuity;  // at the last sample
-  float inverse_depth;               // of the last sample
   uint beyond;                       // sectors beyond the last sample
   bool inside;                       // whether the last sample lies within the radius
   uint occluded;                     // sectors that are occluded so far
@@ -91,7 +90,6 @@ void add_sample(inout SegmentState state, float sectors, uint layer, uint bit, S
   }
   state.beyond = beyond;
   state.inside = inside;
-  state.inverse_depth = here.inverse_depth;
 }
 
 DepthDiscontinuity discontinuity_between(float rise_before, float half_before, float rise_after,
@@ -149,14 +147,21 @@ SegmentState first_state(HalfSlice half_slice, float sectors, uint layer, out Sl
 }
 
 // The sectors that a surface occludes beyond the image's border. A surface that leaves the image
-// without a discontinuity continues as the plane through its last two samples, `before` and `last`.
-uint extrapolated_sectors(SegmentState state, float inverse_depth_before, HalfSlice half_slice,
-                          float sectors, SliceSample last) {
-  float per_offset = 0.5 / state.half_interval;
+// without a discontinuity continues as the plane through its last two samples. Its slope relative
+// to the tangent plane is measured between the texels of these samples, because rounding the
+// positions to texels changes their distance by up to a pixel.
+uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sectors,
+                          SliceSample last) {
+  SearchLine search_line = half_slice.search_line;
+  float interval = 2.0 * state.half_interval;
+  float between_texels = texel_distance(search_line, last.point.x - interval, last.point.x);
+  float above_tangent = (state.rise - interval * search_line.tangent_rise) /
+                        max(between_texels, 0.1 * search_line.offset_per_px);
+  float slope = search_line.tangent_rise + above_tangent;
   float way =
-      extrapolated_way(last.inverse_depth, (last.inverse_depth - inverse_depth_before) * per_offset,
-                       half_slice.extrapolated, kPerspective);
-  vec2 end = vec2(last.point.x + way, last.point.y + state.rise * per_offset * way);
+      extrapolated_way(last.inverse_depth * search_line.y_per_depth, slope - search_line.level_rise,
+                       extrapolated_distance(half_slice), kPerspective);
+  vec2 end = vec2(last.point.x + way, last.point.y + slope * way);
   bool continues = way > 0.0 && !is_discontinuous(state.discontinuity) && state.inside;
   uint beyond = sectors_beyond(biased_position(sectors, 1.0 - diamond_angle(end)));
   return continues ? state.beyond ^ beyond : 0u;
@@ -166,7 +171,7 @@ uint extrapolated_sectors(SegmentState state, float inverse_depth_before, HalfSl
 float hidden_occlusion_of(SegmentState state, HalfSlice half_slice) {
   bool from_start = (state.runs & 1u) != 0u || state.runs == 0u;
   float before_first = from_start ? 0.0 : sample_offset(half_slice, first_sample(state.runs) - 1.0);
-  float searched = max(half_slice.nearest + half_slice.reach - before_first,
+  float searched = max(nearest_offset(half_slice) + reach_of(half_slice) - before_first,
                        1e-3 * half_slice.search_line.offset_per_px);
   float run_share = 2.0 * state.half_width / (max(run_count(state.runs), 1.0) * searched);
   return hidden_occlusion_behind(run_share, parameters.hidden_exponent);
@@ -208,14 +213,11 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
     } while (k < kStepCount - 1u);
   }
   // No sample follows the last one, so it is connected only if there is no discontinuity before it.
-  float inverse_depth_before = state.inverse_depth;
   add_sample(state, sectors, layer, sample_bit(kStepCount - 1u), here,
              !is_discontinuous(state.discontinuity), edge_distance(state));
-  uint extrapolated =
-      kExtrapolation ? extrapolated_sectors(state, inverse_depth_before, half_slice, sectors, here)
-                     : 0u;
+  uint extrapolated = kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, here) : 0u;
   Occluders found;
-  found.occluded = state.occluded | extrapolated;
+  found.occluded = is_empty(half_slice) ? 0u : state.occluded | extrapolated;
   found.hidden_occlusion = hidden_occlusion_of(state, half_slice);
   found.known_back = state.known_back;
   found.unobserved = nothing_unobserved();
@@ -240,9 +242,10 @@ Occluders find_occluders(HalfSlice half_slice, float sectors) {
 // The arc of unobserved directions before the first occluder, which begins at `first_light`.
 UnobservedArc find_unobserved(HalfSlice half_slice, vec2 first_light, Occluders found) {
   float radius = half_slice.search_line.radius;
+  vec2 outside = outside_parts(half_slice);
   Unobserved unobserved =
-      add_beyond_border(mean_row(found.unobserved), found.border, half_slice.outside * radius,
-                        border_share(half_slice.other_outside, half_slice.nearness));
+      add_beyond_border(mean_row(found.unobserved), found.border, outside.x * radius,
+                        border_share(outside.y, half_slice.nearness));
   return make_unobserved_arc(first_light, unobserved, radius);
 }
 

@@ -16,7 +16,8 @@ float sample_cosine(HalfSlice half_slice, vec3 point) {
     cosine = mix(half_slice.tangent_cosine, cosine,
                  radius_weight(squared * inverse, point.z, parameters.falloff));
   }
-  return squared <= point.z * point.z ? cosine : kNoHorizon;
+  bool counts = squared <= point.z * point.z && !is_empty(half_slice);
+  return counts ? cosine : kNoHorizon;
 }
 
 // Adds the part of a half-slice between the view direction and a horizon, given by its cosine.

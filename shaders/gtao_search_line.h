@@ -16,9 +16,9 @@
 const float kRoundingBias = 12582912.0;  // 1.5 * 2^23
 const int kRoundingBits = 0x4B400000;
 
-// The values of a slice that its two half-slices share.
+// The line along which a half-slice is searched. Offsets grow outwards from the shaded point.
 struct SearchLine {
-  vec2 px_per_offset;   // pixels on the image per unit of offset, along the slice's direction
+  vec2 px_per_offset;   // pixels on the image per unit of offset
   float offset_per_px;  // offset of one pixel along the line
   float radius;         // offset of the farthest point within the radius
   float tangent_rise;   // change of y w per unit of offset on the tangent plane
@@ -62,26 +62,30 @@ SearchLine make_search_line(Surface surface, vec3 direction) {
   return search_line;
 }
 
+// The same line in the opposite direction, for the other half-slice. Turning it round takes fewer
+// registers than keeping both directions.
+SearchLine opposite(SearchLine search_line) {
+  search_line.px_per_offset = -search_line.px_per_offset;
+  search_line.tangent_rise = -search_line.tangent_rise;
+  search_line.level_rise = -search_line.level_rise;
+  return search_line;
+}
+
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded
 // point.
 struct HalfSlice {
   SearchLine search_line;
   float side;            // +1 along the slice's direction, -1 against it
   float open_arc;        // the half-slice's part of the integral without occluders
-  vec2 px_per_offset;    // SearchLine::px_per_offset outwards; zero if there is nothing to search
-  float tangent_rise;    // SearchLine::tangent_rise outwards
-  float level_rise;      // SearchLine::level_rise outwards
-  float nearest;         // offset of the nearest possible sample
-  float reach;           // offset of the last sample less `nearest`
-  float growth;          // by this much, half the interval between samples grows per sample
+  float growth;          // by this much, half the interval between samples grows per sample; zero
+                         // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
-  float extrapolated;    // how far surfaces are extrapolated beyond the image's border
-  float outside;         // the part of the radius that lies beyond the image's border, [0,1]
-  float other_outside;   // `outside` of the other half-slice
+  vec2 border;           // offset of the image's border in this direction (x) and the other (y)
   ivec2 texel_bias;      // the shaded pixel minus kRoundingBits
   float nearness;        // the radius divided by the distance in perspective, else 0
   vec2 height;           // gradient of the height over the tangent plane in the slice's plane
   float tangent_cosine;  // cosine of the tangent plane's horizon
+  float slice_cosine;    // cos(gamma), Slice::cosine
 };
 
 // Offsets from `centre`, in pixels from the image's corner, to the border of the image: along the
@@ -96,6 +100,39 @@ vec2 border_offsets(vec2 centre, SearchLine search_line) {
   return vec2(min(along.x, along.y), -max(against.x, against.y)) - 0.01 * search_line.offset_per_px;
 }
 
+// Offset of the nearest possible sample.
+float nearest_offset(HalfSlice half_slice) {
+  return kNearestStep * half_slice.search_line.offset_per_px;
+}
+
+// Offset of the last sample less that of the nearest.
+float reach_of(HalfSlice half_slice) {
+  return half_slice.growth * (float(kStepCount) * float(kStepCount));
+}
+
+// Offset of the farthest point that can occlude. If the surface faces away from the half-slice,
+// every point above its tangent plane and within the radius lies at most radius * cos(gamma) away
+// on the image.
+float search_distance(HalfSlice half_slice) {
+  float radius = half_slice.search_line.radius;
+  return half_slice.tangent_cosine > 0.0 ? radius * half_slice.slice_cosine : radius;
+}
+
+// How far surfaces are extrapolated beyond the image's border.
+float extrapolated_distance(HalfSlice half_slice) {
+  return clamp(search_distance(half_slice) - half_slice.border.x, 0.0,
+               kExtrapolationRatio * reach_of(half_slice));
+}
+
+// The parts of the radius that lie beyond the image's border, [0,1], in this half-slice (x) and in
+// the other one (y). A radius within the nearest step is searched nowhere, whether it lies outside
+// or not.
+vec2 outside_parts(HalfSlice half_slice) {
+  float radius = half_slice.search_line.radius;
+  vec2 outside = max(1.0 - half_slice.border / radius, 0.0);
+  return radius >= nearest_offset(half_slice) ? outside : vec2(0.0);
+}
+
 // `border` is the offset of the image's border in the half-slice's direction (x) and in the other
 // one (y).
 HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, float side,
@@ -106,39 +143,31 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.open_arc = open_arc;
   half_slice.tangent_cosine = tangent_horizon(slice, side);
   half_slice.height = vec2(side * slice.along, slice.toward);
-  half_slice.nearest = kNearestStep * search_line.offset_per_px;
-  // If the surface faces away from the half-slice, every point above its tangent plane and within
-  // the radius lies at most radius * cos(gamma) away on the image.
-  float distance =
-      half_slice.tangent_cosine > 0.0 ? search_line.radius * slice.cosine : search_line.radius;
-  bool empty = min(distance, border.x) < half_slice.nearest;
+  float nearest = nearest_offset(half_slice);
+  half_slice.slice_cosine = slice.cosine;
+  float distance = search_distance(half_slice);
+  bool empty = min(distance, border.x) < nearest;
   // Samples stay apart if the radius spans few pixels, and inside the image in any case.
-  float apart =
-      max(distance - half_slice.nearest, 0.25 * float(kStepCount) * search_line.offset_per_px);
-  half_slice.reach =
-      max(min(apart, border.x - half_slice.nearest), 1e-3 * search_line.offset_per_px);
-  half_slice.growth = half_slice.reach * (1.0 / (float(kStepCount) * float(kStepCount)));
-  half_slice.extrapolated = clamp(distance - border.x, 0.0, kExtrapolationRatio * half_slice.reach);
-  // A radius within the nearest step is searched nowhere, whether it lies outside or not.
-  vec2 outside = max(1.0 - border / search_line.radius, 0.0);
-  bool searched = search_line.radius >= half_slice.nearest;
-  half_slice.outside = searched ? outside.x : 0.0;
-  half_slice.other_outside = searched ? outside.y : 0.0;
-  // The first step of an empty half-slice may lie outside the image. All of its samples are
-  // therefore the shaded pixel, and far below the tangent plane, where they occlude nothing.
-  half_slice.px_per_offset = search_line.px_per_offset * (empty ? 0.0 : side);
-  half_slice.tangent_rise = empty ? -1e6 : search_line.tangent_rise * side;
-  half_slice.level_rise = empty ? -1e6 : search_line.level_rise * side;
+  float apart = max(distance - nearest, 0.25 * float(kStepCount) * search_line.offset_per_px);
+  float reach = max(min(apart, border.x - nearest), 1e-3 * search_line.offset_per_px);
+  half_slice.growth = empty ? 0.0 : reach * (1.0 / (float(kStepCount) * float(kStepCount)));
+  half_slice.border = border;
   half_slice.step_offset = step_offset;
   half_slice.texel_bias = surface.pixel - kRoundingBits;
   half_slice.nearness = kPerspective ? parameters.radius * surface.inverse_depth : 0.0;
   return half_slice;
 }
 
-// Offset of sample `k`. It grows with the square of `k`.
+// Whether there is nothing to search. Estimators must then ignore the samples.
+bool is_empty(HalfSlice half_slice) { return half_slice.growth == 0.0; }
+
+// Offset of sample `k`. It grows with the square of `k`. All samples of an empty half-slice are
+// taken at the shaded pixel, because its first step may lie outside the image.
 float sample_offset(HalfSlice half_slice, float k) {
   float steps = k + half_slice.step_offset;
-  return steps * steps * half_slice.growth + half_slice.nearest;
+  float nearest = is_empty(half_slice) ? 0.01 * half_slice.search_line.offset_per_px
+                                       : nearest_offset(half_slice);
+  return steps * steps * half_slice.growth + nearest;
 }
 
 // Half the difference between the offsets of the samples 0 and 1. For each later pair of
@@ -168,10 +197,23 @@ float subtract_rounding_bias(float biased) {
   return rounded;
 }
 
+// The pixels between the shaded pixel and the texel at which a sample at an offset is taken.
+vec2 snapped_px(SearchLine search_line, float offset) {
+  vec2 biased = search_line.px_per_offset * offset + kRoundingBias;
+  return vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
+}
+
+// The distance along the line between the texels at which samples at two offsets are taken.
+float texel_distance(SearchLine search_line, float from, float to) {
+  vec2 px = snapped_px(search_line, to) - snapped_px(search_line, from);
+  float per_px = search_line.offset_per_px;
+  return kSnapToTexels ? dot(px, search_line.px_per_offset) * (per_px * per_px) : to - from;
+}
+
 // The sample at an offset, in a layer of depth: 0 is the depth buffer, 1 the layer that it hides.
 SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   SearchLine search_line = half_slice.search_line;
-  vec2 px = half_slice.px_per_offset * offset;
+  vec2 px = search_line.px_per_offset * offset;
   vec2 biased = px + kRoundingBias;
   ivec2 texel = floatBitsToInt(biased) + half_slice.texel_bias;
   if (kSnapToTexels) {
@@ -181,11 +223,13 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   found.inverse_depth = sample_inverse_depth(layer == 0u ? texelFetch(depth_image, texel, 0).r
                                                          : texelFetch(second_image, texel, 0).r);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
-  float y_of_texel = offset * half_slice.level_rise + y;
+  float y_of_texel = offset * search_line.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;
   y = px.x * search_line.y_per_px.x + y;
   bool on_plane = lies_on_tangent_plane(search_line.fading, y, offset + search_line.rounding);
-  y = on_plane ? offset * half_slice.tangent_rise + y : y_of_texel;
+  // Below the tangent plane nothing occludes, so that rounding errors there need not look like
+  // discontinuities.
+  y = on_plane ? offset * search_line.tangent_rise + max(y, 0.0) : y_of_texel;
   found.point = vec3(offset, y, kPerspective ? found.inverse_depth : 1.0);
   if (kBackFaces) {
     float back = inverse_depth_of(texelFetch(back_image, texel, 0).r);

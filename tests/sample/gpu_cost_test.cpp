@@ -270,11 +270,8 @@ std::string name_of_test(const testing::TestParamInfo<Budgeted>& info) {
 }
 
 // Expects that every pass holds enough waves to hide the latency of its loads, and spills nothing.
-// With more than one slice the search needs 84 vector registers, of which 6 waves of RDNA2 can have
-// only 80 each.
-void expect_enough_waves(const GpuPart& part, std::uint32_t slices, const SettingsCost& cost) {
-  const double fewest_rdna = slices > 1 ? 4.0 : 6.0;
-  const double fewest = part.rdna ? fewest_rdna : 3.0;
+void expect_enough_waves(const GpuPart& part, const SettingsCost& cost) {
+  const double fewest = part.rdna ? 6.0 : 3.0;
   for (const ModelledFrame& frame : cost.frames) {
     for (const ModelledPass& pass : frame.passes) {
       EXPECT_GE(pass.waves_per_simd, fewest)
@@ -303,7 +300,7 @@ TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   const auto cost = cost_of(*GetParam().part, *device, GetParam().settings);
   ASSERT_TRUE(cost) << cost.error();
   if (cost->label_without.empty()) {
-    expect_enough_waves(*GetParam().part, GetParam().settings.inputs.settings.slices, *cost);
+    expect_enough_waves(*GetParam().part, *cost);
   }
   const auto complaints = over_budget(budget, {*cost});
   for (const std::string& complaint : complaints) {
