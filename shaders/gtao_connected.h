@@ -112,8 +112,8 @@ void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice hal
   float rise = next.point.y - here.point.y;
   DepthDiscontinuity discontinuity =
       discontinuity_between(state.rise, state.half_interval, rise, half_interval);
-  bool connected = layer == 0u ? samples_join(state.discontinuity, discontinuity)
-                               : hidden_samples_join(state.discontinuity, discontinuity);
+  bool connected = layer == 0u ? samples_are_connected(state.discontinuity, discontinuity)
+                               : hidden_samples_are_connected(state.discontinuity, discontinuity);
   add_sample(state, sectors, layer, bit, here, connected, edge_distance(state));
   state.rise = rise;
   state.half_interval = half_interval;

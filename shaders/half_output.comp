@@ -55,9 +55,7 @@ float load_inverse_depth(ivec2 pixel) {
 #include "depth_normal.h"
 #include "store_visibility.h"
 
-// Returns the pixel of a texel to whose surface the results belong. representative() in
-// reconstruct_half_surface.h has chosen it: the nearest of the 2x2 pixels if x + y of the texel is
-// even, and otherwise the farthest; and a pixel of the sky only if all four show the sky.
+// Returns the pixel that represents a texel, to whose surface the results belong.
 ivec2 pixel_of(ivec2 texel) {
   ivec2 first = texel * 2;
   ivec2 last = min(first + 1, size_px() - 1);
@@ -66,12 +64,7 @@ ivec2 pixel_of(ivec2 texel) {
   for (int i = 0; i < 4; ++i) {
     depths[i] = texelFetch(depth_image, pixels[i], 0).r;
   }
-  float smallest = min(min(depths.x, depths.y), min(depths.z, depths.w));
-  float largest = max(max(depths.x, depths.y), max(depths.z, depths.w));
-  float nearest = kReversed ? largest : smallest;
-  float farthest = kReversed ? smallest : largest;
-  bool takes_nearest = ((texel.x ^ texel.y) & 1) == 0 || is_sky(farthest);
-  float chosen = takes_nearest ? nearest : farthest;
+  float chosen = representative_depth(texel, depths, kReversed);
   return depths.x == chosen   ? pixels[0]
          : depths.y == chosen ? pixels[1]
          : depths.z == chosen ? pixels[2]

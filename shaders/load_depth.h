@@ -4,8 +4,7 @@
 #ifndef ALCOVE_LOAD_DEPTH_H
 #define ALCOVE_LOAD_DEPTH_H
 
-// Whether a raw depth is the far plane's, beyond it or NaN.
-bool is_sky(float depth_ndc) { return kReversed ? !(depth_ndc > 0.0) : !(depth_ndc < 1.0); }
+bool is_sky(float depth_ndc) { return is_sky_depth(depth_ndc, kReversed); }
 
 float inverse_depth_of(float depth_ndc) {
   return inverse_depth_of_ndc(parameters.inverse_depth_from_ndc, depth_ndc, kPerspective,

@@ -31,9 +31,7 @@ float gradient_of(float inner_change, float outer_change, float plausible) {
   return agree || abs(smaller) < plausible ? smaller : 0.0;
 }
 
-// Returns the pixel that represents the texel: the nearest one if x + y of the texel is even, and
-// otherwise the farthest, like the squares of a chessboard. Where two surfaces meet, both are then
-// found among any 2x2 texels. A pixel of the sky represents a texel only if all four show the sky.
+// Returns the pixel that represents the texel, as representative_depth() chooses it.
 TexelPixel representative(ivec2 texel) {
   vec2 uv = vec2(texel * 2) * parameters.pixel_uv;
   vec2 step = 2.0 * parameters.pixel_uv;
@@ -46,13 +44,8 @@ TexelPixel representative(ivec2 texel) {
   vec4 inside = vec4(lower_left.z, lower_right.w, upper_right.x, upper_left.y);
   vec4 outer_x = vec4(lower_left.w, lower_right.z, upper_right.y, upper_left.x);
   vec4 outer_y = vec4(lower_left.y, lower_right.x, upper_right.w, upper_left.z);
-  float smallest = min(min(inside.x, inside.y), min(inside.z, inside.w));
-  float largest = max(max(inside.x, inside.y), max(inside.z, inside.w));
-  float nearest = kReversed ? largest : smallest;
-  float farthest = kReversed ? smallest : largest;
-  bool takes_nearest = ((texel.x ^ texel.y) & 1) == 0 || is_sky(farthest);
   TexelPixel found;
-  found.depth_ndc = takes_nearest ? nearest : farthest;
+  found.depth_ndc = representative_depth(texel, inside, kReversed);
   // At the border of the image a gather repeats the last pixels, which come first here.
   if (found.depth_ndc == inside.w) {
     found.way = vec2(1.0, 1.0);

@@ -14,7 +14,7 @@ constexpr VkBufferUsageFlags kBufferUsages =
 
 // Returns whether the fields of Limits and the format's features alone show that the device can
 // create the texture.
-bool is_settled(const ResourceRecord& record) {
+bool needs_no_query(const ResourceRecord& record) {
   return record.kind == ResourceKind::buffer || record.origin == Origin::imported ||
          (record.samples == 1 && record.layers == 1 && record.depth == 1 &&
           record.create_flags == 0);
@@ -67,7 +67,7 @@ bool check_images(const GraphDescription& graph, const Limits& limits, const Pla
   for (std::uint32_t r = 0; r < graph.resources.size(); ++r) {
     const ResourceRecord& record = graph.resources[r];
     const Placement& placement = plan.placements[r];
-    if (placement.first == kNone || is_settled(record)) continue;
+    if (placement.first == kNone || needs_no_query(record)) continue;
     const bool history = record.origin == Origin::history;
     const VkFlags usage =
         history ? history_usage(limits, record) | placement.usage : placement.usage;

@@ -6,7 +6,7 @@ namespace {
 
 // Records in `state` that earlier writes are already visible to the read accesses of an initial
 // state, and not to other stages and accesses.
-void note_seen(UseState& state, const State& initial_state) {
+void record_visibility(UseState& state, const State& initial_state) {
   const bool every_access = (initial_state.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
   const bool every_stage = (initial_state.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
   state.write_stages = initial_state.stages;
@@ -18,7 +18,7 @@ void note_seen(UseState& state, const State& initial_state) {
     state.seen_stages = initial_state.stages;
 }
 
-void note_external(UseState& state, const ExternalRecord& external) {
+void record_external(UseState& state, const ExternalRecord& external) {
   const State& initial_state = external.initial_state;
   if (initial_state.access & kWriteBits) {
     state.write_stages = initial_state.stages;
@@ -27,7 +27,7 @@ void note_external(UseState& state, const ExternalRecord& external) {
   } else {
     state.read_stages = initial_state.stages;
     state.read_time = kBeforeFrame;
-    if (initial_state.stages != 0) note_seen(state, initial_state);
+    if (initial_state.stages != 0) record_visibility(state, initial_state);
   }
   if (!external.has_contents) return;
   state.layout = initial_state.layout;
@@ -36,7 +36,7 @@ void note_external(UseState& state, const ExternalRecord& external) {
 
 }  // namespace
 
-void Synchroniser::arrive() {
+void Synchroniser::apply_initial_states() {
   if (graph_.externals.empty()) return;
   const auto& first = workspace_.first_sub;
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
@@ -44,14 +44,14 @@ void Synchroniser::arrive() {
     const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
     for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) {
       s_.states[sub] = {};
-      note_external(s_.states[sub], external);
+      record_external(s_.states[sub], external);
       const auto queue = static_cast<std::size_t>(external.queue);
       if (limits_.queue_families[queue] != kNone) s_.states[sub].queue = external.queue;
     }
   }
 }
 
-void Synchroniser::depart() {
+void Synchroniser::apply_final_states() {
   const auto end = static_cast<std::uint32_t>(plan_.passes.size());
   if (workspace_.several_queues) earliest_ = batch_time(end) - 1;
   for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
@@ -62,8 +62,8 @@ void Synchroniser::depart() {
     const bool used = plan_.placements[r].first != kNone;
     if (external.has_final_state && used) end_reads(r, external.final_state);
     if (external.has_final_state && (used || resource.origin == Origin::imported))
-      use(end, outside_use(r, external.final_state));
-    if (used && resource.origin == Origin::history) leave(r);
+      use(end, use_outside_frame(r, external.final_state));
+    if (used && resource.origin == Origin::history) leave_history_slot(r);
   }
   if (batch_time_ == batch_time(end) && !plan_.batches.empty()) {
     Submission& last = plan_.submissions.back();
@@ -94,7 +94,7 @@ void Synchroniser::end_reads(std::uint32_t resource, const State& final_state) {
   }
 }
 
-AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& state) const {
+AccessRecord Synchroniser::use_outside_frame(std::uint32_t resource, const State& state) const {
   const ResourceRecord& record = graph_.resources[resource];
   AccessRecord access;
   access.stages = state.stages;
@@ -110,7 +110,7 @@ AccessRecord Synchroniser::outside_use(std::uint32_t resource, const State& stat
 
 // Finds the state in which the frame leaves a history slot, and changes layouts at the end of the
 // frame if the subresources of the slot would be left in different ones.
-void Synchroniser::leave(std::uint32_t resource) {
+void Synchroniser::leave_history_slot(std::uint32_t resource) {
   const std::uint32_t first = workspace_.first_sub[resource];
   const std::uint32_t last = workspace_.first_sub[resource + 1];
   FinalState final{resource, {}, QueueClass::graphics, Written::nothing};
@@ -143,7 +143,7 @@ void Synchroniser::leave(std::uint32_t resource) {
   if (!one_layout) {
     final.state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                    VK_IMAGE_LAYOUT_GENERAL};
-    use(static_cast<std::uint32_t>(plan_.passes.size()), outside_use(resource, final.state));
+    use(static_cast<std::uint32_t>(plan_.passes.size()), use_outside_frame(resource, final.state));
   }
   plan_.finals.push_back(final);
 }

@@ -205,7 +205,7 @@ class Placer {
 
   // Places by first fit in s_.order. Keeps the result if its peak is lower than the best so far,
   // and gives up when its peak exceeds `limit`. The resources before `from` in the order keep the
-  // offsets that they have in the accepted order (s_.settled_order).
+  // offsets that they have in the accepted order (s_.accepted_order).
   bool try_order(VkDeviceSize limit = ~VkDeviceSize{0}, std::size_t from = 0) {
     VkDeviceSize peak = keep_before(from);
     for (std::size_t i = from; i < s_.order.size(); ++i) {
@@ -219,7 +219,7 @@ class Placer {
     if (peak >= best_) return false;
     best_ = peak;
     for (std::size_t i = 0; i < s_.items.size(); ++i) s_.items[i].offset = s_.offsets[i];
-    settle();
+    accept_order();
     return true;
   }
 
@@ -233,11 +233,11 @@ class Placer {
     s_.kept.assign(s_.items.size(), 0);
     for (std::size_t i = 0; i < from; ++i) {
       const std::uint32_t index = s_.order[i];
-      s_.offsets[index] = s_.settled_offsets[index];
+      s_.offsets[index] = s_.accepted_offsets[index];
       s_.kept[index] = 1;
-      peak = std::max(peak, s_.settled_offsets[index] + s_.items[index].size);
+      peak = std::max(peak, s_.accepted_offsets[index] + s_.items[index].size);
     }
-    for (const PlaceItem& item : s_.settled_items) {
+    for (const PlaceItem& item : s_.accepted_items) {
       if (s_.kept[item.resource]) s_.live.push_back(item);
     }
     return peak;
@@ -266,32 +266,32 @@ class Placer {
   }
 
   // Makes the order that was tried last the accepted one, from which the search continues.
-  void settle() {
-    s_.settled_order = s_.order;
-    s_.settled_offsets = s_.offsets;
-    s_.settled_items = s_.live;
-    settled_peak_ = last_;
+  void accept_order() {
+    s_.accepted_order = s_.order;
+    s_.accepted_offsets = s_.offsets;
+    s_.accepted_items = s_.live;
+    accepted_peak_ = last_;
   }
 
   void improve(VkDeviceSize bound) {
-    if (s_.settled_order.size() != s_.items.size()) settle();
+    if (s_.accepted_order.size() != s_.items.size()) accept_order();
     while (best_ > bound && budget_ > 0) {
       budget_ -= 16;
       const std::size_t from = change_order();
       // An order that is slightly worse than the accepted one is accepted too, so that the search
       // can leave local minima.
-      const VkDeviceSize limit = settled_peak_ + bound / 256 * roll(3);
-      if (!try_order(limit, from) && last_ <= limit) settle();
+      const VkDeviceSize limit = accepted_peak_ + bound / 256 * roll(3);
+      if (!try_order(limit, from) && last_ <= limit) accept_order();
     }
-    s_.settled_order.clear();
+    s_.accepted_order.clear();
   }
 
   // Makes one change to the accepted order, and returns the first place that differs.
   std::size_t change_order() {
-    s_.order = s_.settled_order;
+    s_.order = s_.accepted_order;
     // A resource whose bytes end at the peak was placed too late: it is moved forward in the order.
     const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
-      return s_.settled_offsets[i] + s_.items[i].size == settled_peak_;
+      return s_.accepted_offsets[i] + s_.items[i].size == accepted_peak_;
     });
     if (high != s_.order.end() && roll(4) != 0) {
       const std::size_t to = roll(static_cast<std::size_t>(high - s_.order.begin()) + 1);
@@ -317,9 +317,9 @@ class Placer {
   Plan& plan_;
   Workspace::Place& s_;
   VkDeviceSize best_ = 0;
-  VkDeviceSize last_ = 0;          // peak of the last order tried
-  VkDeviceSize settled_peak_ = 0;  // peak of the order that is being improved
-  std::int64_t budget_ = 0;        // comparisons left
+  VkDeviceSize last_ = 0;           // peak of the last order tried
+  VkDeviceSize accepted_peak_ = 0;  // peak of the order that is being improved
+  std::int64_t budget_ = 0;         // comparisons left
   std::uint32_t random_ = 1;
 };
 

@@ -19,25 +19,25 @@ bool Synchroniser::change_queue(std::uint32_t position, const AccessRecord& acce
   const bool keeps = state.used && !(access.flags & kDiscard) &&
                      (!texture || state.layout != VK_IMAGE_LAYOUT_UNDEFINED);
   if (!keeps || same_family) {
-    take_without_giver(position, state, same_family);
+    acquire_without_release(position, state, same_family);
     return false;
   }
   const Transition release = release_of(access, state, range);
   s_.releases.push_back(
-      {giving_submission(state), static_cast<std::uint32_t>(s_.releases.size()), release});
+      {releasing_submission(state), static_cast<std::uint32_t>(s_.releases.size()), release});
   Transition& acquire = next_image(kBeforeFrame, position);
   acquire = release;
   acquire.src_stages = waited_stages(access);
   acquire.src_access = 0;
   acquire.dst_stages = access.stages;
   acquire.dst_access = access.access;
-  join_neighbours();
-  note_change(position, access, state);
+  merge_neighbours();
+  record_transition(position, access, state);
   return true;
 }
 
 // Returns the submission that releases the subresource: the last one that uses it on its queue.
-std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
+std::uint32_t Synchroniser::releasing_submission(const UseState& state) const {
   const std::int32_t time = std::max(state.read_time, state.write_time);
   if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
   const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.queue)];
@@ -53,16 +53,17 @@ std::uint32_t Synchroniser::giving_submission(const UseState& state) const {
 // Moves a resource to the current queue without an ownership transfer: the queues are of the same
 // family, or the contents are discarded, so that the layout can change from
 // VK_IMAGE_LAYOUT_UNDEFINED.
-void Synchroniser::take_without_giver(std::uint32_t position, UseState& state, bool same_family) {
+void Synchroniser::acquire_without_release(std::uint32_t position, UseState& state,
+                                           bool same_family) {
   UseState taken;
   taken.queue = queue_;
   taken.by_wait = 1;
   taken.used = state.used;
   taken.layout = same_family ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-  if (state.handed_over) {
+  if (state.reuses_memory) {
     // The resource that occupied this memory before may have been used on the current queue, where
     // no semaphore wait orders its use before this one.
-    taken.handed_over = 1;
+    taken.reuses_memory = 1;
     taken.frame_before = state.frame_before;
     wait_for_frame_before(position, state.frame_before);
     taken.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;

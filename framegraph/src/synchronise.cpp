@@ -11,7 +11,7 @@ namespace alcove::framegraph {
 namespace {
 
 // Records a use in a state without adding dependencies.
-void note(UseState& state, const AccessRecord& access, std::int32_t time) {
+void record_use(UseState& state, const AccessRecord& access, std::int32_t time) {
   if (access.flags & kWrite) {
     state.write_stages = access.stages;
     state.write_access = access.access & kWriteBits;
@@ -21,7 +21,7 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
     state.seen_stages = 0;
     state.seen_access = 0;
     state.transition = kNone;
-    state.handed_over = 0;
+    state.reuses_memory = 0;
     state.by_wait = 0;
     state.unordered_access = access.flags & kUnordered ? access.access : 0;
   } else {
@@ -34,7 +34,7 @@ void note(UseState& state, const AccessRecord& access, std::int32_t time) {
 
 // Returns whether the access continues a series of writes whose order does not matter. All writes
 // of the series wait for the same work as the first one, and not for each other.
-bool goes_on(const UseState& state, const AccessRecord& access) {
+bool continues_write(const UseState& state, const AccessRecord& access) {
   return (access.flags & kUnordered) && state.read_stages == 0 &&
          state.write_stages == access.stages && state.unordered_access == access.access;
 }
@@ -45,7 +45,7 @@ void Synchroniser::run() {
   // Imports and histories get their states from before the frame. A transient gets its state when
   // it takes over memory from other resources.
   s_.states.resize(workspace_.first_sub.back());
-  arrive();
+  apply_initial_states();
   find_last_uses();
   const auto count = static_cast<std::uint32_t>(plan_.passes.size());
   const std::uint32_t* starting = workspace_.transients.data();
@@ -66,7 +66,7 @@ void Synchroniser::run() {
     planned.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
     planned.batch_count = 1;
   }
-  depart();
+  apply_final_states();
 }
 
 // Finds the last use, in the previous frame, of each history and of each transient that is the last
@@ -102,7 +102,7 @@ void Synchroniser::find_last_uses() {
         UseState& last = s_.last_uses[sub];
         // Uses on another queue come before this one, ordered by a semaphore.
         if (last.queue != queue) last = {};
-        note(last, access, kBeforeFrame);
+        record_use(last, access, kBeforeFrame);
         last.queue = queue;
         last.frame_before = frame_before;
       });
@@ -156,7 +156,7 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   };
   take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, resource, false},
             merge);
-  merged.handed_over = 1;
+  merged.reuses_memory = 1;
   merged.queue = queue_;
   if (merged.frame_before != 0)
     wait_for_frame_before(plan_.placements[resource].first, merged.frame_before);
@@ -237,9 +237,9 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
   if (texture && state.layout != access.layout)
     change_layout(position, access, state, range);
   else if (access.flags & kWrite)
-    write_again(position, access, state);
+    write_in_same_layout(position, access, state);
   else
-    read_again(position, access, state);
+    read_in_same_layout(position, access, state);
 }
 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
@@ -248,7 +248,7 @@ inline void Synchroniser::change_layout(std::uint32_t position, const AccessReco
   // Reads come after the write that they read from, so that waiting for the reads is enough. This
   // does not hold for memory that the resource took over from others: there, the reads and the
   // writes may belong to different resources.
-  const bool after_reads = state.read_stages != 0 && !state.handed_over;
+  const bool after_reads = state.read_stages != 0 && !state.reuses_memory;
   wanted.src_stages = after_reads ? state.read_stages : state.read_stages | state.write_stages;
   wanted.src_access = after_reads ? 0 : state.write_access;
   // A semaphore wait covers all stages, so that any stage comes after it.
@@ -260,11 +260,12 @@ inline void Synchroniser::change_layout(std::uint32_t position, const AccessReco
   wanted.new_layout = access.layout;
   wanted.range = range;
   wanted.src_queue = wanted.dst_queue = queue_;
-  join_neighbours();
-  note_change(position, access, state);
+  merge_neighbours();
+  record_transition(position, access, state);
 }
 
-void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access, UseState& state) {
+void Synchroniser::read_in_same_layout(std::uint32_t position, const AccessRecord& access,
+                                       UseState& state) {
   const bool seen =
       (access.stages & ~state.seen_stages) == 0 && (access.access & ~state.seen_access) == 0;
   if (!seen && (state.write_time != kNever || state.by_wait)) {
@@ -286,25 +287,25 @@ void Synchroniser::read_again(std::uint32_t position, const AccessRecord& access
     state.seen_stages |= access.stages;
     state.seen_access |= access.access;
   }
-  note(state, access, pass_time(position));
+  record_use(state, access, pass_time(position));
 }
 
-void Synchroniser::write_again(std::uint32_t position, const AccessRecord& access,
-                               UseState& state) {
-  if (goes_on(state, access)) {
+void Synchroniser::write_in_same_layout(std::uint32_t position, const AccessRecord& access,
+                                        UseState& state) {
+  if (continues_write(state, access)) {
     state.write_time = pass_time(position);
     return;
   }
   Transition wanted;
   wanted.src_stages = state.read_stages | state.write_stages;
   wanted.src_access = state.write_access;
-  if (state.read_stages != 0 && !state.handed_over) {
+  if (state.read_stages != 0 && !state.reuses_memory) {
     wanted.src_stages = state.read_stages;
     wanted.src_access = 0;
   }
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
-  if (state.read_stages != 0 && !state.handed_over) {
+  if (state.read_stages != 0 && !state.reuses_memory) {
     // An execution dependency on the reads is enough, unless this access reads something itself.
     wanted.dst_access &= access.flags & kDiscard ? 0 : ~kWriteBits;
     if ((wanted.dst_access & ~state.seen_access) == 0 && (access.stages & ~state.seen_stages) == 0)
@@ -312,7 +313,7 @@ void Synchroniser::write_again(std::uint32_t position, const AccessRecord& acces
   }
   if (wanted.src_stages != 0)
     add_memory(std::max(state.read_time, state.write_time), position, wanted);
-  note(state, access, pass_time(position));
+  record_use(state, access, pass_time(position));
 }
 
 // Extends the barrier `last` to also cover the mips, layers or aspect of `next`, if both barriers

@@ -56,29 +56,29 @@ class Synchroniser {
                  const Range& range);
   void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
                      const Range& range);
-  void note_change(std::uint32_t position, const AccessRecord& access, UseState& state);
-  void read_again(std::uint32_t position, const AccessRecord& access, UseState& state);
-  void write_again(std::uint32_t position, const AccessRecord& access, UseState& state);
+  void record_transition(std::uint32_t position, const AccessRecord& access, UseState& state);
+  void read_in_same_layout(std::uint32_t position, const AccessRecord& access, UseState& state);
+  void write_in_same_layout(std::uint32_t position, const AccessRecord& access, UseState& state);
 
   // externals.cpp
-  void arrive();
-  void depart();
+  void apply_initial_states();
+  void apply_final_states();
   void end_reads(std::uint32_t resource, const State& final_state);
-  AccessRecord outside_use(std::uint32_t resource, const State& state) const;
-  void leave(std::uint32_t resource);
+  AccessRecord use_outside_frame(std::uint32_t resource, const State& state) const;
+  void leave_history_slot(std::uint32_t resource);
 
   // queue_transfer.cpp
   bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
                     const Range& range);
-  void take_without_giver(std::uint32_t position, UseState& state, bool same_family);
-  std::uint32_t giving_submission(const UseState& state) const;
+  void acquire_without_release(std::uint32_t position, UseState& state, bool same_family);
+  std::uint32_t releasing_submission(const UseState& state) const;
   Transition release_of(const AccessRecord& access, const UseState& state,
                         const Range& range) const;
   void add_releases();
 
   Batch& batch_after(std::int32_t time, std::uint32_t position);
   Transition& next_image(std::int32_t time, std::uint32_t position);
-  void join_neighbours();
+  void merge_neighbours();
   static bool extend(Transition& last, const Transition& next);
   void add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted);
 
@@ -107,14 +107,14 @@ inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t positio
   return plan_.batches.back();
 }
 
-// Appends an image barrier. join_neighbours() joins it with its neighbours after it is filled in.
+// Appends an image barrier. merge_neighbours() joins it with its neighbours after it is filled in.
 inline Transition& Synchroniser::next_image(std::int32_t time, std::uint32_t position) {
   ++batch_after(time, position).count;
   return plan_.transitions.emplace_back();
 }
 
 // Joins barriers of neighbouring mips and layers that change in the same way into one barrier.
-inline void Synchroniser::join_neighbours() {
+inline void Synchroniser::merge_neighbours() {
   while (plan_.batches.back().count >= 2) {
     Transition* const last = &plan_.transitions.back();
     const std::uint32_t resource = last->resource;
@@ -132,8 +132,8 @@ inline void Synchroniser::join_neighbours() {
 }
 
 // Sets the state after an access whose image barrier is the one that was added last.
-inline void Synchroniser::note_change(std::uint32_t position, const AccessRecord& access,
-                                      UseState& state) {
+inline void Synchroniser::record_transition(std::uint32_t position, const AccessRecord& access,
+                                            UseState& state) {
   state = {};
   state.write_stages = access.stages;
   state.layout = access.layout;

@@ -36,7 +36,7 @@ struct UseState {
   std::uint32_t frame_before = 0;
   // Set if other resources occupied this memory before. The recorded reads and writes may then
   // belong to different resources, so that a barrier has to wait for both.
-  std::uint8_t handed_over = 0;
+  std::uint8_t reuses_memory = 0;
   // Set if a semaphore wait over all stages orders the next use after work of another queue.
   std::uint8_t by_wait = 0;
   QueueClass queue = QueueClass::graphics;  // of the last use
@@ -140,9 +140,9 @@ struct Workspace {
     std::vector<VkDeviceSize> offsets;
     // The order that the search has accepted, from which it derives the next orders to try, with
     // its offsets, and with its items in order of offset.
-    std::vector<std::uint32_t> settled_order;
-    std::vector<VkDeviceSize> settled_offsets;
-    std::vector<PlaceItem> settled_items;
+    std::vector<std::uint32_t> accepted_order;
+    std::vector<VkDeviceSize> accepted_offsets;
+    std::vector<PlaceItem> accepted_items;
     std::vector<std::uint8_t> kept;
   } place;
   struct Synchronise {

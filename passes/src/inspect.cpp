@@ -21,7 +21,7 @@ constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr std::size_t kEnoughSamples = 100;
 
 // Limits for the comparison of the angles to the view axis.
-constexpr double kSameTurn = 0.966;     // cosine of 15 degrees about the view axis
+constexpr double kSameAngleAboutAxis = 0.966;  // cosine of 15 degrees about the view axis
 constexpr double kStoredError = 0.002;  // of stored normals, radians: that of 10 bits a channel
 constexpr double kRatioError = 0.05;    // of the tangents' ratio at one sample
 constexpr double kOblique = 0.3;        // half the sine of twice the angle: 18 to 72 degrees
@@ -382,7 +382,7 @@ class Inspector {
   // of given normals. A wrong angle of view multiplies the tangent of every such angle by one
   // number. Surfaces that are parallel or perpendicular to the view axis keep their angle and are
   // left out.
-  bool has_other_slants(const Reading& given) const {
+  bool angles_to_view_axis_differ(const Reading& given) const {
     std::vector<double> exact, oblique;  // logarithms of the ratio of the tangents
     for (const SmoothSample& s : smooth_) {
       const dvec3 own = maths::normalize(own_normal(s, given));
@@ -390,9 +390,9 @@ class Inspector {
       const double own_across = std::hypot(own.x, own.y);
       const double stored_across = std::hypot(stored.x, stored.y);
       const double side = own.z * stored.z < 0.0 ? -1.0 : 1.0;  // either may face away
-      // An angle of view does not turn a surface about the view axis.
-      const double turn = side * (own.x * stored.x + own.y * stored.y);
-      if (!(turn > kSameTurn * own_across * stored_across)) {
+      // An angle of view does not rotate a normal about the view axis.
+      const double in_same_direction = side * (own.x * stored.x + own.y * stored.y);
+      if (!(in_same_direction > kSameAngleAboutAxis * own_across * stored_across)) {
         continue;
       }
       const double ratio =
@@ -439,7 +439,7 @@ class Inspector {
   }
 
   bool has_other_angle_of_view(const Reading& given) const {
-    if (has_other_slants(given)) {
+    if (angles_to_view_axis_differ(given)) {
       return true;
     }
     const std::vector<SmoothSample> samples = samples_that_tell_angle_of_view(given);

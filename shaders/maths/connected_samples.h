@@ -3,11 +3,11 @@
 // A depth buffer shows only the front faces of occluders. If occluders are taken as infinitely
 // thick, thin objects darken everything behind them. If each sample is a thin occluder of its own,
 // light leaks through walls between the samples. Two consecutive samples are therefore connected if
-// the depth buffer shows that they lie on one surface (samples_join()); the space between them is
-// then occluded too. If a surface begins between two samples, its edge is assumed to be halfway
-// between them (kEdgeShare). Every sample has a thickness, either along the view direction or up to
-// its back face (height_of_back()). A surface that leaves the image is extrapolated beyond the
-// border (kExtrapolationRatio). hidden_occlusion_behind() in visibility_bitmask.h estimates how
+// the depth buffer shows that they lie on one surface (samples_are_connected()); the space between
+// them is then occluded too. If a surface begins between two samples, its edge is assumed to be
+// halfway between them (kEdgeShare). Every sample has a thickness, either along the view direction
+// or up to its back face (height_of_back()). A surface that leaves the image is extrapolated beyond
+// the border (kExtrapolationRatio). hidden_occlusion_behind() in visibility_bitmask.h estimates how
 // much of the volume behind an occluder is solid. passes/ALGORITHM.md has figures; sample/README.md
 // compares the estimators.
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
@@ -54,13 +54,13 @@ ALCOVE_INLINE bool is_discontinuous(DepthDiscontinuity d) { return d.convex || d
 // them. On one surface, there is none at one of the two samples at least, or the slope changes in
 // the same direction at both, where the surface meets another in a crease. At a gap between two
 // surfaces, the slope changes in one direction at one sample and in the other at the next.
-ALCOVE_INLINE bool samples_join(DepthDiscontinuity here, DepthDiscontinuity there) {
+ALCOVE_INLINE bool samples_are_connected(DepthDiscontinuity here, DepthDiscontinuity there) {
   return !(here.convex && there.concave) && !(here.concave && there.convex);
 }
 
 // Returns whether two consecutive samples of the second depth layer are connected. That layer shows
 // fragments of many surfaces, where two discontinuities in a row are hardly ever a crease.
-ALCOVE_INLINE bool hidden_samples_join(DepthDiscontinuity here, DepthDiscontinuity there) {
+ALCOVE_INLINE bool hidden_samples_are_connected(DepthDiscontinuity here, DepthDiscontinuity there) {
   return !(is_discontinuous(here) && is_discontinuous(there));
 }
 

@@ -7,6 +7,7 @@
 
 #include "language.h"
 #include "raw_occlusion.h"
+#include "slice_line.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -64,6 +65,19 @@ const float kHalfResidualUnit = 1023.0f / 511.0f * kLargestResidual;
 
 ALCOVE_INLINE vec3 unpack_half_residual(vec3 stored) {
   return (stored - kZeroHalfResidual) * kHalfResidualUnit;
+}
+
+// Returns the raw depth of the pixel that represents a texel, from those of its four pixels in any
+// order: the nearest one if x + y of the texel is even, and otherwise the farthest, like the
+// squares of a chessboard. Where two surfaces meet, both are then found among any 2x2 texels. A
+// pixel of the sky represents a texel only if all four show the sky.
+ALCOVE_INLINE float representative_depth(ivec2 texel, vec4 depths_ndc, bool reversed) {
+  float smallest = min(min(depths_ndc.x, depths_ndc.y), min(depths_ndc.z, depths_ndc.w));
+  float largest = max(max(depths_ndc.x, depths_ndc.y), max(depths_ndc.z, depths_ndc.w));
+  float nearest = reversed ? largest : smallest;
+  float farthest = reversed ? smallest : largest;
+  bool takes_nearest = ((texel.x ^ texel.y) & 1) == 0 || is_sky_depth(farthest, reversed);
+  return takes_nearest ? nearest : farthest;
 }
 
 ALCOVE_MATHS_END

@@ -64,16 +64,18 @@ ALCOVE_INLINE uint hash_of(uvec2 position) {
 // frames. The rotation per frame is then a quarter of such a number, so that the frames in which a
 // pixel itself is traced cover directions and offsets evenly.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
-  // Rotations per frame, of the directions (`turn`) and of the offsets (`shift`), as fractions of
+  // Rotations per frame, of the directions and of the offsets, as fractions of
   // 2^32, so that they are exact for every frame. The fractions are those of 1.6180339887 and
   // 0.7548776662, or, if `moves` is true, a quarter of 1.6180339887 and of 2.5698402910.
-  uint turn = moves ? 1737350766u : 2654435769u;
-  uint shift = moves ? 2759345001u : 3242174889u;
+  uint direction_rotation = moves ? 1737350766u : 2654435769u;
+  uint offset_rotation = moves ? 2759345001u : 3242174889u;
   uint random_shift = hash_of(uvec2(pixel.x >> 2u, pixel.y >> 2u));
   // Steps to the right and downwards: 0.7548776662 and 0.5698402910 for directions, 0.6180339887
   // and 0.4142135624 for offsets.
-  uint direction_bits = random_shift + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * turn;
-  uint offset_bits = (1u << 29u) + pixel.x * 2654435769u + pixel.y * 1779033704u + frame * shift;
+  uint direction_bits =
+      random_shift + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * direction_rotation;
+  uint offset_bits =
+      (1u << 29u) + pixel.x * 2654435769u + pixel.y * 1779033704u + frame * offset_rotation;
   SliceNoise noise;
   noise.direction = float(direction_bits >> 8u) * (1.0f / 16777216.0f);
   noise.offset = float(offset_bits >> 8u) * (1.0f / 16777216.0f);

@@ -34,6 +34,11 @@ ALCOVE_INLINE bool grows_with_inverse_depth(bool perspective, bool reversed) {
   return perspective == reversed;
 }
 
+// Whether a value of the depth buffer is the sky's: the far plane, beyond it or NaN.
+ALCOVE_INLINE bool is_sky_depth(float depth_ndc, bool reversed) {
+  return reversed ? !(depth_ndc > 0.0f) : !(depth_ndc < 1.0f);
+}
+
 // Converts a value of the depth buffer to inverse depth: from_ndc.x * d + from_ndc.y, where d is
 // the distance of `depth_ndc` from its value at the plane with the smallest inverse depth (the far
 // plane in perspective, the near plane in orthographic views). This distance is computed without
@@ -44,8 +49,8 @@ ALCOVE_INLINE float inverse_depth_of_ndc(vec2 from_ndc, float depth_ndc, bool pe
                                          bool reversed) {
   bool grows = grows_with_inverse_depth(perspective, reversed);
   float from_smallest = clamp(grows ? depth_ndc : 1.0f - depth_ndc, 0.0f, 1.0f);
-  bool sky = reversed ? !(depth_ndc > 0.0f) : !(depth_ndc < 1.0f);
-  return sky ? sky_inverse_depth(perspective) : from_ndc.x * from_smallest + from_ndc.y;
+  return is_sky_depth(depth_ndc, reversed) ? sky_inverse_depth(perspective)
+                                           : from_ndc.x * from_smallest + from_ndc.y;
 }
 
 // Whether the back face at a pixel can be the end of the occluder whose front face is at that

@@ -221,19 +221,22 @@ TEST(SliceLine, RadiusInPixelsApproximatesTheSilhouetteOfASphereOfThatRadius) {
 const maths::DepthDiscontinuity kNone{false, false}, kConvex{true, false}, kConcave{false, true};
 
 TEST(ConnectedSamples, DepthSamplesAreConnectedAlongPlanesAndAcrossCreasesButNotOverGaps) {
-  EXPECT_TRUE(maths::samples_join(kNone, kNone)) << "a plane";
-  EXPECT_TRUE(maths::samples_join(kNone, kConcave)) << "a plane that ends";
-  EXPECT_TRUE(maths::samples_join(kConvex, kConvex)) << "a crease between the two";
-  EXPECT_FALSE(maths::samples_join(kConvex, kConcave)) << "one surface in front of another";
-  EXPECT_FALSE(maths::samples_join(kConcave, kConvex)) << "one surface behind another";
+  EXPECT_TRUE(maths::samples_are_connected(kNone, kNone)) << "a plane";
+  EXPECT_TRUE(maths::samples_are_connected(kNone, kConcave)) << "a plane that ends";
+  EXPECT_TRUE(maths::samples_are_connected(kConvex, kConvex)) << "a crease between the two";
+  EXPECT_FALSE(maths::samples_are_connected(kConvex, kConcave))
+      << "one surface in front of another";
+  EXPECT_FALSE(maths::samples_are_connected(kConcave, kConvex)) << "one surface behind another";
 }
 
 TEST(ConnectedSamples, SamplesOfTheSecondDepthLayerAreConnectedAlongPlanesOnly) {
-  EXPECT_TRUE(maths::hidden_samples_join(kNone, kNone)) << "a plane";
-  EXPECT_TRUE(maths::hidden_samples_join(kNone, kConcave)) << "a plane that ends";
-  EXPECT_TRUE(maths::hidden_samples_join(kConvex, kNone)) << "a plane that begins";
-  EXPECT_FALSE(maths::hidden_samples_join(kConvex, kConvex)) << "fragments of several surfaces";
-  EXPECT_FALSE(maths::hidden_samples_join(kConvex, kConcave)) << "one surface in front of another";
+  EXPECT_TRUE(maths::hidden_samples_are_connected(kNone, kNone)) << "a plane";
+  EXPECT_TRUE(maths::hidden_samples_are_connected(kNone, kConcave)) << "a plane that ends";
+  EXPECT_TRUE(maths::hidden_samples_are_connected(kConvex, kNone)) << "a plane that begins";
+  EXPECT_FALSE(maths::hidden_samples_are_connected(kConvex, kConvex))
+      << "fragments of several surfaces";
+  EXPECT_FALSE(maths::hidden_samples_are_connected(kConvex, kConcave))
+      << "one surface in front of another";
 }
 
 TEST(ConnectedSamples, BackOfAnOccluderMovesAwayFromTheViewDirectionAsItsThicknessGrows) {

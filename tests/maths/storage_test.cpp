@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "maths/half_texel.h"
 #include "maths/octahedral.h"
 #include "maths/packing.h"
 #include "maths/quantised_normal.h"
@@ -197,6 +198,21 @@ TEST(Packing, PackingAsUnormRoundsToNearestAndKeepsZeroAndOneExactly) {
     EXPECT_EQ(maths::pack_unorm(-5.0f, bits), 0u);
     EXPECT_EQ(maths::pack_unorm(5.0f, bits), (1u << bits) - 1u);
   }
+}
+
+TEST(HalfTexel, NearestAndFarthestPixelsRepresentTexelsAlternately) {
+  const glm::vec4 depths(0.3f, 0.7f, 0.2f, 0.5f);
+  EXPECT_EQ(maths::representative_depth({2, 4}, depths, false), 0.2f) << "nearest";
+  EXPECT_EQ(maths::representative_depth({3, 4}, depths, false), 0.7f) << "farthest";
+  EXPECT_EQ(maths::representative_depth({3, 5}, depths, true), 0.7f) << "nearest";
+  EXPECT_EQ(maths::representative_depth({2, 5}, depths, true), 0.2f) << "farthest";
+}
+
+TEST(HalfTexel, PixelOfTheSkyRepresentsATexelOnlyIfAllFourShowTheSky) {
+  EXPECT_EQ(maths::representative_depth({1, 0}, {1.0f, 0.4f, 0.6f, 1.0f}, false), 0.4f);
+  EXPECT_EQ(maths::representative_depth({1, 0}, {0.0f, 0.4f, 0.6f, 0.0f}, true), 0.6f);
+  EXPECT_EQ(maths::representative_depth({1, 0}, glm::vec4(1.0f), false), 1.0f);
+  EXPECT_EQ(maths::representative_depth({1, 0}, glm::vec4(0.0f), true), 0.0f);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ void Replay::begin_frame(bool first) {
       const ExternalRecord& external = graph_.externals[record.external];
       const auto queue = static_cast<std::uint8_t>(external.queue);
       sub.last = {};
-      arrive(sub, queue, external.initial_state);
+      apply_initial_state(sub, queue, external.initial_state);
       sub.layout = external.initial_state.layout;
       if (!external.has_contents) continue;
       sub.content = kInitial;
@@ -112,7 +112,7 @@ void Replay::begin_frame(bool first) {
 // Sets the state of a subresource that comes from outside the frame. Earlier writes are visible to
 // the read accesses of the initial state and to nothing else. An initial state without access bits
 // only names stages: later work must wait for all of them, and no write is visible yet.
-void Replay::arrive(Sub& sub, std::uint8_t queue, const State& initial_state) {
+void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state) {
   using Kind = Operation::Kind;
   const Stages stages = expand_stages(initial_state.stages);
   const Accesses accesses = expand_accesses(initial_state.access);

@@ -75,7 +75,7 @@ class Replay {
   }
   void find_expected();
   void begin_frame(bool first);
-  void arrive(Sub& sub, std::uint8_t queue, const State& initial_state);
+  void apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state);
   void submission(std::uint32_t index);
   void batches(std::uint32_t first, std::uint32_t count, QueueClass queue);
   void change(const Transition& transition, QueueClass queue);

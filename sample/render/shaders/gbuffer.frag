@@ -62,11 +62,11 @@ void main() {
   // glTF: roughness in green, metal in blue.
   vec2 surface = texture(textures[kMetallicRoughnessTexture], surface_uv.zw).gb;
   vec3 emissive = texture(textures[kEmissiveTexture], detail_uv.xy).rgb;
-  vec3 bend = texture(textures[kNormalTexture], detail_uv.zw).xyz * 2.0 - 1.0;
+  vec3 mapped_normal = texture(textures[kNormalTexture], detail_uv.zw).xyz * 2.0 - 1.0;
   if (is_cut_out(surface_uv.xy, color.a)) {
     discard;
   }
-  out_normal_ws = vec4(facing_normal(bend), 0.0);
+  out_normal_ws = vec4(facing_normal(mapped_normal), 0.0);
   out_albedo = vec4(material.base_colour.rgb * color.rgb * base, material.roughness * surface.x);
   out_motion_uv = 0.5 * (clip.xy / clip.w - previous_clip.xy / previous_clip.w);
   out_emissive = vec4(material.emissive.rgb * emissive, material.metallic * surface.y);
