@@ -149,20 +149,22 @@ SegmentState first_state(HalfSlice half_slice, float sectors, uint layer, out Sl
 // The sectors that a surface occludes beyond the image's border. A surface that leaves the image
 // without a discontinuity continues as the plane through its last two samples. Its slope relative
 // to the tangent plane is measured between the texels of these samples, because rounding the
-// positions to texels changes their distance by up to a pixel.
+// positions to texels changes their distance by up to a pixel. Two samples of one texel have no
+// slope.
 uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sectors,
                           SliceSample last) {
   SearchLine search_line = half_slice.search_line;
   float interval = 2.0 * state.half_interval;
   float between_texels = texel_distance(search_line, last.point.x - interval, last.point.x);
   float above_tangent = (state.rise - interval * search_line.tangent_rise) /
-                        max(between_texels, 0.1 * search_line.offset_per_px);
+                        max(between_texels, 0.5 * search_line.offset_per_px);
   float slope = search_line.tangent_rise + above_tangent;
   float way =
       extrapolated_way(last.inverse_depth * search_line.y_per_depth, slope - search_line.level_rise,
                        extrapolated_distance(half_slice), kPerspective);
   vec2 end = vec2(last.point.x + way, last.point.y + slope * way);
-  bool continues = way > 0.0 && !is_discontinuous(state.discontinuity) && state.inside;
+  bool has_slope = between_texels > 0.5 * search_line.offset_per_px;
+  bool continues = has_slope && way > 0.0 && !is_discontinuous(state.discontinuity) && state.inside;
   uint beyond = sectors_beyond(biased_position(sectors, 1.0 - diamond_angle(end)));
   return continues ? state.beyond ^ beyond : 0u;
 }

@@ -109,6 +109,7 @@ TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
 std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
                                       std::vector<CompiledLoop> loops) {
   std::vector<double> found;
+  found.reserve(loops.size());
   for (std::uint32_t i = 0; i < loops.size(); ++i) {
     loops[i].index = i;
   }
