@@ -130,12 +130,12 @@ TEST(GoldenPattern, SliceDirectionsFormNoWavesOverTheImage) {
   };
   for (const unsigned traces : {1u, 8u}) {
     for (const unsigned harmonic : {1u, 2u, 3u, 5u, 8u}) {
-      std::vector<Complex> rows(kWindow * kWindow);
+      std::vector<Complex> rows(std::size_t{kWindow} * kWindow);
       for (unsigned y = 0; y < kWindow; ++y) {
         for (unsigned x = 0; x < kWindow; ++x) {
           const Complex value = mean_of_traces(harmonic, traces, x, y);
           for (unsigned u = 0; u < kWindow; ++u) {
-            rows[y * kWindow + u] += value * wave(-double(u * x) / kWindow);
+            rows[std::size_t{y} * kWindow + u] += value * wave(-double(u * x) / kWindow);
           }
         }
       }
@@ -143,7 +143,7 @@ TEST(GoldenPattern, SliceDirectionsFormNoWavesOverTheImage) {
         for (unsigned u = 0; u < kWindow; ++u) {
           Complex sum;
           for (unsigned y = 0; y < kWindow; ++y) {
-            sum += rows[y * kWindow + u] * wave(-double(v * y) / kWindow);
+            sum += rows[std::size_t{y} * kWindow + u] * wave(-double(v * y) / kWindow);
           }
           EXPECT_LT(std::abs(sum) / (kWindow * kWindow), 0.3)
               << traces << " traces, harmonic " << harmonic << ", " << u << " and " << v
