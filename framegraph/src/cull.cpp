@@ -85,12 +85,14 @@ class Culler {
     for (const AccessRecord& access : accesses) {
       std::uint8_t& needed = *live++;
       if (!(access.flags & kOptional)) needed = 1;
-      if (needed && !(access.flags & kWrite))
-        begin_need(access, pass);
-      else if (needed && (access.flags & kDiscard))
+      const bool writes_it = (access.flags & kWrite) != 0;
+      // An access that updates what it reads needs it, whoever wants the result.
+      const bool reads_it = !writes_it || (access.access & ~kWriteBits) != 0;
+      if (needed && writes_it && (access.flags & kDiscard)) {
         end_need(access);
-      else if (needed && (access.access & ~kWriteBits) != 0)
-        begin_need(access, pass);  // It reads what it updates, whoever wants the result.
+      } else if (needed && reads_it) {
+        begin_need(access, pass);
+      }
       if (needed && !(access.flags & kDiscard)) find_history(access, pass);
     }
     return cull_reason;

@@ -10,8 +10,6 @@
 #include "c_context_info.h"
 
 using namespace alcove;
-using passes::copy_text;
-using passes::Failure;
 using passes::guarded;
 using passes::invalid;
 using passes::Message;
