@@ -105,7 +105,8 @@ class Labels {
     constexpr int kRows = 14;
     for (int row = 0; row < kRows; ++row) {
       // Alternately above and below, at a growing distance; right of the point first, then left.
-      const double distance = kStep * (row / 2);
+      const int rank = row / 2;
+      const double distance = kStep * rank;
       const double base = row % 2 == 0 ? y - 7 - distance : y + 16 + distance;
       for (const bool right : {true, false}) {
         if (const Box box = box_of(x, base, right, text); is_free(box)) {

@@ -134,7 +134,7 @@ Part PartBuilder::next(std::size_t most_triangles) {
     for (std::size_t k = 0; k < 3; ++k) corners[k] = vertex_of(at_ + k, part);
     const auto free = std::ranges::find_if(corners, [&](std::uint32_t v) { return !is_first_[v]; });
     if (free != corners.end()) {
-      std::ranges::rotate(corners, free);
+      std::rotate(corners.begin(), free, corners.end());
     } else {
       corners[0] = copy_of(corners[0], part);
       is_first_.push_back(false);
