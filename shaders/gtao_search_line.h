@@ -62,8 +62,8 @@ SearchLine make_search_line(Surface surface, vec3 direction) {
   return search_line;
 }
 
-// The same line in the opposite direction, for the other half-slice. Turning it round takes fewer
-// registers than keeping both directions.
+// Returns the line of the other half-slice, in which offsets grow in the opposite direction.
+// Computing one line from the other takes fewer registers than keeping both.
 SearchLine opposite(SearchLine search_line) {
   search_line.px_per_offset = -search_line.px_per_offset;
   search_line.tangent_rise = -search_line.tangent_rise;

@@ -86,7 +86,7 @@ class Culler {
       std::uint8_t& needed = *live++;
       if (!(access.flags & kOptional)) needed = 1;
       const bool writes_it = (access.flags & kWrite) != 0;
-      // An access that updates what it reads needs it, whoever wants the result.
+      // An access that both reads and writes needs the former contents.
       const bool reads_it = !writes_it || (access.access & ~kWriteBits) != 0;
       if (needed && writes_it && (access.flags & kDiscard)) {
         end_need(access);
