@@ -48,7 +48,7 @@ option(ALCOVE_TRANSLATE_SHADERS "Translate the shaders to HLSL, MSL and GLSL wit
 
 function(alcove_add_shader_files target writer)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/shader_files)
-  set(ALCOVE_SHADER_FILES ${folder} PARENT_SCOPE)
+  set(ALCOVE_SHADER_FILES ${folder} CACHE INTERNAL "The folder of the shaders as files")
   file(MAKE_DIRECTORY ${folder})
   list(TRANSFORM ARGN APPEND .spv OUTPUT_VARIABLE files)
   list(TRANSFORM files PREPEND ${folder}/)

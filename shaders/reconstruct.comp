@@ -22,6 +22,7 @@
 // Sums hold occlusion rather than visibility: an unoccluded surface then sums zeros, and its
 // visibility is exactly 1 after any number of frames.
 
+#include "fetch_quad.h"
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
 #include "maths/history.h"

@@ -61,7 +61,7 @@ layout(set = 0, binding = 12) uniform texture2D roughness_image;  // perceptual
 layout(set = 0, binding = 13) uniform writeonly image2D specular_image;
 #endif
 #ifdef HISTORY
-layout(set = 0, binding = 14) uniform usampler2D lobe_history_image;  // LobeTexel
+layout(set = 0, binding = 14) uniform utexture2D lobe_history_image;  // LobeTexel
 #endif
 #if defined(HISTORY) || defined(HALF)
 layout(set = 0, binding = 15) uniform writeonly uimage2D next_lobe_history_image;

@@ -150,7 +150,7 @@ History read_moving(Surface surface) {
     history.residual = history.residual * mat3(parameters.previous_from_view);
   }
 #ifdef SPECULAR
-  uvec4 lobes = textureGather(lobe_history_image, uv);
+  uvec4 lobes = fetch_quad(lobe_history_image, ivec2(floor(previous.position + 0.5)));
   [[unroll]] for (int i = 0; i < 4; ++i) {
     LobeTexel lobe = unpack_lobe_texel(lobes[i]);
     history.lobe += weights[i] * scale * lobe.open * vec2(lobe.occlusion, 1.0);

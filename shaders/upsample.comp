@@ -49,7 +49,7 @@ layout(set = 0, binding = 7) uniform writeonly image2D bent_normal_image;
 // is read only with kKeepsChannels; otherwise another image is bound in its place.
 layout(set = 0, binding = 8) uniform texture2D kept_image;
 #ifdef SPECULAR
-layout(set = 0, binding = 9) uniform usampler2D lobe_image;  // LobeTexel
+layout(set = 0, binding = 9) uniform utexture2D lobe_image;  // LobeTexel
 layout(set = 0, binding = 10) uniform writeonly image2D specular_image;
 #endif
 
@@ -62,6 +62,7 @@ float load_inverse_depth(ivec2 pixel) {
 }
 
 #include "depth_normal.h"
+#include "fetch_quad.h"
 #include "store_visibility.h"
 
 // Texels and pixels are numbered in the order of textureGather: lower left, lower right, upper
@@ -169,7 +170,7 @@ void main() {
     residuals_z = textureGather(residual_image, uv, 2);
   }
 #ifdef SPECULAR
-  uvec4 lobes = textureGather(lobe_image, uv);
+  uvec4 lobes = fetch_quad(lobe_image, index);
 #endif
   [[unroll]] for (int j = 0; j < 4; ++j) {
     ivec2 pixel = cell.first + ivec2(right_of(j) > 0.0 ? 1 : 0, below_of(j) > 0.0 ? 1 : 0);

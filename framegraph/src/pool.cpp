@@ -86,8 +86,8 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
     const VkDeviceSize size = std::max(heap->size, wanted.size);
     make_room(retired_, transients_.size() + 1);
     MemoryRange memory;
-    if (const VkResult result =
-            allocate({size, alignment_of(plan, h), wanted.memory_types}, has_addresses, memory))
+    if (const VkResult result = allocate({size, alignment_of(plan, h), wanted.memory_types},
+                                         has_addresses, MemoryLifetime::frame, memory))
       return result;
     // All transients are moved to retired_, to be destroyed with the old memory once the device has
     // finished. This includes transients of other heaps, because creating them again is cheap.
@@ -280,7 +280,8 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
   if (physical.heap != kNone) {
     memory = heaps_[physical.heap].memory;
   } else {
-    result = allocate(needed, has_address(physical.record, physical.usage), physical.own_memory);
+    result = allocate(needed, has_address(physical.record, physical.usage),
+                      MemoryLifetime::persistent, physical.own_memory);
     if (result != VK_SUCCESS) return result;
     physical.own_size = needed.size;
     memory = physical.own_memory;
@@ -292,9 +293,9 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
 }
 
 VkResult Pool::allocate(const VkMemoryRequirements& requirements, bool has_addresses,
-                        MemoryRange& memory) {
-  return memory_.allocate({requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, has_addresses},
-                          memory);
+                        MemoryLifetime lifetime, MemoryRange& memory) {
+  return memory_.allocate(
+      {requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, has_addresses, lifetime}, memory);
 }
 
 void Pool::destroy(Physical& physical) {

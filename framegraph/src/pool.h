@@ -110,7 +110,7 @@ class Pool {
   static std::uint64_t first_generation();
   VkResult create(Physical& physical, std::string_view name);
   VkResult allocate(const VkMemoryRequirements& requirements, bool has_addresses,
-                    MemoryRange& memory);
+                    MemoryLifetime lifetime, MemoryRange& memory);
   void destroy(Physical& physical);
   void set_name(const Physical& physical, std::string_view name);
 

@@ -390,7 +390,9 @@ void add_lit(CLI::App& app, bool& lit, std::uint32_t& points) {
 }
 
 void add_format(CLI::App& app, GraphFormat& format) {
-  Group(app).add("--format", "NAME", "text or dot (Graphviz). Default: text",
+  Group(app).add("--format", "NAME",
+                 "text, dot (Graphviz), or work (the work as\n"
+                 "data). Default: text",
                  [&](const OptionValue& given) {
                    format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
                  });

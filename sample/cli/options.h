@@ -35,8 +35,8 @@ enum class Command {
   kCost
 };
 // Names are in the order of the enumerators.
-enum class GraphFormat { kText, kDot };
-inline constexpr std::array<std::string_view, 2> kGraphFormatNames{"text", "dot"};
+enum class GraphFormat { kText, kDot, kWork };
+inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "dot", "work"};
 
 // The options of the view. Optional members are empty if the option was not given: camera_of() then
 // takes the value from the scene's camera or derives it from the scene. Angles are in radians.

@@ -4,19 +4,18 @@
 
 #include <gmock/gmock.h>
 
+#include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
-#include "pass_fixture.h"
+#include "alcove/passes/work.h"
 #include "vulkan/descriptor_sets.h"
 #include "work/shader_table.h"
 
 namespace alcove::passes {
 namespace {
 
-using framegraph::Graph;
-using framegraph::RecordContext;
-using framegraph::Texture;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -85,85 +84,101 @@ TEST(ShaderInterface, EveryShaderHasUniqueBindingNumbersKnownTypesAndOneParamete
   }
 }
 
-class KernelsByName : public PassTest {
+class DispatchByName : public testing::Test {
  protected:
-  // Dispatches the shader `linear_depth` with one view for each of the names.
-  tl::expected<framegraph::FrameReport, std::string> run_linear_depth(
-      const std::vector<std::string_view>& names) {
-    const auto kernel = gpu().kernels().get(Shader::linear_depth);
-    if (!kernel) {
-      return tl::unexpected(kernel.error().message);
+  // Adds a dispatch of a shader with these constants, and with an image for each of the names.
+  tl::expected<void, Error> add(Shader shader, const std::vector<NamedConstant>& constants,
+                                const std::vector<std::string_view>& names) {
+    WorkList list(*work_);
+    const auto image = list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8});
+    std::vector<NamedTexture> images;
+    for (const std::string_view name : names) {
+      images.push_back({name, image});
     }
-    return gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
-      const Texture depth = upload(graph, {8, 8, std::vector<float>(64, 0.5f), 1});
-      auto pass = graph.add_pass("linear depth");
-      pass.read(depth, framegraph::access::sampled_compute);
-      pass.side_effect();
-      pass.record([this, names, kernel = *kernel, depth](RecordContext& context) {
-        std::vector<NamedView> views;
-        for (const std::string_view name : names) {
-          views.push_back({name, context.view(depth)});
-        }
-        const std::array<std::byte, 64> parameters{};
-        gpu().kernels().dispatch(context, kernel, views, parameters, {8, 8, 1});
-      });
-      return {};
-    });
+    return list.dispatch(
+        {.shader = shader, .constants = constants, .images = images, .size = {8, 8, 1}});
   }
+  tl::expected<void, Error> add_gtso(const std::vector<NamedConstant>& constants) {
+    return add(Shader::gtso, constants,
+               {"visibility_image", "bent_normal_image", "normal_image", "depth_image",
+                "roughness_image", "result_image"});
+  }
+
+  std::unique_ptr<AlcoveWork> work_ = std::make_unique<AlcoveWork>();
 };
 
-TEST_F(KernelsByName, SpecialisationConstantWithoutAValueIsReportedByName) {
-  const auto kernel = gpu().kernels().get(
-      Shader::gtso,
-      std::to_array<NamedConstant>(
-          {{"kRoughnessTexture", 0}, {"kRoughnesChannel", 0}, {"kNormalEncoding", 0}}));
-  ASSERT_FALSE(kernel);
-  EXPECT_THAT(kernel.error().message,
+TEST_F(DispatchByName, SpecialisationConstantWithoutAValueIsReportedByName) {
+  const auto added =
+      add_gtso({{"kRoughnessTexture", 0}, {"kRoughnesChannel", 0}, {"kNormalEncoding", 0}});
+  ASSERT_FALSE(added);
+  EXPECT_THAT(added.error().message,
               HasSubstr("The shader 'gtso' has a specialisation constant 'kRoughnessChannel', for "
                         "which its pass gives no value"));
 }
 
-TEST_F(KernelsByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithThoseOfOtherShaders) {
-  const auto ordered =
-      gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kRoughnessTexture", 1},
-                                                                      {"kRoughnessChannel", 2},
-                                                                      {"kNormalEncoding", 3},
-                                                                      {"kVisibilityChannel", 1}}));
-  const auto shuffled =
-      gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kTileSize", 9},
-                                                                      {"kVisibilityChannel", 1},
-                                                                      {"kNormalEncoding", 3},
-                                                                      {"kRoughnessTexture", 1},
-                                                                      {"kRoughnessChannel", 2}}));
-  ASSERT_TRUE(ordered && shuffled);
-  EXPECT_EQ(ordered->pipeline, shuffled->pipeline);
+TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithThoseOfOtherShaders) {
+  const auto added = add_gtso({{"kTileSize", 9},
+                               {"kVisibilityChannel", 1},
+                               {"kNormalEncoding", 3},
+                               {"kRoughnessTexture", 1},
+                               {"kRoughnessChannel", 2}});
+  ASSERT_TRUE(added) << added.error().message;
+  std::vector<std::uint32_t> values;
+  for (const AlcoveWorkConstant& constant :
+       std::span(work_->dispatches[0].constants).first(work_->dispatches[0].constant_count)) {
+    values.push_back(constant.value);
+  }
+  EXPECT_THAT(values, ElementsAre(1, 2, 3, 1));
 }
 
-TEST_F(KernelsByName, SpecialisationConstantThatNoShaderDeclaresIsReportedByName) {
-  const auto kernel =
-      gpu().kernels().get(Shader::gtso, std::to_array<NamedConstant>({{"kRoughnessTexture", 1},
-                                                                      {"kRoughnessChannel", 2},
-                                                                      {"kNormalEncoding", 3},
-                                                                      {"kVisibilityChannel", 1},
-                                                                      {"kTilesize", 9}}));
-  ASSERT_FALSE(kernel);
-  EXPECT_THAT(kernel.error().message,
+TEST_F(DispatchByName, SpecialisationConstantThatNoShaderDeclaresIsReportedByName) {
+  const auto added = add_gtso({{"kRoughnessTexture", 1},
+                               {"kRoughnessChannel", 2},
+                               {"kNormalEncoding", 3},
+                               {"kVisibilityChannel", 1},
+                               {"kTilesize", 9}});
+  ASSERT_FALSE(added);
+  EXPECT_THAT(added.error().message,
               HasSubstr("The pass of the shader 'gtso' gives a value for a specialisation constant "
                         "'kTilesize', which no shader declares"));
 }
 
-TEST_F(KernelsByName, ShaderBindingWithoutAnImageViewIsReportedByName) {
-  const auto done = run_linear_depth({"depth_ndc_image", "linear_image"});
-  ASSERT_FALSE(done);
-  EXPECT_THAT(done.error(),
-              HasSubstr("view of the binding 'linear_depth_image' of the shader 'linear_depth'"));
+TEST_F(DispatchByName, ShaderBindingWithoutAnImageIsReportedByName) {
+  const auto added = add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_image"});
+  ASSERT_FALSE(added);
+  EXPECT_THAT(added.error().message,
+              HasSubstr("The shader 'linear_depth' has a binding 'linear_depth_image', for which "
+                        "its pass gives no image"));
 }
 
-TEST_F(KernelsByName, ImageViewForABindingThatNoShaderDeclaresIsReportedByName) {
-  const auto done = run_linear_depth({"depth_ndc_image", "linear_depth_image", "linear_image"});
-  ASSERT_FALSE(done);
-  EXPECT_THAT(done.error(), HasSubstr("view 'linear_image' of the shader 'linear_depth', a name "
-                                      "that no shader declares"));
+TEST_F(DispatchByName, ImageForABindingThatNoShaderDeclaresIsReportedByName) {
+  const auto added =
+      add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_depth_image", "linear_image"});
+  ASSERT_FALSE(added);
+  EXPECT_THAT(added.error().message,
+              HasSubstr("is given an image 'linear_image', a name that no shader declares"));
+}
+
+TEST_F(DispatchByName, ListThatIsFullIsAnError) {
+  WorkList list(*work_);
+  while (list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8})) {
+  }
+  EXPECT_EQ(work_->resource_count, std::uint32_t{ALCOVE_MAX_WORK_RESOURCES});
+  const View perspective{.clip_from_view = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0}};
+  const auto made = describe_linear_depth(list, {.view = perspective}, {0});
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().message, HasSubstr("'linear_depth_image', for which its pass gives no"));
+}
+
+TEST(ShaderInterface, AccessesAreThoseOfTheImageQualifiers) {
+  const ShaderInterface& found = shader_interface(Shader::reconstruct);
+  for (const ShaderBinding& binding : found.bindings) {
+    if (binding.name == "raw_image" || binding.name == "depth_image") {
+      EXPECT_EQ(binding.access, std::uint32_t{ALCOVE_WORK_ACCESS_READ}) << binding.name;
+    } else if (binding.name == "visibility_image") {
+      EXPECT_EQ(binding.access, std::uint32_t{ALCOVE_WORK_ACCESS_WRITE});
+    }
+  }
 }
 
 }  // namespace

@@ -13,11 +13,22 @@ extern "C" {
 
 struct AlcoveSettings;  // alcove.h
 
+// When the contents of device memory are needed.
+typedef enum AlcoveMemoryLifetime {
+  ALCOVE_MEMORY_LIFETIME_PERSISTENT = 0,  // until it is freed: histories and parameters
+  // From the first to the last command that alcoveRecordFrame records: intermediate images. The
+  // engine may use the memory for something else before and after, if its barriers order that use
+  // with these commands (VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, shader reads and writes).
+  ALCOVE_MEMORY_LIFETIME_FRAME = 1,
+  ALCOVE_MEMORY_LIFETIME_MAX_ENUM = 0x7fffffff
+} AlcoveMemoryLifetime;
+
 // Device memory that a context needs.
 typedef struct AlcoveMemoryRequest {
   VkMemoryRequirements requirements;  // size, alignment, and the memory types that will do
   VkMemoryPropertyFlags required;     // properties that the memory type must have
   VkMemoryPropertyFlags preferred;    // properties that it should have
+  AlcoveMemoryLifetime lifetime;
 } AlcoveMemoryRequest;
 
 // A part of a device memory object.

@@ -57,7 +57,8 @@ void HostAdapter::log(AlcoveSeverity severity, const char* sentence) const {
 VkResult HostAdapter::allocate(void* user, const framegraph::MemoryRequest& request,
                                framegraph::MemoryRange& range) {
   const AlcoveMemoryFunctions& memory = static_cast<HostAdapter*>(user)->memory_;
-  const AlcoveMemoryRequest asked{request.requirements, request.required, request.preferred};
+  const AlcoveMemoryRequest asked{request.requirements, request.required, request.preferred,
+                                  static_cast<AlcoveMemoryLifetime>(request.lifetime)};
   AlcoveMemoryRange given{};
   const VkResult result = memory.allocate(memory.user, &asked, &given);
   range = {given.memory, given.offset, given.mapped, given.handle};

@@ -246,9 +246,11 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
     return tl::unexpected(failure_of(added.error(), view_name(view)));
   }
   const OcclusionInputs& inputs = settled->inputs.occlusion;
-  return observer == nullptr
-             ? tl::expected<void, Failure>()
-             : observer->add(frame, view, inputs.depth_ndc, inputs.normals, described.slot);
+  if (observer == nullptr) {
+    return {};
+  }
+  return observer->add(frame, view, inputs.depth_ndc, inputs.normals, described.slot)
+      .map_error([](const Error& error) { return failure_of(error, "View"); });
 }
 
 }  // namespace alcove::passes

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "c/view.h"
 #include "inspect_parameters.h"
 #include "work/view_parameters.h"
 
@@ -25,20 +24,19 @@ constexpr std::uint32_t kSureFrames = 3;
 
 }  // namespace
 
-tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveView& view,
-                                               Texture depth, Texture normals, std::uint32_t slot) {
+tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveView& view,
+                                             Texture depth, Texture normals, std::uint32_t slot) {
   Pending& pending = pending_.at(slot);
   if (!pending.buffer) {
     auto made = HostBuffer::create(vk_, device_, kBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     if (!made) {
-      return tl::unexpected(
-          failure_of(Error{"The buffer for pixels could not be created.", made.error()}, "View"));
+      return tl::unexpected(Error{"The buffer for pixels could not be created.", made.error()});
     }
     pending.buffer = std::move(*made);
   }
   const auto kernel = frame.kernels.get(Shader::inspect);
   if (!kernel) {
-    return tl::unexpected(failure_of(kernel.error(), "View"));
+    return tl::unexpected(kernel.error());
   }
   ++serial_;
   pending.declared = true;
@@ -67,12 +65,10 @@ tl::expected<void, Failure> PixelObserver::add(const Frame& frame, const AlcoveV
       {view.depth.width, view.depth.height}, normals ? 1u : 0u, 0};
   sampling.record([&kernels = frame.kernels, kernel = *kernel, depth, normals, samples,
                    parameters](RecordContext& context) {
-    const auto views =
-        std::to_array<NamedView>({{"depth_image", context.view(depth)},
-                                  {"normal_image", context.view(normals ? normals : depth)},
-                                  {"sample_image", context.view(samples)}});
+    const std::array views{context.view(depth), context.view(normals ? normals : depth),
+                           context.view(samples)};
     kernels.dispatch(context, kernel, views, bytes_of(parameters),
-                     {kInspectColumns, kInspectRows + 1, 1});
+                     {(kInspectColumns + 7) / 8, (kInspectRows + 8) / 8, 1});
   });
   Buffer buffer = graph.import_buffer("samples for the host",
                                       {.buffer = pending.buffer->buffer(),

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "alcove/alcove.h"
-#include "c/failure.h"
 #include "diagnose/inspect.h"
 #include "vulkan/host_buffer.h"
 
@@ -26,9 +25,9 @@ class PixelObserver {
   // finished on the device, counts it as a slot that was reused too early.
   void collect(std::uint32_t slot);
   // Adds the passes that sample a view. Its samples are read only if recorded() is called.
-  [[nodiscard]] tl::expected<void, Failure> add(const Frame& frame, const AlcoveView& view,
-                                                framegraph::Texture depth,
-                                                framegraph::Texture normals, std::uint32_t slot);
+  [[nodiscard]] tl::expected<void, Error> add(const Frame& frame, const AlcoveView& view,
+                                              framegraph::Texture depth,
+                                              framegraph::Texture normals, std::uint32_t slot);
   void recorded(std::uint32_t slot) { pending_.at(slot).recorded = pending_.at(slot).declared; }
   void discarded(std::uint32_t slot) { pending_.at(slot).recorded = false; }
 

@@ -16,7 +16,6 @@ namespace alcove::passes {
 namespace {
 
 constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
-constexpr std::uint32_t kGroupSize = 8;
 
 tl::unexpected<Error> failure(std::string_view what, VkResult result) {
   return tl::unexpected(
@@ -283,13 +282,6 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
 
 void Kernels::begin_frame(std::uint32_t slot) { state_->sets->begin_frame(slot); }
 
-tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const NamedConstant> constants) {
-  std::array<AlcoveWorkConstant, kMaxConstants> values;
-  return resolve_constants(shader, constants, values).and_then([&](std::uint32_t count) {
-    return get(shader, std::span(std::as_const(values)).first(count));
-  });
-}
-
 tl::expected<Kernel, Error> Kernels::get(Shader shader,
                                          std::span<const AlcoveWorkConstant> constants) {
   for (const Pipeline& made : state_->pipelines) {
@@ -300,42 +292,6 @@ tl::expected<Kernel, Error> Kernels::get(Shader shader,
     }
   }
   return state_->create_pipeline(shader, constants);
-}
-
-void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
-                       std::span<const NamedView> views, std::span<const std::byte> parameters,
-                       VkExtent3D size) {
-  std::array<VkImageView, kMaxBindings> bound;
-  std::size_t count = 0;
-  const auto fail = [&](std::string_view what, std::string_view name, std::string_view why) {
-    context.fail(std::string(what)
-                     .append(" '")
-                     .append(name)
-                     .append("' of the shader '")
-                     .append(shader_source(kernel.shader).name)
-                     .append("', ")
-                     .append(why)
-                     .append(","),
-                 VK_ERROR_UNKNOWN);
-  };
-  for (const ShaderBinding& binding : shader_interface(kernel.shader).bindings) {
-    if (!binding.is_image()) {
-      continue;
-    }
-    const NamedView* const given = find_named(views, binding.name, count);
-    if (given == nullptr) {
-      return fail("view of the binding", binding.name, "which the pass does not name");
-    }
-    bound.at(count++) = given->view;
-  }
-  if (views.size() > count) {
-    if (const NamedView* const unknown = find_unknown(views, known_images())) {
-      return fail("view", unknown->name, "a name that no shader declares");
-    }
-  }
-  const auto groups = [](std::uint32_t of) { return (of + kGroupSize - 1) / kGroupSize; };
-  dispatch(context, kernel, std::span<const VkImageView>(bound).first(count), parameters,
-           std::array{groups(size.width), groups(size.height), size.depth});
 }
 
 void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,

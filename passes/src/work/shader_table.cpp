@@ -1,6 +1,7 @@
 #include "work/shader_table.h"
 
 #include <array>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -35,69 +36,40 @@
 
 namespace alcove::passes {
 
-ShaderSource shader_source(Shader shader) {
-  switch (shader) {
-    case Shader::linear_depth:
-      return {"linear_depth", kLinearDepth};
-    case Shader::normals:
-      return {"normals", kNormals};
-    case Shader::gtao:
-      return {"gtao", kGtao};
-    case Shader::gtao_specular:
-      return {"gtao_specular", kGtaoSpecular};
-    case Shader::reconstruct:
-      return {"reconstruct", kReconstruct};
-    case Shader::reconstruct_history:
-      return {"reconstruct_history", kReconstructHistory};
-    case Shader::reconstruct_specular:
-      return {"reconstruct_specular", kReconstructSpecular};
-    case Shader::reconstruct_specular_history:
-      return {"reconstruct_specular_history", kReconstructSpecularHistory};
-    case Shader::reconstruct_half:
-      return {"reconstruct_half", kReconstructHalf};
-    case Shader::reconstruct_half_history:
-      return {"reconstruct_half_history", kReconstructHalfHistory};
-    case Shader::reconstruct_half_specular:
-      return {"reconstruct_half_specular", kReconstructHalfSpecular};
-    case Shader::reconstruct_half_specular_history:
-      return {"reconstruct_half_specular_history", kReconstructHalfSpecularHistory};
-    case Shader::upsample:
-      return {"upsample", kUpsample};
-    case Shader::upsample_specular:
-      return {"upsample_specular", kUpsampleSpecular};
-    case Shader::half_output:
-      return {"half_output", kHalfOutput};
-    case Shader::half_output_specular:
-      return {"half_output_specular", kHalfOutputSpecular};
-    case Shader::multi_bounce:
-      return {"multi_bounce", kMultiBounce};
-    case Shader::gtso:
-      return {"gtso", kGtso};
-    case Shader::gtso_by_table:
-      return {"gtso_by_table", kGtsoByTable, kGtsoTable};
-    case Shader::apply:
-      return {"apply", kApply};
-    case Shader::apply_specular:
-      return {"apply_specular", kApplySpecular, kReflectanceTable};
-    case Shader::environment_map:
-      return {"environment_map", kEnvironmentMap};
-    case Shader::environment_half:
-      return {"environment_half", kEnvironmentHalf};
-    case Shader::environment_prefilter:
-      return {"environment_prefilter", kEnvironmentPrefilter};
-    case Shader::environment_harmonics:
-      return {"environment_harmonics", kEnvironmentHarmonics};
-    case Shader::inspect:
-      return {"inspect", kInspect};
-    case Shader::count:
-      break;
-  }
-  return {};
-}
-
 namespace {
 
 constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
+
+// In the order of the enum.
+constexpr ShaderSource kSources[] = {
+    {"linear_depth", kLinearDepth},
+    {"normals", kNormals},
+    {"gtao", kGtao},
+    {"gtao_specular", kGtaoSpecular},
+    {"reconstruct", kReconstruct},
+    {"reconstruct_history", kReconstructHistory},
+    {"reconstruct_specular", kReconstructSpecular},
+    {"reconstruct_specular_history", kReconstructSpecularHistory},
+    {"reconstruct_half", kReconstructHalf},
+    {"reconstruct_half_history", kReconstructHalfHistory},
+    {"reconstruct_half_specular", kReconstructHalfSpecular},
+    {"reconstruct_half_specular_history", kReconstructHalfSpecularHistory},
+    {"upsample", kUpsample},
+    {"upsample_specular", kUpsampleSpecular},
+    {"half_output", kHalfOutput},
+    {"half_output_specular", kHalfOutputSpecular},
+    {"multi_bounce", kMultiBounce},
+    {"gtso", kGtso},
+    {"gtso_by_table", kGtsoByTable, kGtsoTable},
+    {"apply", kApply},
+    {"apply_specular", kApplySpecular, kReflectanceTable},
+    {"environment_map", kEnvironmentMap},
+    {"environment_half", kEnvironmentHalf},
+    {"environment_prefilter", kEnvironmentPrefilter},
+    {"environment_harmonics", kEnvironmentHarmonics},
+    {"inspect", kInspect},
+};
+static_assert(std::size(kSources) == kShaderCount);
 
 struct Interfaces {
   std::array<ShaderInterface, kShaderCount> shaders;
@@ -109,7 +81,7 @@ const Interfaces& interfaces() {
   static const Interfaces all = [] {
     Interfaces read;
     for (std::size_t i = 0; i < kShaderCount; ++i) {
-      read.shaders[i] = read_shader_interface(shader_source(static_cast<Shader>(i)).code);
+      read.shaders[i] = read_shader_interface(kSources[i].code);
       for (const ShaderConstant& constant : read.shaders[i].constants) {
         read.constant_names.push_back(constant.name);
       }
@@ -128,12 +100,10 @@ const Interfaces& interfaces() {
 
 }  // namespace
 
+ShaderSource shader_source(Shader shader) { return kSources[static_cast<std::size_t>(shader)]; }
+
 Shader shader_of_name(std::string_view name) {
-  std::size_t i = 0;
-  while (i < kShaderCount && shader_source(static_cast<Shader>(i)).name != name) {
-    ++i;
-  }
-  return static_cast<Shader>(i);
+  return static_cast<Shader>(std::ranges::find(kSources, name, &ShaderSource::name) - kSources);
 }
 
 const ShaderInterface& shader_interface(Shader shader) {

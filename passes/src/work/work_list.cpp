@@ -113,24 +113,15 @@ std::uint32_t WorkList::add_table(const char* name, std::span<const std::uint32_
 
 tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
   const ShaderSource source = shader_source(info.shader);
-  const auto fail = [&](std::string_view what, std::string_view name, std::string_view why) {
-    return tl::unexpected(Error{std::string("The shader '")
-                                    .append(source.name)
-                                    .append("' ")
-                                    .append(what)
-                                    .append(" '")
-                                    .append(name)
-                                    .append("', ")
-                                    .append(why)
-                                    .append(".")});
+  const auto fail = [&](std::string_view what) {
+    return tl::unexpected(Error{std::string("The shader '").append(source.name).append("' ") +
+                                std::string(what) + "."});
   };
   if (work_.dispatch_count == ALCOVE_MAX_WORK_DISPATCHES ||
       info.parameters.size() > ALCOVE_MAX_WORK_PARAMETER_BYTES) {
-    return fail("does not fit into the list of work, in the pass", info.label,
-                "which has no room for it");
+    return fail("does not fit into the list of work");
   }
-  const std::uint32_t number = work_.dispatch_count;
-  AlcoveWorkDispatch& made = work_.dispatches[number];
+  AlcoveWorkDispatch& made = work_.dispatches[work_.dispatch_count];
   made.label = info.label;
   made.shader = source.name.data();
   made.groups[0] = groups(info.size.width);
@@ -144,50 +135,58 @@ tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
   made.binding_count = 0;
   std::size_t images = 0;
   for (const ShaderBinding& binding : shader_interface(info.shader).bindings) {
-    AlcoveWorkBinding& bound = made.bindings[made.binding_count++];
-    bound = {.name = binding.name.empty() ? "" : binding.name.data(),
-             .number = binding.number,
-             .type = binding_type(binding.type),
-             .access = binding.access,
-             .resource = ALCOVE_WORK_NONE,
-             .mip = 0,
-             .mip_count = 0};
-    if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS) {
-      continue;
-    }
-    if (bound.type == ALCOVE_BINDING_TYPE_TABLE) {
-      bound.resource = add_table("table", source.table);
-    } else {
-      const NamedTexture* const given = find_named(info.images, binding.name, images++);
-      if (given == nullptr || find(given->texture) == nullptr) {
-        return fail("has a binding", binding.name,
-                    "for which its pass gives no image; name it in the pass's list of images");
-      }
-      bound.resource = given->texture.index;
-      bound.mip = given->range.base_mip;
-      bound.mip_count =
-          given->range.mips == framegraph::kAll ? mips(given->texture) : given->range.mips;
-    }
-    if (bound.resource == ALCOVE_WORK_NONE) {
-      return fail("needs", "a table", "for which the list of work has no room");
-    }
-    AlcoveWorkResource& resource = work_.resources[bound.resource];
-    resource.first_dispatch = std::min(resource.first_dispatch, number);
-    resource.last_dispatch = number;
+    const NamedTexture table{"", {}};
+    const NamedTexture* given = &table;
     if (binding.is_image()) {
-      resource.usage |= bound.type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE ? ALCOVE_WORK_USAGE_STORAGE
-                                                                        : ALCOVE_WORK_USAGE_SAMPLED;
+      given = find_named(info.images, binding.name, images++);
+    }
+    if (given == nullptr || !bind(made, binding, *given, source.table)) {
+      return fail(std::string("has a binding '").append(binding.name) +
+                  "', for which its pass gives no image; name it in the pass's list of images");
     }
   }
   if (info.images.size() > images) {
     if (const NamedTexture* const unknown = find_unknown(info.images, known_images())) {
-      return fail("is given an image", unknown->name, "a name that no shader declares");
+      return fail(std::string("is given an image '").append(unknown->name) +
+                  "', a name that no shader declares");
     }
   }
   made.parameter_bytes = static_cast<std::uint32_t>(info.parameters.size());
   std::memcpy(made.parameters, info.parameters.data(), info.parameters.size());
   ++work_.dispatch_count;
   return {};
+}
+
+// Adds a binding to the dispatch that is being added, and the use to its resource: the image that
+// is given, or the table. Returns false if there is no resource.
+bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding,
+                    const NamedTexture& given, std::span<const std::uint32_t> table) {
+  AlcoveWorkBinding& bound = dispatch.bindings[dispatch.binding_count++];
+  bound = {.name = binding.name.empty() ? "" : binding.name.data(),
+           .number = binding.number,
+           .type = binding_type(binding.type),
+           .access = binding.access,
+           .resource = ALCOVE_WORK_NONE,
+           .mip = given.range.base_mip,
+           .mip_count = 0};
+  if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS) {
+    return true;
+  }
+  const Texture used =
+      bound.type == ALCOVE_BINDING_TYPE_TABLE ? Texture{add_table("table", table)} : given.texture;
+  if (find(used) == nullptr) {
+    return false;
+  }
+  AlcoveWorkResource& resource = work_.resources[used.index];
+  bound.resource = used.index;
+  bound.mip_count = given.range.mips == framegraph::kAll ? resource.mip_count : given.range.mips;
+  resource.first_dispatch = std::min(resource.first_dispatch, work_.dispatch_count);
+  resource.last_dispatch = work_.dispatch_count;
+  if (binding.is_image()) {
+    resource.usage |= bound.type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE ? ALCOVE_WORK_USAGE_STORAGE
+                                                                      : ALCOVE_WORK_USAGE_SAMPLED;
+  }
+  return true;
 }
 
 const AlcoveWorkResource* WorkList::find(Texture texture) const {

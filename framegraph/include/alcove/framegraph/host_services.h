@@ -9,6 +9,14 @@
 
 namespace alcove::framegraph {
 
+// When the contents of memory are needed.
+enum class MemoryLifetime : std::uint8_t {
+  persistent,  // until it is freed
+  // From the first to the last command that a frame records, as for transients. Between frames the
+  // caller may use the memory for something else, ordered by barriers of its own.
+  frame,
+};
+
 // A request for device memory.
 struct MemoryRequest {
   VkMemoryRequirements requirements{};  // size, alignment, and the allowed memory types
@@ -17,6 +25,7 @@ struct MemoryRequest {
   // Whether a buffer with a device address will be bound to the memory. If so, the memory must be
   // allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
   bool device_address = false;
+  MemoryLifetime lifetime = MemoryLifetime::persistent;
 };
 
 // A range of a device memory object. It begins at `offset` bytes, a multiple of the alignment.

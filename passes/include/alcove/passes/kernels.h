@@ -68,12 +68,6 @@ struct NamedConstant {
   std::uint32_t value = 0;  // of a bool: 0 or 1
 };
 
-// A view for an image binding of a shader, by the variable's name in GLSL.
-struct NamedView {
-  std::string_view name;
-  VkImageView view = VK_NULL_HANDLE;
-};
-
 // Owns the pipelines, descriptor sets and parameter buffers of the passes on one device. A pipeline
 // is created when a shader is first used with a set of constants, and is kept (Frame::prepare
 // creates all that a view can need). A frame that needs no new pipeline allocates nothing. Several
@@ -111,15 +105,10 @@ class Kernels {
   // frame is recorded.
   void begin_frame(std::uint32_t slot);
 
-  // Returns the pipeline of `shader` with these specialisation constants. Values for constants that
-  // only other shaders have are ignored, so that all variants of a shader can be given the same
-  // list. Errors: a specialisation constant of the shader that has no value in the list, a name
-  // that no shader declares, or a pipeline that the device could not create.
+  // Returns the pipeline of `shader` with the values of AlcoveWorkDispatch::constants. Errors: a
+  // pipeline that the device could not create.
   [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
-                                                std::span<const NamedConstant> constants = {});
-  // The same with the values of AlcoveWorkDispatch::constants.
-  [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
-                                                std::span<const AlcoveWorkConstant> constants);
+                                                std::span<const AlcoveWorkConstant> constants = {});
 
   // Returns the size in bytes of the lookup tables of the shaders that have a pipeline. Tables of
   // other shaders are not created and do not count.
@@ -129,18 +118,11 @@ class Kernels {
   // flight, and table_bytes().
   [[nodiscard]] VkDeviceSize memory_bytes() const;
 
-  // Records a dispatch that covers `size` pixels (and layers) with groups of 8x8 invocations.
-  // `parameters` are the contents of the shader's uniform buffer. Each image binding of the shader
-  // gets the view of its name: sampled images in the layout SHADER_READ_ONLY_OPTIMAL, storage
-  // images in GENERAL. A view that is bound both as a sampled and as a storage image is in GENERAL.
-  // Views for bindings that only other shaders have are ignored, so that all variants of a shader
-  // can be given the same list. Executor::record() returns an error if a binding has no view in the
-  // list, if no shader declares the name of a view, if memory runs out, if begin_frame() was given
-  // no valid slot, or if the frame already has kMaxDispatches.
-  void dispatch(framegraph::RecordContext& context, Kernel kernel, std::span<const NamedView> views,
-                std::span<const std::byte> parameters, VkExtent3D size);
-  // The same with one view for each image binding of the shader, ascending by number, and with the
-  // number of groups.
+  // Records a dispatch of `groups`. `parameters` are the contents of the shader's uniform buffer.
+  // `views` has one view for each image binding of the shader, ascending by number: sampled images
+  // in the layout SHADER_READ_ONLY_OPTIMAL, storage images in GENERAL. A view that is bound both as
+  // a sampled and as a storage image is in GENERAL. Executor::record() returns an error if memory
+  // runs out, if begin_frame() was given no valid slot, or if the frame already has kMaxDispatches.
   void dispatch(framegraph::RecordContext& context, Kernel kernel,
                 std::span<const VkImageView> views, std::span<const std::byte> parameters,
                 const std::array<std::uint32_t, 3>& groups);

@@ -94,6 +94,8 @@ class WorkList {
   };
   const AlcoveWorkResource* find(framegraph::Texture texture) const;
   std::uint32_t add_table(const char* name, std::span<const std::uint32_t> words);
+  bool bind(AlcoveWorkDispatch& dispatch, const struct ShaderBinding& binding,
+            const NamedTexture& given, std::span<const std::uint32_t> table);
 
   AlcoveWork& work_;
   HistorySource source_;

@@ -1,0 +1,11 @@
+/* Compiles alcove_work.h as C99, without any header of Vulkan. */
+#include "alcove/alcove_work.h"
+
+#ifdef VULKAN_CORE_H_
+#error "alcove_work.h includes a header of Vulkan."
+#endif
+
+/* The functions have C linkage. */
+AlcoveResult (*const describe_work)(const AlcoveWorkInfo*, AlcoveWork*, char*) = alcoveDescribeWork;
+size_t (*const print_work)(const AlcoveWork*, char*, size_t) = alcovePrintWork;
+AlcoveResult (*const get_shader)(const char*, AlcoveShader*) = alcoveGetShader;
