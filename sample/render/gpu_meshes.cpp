@@ -247,14 +247,13 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_constants() {
   constants.white.fill(255);
   const auto place = store(1, [&](std::size_t) { return constants; });
   if (!place) return Failure(place.error());
-  for (const VertexStream which :
-       {VertexStream::kPosition, VertexStream::kNormals, VertexStream::kUv, VertexStream::kSecondUv,
-        VertexStream::kTangent}) {
+  for (const VertexStream which : {VertexStream::position, VertexStream::normals, VertexStream::uv,
+                                   VertexStream::second_uv, VertexStream::tangent}) {
     bind_constant(constants_, which, *place);
   }
-  bind_constant(constants_, VertexStream::kColor,
+  bind_constant(constants_, VertexStream::color,
                 {place->buffer, place->offset + offsetof(Constants, white)});
-  bind_constant(constants_, VertexStream::kInstance,
+  bind_constant(constants_, VertexStream::instance,
                 {place->buffer, place->offset + offsetof(Constants, identity)});
   return {};
 }
@@ -268,26 +267,25 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_part(const Mesh& mesh, c
   draw.moves = mesh.moves;
   draw.faceted = mesh.normals.empty();
   const std::size_t count = part.sources.size();
-  stream(draw, VertexStream::kPosition, count,
+  stream(draw, VertexStream::position, count,
          [&](std::size_t i) { return mesh.positions[part.sources[i]]; });
-  stream(draw, VertexStream::kNormals, count, [&](std::size_t i) {
+  stream(draw, VertexStream::normals, count, [&](std::size_t i) {
     return PackedNormals{
         draw.faceted ? PackedDirection{} : packed_direction(mesh.normals[part.sources[i]]),
         part.faces[i]};
   });
   if (!mesh.uvs.empty()) {
-    stream(draw, VertexStream::kUv, count,
-           [&](std::size_t i) { return mesh.uvs[part.sources[i]]; });
+    stream(draw, VertexStream::uv, count, [&](std::size_t i) { return mesh.uvs[part.sources[i]]; });
   }
   if (!mesh.second_uvs.empty()) {
-    stream(draw, VertexStream::kSecondUv, count,
+    stream(draw, VertexStream::second_uv, count,
            [&](std::size_t i) { return mesh.second_uvs[part.sources[i]]; });
   }
   if (!part.tangents.empty()) {
-    stream(draw, VertexStream::kTangent, count, [&](std::size_t i) { return part.tangents[i]; });
+    stream(draw, VertexStream::tangent, count, [&](std::size_t i) { return part.tangents[i]; });
   }
   if (!mesh.colors.empty()) {
-    stream(draw, VertexStream::kColor, count,
+    stream(draw, VertexStream::color, count,
            [&](std::size_t i) { return mesh.colors[part.sources[i]]; });
   }
   if (!failure_.empty()) return Failure(failure_);
@@ -310,10 +308,10 @@ tl::expected<void, std::string> GpuMeshes::Builder::add_instances(
     std::vector<std::uint32_t> chosen;
     const auto flush = [&]() -> tl::expected<void, std::string> {
       MeshDraw instanced;
-      stream(instanced, VertexStream::kInstance, chosen.size(),
+      stream(instanced, VertexStream::instance, chosen.size(),
              [&](std::size_t i) { return mesh.instances[chosen[i]]; });
       if (!failure_.empty()) return Failure(failure_);
-      constexpr auto kAt = static_cast<std::size_t>(VertexStream::kInstance);
+      constexpr auto kAt = static_cast<std::size_t>(VertexStream::instance);
       for (MeshDraw draw : parts) {
         draw.mirrored = mirrored;
         draw.instance_count = static_cast<std::uint32_t>(chosen.size());

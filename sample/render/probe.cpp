@@ -37,12 +37,12 @@ void add_keep(Graph& graph, Texture from, const GpuImage& to, std::uint32_t mips
 tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& frame, Gpu& gpu,
                                                          const EnvironmentImage& image,
                                                          std::unique_ptr<HostBuffer>& upload) {
-  auto buffer = HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
-                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  if (!buffer) {
-    return Failure(std::move(buffer.error()));
+  auto created =
+      assign(upload, HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
+                                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
+  if (!created) {
+    return Failure(std::move(created.error()));
   }
-  upload = std::move(*buffer);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::vec4 texel(image.pixels[i], 1.0f);
     std::memcpy(upload->bytes().data() + i * sizeof(texel), &texel, sizeof(texel));
@@ -50,29 +50,27 @@ tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& fr
   const Texture source = frame.graph.create_texture(
       "equirectangular",
       {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(image.width, image.height)});
-  auto made = passes::add_environment(frame, add_copy(frame.graph, *upload, source), kSettings);
-  if (!made) {
-    return Failure(std::move(made.error().message));
-  }
-  return *made;
+  return passes::add_environment(frame, add_copy(frame.graph, *upload, source), kSettings)
+      .map_error([](const passes::Error& error) { return error.message; });
 }
 
 tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
                                                                 const EnvironmentImage& image) {
   constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   std::unique_ptr<Probe> made(new Probe);
+  const auto create = [&](std::unique_ptr<GpuImage>& target, const framegraph::TextureDesc& desc) {
+    return assign(target, GpuImage::create(gpu.device(), desc, kUsage));
+  };
   using framegraph::Extent;
-  auto harmonics = GpuImage::create(
-      gpu.device(), {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(9, 1)}, kUsage);
-  auto map = GpuImage::create(gpu.device(),
-                              {VK_FORMAT_R16G16B16A16_SFLOAT,
-                               Extent::absolute(kSettings.size, kSettings.size), kSettings.levels},
-                              kUsage);
-  if (!harmonics || !map) {
-    return Failure(std::move(harmonics ? map.error() : harmonics.error()));
+  auto created = create(made->harmonics_, {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(9, 1)})
+                     .and_then([&] {
+                       return create(made->map_, {VK_FORMAT_R16G16B16A16_SFLOAT,
+                                                  Extent::absolute(kSettings.size, kSettings.size),
+                                                  kSettings.levels});
+                     });
+  if (!created) {
+    return Failure(std::move(created.error()));
   }
-  made->harmonics_ = std::move(*harmonics);
-  made->map_ = std::move(*map);
   std::unique_ptr<HostBuffer> upload;
   auto report = gpu.run([&](Graph& graph) {
     return add_probe({graph, gpu.kernels(), {}}, gpu, image, upload)

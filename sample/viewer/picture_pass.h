@@ -3,10 +3,10 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
-#include <vector>
 
 #include "alcove/framegraph/graph.h"
 #include "gpu/gpu.h"
+#include "render/graphics.h"
 #include "render/shaders/picture.h"
 #include "support/glm.h"
 
@@ -40,20 +40,14 @@ class PicturePass {
                                         const Shown& shown);
 
  private:
-  explicit PicturePass(const VulkanDevice& device) : device_(device) {}
-  VkResult create_layout();
-  VkResult create_pipeline(VkFormat format);
-  VkResult create_sets(std::uint32_t count);
+  explicit PicturePass(VkDevice device) : device_(device), layout_(device) {}
   void record(framegraph::RecordContext& context, framegraph::Texture target,
               const Shown& shown) const;
 
-  const VulkanDevice& device_;
+  VkDevice device_;
   VkSampler sampler_ = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  PipelineLayout layout_;  // one set for each frame slot
   VkPipeline pipeline_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  std::vector<VkDescriptorSet> sets_;  // by frame slot
 };
 
 }  // namespace alcove::sample

@@ -41,27 +41,17 @@ class Presenter {
   void wait() const;
 
  private:
-  struct Slot {
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    VkFence finished = VK_NULL_HANDLE;
-  };
   Presenter(Gpu& gpu, const Window& window) : gpu_(gpu), window_(window) {}
-  tl::expected<void, std::string> create_slots();
   tl::expected<void, std::string> create_swapchain();
-  // Waits for the frame that last used the slot of the next frame, and reads its timings.
-  VkResult wait_for_slot();
-  VkResult submit(const Slot& slot) const;
 
   Gpu& gpu_;
   const Window& window_;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
-  VkCommandPool pool_ = VK_NULL_HANDLE;
   std::unique_ptr<Swapchain> swapchain_;
   VkExtent2D window_size_{};  // the size that the swapchain was made for
-  std::vector<Slot> slots_;
-  std::uint32_t slot_ = 0;  // slot of the next frame
-  bool acquired_ = false;   // the swapchain has an image for it
-  bool outdated_ = false;   // the swapchain no longer suits the window
+  std::uint32_t slot_ = 0;    // slot of the next frame
+  bool acquired_ = false;     // the swapchain has an image for it
+  bool outdated_ = false;     // the swapchain no longer suits the window
   std::vector<PassTime> timings_;
 };
 

@@ -47,21 +47,14 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
     Gpu& gpu, const Scene& scene, const EnvironmentImage& environment, NormalSource normals,
     VkFormat format) {
   std::unique_ptr<SceneFrame> made(new SceneFrame(gpu, normals));
-  auto gbuffer = GbufferRenderer::create(gpu, scene, normals == NormalSource::kGeometric);
-  if (!gbuffer) {
-    return Failure(std::move(gbuffer.error()));
+  auto done =
+      assign(made->gbuffer_,
+             GbufferRenderer::create(gpu, scene, normals == NormalSource::kGeometric))
+          .and_then([&] { return assign(made->probe_, Probe::create(gpu, environment)); })
+          .and_then([&] { return assign(made->picture_, PicturePass::create(gpu, format)); });
+  if (!done) {
+    return Failure(std::move(done.error()));
   }
-  made->gbuffer_ = std::move(*gbuffer);
-  auto probe = Probe::create(gpu, environment);
-  if (!probe) {
-    return Failure(std::move(probe.error()));
-  }
-  made->probe_ = std::move(*probe);
-  auto picture = PicturePass::create(gpu, format);
-  if (!picture) {
-    return Failure(std::move(picture.error()));
-  }
-  made->picture_ = std::move(*picture);
   made->exposure_ = exposure_of(environment);
   return made;
 }
@@ -95,12 +88,7 @@ void SceneFrame::advance() {
 }
 
 passes::Frame SceneFrame::frame_of(Graph& graph) const {
-  return {graph,
-          gpu_.kernels(),
-          {to_matrix(view_.clip_from_view), to_matrix(view_.view_from_world)},
-          index_,
-          {to_matrix(view_.previous_clip_from_view), to_matrix(view_.previous_view_from_world)},
-          static_frames_};
+  return pass_frame(graph, gpu_, view_, index_, static_frames_);
 }
 
 tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,
@@ -110,30 +98,25 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
   const std::optional<OcclusionSettings> compared = compared_settings(state);
   const bool specular = settings.specular != passes::Specular::none ||
                         (compared && compared->specular != passes::Specular::none);
-
-  const auto create = [&](bool wanted, const char* name, VkFormat format) {
-    return wanted ? graph.create_texture(name, {format, framegraph::Extent::relative(target)})
-                  : Texture{};
-  };
-  Surfaces surfaces{.normals = normals_, .roughness = state.roughness};
-  surfaces.gbuffer =
-      gbuffer_->add(graph, view_,
-                    {create(true, "depth", kDepthFormat),
-                     create(normals_ != NormalSource::kDepth, "normals", kNormalFormat),
-                     create(reads_albedo(state.picture) || (specular && !state.roughness), "albedo",
-                            kAlbedoFormat),
-                     create(state.picture == Picture::kMotion, "motion", kMotionFormat),
-                     create(state.picture == Picture::kLit, "emissive", kEmissiveFormat)});
   const HiddenDepths hidden =
       hidden_depths_of(settings).with(compared ? hidden_depths_of(*compared) : HiddenDepths{});
-  if (hidden.back_faces) {
-    surfaces.back_depth =
-        gbuffer_->add_back_faces(graph, view_, create(true, "back-face depth", kDepthFormat));
+  const bool wanted[kGbufferTargets.size()] = {
+      true,
+      normals_ != NormalSource::kDepth,
+      reads_albedo(state.picture) || (specular && !state.roughness),
+      state.picture == Picture::kMotion,
+      state.picture == Picture::kLit,
+      hidden.back_faces,
+      hidden.second_layer};
+  Surfaces surfaces{.normals = normals_, .roughness = state.roughness};
+  for (std::size_t i = 0; i < kGbufferTargets.size(); ++i) {
+    const auto& [member, format, name] = kGbufferTargets[i];
+    if (wanted[i]) {
+      surfaces.gbuffer.*member =
+          graph.create_texture(name, {format, framegraph::Extent::relative(target)});
+    }
   }
-  if (hidden.second_layer) {
-    surfaces.second_depth = gbuffer_->add_second_layer(graph, view_, surfaces.gbuffer.depth,
-                                                       create(true, "second depth", kDepthFormat));
-  }
+  surfaces.gbuffer = gbuffer_->add(graph, view_, surfaces.gbuffer);
 
   Shown shown = shown_of(state);
   auto picture = picture_of(graph, state, surfaces, settings, "occlusion", shown);
@@ -189,15 +172,13 @@ Shown SceneFrame::shown_of(const ViewState& state) const {
 // Adds the passes of the picture with `settings`, and returns the texture that is shown.
 tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const ViewState& state,
                                                           const Surfaces& surfaces,
-                                                          const OcclusionSettings& settings,
+                                                          OcclusionSettings settings,
                                                           std::string_view history_name,
                                                           Shown& shown) {
-  OcclusionSettings wanted = with_roughness(settings, surfaces);
-  wanted.linear_depth = true;  // which lighting and a picture of it read
-  const auto outputs =
-      passes::add_occlusion(frame_of(graph), occlusion_inputs(surfaces), wanted, history_name);
+  settings.linear_depth = true;  // which lighting and a picture of it read
+  const auto outputs = add_occlusion(frame_of(graph), surfaces, settings, history_name);
   if (!outputs) {
-    return Failure(outputs.error().message);
+    return Failure(outputs.error());
   }
   // All outputs of the settings are computed, and timed, whether they are shown or not.
   for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular}) {
@@ -233,22 +214,16 @@ tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const Vi
 tl::expected<Texture, std::string> SceneFrame::add_lit(Graph& graph, const Surfaces& surfaces,
                                                        const passes::OcclusionOutputs& outputs,
                                                        Shown& shown) {
-  passes::ApplyInputs inputs{.visibility = outputs.visibility,
-                             .bent_normal = outputs.bent_normal,
-                             .specular_occlusion = outputs.specular};
-  give_surfaces(inputs, surfaces, outputs);
   if (!light_.map) {
     light_ = probe_->import(graph);
   }
-  inputs.harmonics = light_.harmonics;
-  inputs.map = light_.map;
-  auto lit = passes::add_apply(frame_of(graph), inputs, apply_settings(surfaces));
-  if (!lit) {
-    return Failure(std::move(lit.error().message));
-  }
   shown.linear_depth = outputs.linear_depth;
   shown.environment = light_.map;
-  return lit->lit;
+  return add_light(frame_of(graph), surfaces, outputs, light_,
+                   {.visibility = outputs.visibility,
+                    .bent_normal = outputs.bent_normal,
+                    .specular_occlusion = outputs.specular})
+      .map([](const passes::AppliedLight& lit) { return lit.lit; });
 }
 
 }  // namespace alcove::sample

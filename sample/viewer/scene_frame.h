@@ -56,7 +56,7 @@ class SceneFrame {
   passes::Frame frame_of(framegraph::Graph& graph) const;
   tl::expected<framegraph::Texture, std::string> picture_of(
       framegraph::Graph& graph, const ViewState& state, const Surfaces& surfaces,
-      const passes::OcclusionSettings& settings, std::string_view history_name, Shown& shown);
+      passes::OcclusionSettings settings, std::string_view history_name, Shown& shown);
   tl::expected<framegraph::Texture, std::string> add_lit(framegraph::Graph& graph,
                                                          const Surfaces& surfaces,
                                                          const passes::OcclusionOutputs& outputs,

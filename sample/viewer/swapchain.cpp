@@ -155,9 +155,7 @@ framegraph::ImportedTexture Swapchain::import() const {
   import.view = views_[current_];
   import.desc = {format_, framegraph::Extent::absolute(size_.width, size_.height)};
   import.usage = kUsage;
-  // The submission waits for arrived() in this stage, so that the first barrier must begin with it.
-  import.initial_state = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
-                          VK_IMAGE_LAYOUT_UNDEFINED};
+  import.initial_state = {kArrivalStage, 0, VK_IMAGE_LAYOUT_UNDEFINED};
   import.final_state = framegraph::access::present;
   return import;
 }

@@ -11,6 +11,10 @@
 
 namespace alcove::sample {
 
+// The stage that waits for an image of the window. Its first barrier must begin with this stage.
+inline constexpr VkPipelineStageFlags2 kArrivalStage =
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+
 // The images of a window of one size. A window that changes its size needs another swapchain. The
 // images have 8 bits per channel and no conversion: shaders write sRGB-encoded values.
 class Swapchain {
