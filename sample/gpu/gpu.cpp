@@ -147,7 +147,8 @@ Texture add_mips(Graph& graph, Texture texture, std::uint32_t mips) {
     pass.record([texture, mip](RecordContext& context) {
       const auto corner = [&](std::uint32_t of) {
         const VkExtent3D size = context.extent(texture, of);
-        return VkOffset3D{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height), 1};
+        return VkOffset3D{static_cast<std::int32_t>(size.width),
+                          static_cast<std::int32_t>(size.height), 1};
       };
       const VkImageBlit2 region{.sType = VK_STRUCTURE_TYPE_IMAGE_BLIT_2,
                                 .srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1},

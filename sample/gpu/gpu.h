@@ -58,8 +58,6 @@ class Gpu {
   [[nodiscard]] static tl::expected<std::unique_ptr<Gpu>, std::string> create(
       const DeviceOptions& options = {}, const framegraph::ExecutorOptions& executor = {});
   ~Gpu();
-  Gpu(const Gpu&) = delete;
-  Gpu& operator=(const Gpu&) = delete;
 
   const VulkanDevice& device() const { return *device_; }
   passes::Kernels& kernels() { return *kernels_; }

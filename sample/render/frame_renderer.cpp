@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "alcove/passes/multi_bounce.h"
-#include "render/probe.h"
 
 namespace alcove::sample {
 namespace {
@@ -150,13 +149,11 @@ void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, 
 }
 
 // Adds the passes that use visibility and bent normals: multi-bounce, and the lighting of the
-// surfaces with the environment. Adds nothing if no bent normals are computed. Emission is left
-// out, because the ray-traced reference does not have it.
-tl::expected<void, std::string> FrameRenderer::declare_light(Graph& graph,
-                                                             const FrameRequest& request,
-                                                             const DeclaredFrame& declared,
-                                                             ReadBack& read_back,
-                                                             FrameImages& images) {
+// surfaces with the environment, if `probe` is not null. Adds nothing if no bent normals are
+// computed. Emission is left out, because the ray-traced reference does not have it.
+tl::expected<void, std::string> FrameRenderer::declare_light(
+    Graph& graph, const FrameRequest& request, const DeclaredFrame& declared, const Probe* probe,
+    ReadBack& read_back, FrameImages& images) {
   const passes::OcclusionOutputs& outputs = declared.outputs;
   if (!outputs.bent_normal || request.light == nullptr) {
     return {};
@@ -168,20 +165,17 @@ tl::expected<void, std::string> FrameRenderer::declare_light(Graph& graph,
     return Failure(bounced.error().message);
   }
   read_back.add(graph, *bounced, [&](const Texels& t) { images.multi_bounce = rgb(t); });
-  if (request.light->environment.empty()) {
+  if (probe == nullptr) {
     return {};
   }
-  const auto probe = add_probe(declared.frame, gpu_, request.light->environment, environment_);
-  if (!probe) {
-    return Failure(probe.error());
-  }
+  const passes::Environment environment = probe->import(graph);
   const auto light = [&](const passes::ApplyInputs& occlusion, bool multi_bounce,
                          Image<glm::vec3> LitImages::*image, bool parts = false) {
     const auto read = [&](Texture texture, Image<glm::vec3> LitImages::*part) {
       read_back.add(graph, texture,
                     [&images, part](const Texels& t) { images.lit.*part = rgb(t); });
     };
-    return add_light(declared.frame, declared.surfaces, outputs, *probe, occlusion,
+    return add_light(declared.frame, declared.surfaces, outputs, environment, occlusion,
                      {.multi_bounce = multi_bounce, .parts = parts})
         .map([&](const passes::AppliedLight& lit) {
           read(lit.lit, image);
@@ -252,6 +246,12 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
   if (auto drawn = draw_gbuffer(request, ignored); !drawn) {
     return Failure(std::move(drawn.error()));
   }
+  std::unique_ptr<Probe> probe;
+  if (request.light != nullptr && !request.light->environment.empty()) {
+    if (auto done = assign(probe, Probe::create(gpu_, request.light->environment)); !done) {
+      return Failure(std::move(done.error()));
+    }
+  }
   FrameImages images;
   ReadBack read_back(gpu_.device());
   auto report = gpu_.run([&](Graph& graph) -> tl::expected<void, std::string> {
@@ -260,7 +260,7 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
       return Failure(declared.error());
     }
     read_occlusion(graph, *declared, read_back, images);
-    return declare_light(graph, request, *declared, read_back, images).and_then([&] {
+    return declare_light(graph, request, *declared, probe.get(), read_back, images).and_then([&] {
       return read_back.added();
     });
   });

@@ -13,6 +13,7 @@
 #include "gpu/gpu.h"
 #include "gpu/gpu_image.h"
 #include "render/gbuffer.h"
+#include "render/probe.h"
 #include "render/read_back.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"
@@ -116,8 +117,8 @@ class FrameRenderer {
                              ReadBack& read_back, FrameImages& images);
   tl::expected<void, std::string> declare_light(framegraph::Graph& graph,
                                                 const FrameRequest& request,
-                                                const DeclaredFrame& declared, ReadBack& read_back,
-                                                FrameImages& images);
+                                                const DeclaredFrame& declared, const Probe* probe,
+                                                ReadBack& read_back, FrameImages& images);
   void append_times(FrameCost& cost, bool occlusion);
 
   Gpu& gpu_;
@@ -131,8 +132,6 @@ class FrameRenderer {
   std::optional<HiddenDepths> compiled_;
   std::vector<PassTime> gbuffer_times_;  // times of the last drawing of the g-buffer
   std::array<std::unique_ptr<GpuImage>, kGbufferTargets.size()> targets_;
-  // Upload buffer of the environment, kept until the lit frame is done.
-  std::unique_ptr<HostBuffer> environment_;
   framegraph::MemoryStatistics memory_;
 };
 

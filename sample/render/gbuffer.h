@@ -75,8 +75,6 @@ class GbufferRenderer {
   [[nodiscard]] static tl::expected<std::unique_ptr<GbufferRenderer>, std::string> create(
       Gpu& gpu, const Scene& scene, bool geometric_normals);
   ~GbufferRenderer();
-  GbufferRenderer(const GbufferRenderer&) = delete;
-  GbufferRenderer& operator=(const GbufferRenderer&) = delete;
 
   // Adds the passes that fill `targets`, and returns their filled versions. All calls in one frame
   // must have the same view, because only one set of parameters is kept for each frame in flight.

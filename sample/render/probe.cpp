@@ -15,25 +15,26 @@ constexpr passes::EnvironmentSettings kSettings;
 
 // Adds a pass that copies every mip of a transient texture to an image that is kept after the
 // frame.
-void add_keep(Graph& graph, Texture from, const GpuImage& to, std::uint32_t mips) {
+void add_image_copy(Graph& graph, Texture from, const GpuImage& to, std::uint32_t mips) {
   auto pass = graph.add_pass("keep");
   pass.read(from, framegraph::access::transfer_source);
-  const Texture kept =
+  const Texture filled =
       pass.write(graph.import_texture("kept", to.import_to_fill(kSampledState)),
                  framegraph::access::transfer_destination, {}, framegraph::Contents::discard);
-  pass.record([from, kept, mips](RecordContext& context) {
+  pass.record([from, filled, mips](RecordContext& context) {
     std::vector<VkImageCopy> copies;
     for (std::uint32_t mip = 0; mip < mips; ++mip) {
       const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
-      copies.push_back({layers, {}, layers, {}, context.extent(kept, mip)});
+      copies.push_back({layers, {}, layers, {}, context.extent(filled, mip)});
     }
     vkCmdCopyImage(context.commands, context.image(from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                   context.image(kept), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, mips, copies.data());
+                   context.image(filled), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, mips,
+                   copies.data());
   });
 }
 
-}  // namespace
-
+// Adds the passes that compute a probe. `upload` receives the buffer that they read: it must
+// outlive the frame.
 tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& frame, Gpu& gpu,
                                                          const EnvironmentImage& image,
                                                          std::unique_ptr<HostBuffer>& upload) {
@@ -53,6 +54,8 @@ tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& fr
   return passes::add_environment(frame, add_copy(frame.graph, *upload, source), kSettings)
       .map_error([](const passes::Error& error) { return error.message; });
 }
+
+}  // namespace
 
 tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
                                                                 const EnvironmentImage& image) {
@@ -75,8 +78,8 @@ tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
   auto report = gpu.run([&](Graph& graph) {
     return add_probe({graph, gpu.kernels(), {}}, gpu, image, upload)
         .map([&](const passes::Environment& light) {
-          add_keep(graph, light.harmonics, *made->harmonics_, 1);
-          add_keep(graph, light.map, *made->map_, kSettings.levels);
+          add_image_copy(graph, light.harmonics, *made->harmonics_, 1);
+          add_image_copy(graph, light.map, *made->map_, kSettings.levels);
         });
   });
   if (!report) {

@@ -16,20 +16,20 @@ using Textures = std::array<Texture, 4>;
 
 // Returns the textures of all bindings. A texture that is not given is replaced by the shown one,
 // because every binding needs a texture.
-Textures textures_of(const Shown& shown) {
-  Textures textures{shown.texture, shown.other, shown.linear_depth, shown.environment};
+Textures textures_of(const PictureInputs& inputs) {
+  Textures textures{inputs.texture, inputs.other, inputs.linear_depth, inputs.environment};
   for (Texture& texture : textures) {
-    texture = texture ? texture : shown.texture;
+    texture = texture ? texture : inputs.texture;
   }
   return textures;
 }
 
-maths::PictureParameters parameters_of(const Shown& shown) {
+maths::PictureParameters parameters_of(const PictureInputs& inputs) {
   maths::PictureParameters parameters{};
-  parameters.world_from_shown = glm::mat4(shown.world_from_shown);
-  parameters.show = shown.show;
-  parameters.split = shown.other ? shown.split : std::numeric_limits<float>::max();
-  parameters.scale = shown.scale;
+  parameters.world_from_shown = glm::mat4(inputs.world_from_shown);
+  parameters.show = inputs.show;
+  parameters.split = inputs.other ? inputs.split : std::numeric_limits<float>::max();
+  parameters.scale = inputs.scale;
   return parameters;
 }
 
@@ -72,10 +72,10 @@ PicturePass::~PicturePass() {
   vkDestroySampler(device_, sampler_, nullptr);
 }
 
-Texture PicturePass::add(Graph& graph, Texture target, const Shown& shown) {
+Texture PicturePass::add(Graph& graph, Texture target, const PictureInputs& inputs) {
   auto pass = graph.add_pass("picture");
   std::vector<Texture> read;
-  for (const Texture texture : textures_of(shown)) {
+  for (const Texture texture : textures_of(inputs)) {
     if (std::ranges::find(read, texture) == read.end()) {
       pass.read(texture, framegraph::access::sampled_fragment);
       read.push_back(texture);
@@ -83,14 +83,15 @@ Texture PicturePass::add(Graph& graph, Texture target, const Shown& shown) {
   }
   const Texture drawn =
       pass.write(target, framegraph::access::color_attachment, {}, framegraph::Contents::discard);
-  pass.record([this, drawn, shown](RecordContext& context) { record(context, drawn, shown); });
+  pass.record([this, drawn, inputs](RecordContext& context) { record(context, drawn, inputs); });
   return drawn;
 }
 
-void PicturePass::record(RecordContext& context, Texture target, const Shown& shown) const {
+void PicturePass::record(RecordContext& context, Texture target,
+                         const PictureInputs& inputs) const {
   const VkDescriptorSet set = layout_.set(0, context.frame_slot);
   std::uint32_t binding = 0;
-  for (const Texture texture : textures_of(shown)) {
+  for (const Texture texture : textures_of(inputs)) {
     const VkDescriptorImageInfo image{sampler_, context.view(texture),
                                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     layout_.write(set, binding++, kImage, {&image, 1});
@@ -99,7 +100,7 @@ void PicturePass::record(RecordContext& context, Texture target, const Shown& sh
   begin_rendering(context, {&colour, 1});
   vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
   layout_.bind(context.commands, 0, set);
-  const maths::PictureParameters parameters = parameters_of(shown);
+  const maths::PictureParameters parameters = parameters_of(inputs);
   vkCmdPushConstants(context.commands, layout_.handle(), VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                      sizeof(parameters), &parameters);
   vkCmdDraw(context.commands, 3, 1, 0, 0);

@@ -13,7 +13,7 @@
 namespace alcove::sample {
 
 // The textures that the window shows. All have the size of the window.
-struct Shown {
+struct PictureInputs {
   std::uint32_t show = maths::kShowGrey;
   framegraph::Texture texture;
   framegraph::Texture other;  // shown right of `split`; null without a comparison
@@ -32,17 +32,15 @@ class PicturePass {
   [[nodiscard]] static tl::expected<std::unique_ptr<PicturePass>, std::string> create(
       Gpu& gpu, VkFormat format);
   ~PicturePass();
-  PicturePass(const PicturePass&) = delete;
-  PicturePass& operator=(const PicturePass&) = delete;
 
   // Returns the version of `target` after the pass. To be called once per frame.
   [[nodiscard]] framegraph::Texture add(framegraph::Graph& graph, framegraph::Texture target,
-                                        const Shown& shown);
+                                        const PictureInputs& inputs);
 
  private:
   explicit PicturePass(VkDevice device) : device_(device), layout_(device) {}
   void record(framegraph::RecordContext& context, framegraph::Texture target,
-              const Shown& shown) const;
+              const PictureInputs& inputs) const;
 
   VkDevice device_;
   VkSampler sampler_ = VK_NULL_HANDLE;

@@ -103,7 +103,7 @@ void SceneView::open(const std::string& file) {
   }
   state_.camera = session_.camera;
   state_.settings.radius = session_.settings.radius;
-  state_.kept.radius = session_.settings.radius;
+  state_.saved.radius = session_.settings.radius;
   good_ = {state_.settings, state_.roughness};
   refused_.reset();
   facts_.first_settings = session_.settings;

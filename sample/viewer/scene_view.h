@@ -11,7 +11,6 @@
 
 #include "render/read_back.h"
 #include "render/session.h"
-#include "render/shot.h"
 #include "viewer/gui.h"
 #include "viewer/panel.h"
 #include "viewer/presenter.h"
@@ -46,8 +45,6 @@ class SceneView {
   [[nodiscard]] static tl::expected<std::unique_ptr<SceneView>, std::string> create(
       SceneViewRequest request);
   ~SceneView();
-  SceneView(const SceneView&) = delete;
-  SceneView& operator=(const SceneView&) = delete;
 
   // Processes input and draws a frame. If the window was closed, draws nothing and returns false.
   [[nodiscard]] tl::expected<bool, std::string> draw();
