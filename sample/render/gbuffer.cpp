@@ -117,14 +117,14 @@ VkResult GbufferRenderer::create_layout(const Scene& scene) {
   if (result != VK_SUCCESS) {
     return result;
   }
-  layout_.write(layout_.set(kFrameSet, 0), 0, kParameters,
-                {parameters_->buffer(), 0, sizeof(maths::GbufferParameters)});
+  const VkDescriptorBufferInfo frame{parameters_->buffer(), 0, sizeof(maths::GbufferParameters)};
+  layout_.write(layout_.set(kFrameSet, 0), 0, kParameters, {}, &frame);
   for (std::size_t i = 0; i < count; ++i) {
     const VkDescriptorSet set = layout_.set(kMaterialSet, i);
+    const VkDescriptorBufferInfo constants{materials_->buffer(), i * VkDeviceSize{kMaterialStride},
+                                           sizeof(maths::GbufferMaterial)};
     layout_.write(set, 0, kImages, textures_->descriptors_of(scene.materials[i]));
-    layout_.write(
-        set, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-        {materials_->buffer(), i * VkDeviceSize{kMaterialStride}, sizeof(maths::GbufferMaterial)});
+    layout_.write(set, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, {}, &constants);
   }
   return VK_SUCCESS;
 }

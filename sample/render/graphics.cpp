@@ -168,24 +168,16 @@ PipelineLayout::~PipelineLayout() {
 }
 
 void PipelineLayout::write(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
-                           std::span<const VkDescriptorImageInfo> images) const {
+                           std::span<const VkDescriptorImageInfo> images,
+                           const VkDescriptorBufferInfo* buffer) const {
+  const auto count = static_cast<std::uint32_t>(images.size());
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    .dstSet = set,
                                    .dstBinding = binding,
-                                   .descriptorCount = static_cast<std::uint32_t>(images.size()),
+                                   .descriptorCount = buffer != nullptr ? 1 : count,
                                    .descriptorType = type,
-                                   .pImageInfo = images.data()};
-  vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
-}
-
-void PipelineLayout::write(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
-                           const VkDescriptorBufferInfo& buffer) const {
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = set,
-                                   .dstBinding = binding,
-                                   .descriptorCount = 1,
-                                   .descriptorType = type,
-                                   .pBufferInfo = &buffer};
+                                   .pImageInfo = images.data(),
+                                   .pBufferInfo = buffer};
   vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
 }
 

@@ -40,11 +40,10 @@ class PipelineLayout {
   [[nodiscard]] VkDescriptorSet set(std::uint32_t number, std::size_t index) const {
     return sets_[number][index];
   }
-  // Write one binding of a set, which no frame in flight may be reading.
+  // Writes one binding of a set, which no frame in flight may be reading: images, or one buffer.
   void write(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
-             std::span<const VkDescriptorImageInfo> images) const;
-  void write(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
-             const VkDescriptorBufferInfo& buffer) const;
+             std::span<const VkDescriptorImageInfo> images,
+             const VkDescriptorBufferInfo* buffer = nullptr) const;
   // Binds a set; `offsets` has one number for each dynamic buffer of the set.
   void bind(VkCommandBuffer commands, std::uint32_t number, VkDescriptorSet set,
             std::span<const std::uint32_t> offsets = {}) const;
