@@ -1,4 +1,3 @@
-#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -12,10 +11,26 @@
 namespace alcove::sample {
 namespace {
 
-using MakeTexture = std::function<framegraph::Texture(const char* name, VkFormat format)>;
+passes::Frame frame_of(framegraph::Graph& graph, Session& session, const Options& options) {
+  const CameraMatrices matrices =
+      camera_matrices(session.camera, options.view.width, options.view.height);
+  return pass_frame(graph, *session.gpu,
+                    {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
+                     matrices.clip_from_view});
+}
 
-// The images of the g-buffer, with placeholders that `texture` makes.
-Surfaces placeholders(const Session& session, const Options& options, const MakeTexture& texture) {
+// Declares the frame of the occlusion, with placeholders for the images of the g-buffer.
+tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& session,
+                                        const Options& options) {
+  const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
+  const auto texture = [&](const char* name, VkFormat format) {
+    auto pass = graph.add_pass(name);
+    const framegraph::Texture filled =
+        pass.write(graph.create_texture(name, {format, extent}),
+                   framegraph::access::color_attachment, {}, framegraph::Contents::discard);
+    pass.record([](framegraph::RecordContext&) {});
+    return filled;
+  };
   const HiddenDepths hidden = hidden_depths_of(session.settings);
   Surfaces surfaces;
   surfaces.normals = options.occlusion.normals;
@@ -26,40 +41,14 @@ Surfaces placeholders(const Session& session, const Options& options, const Make
   surfaces.gbuffer.normal = texture("normals", kNormalFormat);
   surfaces.gbuffer.albedo = texture("albedo and roughness", kAlbedoFormat);
   if (hidden.back_faces) {
-    surfaces.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
+    surfaces.gbuffer.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
   }
   if (hidden.second_layer) {
-    surfaces.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
+    surfaces.gbuffer.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
   }
-  return surfaces;
-}
-
-passes::View view_of(const Session& session, const Options& options) {
-  const CameraMatrices matrices =
-      camera_matrices(session.camera, options.view.width, options.view.height);
-  passes::View view;
-  view.clip_from_view = to_matrix(matrices.clip_from_view);
-  view.view_from_world = to_matrix(matrices.view_from_world);
-  return view;
-}
-
-// Declares the frame of the occlusion.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& session,
-                                        const Options& options) {
-  const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
-  const Surfaces surfaces = placeholders(session, options, [&](const char* name, VkFormat format) {
-    auto pass = graph.add_pass(name);
-    const framegraph::Texture filled =
-        pass.write(graph.create_texture(name, {format, extent}),
-                   framegraph::access::color_attachment, {}, framegraph::Contents::discard);
-    pass.record([](framegraph::RecordContext&) {});
-    return filled;
-  });
-  const auto outputs =
-      passes::add_occlusion({graph, session.gpu->kernels(), view_of(session, options)},
-                            occlusion_inputs(surfaces), with_roughness(session.settings, surfaces));
+  const auto outputs = add_occlusion(frame_of(graph, session, options), surfaces, session.settings);
   if (!outputs) {
-    return tl::unexpected(outputs.error().message);
+    return tl::unexpected(outputs.error());
   }
   for (const framegraph::Texture output :
        {outputs->visibility, outputs->bent_normal, outputs->specular}) {
@@ -71,25 +60,34 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& sessi
 }
 
 // Prints the work of the occlusion as data.
-tl::expected<void, std::string> print_work(const Session& session, const Options& options) {
-  const VkExtent2D size{options.view.width, options.view.height};
+tl::expected<void, std::string> print_work(Session& session, const Options& options) {
   const auto work = std::make_unique<AlcoveWork>();
   passes::WorkList list(*work);
-  const Surfaces surfaces = placeholders(session, options, [&](const char* name, VkFormat format) {
-    return list.add(ALCOVE_RESOURCE_KIND_INPUT, name, format, size);
-  });
-  const passes::OcclusionSettings settings = with_roughness(session.settings, surfaces);
-  passes::OcclusionInputs inputs = occlusion_inputs(surfaces);
-  const auto output = [&](bool wanted, const char* name, VkFormat format) {
-    return wanted ? list.add(ALCOVE_RESOURCE_KIND_OUTPUT, name, format, size)
+  const auto image = [&](bool wanted, AlcoveResourceKind kind, const char* name, VkFormat format) {
+    return wanted ? list.add(kind, name, format, {options.view.width, options.view.height})
                   : framegraph::Texture{};
   };
-  inputs.into = {output(settings.visibility, "visibility", VK_FORMAT_R8_UNORM),
-                 output(settings.bent_normal, "bent normals", VK_FORMAT_R8G8B8A8_SNORM),
-                 output(settings.specular != passes::Specular::none, "specular occlusion",
-                        VK_FORMAT_R8_UNORM)};
-  const auto outputs =
-      passes::describe_occlusion(list, {.view = view_of(session, options)}, inputs, settings);
+  const auto input = [&](bool wanted, const char* name, VkFormat format) {
+    return image(wanted, ALCOVE_RESOURCE_KIND_INPUT, name, format);
+  };
+  const auto output = [&](bool wanted, const char* name, VkFormat format) {
+    return image(wanted, ALCOVE_RESOURCE_KIND_OUTPUT, name, format);
+  };
+  const passes::OcclusionSettings& settings = session.settings;
+  const HiddenDepths hidden = hidden_depths_of(settings);
+  const bool given_normals = options.occlusion.normals != NormalSource::kDepth;
+  const passes::OcclusionInputs inputs{
+      .depth_ndc = input(true, "depth", VK_FORMAT_R32_SFLOAT),
+      .normals = input(given_normals, "normals", kNormalFormat),
+      .back_depth_ndc = input(hidden.back_faces, "back-face depth", VK_FORMAT_R32_SFLOAT),
+      .second_depth_ndc = input(hidden.second_layer, "second depth", VK_FORMAT_R32_SFLOAT),
+      .into = {output(settings.visibility, "visibility", VK_FORMAT_R8_UNORM),
+               output(settings.bent_normal, "bent normals", VK_FORMAT_R8G8B8A8_SNORM),
+               output(settings.specular != passes::Specular::none, "specular occlusion",
+                      VK_FORMAT_R8_UNORM)}};
+  framegraph::Graph graph;
+  const auto outputs = passes::describe_occlusion(
+      list, {.view = frame_of(graph, session, options).view}, inputs, settings);
   if (!outputs) {
     return tl::unexpected(outputs.error().message);
   }

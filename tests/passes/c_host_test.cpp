@@ -3,6 +3,7 @@
 // not depend on the allocator.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -74,6 +75,9 @@ struct DeviceMemory {
   int calls = 0;
   std::set<std::pair<VkDeviceMemory, VkDeviceSize>> alive{};
   std::vector<VkMemoryPropertyFlags> required{};
+  // By AlcoveMemoryLifetime.
+  std::array<int, 2> device_local{};
+  std::array<int, 2> host_visible{};
 
   AlcoveMemoryFunctions functions() {
     return {[](void* user, const AlcoveMemoryRequest* request, AlcoveMemoryRange* range) {
@@ -89,6 +93,8 @@ struct DeviceMemory {
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
     required.push_back(request.required);
+    ++((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 ? host_visible : device_local)
+          .at(request.lifetime);
     const VkMemoryRequirements& needs = request.requirements;
     const VkMemoryAllocateInfo info{
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
@@ -198,6 +204,9 @@ TEST_F(CAllocators, EverythingAllocatedThroughTheEnginesAllocatorsIsFreed) {
   EXPECT_EQ(host.allocated, host.freed);
   EXPECT_GT(memory.calls, 5);
   EXPECT_THAT(memory.alive, IsEmpty());
+  EXPECT_GT(memory.device_local[ALCOVE_MEMORY_LIFETIME_FRAME], 0) << "intermediate images";
+  EXPECT_GE(memory.device_local[ALCOVE_MEMORY_LIFETIME_PERSISTENT], 2) << "slots of the history";
+  EXPECT_EQ(memory.host_visible[ALCOVE_MEMORY_LIFETIME_FRAME], 0);
 }
 
 TEST_F(CAllocators, AllImagesArePlacedInTheEnginesMemoryBlockWhileSizesChange) {
