@@ -16,8 +16,7 @@ float sample_cosine(HalfSlice half_slice, vec3 point) {
     cosine = mix(half_slice.tangent_cosine, cosine,
                  radius_weight(squared * inverse, point.z, parameters.falloff));
   }
-  bool counts = squared <= point.z * point.z && !is_empty(half_slice);
-  return counts ? cosine : kNoHorizon;
+  return squared <= point.z * point.z ? cosine : kNoHorizon;
 }
 
 // Adds the part of a half-slice between the view direction and a horizon, given by its cosine.
@@ -35,13 +34,13 @@ void add_up_to_horizon(inout SliceSum sum, HalfSlice half_slice, Slice slice, fl
 // Adds the visible part of a half-slice.
 void add_horizons(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   float horizon = kNoHorizon;
-  uint k = 0u;
-  do {
+  uint k = is_empty(half_slice) ? kStepCount : 0u;
+  while (k < kStepCount) {
     float cosine = sample_cosine(
         half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k))).point);
     horizon = max(horizon, cosine);
     ++k;
-  } while (k < kStepCount);
+  }
   add_up_to_horizon(sum, half_slice, slice, horizon);
 }
 

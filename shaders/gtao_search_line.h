@@ -77,6 +77,7 @@ struct HalfSlice {
   SearchLine search_line;
   float side;            // +1 along the slice's direction, -1 against it
   float open_arc;        // the half-slice's part of the integral without occluders
+  uint steps;            // number of samples, at most kStepCount
   float growth;          // by this much, half the interval between samples grows per sample; zero
                          // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
@@ -105,9 +106,30 @@ float nearest_offset(HalfSlice half_slice) {
   return kNearestStep * half_slice.search_line.offset_per_px;
 }
 
+// Samples in one iteration of the loop over samples. An iteration costs as many instructions as
+// half a sample, but each of its samples holds registers, and several slices hold more registers
+// than one. passes/cost/gtao.cpp has the same numbers.
+const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
+
+// Up to this number, samples are not reduced to one per pixel.
+const uint kFewSteps = 16u;
+const bool kMayReduceSteps = kEstimator == kConnected && kStepCount > kFewSteps;
+
+// The number of samples of a half-slice that searches `reach_px` pixels: at most one per pixel,
+// because the steps between the texels of a tilted surface would otherwise look like
+// discontinuities. The number differs from kStepCount by whole iterations of the loop over samples.
+uint reduced_steps(float reach_px) {
+  uint wanted = uint(clamp(reach_px + 1.0, float(kFewSteps), float(kStepCount)));
+  return kStepCount - (kStepCount - wanted) / kUnrolled * kUnrolled;
+}
+
+// The number of samples of a half-slice.
+uint step_count(HalfSlice half_slice) { return kMayReduceSteps ? half_slice.steps : kStepCount; }
+
 // Offset of the last sample less that of the nearest.
 float reach_of(HalfSlice half_slice) {
-  return half_slice.growth * (float(kStepCount) * float(kStepCount));
+  float steps = float(step_count(half_slice));
+  return half_slice.growth * (steps * steps);
 }
 
 // Offset of the farthest point that can occlude. If the surface faces away from the half-slice,
@@ -147,10 +169,16 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.slice_cosine = slice.cosine;
   float distance = search_distance(half_slice);
   bool empty = min(distance, border.x) < nearest;
+  half_slice.steps = kStepCount;
+  if (kMayReduceSteps) {
+    half_slice.steps =
+        reduced_steps((min(distance, border.x) - nearest) / search_line.offset_per_px);
+  }
+  float steps = float(step_count(half_slice));
   // Samples stay apart if the radius spans few pixels, and inside the image in any case.
-  float apart = max(distance - nearest, 0.25 * float(kStepCount) * search_line.offset_per_px);
+  float apart = max(distance - nearest, 0.25 * steps * search_line.offset_per_px);
   float reach = max(min(apart, border.x - nearest), 1e-3 * search_line.offset_per_px);
-  half_slice.growth = empty ? 0.0 : reach * (1.0 / (float(kStepCount) * float(kStepCount)));
+  half_slice.growth = empty ? 0.0 : reach * (1.0 / (steps * steps));
   half_slice.border = border;
   half_slice.step_offset = step_offset;
   half_slice.texel_bias = surface.pixel - kRoundingBits;
@@ -158,16 +186,13 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   return half_slice;
 }
 
-// Whether there is nothing to search. Estimators must then ignore the samples.
+// Whether there is nothing to search: the radius or the image ends before the first sample.
 bool is_empty(HalfSlice half_slice) { return half_slice.growth == 0.0; }
 
-// Offset of sample `k`. It grows with the square of `k`. All samples of an empty half-slice are
-// taken at the shaded pixel, because its first step may lie outside the image.
+// Offset of sample `k`. It grows with the square of `k`.
 float sample_offset(HalfSlice half_slice, float k) {
   float steps = k + half_slice.step_offset;
-  float nearest = is_empty(half_slice) ? 0.01 * half_slice.search_line.offset_per_px
-                                       : nearest_offset(half_slice);
-  return steps * steps * half_slice.growth + nearest;
+  return steps * steps * half_slice.growth + nearest_offset(half_slice);
 }
 
 // Half the difference between the offsets of the samples 0 and 1. For each later pair of

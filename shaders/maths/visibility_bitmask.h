@@ -137,17 +137,22 @@ const float kNoHiddenOcclusion = 1e3f;
 // The exponent with which hidden_occlusion_behind() has the mean `hidden_occlusion`, [0,1], over
 // all run shares.
 ALCOVE_INLINE float hidden_exponent(float hidden_occlusion) {
-  return hidden_occlusion > 0.0f ? max(1.0f / max(hidden_occlusion, 1e-3f) - 1.0f, 0.0f)
+  return hidden_occlusion > 0.0f ? max(0.5f / max(hidden_occlusion, 1e-3f) - 0.5f, 0.0f)
                                  : kNoHiddenOcclusion;
 }
 
 // The fraction of the volume hidden behind the occluders of a half-slice that counts as occluded,
-// [0,1]. `run_share`, [0,1], is the mean width of an occluder run on the image, relative to the
-// distance that was searched from the first run outwards. The volume behind a wall, whose run has a
-// share of 1, counts as solid. A blade of grass, or each slat of a blind, has a small share, and
-// little of the volume behind it counts as occluded. `exponent` is hidden_exponent().
-ALCOVE_INLINE float hidden_occlusion_behind(float run_share, float exponent) {
-  float part = pow(clamp(run_share, 1e-6f, 1.0f), exponent);
+// [0,1]. It is s^(2 `exponent`), `exponent` is hidden_exponent(), and s, [0,1], is the run share:
+// the mean width of an occluder run on the image, relative to the distance from the sample before
+// the first run (`before`; 0 if that is the first sample) to the `last` sample. That distance is
+// replaced by its geometric mean with `last`, which costs no more and lets a run that reaches the
+// last sample have the same share with any number of samples. The volume behind a wall, whose run
+// has a share of 1, counts as solid. A blade of grass, or each slat of a blind, has a small share,
+// and little of the volume behind it counts as occluded.
+ALCOVE_INLINE float hidden_occlusion_behind(float run_width, float before, float last,
+                                            float exponent) {
+  float squared_share = run_width * run_width / max((last - before) * last, 1e-30f);
+  float part = pow(clamp(squared_share, 1e-12f, 1.0f), exponent);
   return exponent < kNoHiddenOcclusion ? part : 0.0f;
 }
 
