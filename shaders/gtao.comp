@@ -12,9 +12,8 @@
 //   gtao_search_line.h  the line of a slice on the image, and the depth samples of a half-slice
 //   gtao_connected.h    the default estimator, connected samples: the occluders that the samples
 //                       show, and the visible part of a half-slice
-// Three other estimators take the place of gtao_connected.h: the paper's horizons
-// (gtao_horizons.h), its thickness heuristic (gtao_heuristic.h) and the visibility bitmask
-// (gtao_bitmask.h).
+// Two other estimators take the place of gtao_connected.h: the paper's horizons (gtao_horizons.h)
+// and the visibility bitmask (gtao_bitmask.h).
 //
 // Each traced pixel writes two sums over its slices: the visible part, and the same integral
 // without occluders. Filters and history sum both and divide at the end, because the mean of ratios
@@ -41,25 +40,22 @@ layout(constant_id = 1) const uint kStepCount = 12;  // depth samples of a half-
 layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const uint kEstimator = 0;  // a value of the C++ enum Estimator
 layout(constant_id = 4) const int kTileSize = 1;    // one pixel is traced in a tile of this width
-layout(constant_id = 5) const uint kPattern = 0;    // a value of the C++ enum Pattern
-layout(constant_id = 6) const bool kPerspective = true;
-layout(constant_id = 7) const bool kRoughnessTexture = false;
-layout(constant_id = 8) const int kRoughnessChannel = 0;
-layout(constant_id = 9) const bool kUniformWeight = false;  // no cosine of the normal
-layout(constant_id = 10) const bool kFalloff = false;       // occluders fade towards the radius
-layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else a part of the radius
-layout(constant_id = 12) const bool kBackFaces = false;            // back_image tells the thickness
-layout(constant_id = 13) const bool kSnapToTexels = true;   // samples lie at centres of texels
-layout(constant_id = 14) const bool kSecondLayer = false;   // second_image occludes too
-layout(constant_id = 15) const bool kExtrapolation = true;  // surfaces continue beyond the image
-layout(constant_id = 16) const bool kUnobserved = true;     // excludes unobserved directions
-layout(constant_id = 17) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
-layout(constant_id = 18) const bool kReversed = false;      // raw depth is 1 at the near plane
-layout(constant_id = 19) const bool kInfiniteFar = false;   // the far plane is infinitely far away
+layout(constant_id = 5) const bool kPerspective = true;
+layout(constant_id = 6) const bool kRoughnessTexture = false;
+layout(constant_id = 7) const int kRoughnessChannel = 0;
+layout(constant_id = 8) const bool kFalloff = false;       // occluders fade towards the radius
+layout(constant_id = 9) const bool kThicknessOfDistance = false;  // else a part of the radius
+layout(constant_id = 10) const bool kBackFaces = false;            // back_image tells the thickness
+layout(constant_id = 11) const bool kSnapToTexels = true;   // samples lie at centres of texels
+layout(constant_id = 12) const bool kSecondLayer = false;   // second_image occludes too
+layout(constant_id = 13) const bool kExtrapolation = true;  // surfaces continue beyond the image
+layout(constant_id = 14) const bool kUnobserved = true;     // excludes unobserved directions
+layout(constant_id = 15) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
+layout(constant_id = 16) const bool kReversed = false;      // raw depth is 1 at the near plane
+layout(constant_id = 17) const bool kInfiniteFar = false;   // the far plane is infinitely far away
 
-const uint kHeuristic = 1;
-const uint kBitmask = 2;
-const uint kConnected = 3;
+const uint kBitmask = 1;
+const uint kConnected = 2;
 const bool kLeaveOutUnobserved = kEstimator == kConnected && kUnobserved;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
@@ -112,7 +108,6 @@ struct SliceSum {
 
 #include "gtao_bitmask.h"
 #include "gtao_connected.h"
-#include "gtao_heuristic.h"
 #include "gtao_horizons.h"
 
 // Adds the visible part of a half-slice to the sums of its slice.
@@ -123,9 +118,6 @@ void add_half_slice(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
       break;
     case kBitmask:
       add_bitmask(sum, half_slice, slice);
-      break;
-    case kHeuristic:
-      add_heuristic(sum, half_slice, slice);
       break;
     default:
       add_horizons(sum, half_slice, slice);
@@ -142,9 +134,7 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   Slice slice = make_slice(surface.normal, direction, surface.view);
   SearchLine search_line = make_search_line(surface, direction);
   vec2 border = border_offsets(centre_of(surface), search_line);
-  vec2 open_arcs = kUniformWeight ? vec2(uniform_arc(tangent_light(slice, 1.0)),
-                                         uniform_arc(tangent_light(slice, -1.0)))
-                                  : tangent_arcs(slice);
+  vec2 open_arcs = tangent_arcs(slice);
   SliceSum sum = SliceSum(0.0, 0.0, vec2(0.0), no_lobe(), 0.0,
                           surface.lobe.roughness * surface.lobe.roughness);
   uint i = 0u;
@@ -174,18 +164,6 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   result.lobe = no_lobe();
   if (kLobe) result.lobe = leave_out(sum.lobe, sum.lobe_left_out);
   return result;
-}
-
-// Direction and offset of a tile's samples in this frame.
-SliceNoise noise_at(uvec2 tile) {
-  switch (kPattern) {
-    case 1:
-      return hilbert_pattern(tile, parameters.frame);
-    case 2:
-      return paper_pattern(tile, parameters.frame);
-    default:
-      return golden_pattern(tile, parameters.frame, kTileSize > 1);
-  }
 }
 
 // Packs the sums of a lobe, scaled so that sums of narrow and of wide lobes have about the same
@@ -303,7 +281,8 @@ void main() {
   float inverse_depth = load_inverse_depth(pixel);
   SearchResult result = sky_result();
   if (inverse_depth != sky_inverse_depth(kPerspective)) {
-    result = search_pixel(pixel, inverse_depth, noise_at(uvec2(tile)));
+    result = search_pixel(pixel, inverse_depth,
+                          golden_pattern(uvec2(tile), parameters.frame, kTileSize > 1));
   }
   imageStore(raw_image, tile, result.raw_occlusion);
   if (kBentNormal) {

@@ -53,7 +53,7 @@ void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
       hidden_occlusion_behind(runs.width_px / max(runs.count, 1.0), runs.before_first_px, last,
                               parameters.hidden_exponent);
   VisiblePart part = visible_part(slice, half_slice.side, per_diamond_angle, occluded,
-                                  hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
+                                  hidden_occlusion, kBentNormal);
   sum.visible += part.arc;
   sum.bent += part.bent;
   if (kLobe) {

@@ -310,12 +310,12 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   SearchedPart part = search_half_slice(half_slice, slice);
   float arc = part.found.occluded == 0u
                   ? half_slice.open_arc
-                  : part_arc(slice, half_slice.side, part.first_light, kUniformWeight);
+                  : light_arc(slice, half_slice.side, part.first_light);
   if (kBackFaces && part.found.known_back) {
     // Back faces show which directions behind an occluder are visible. They are integrated exactly.
     VisiblePart visible =
         visible_part(slice, half_slice.side, part.sectors, repeat_last_sector(part.found.occluded),
-                     part.found.hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
+                     part.found.hidden_occlusion, kBentNormal);
     sum.visible += visible.arc;
     sum.bent += visible.bent;
   } else {
@@ -330,7 +330,7 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   }
   if (kLeaveOutUnobserved) {
     sum.left_out += part.unobserved.share *
-                    (arc - part_arc(slice, half_slice.side, part.unobserved.from, kUniformWeight));
+                    (arc - light_arc(slice, half_slice.side, part.unobserved.from));
   }
   if (kLobe) add_connected_lobe(sum, half_slice, slice, part);
 }

@@ -1,6 +1,6 @@
 // The directions of slices and the offsets of steps for each pixel and frame.
 //
-// Each pattern gives a pixel two numbers in [0,1). `direction` is a fraction of the angle between
+// The pattern gives a pixel two numbers in [0,1). `direction` is a fraction of the angle between
 // slices: slice k of n lies at phi = pi (k + direction) / n. `offset` is a fraction of a step.
 #ifndef ALCOVE_MATHS_SAMPLING_H
 #define ALCOVE_MATHS_SAMPLING_H
@@ -17,28 +17,6 @@ struct SliceNoise {
 
 ALCOVE_INLINE float slice_angle(uint slice, uint slice_count, float direction) {
   return kPi * (float(slice) + direction) / float(slice_count);
-}
-
-// Returns the paper's pattern (section 4.4). A block of 4x4 pixels has 16 directions and 4 offsets.
-// In each of six frames the directions are rotated by another multiple of a sixth of 180 degrees,
-// which gives 96 different directions. The order of the multiples keeps successive frames of a
-// pixel far apart. Every second rotation is shifted by 1/96 of 180 degrees, so that no two of the
-// 96 coincide.
-ALCOVE_INLINE SliceNoise paper_pattern(uvec2 pixel, uint frame) {
-  uint x = pixel.x & 3u;
-  uint y = pixel.y & 3u;
-  uint cell = (((x + y) & 3u) << 2u) + x;
-  // The rotations in sixths of 180 degrees, in the order 1, 5, 3, 4, 2, 0, with four bits each.
-  uint sixth = (0x024351u >> ((frame % 6u) * 4u)) & 15u;
-  uint step_of_96 = (cell * 6u + sixth * 16u + (sixth & 1u)) % 96u;
-  // The offsets in quarters of a step, in the order 0, 2, 1, 3, with two bits each. The offset
-  // changes after every six frames.
-  uint quarter = (0xD8u >> (((frame / 6u) & 3u) * 2u)) & 3u;
-  uint offset = ((y + 4u - x) & 3u) * 4u + quarter;
-  SliceNoise noise;
-  noise.direction = float(step_of_96) * (1.0f / 96.0f);
-  noise.offset = (float(offset) + 0.5f) * (1.0f / 16.0f);
-  return noise;
 }
 
 // Returns a hash of a position, by multiplications and xor-shifts with the primes of xxHash
@@ -80,41 +58,6 @@ ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   noise.direction = float(direction_bits >> 8u) * (1.0f / 16777216.0f);
   noise.offset = float(offset_bits >> 8u) * (1.0f / 16777216.0f);
   return noise;
-}
-
-// Returns the position, 0 to 4095, along a Hilbert curve through 64x64 pixels. x and y are taken
-// modulo 64.
-ALCOVE_INLINE uint hilbert_index(uvec2 pixel) {
-  uint x = pixel.x & 63u;
-  uint y = pixel.y & 63u;
-  uint index = 0u;
-  for (uint size = 32u; size > 0u; size >>= 1u) {
-    uint right = (x & size) != 0u ? 1u : 0u;
-    uint below = (y & size) != 0u ? 1u : 0u;
-    index += size * size * ((3u * right) ^ below);
-    if (below == 0u) {
-      uint mirror = right * 63u;
-      uint swapped = x ^ mirror;
-      x = y ^ mirror;
-      y = swapped;
-    }
-  }
-  return index;
-}
-
-// The R2 sequence (Roberts 2018) in 32-bit fixed point, exact for every index.
-ALCOVE_INLINE SliceNoise r2_sequence(uint index) {
-  SliceNoise noise;
-  noise.direction = float((0x80000000u + index * 3242174889u) >> 8u) * (1.0f / 16777216.0f);
-  noise.offset = float((0x80000000u + index * 2447445414u) >> 8u) * (1.0f / 16777216.0f);
-  return noise;
-}
-
-// Returns the element of the R2 sequence whose index is the pixel's position along a Hilbert curve.
-// The pattern repeats after 64 frames. Neighbouring pixels and successive frames get evenly
-// distributed values, as a spatial filter followed by a temporal one needs them.
-ALCOVE_INLINE SliceNoise hilbert_pattern(uvec2 pixel, uint frame) {
-  return r2_sequence(hilbert_index(pixel) + 288u * (frame & 63u));
 }
 
 // The distance in pixels of the nearest sample, which in every direction lies on another texel than

@@ -69,7 +69,7 @@ bool of_distance(const OcclusionSettings& settings) {
          settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
-std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
+std::array<NamedConstant, 18> constants_of(const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   const AdvancedSettings& advanced = settings.advanced;
@@ -78,11 +78,9 @@ std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
            {"kBentNormal", flag(needs_bent_normal(settings))},
            {"kEstimator", static_cast<std::uint32_t>(advanced.estimator)},
            {"kTileSize", settings.tile_size},
-           {"kPattern", static_cast<std::uint32_t>(advanced.pattern)},
            {"kPerspective", flag(is_perspective(projection))},
            {"kRoughnessTexture", flag(reads.roughness)},
            {"kRoughnessChannel", channel_if(reads.roughness, settings.roughness_channel)},
-           {"kUniformWeight", flag(advanced.weighting == Weighting::uniform)},
            {"kFalloff", flag(advanced.falloff > 0.0f)},
            {"kThicknessOfDistance", flag(of_distance(settings))},
            {"kBackFaces", flag(reads.back_faces)},
@@ -135,7 +133,6 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
       frame.index,
       settings.thickness * (of_distance(settings) ? 1.0f : radius),
       maths::hidden_exponent(settings.hidden_occlusion),
-      settings.advanced.blend,
       settings.advanced.falloff,
       settings.roughness,
       step.constant,
