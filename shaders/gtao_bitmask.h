@@ -4,6 +4,10 @@
 #ifndef ALCOVE_GTAO_BITMASK_H
 #define ALCOVE_GTAO_BITMASK_H
 
+#include "gtao_search_line.h"
+#include "maths/lobe_slice.h"
+#include "maths/visibility_bitmask.h"
+
 // The occluder runs of a half-slice, from which hidden_occlusion_behind() is computed.
 struct RunSum {
   float count;            // number of runs
@@ -28,7 +32,7 @@ uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer
   float last_px = 0.0;
   uint k = is_empty(half_slice) ? kStepCount : 0u;
   while (k < kStepCount) {
-    SliceSample here = fetch_sample(half_slice, layer, sample_offset(half_slice, float(k)));
+    SliceSample here = fetch_sample(half_slice, layer, sample_offset(half_slice, float(k)), false);
     float front = sector_position(per_diamond_angle, here.point.xy);
     bool known = kBackFaces && here.back.y < kNoBack;
     vec2 back = known ? here.back : here.point.xy - vec2(0.0, settings_thickness(here));
@@ -49,9 +53,8 @@ void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   uint occluded = occluded_by_layer(half_slice, per_diamond_angle, 0u, runs);
   if (kSecondLayer) occluded |= occluded_by_layer(half_slice, per_diamond_angle, 1u, runs);
   float last = sample_offset(half_slice, float(kStepCount) - 1.0);
-  float hidden_occlusion =
-      hidden_occlusion_behind(runs.width_px / max(runs.count, 1.0), runs.before_first_px, last,
-                              parameters.hidden_exponent);
+  float hidden_occlusion = hidden_occlusion_behind(
+      runs.width_px / max(runs.count, 1.0), runs.before_first_px, last, parameters.hidden_exponent);
   VisiblePart part = visible_part(slice, half_slice.side, per_diamond_angle, occluded,
                                   hidden_occlusion, kBentNormal);
   sum.visible += part.arc;

@@ -7,6 +7,12 @@
 #ifndef ALCOVE_GTAO_CONNECTED_H
 #define ALCOVE_GTAO_CONNECTED_H
 
+#include "gtao_search_line.h"
+#include "maths/connected_samples.h"
+#include "maths/lobe_slice.h"
+#include "maths/unobserved.h"
+#include "maths/visibility_bitmask.h"
+
 // The state of the search after a sample.
 struct SegmentState {
   float rise;                        // change of y (times w) over the last sample interval
@@ -18,8 +24,8 @@ struct SegmentState {
   float begin;                       // offset at which the surface of the last sample begins
   uvec2 runs;                        // the samples that are part of an occluder run
   float half_width;                  // half the width of all occluder runs together
-  uvec2 unobserved;  // the samples that hide points within the radius behind them
-  bool known_back;   // whether a back face told where an occluder ends
+  uvec2 unobserved;                  // the samples that hide points within the radius behind them
+  bool known_back;                   // whether a back face told where an occluder ends
 };
 
 // The occluders that were found in a half-slice.
@@ -58,8 +64,7 @@ float lowest_of(uint bits) { return small_float(uint(findLSB(bits))); }
 
 // The number of the first sample in a set, which must not be empty.
 float first_sample(uvec2 samples) {
-  return kStepCount <= 32u || samples.x != 0u ? lowest_of(samples.x)
-                                              : lowest_of(samples.y) + 32.0;
+  return kStepCount <= 32u || samples.x != 0u ? lowest_of(samples.x) : lowest_of(samples.y) + 32.0;
 }
 
 // The number of runs of adjacent samples in a set.
@@ -119,7 +124,8 @@ float edge_distance(SegmentState state) { return 2.0 * kEdgeShare * state.half_i
 void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice half_slice,
                  float sectors, uint layer, uint k) {
   float half_interval = state.half_interval + half_slice.growth;
-  SliceSample next = fetch_sample(half_slice, layer, 2.0 * half_interval + here.point.x);
+  float offset = 2.0 * half_interval + here.point.x;
+  SliceSample next = fetch_sample(half_slice, layer, offset, is_far(half_slice, layer, offset));
   float rise = next.point.y - here.point.y;
   DepthDiscontinuity discontinuity =
       discontinuity_between(state.rise, state.half_interval, rise, half_interval);
@@ -136,8 +142,8 @@ void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice hal
 SegmentState first_state(HalfSlice half_slice, float sectors, uint layer, out SliceSample here) {
   float first_offset = sample_offset(half_slice, 0.0);
   float half_interval = first_half_interval(half_slice);
-  SliceSample first = fetch_sample(half_slice, layer, first_offset);
-  here = fetch_sample(half_slice, layer, 2.0 * half_interval + first_offset);
+  SliceSample first = fetch_sample(half_slice, layer, first_offset, false);
+  here = fetch_sample(half_slice, layer, 2.0 * half_interval + first_offset, false);
   SegmentState state;
   state.occluded = 0u;
   state.begin = 0.0;
@@ -163,11 +169,11 @@ SegmentState first_state(HalfSlice half_slice, float sectors, uint layer, out Sl
 // to the tangent plane is measured between the texels of these samples, because rounding the
 // positions to texels changes their distance by up to a pixel. Two samples of one texel have no
 // slope.
-uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sectors,
+uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sectors, uint layer,
                           SliceSample last) {
   SearchLine search_line = half_slice.search_line;
   float interval = 2.0 * state.half_interval;
-  float between_texels = texel_distance(search_line, last.point.x - interval, last.point.x);
+  float between_texels = sample_distance(half_slice, layer, last.point.x - interval, last.point.x);
   float above_tangent = (state.rise - interval * search_line.tangent_rise) /
                         max(between_texels, 0.5 * search_line.offset_per_px);
   float slope = search_line.tangent_rise + above_tangent;
@@ -225,7 +231,8 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   // No sample follows the last one, so it is connected only if there is no discontinuity before it.
   add_sample(state, sectors, layer, last, here, !is_discontinuous(state.discontinuity),
              edge_distance(state));
-  uint extrapolated = kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, here) : 0u;
+  uint extrapolated =
+      kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, layer, here) : 0u;
   Occluders found;
   found.occluded = state.occluded | extrapolated;
   found.hidden_occlusion = hidden_occlusion_of(state, half_slice, here.point.x);
@@ -308,9 +315,8 @@ void add_connected_lobe(inout SliceSum sum, HalfSlice half_slice, Slice slice, S
 // Adds the visible part of a half-slice. A share of its unobserved directions is left out.
 void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   SearchedPart part = search_half_slice(half_slice, slice);
-  float arc = part.found.occluded == 0u
-                  ? half_slice.open_arc
-                  : light_arc(slice, half_slice.side, part.first_light);
+  float arc = part.found.occluded == 0u ? half_slice.open_arc
+                                        : light_arc(slice, half_slice.side, part.first_light);
   if (kBackFaces && part.found.known_back) {
     // Back faces show which directions behind an occluder are visible. They are integrated exactly.
     VisiblePart visible =
@@ -329,8 +335,8 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
     }
   }
   if (kLeaveOutUnobserved) {
-    sum.left_out += part.unobserved.share *
-                    (arc - light_arc(slice, half_slice.side, part.unobserved.from));
+    sum.left_out +=
+        part.unobserved.share * (arc - light_arc(slice, half_slice.side, part.unobserved.from));
   }
   if (kLobe) add_connected_lobe(sum, half_slice, slice, part);
 }

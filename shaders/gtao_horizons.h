@@ -3,6 +3,10 @@
 #ifndef ALCOVE_GTAO_HORIZONS_H
 #define ALCOVE_GTAO_HORIZONS_H
 
+#include "gtao_search_line.h"
+#include "maths/gtao.h"
+#include "maths/lobe_slice.h"
+
 // Stands for the cosine of the horizon of a half-slice without occluders. It is below every cosine.
 const float kNoHorizon = -2.0;
 
@@ -37,7 +41,7 @@ void add_horizons(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   uint k = is_empty(half_slice) ? kStepCount : 0u;
   while (k < kStepCount) {
     float cosine = sample_cosine(
-        half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k))).point);
+        half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k)), false).point);
     horizon = max(horizon, cosine);
     ++k;
   }

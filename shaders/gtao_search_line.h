@@ -10,11 +10,37 @@
 #ifndef ALCOVE_GTAO_SEARCH_LINE_H
 #define ALCOVE_GTAO_SEARCH_LINE_H
 
+#include "gtao_bindings.h"
+#include "gtao_surface.h"
+#include "maths/connected_samples.h"
+#include "maths/sampling.h"
+#include "maths/slice.h"
+#include "maths/slice_line.h"
+
+// Sums over the two half-slices of a slice.
+struct SliceSum {
+  float visible;        // visible part, weighted by the cosine of the normal
+  float left_out;       // the part of `visible` and of the open slice that is unobserved
+  vec2 bent;            // sum of visible directions: along the slice's direction, along the view's
+  RawOcclusion lobe;    // visible part of the GGX lobe, and the whole lobe
+  float lobe_left_out;  // the part of the lobe that is unobserved
+  float lobe_width;     // GGX width of the surface: perceptual roughness squared
+};
+
+SliceSum no_sum(Surface surface) {
+  return SliceSum(0.0, 0.0, vec2(0.0), RawOcclusion(0.0, 0.0), 0.0,
+                  surface.lobe.roughness * surface.lobe.roughness);
+}
+
 // A float of this size has no fraction bits, so that adding it rounds to the nearest integer, which
 // then stands in the low bits. One addition replaces a rounding and a conversion, which costs as
 // much as four additions on GCN.
 const float kRoundingBias = 12582912.0;  // 1.5 * 2^23
 const int kRoundingBits = 0x4B400000;
+// Adding this float rounds to the nearest multiple of four, and the quotient stands in the low
+// bits.
+const float kFarRoundingBias = 50331648.0;  // 1.5 * 2^25
+const int kFarRoundingBits = 0x4C400000;
 
 // The line along which a half-slice is searched. Offsets grow outwards from the shaded point.
 struct SearchLine {
@@ -71,6 +97,17 @@ SearchLine opposite(SearchLine search_line) {
   return search_line;
 }
 
+// Returns false for surfaces so far away that the radius ends before the first sample in every
+// direction. Slices need no search then.
+bool reaches_samples(Surface surface) {
+  vec2 per_px = abs(parameters.slope.xy);
+  // The least length of a pixel on the surface. The factor allows for the part of the sphere that
+  // is nearer to the eye.
+  float length_per_px =
+      0.9 * min(per_px.x, per_px.y) * surface.view.z * (kPerspective ? surface.depth : 1.0);
+  return parameters.radius >= kNearestStep * length_per_px;
+}
+
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded
 // point.
 struct HalfSlice {
@@ -83,6 +120,7 @@ struct HalfSlice {
   float step_offset;     // of all samples, in steps, [0,1)
   vec2 border;           // offset of the image's border in this direction (x) and the other (y)
   ivec2 texel_bias;      // the shaded pixel minus kRoundingBits
+  vec2 from_far_texel;   // the shaded pixel minus the pixel of texel (1,1) of far_depth_image
   float nearness;        // the radius divided by the distance in perspective, else 0
   vec2 height;           // gradient of the height over the tangent plane in the slice's plane
   float tangent_cosine;  // cosine of the tangent plane's horizon
@@ -182,6 +220,7 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.border = border;
   half_slice.step_offset = step_offset;
   half_slice.texel_bias = surface.pixel - kRoundingBits;
+  half_slice.from_far_texel = vec2(surface.pixel) - parameters.far_depth_offset;
   half_slice.nearness = kPerspective ? parameters.radius * surface.inverse_depth : 0.0;
   return half_slice;
 }
@@ -214,39 +253,72 @@ bool is_sky_sample(SliceSample here) {
                       : here.inverse_depth == sky_inverse_depth(kPerspective);
 }
 
-// Subtracts kRoundingBias. `precise` keeps compilers from cancelling it against its addition. This
-// is a function of its own because `precise` would otherwise extend to that addition, which could
-// then not be fused with a multiplication.
-float subtract_rounding_bias(float biased) {
-  precise float rounded = biased - kRoundingBias;
+// Subtracts a rounding bias. `precise` keeps compilers from cancelling it against its addition.
+// This is a function of its own because `precise` would otherwise extend to that addition, which
+// could then not be fused with a multiplication.
+float subtract_rounding_bias(float biased, float bias) {
+  precise float rounded = biased - bias;
   return rounded;
 }
 
-// The pixels between the shaded pixel and the texel at which a sample at an offset is taken.
-vec2 snapped_px(SearchLine search_line, float offset) {
-  vec2 biased = search_line.px_per_offset * offset + kRoundingBias;
-  return vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
+// From this distance, in pixels, samples read far_depth_image.
+const float kFarPixels = 16.0;
+
+bool is_far(HalfSlice half_slice, uint layer, float offset) {
+  return kFarDepth && !kBackFaces && layer == 0u &&
+         offset > kFarPixels * half_slice.search_line.offset_per_px;
 }
 
-// The distance along the line between the texels at which samples at two offsets are taken.
-float texel_distance(SearchLine search_line, float from, float to) {
-  vec2 px = snapped_px(search_line, to) - snapped_px(search_line, from);
+// The place at which a sample is taken.
+struct SamplePlace {
+  ivec2 texel;  // of far_depth_image for far samples, else of the other images
+  vec2 px;      // the pixels between the shaded pixel and the place
+};
+
+SamplePlace near_place(HalfSlice half_slice, float offset) {
+  vec2 px = half_slice.search_line.px_per_offset * offset;
+  vec2 biased = px + kRoundingBias;
+  vec2 rounded = vec2(subtract_rounding_bias(biased.x, kRoundingBias),
+                      subtract_rounding_bias(biased.y, kRoundingBias));
+  return SamplePlace(floatBitsToInt(biased) + half_slice.texel_bias, kSnapToTexels ? rounded : px);
+}
+
+SamplePlace far_place(HalfSlice half_slice, float offset) {
+  vec2 px = half_slice.search_line.px_per_offset * offset;
+  vec2 biased = px + half_slice.from_far_texel + kFarRoundingBias;
+  vec2 rounded = vec2(subtract_rounding_bias(biased.x, kFarRoundingBias),
+                      subtract_rounding_bias(biased.y, kFarRoundingBias));
+  return SamplePlace(floatBitsToInt(biased) - (kFarRoundingBits - 1),
+                     rounded - half_slice.from_far_texel);
+}
+
+// The distance along the line between the places at which samples at two offsets are taken.
+float sample_distance(HalfSlice half_slice, uint layer, float from, float to) {
+  SearchLine search_line = half_slice.search_line;
+  bool far = is_far(half_slice, layer, from);
+  vec2 px = far ? far_place(half_slice, to).px - far_place(half_slice, from).px
+                : near_place(half_slice, to).px - near_place(half_slice, from).px;
   float per_px = search_line.offset_per_px;
-  return kSnapToTexels ? dot(px, search_line.px_per_offset) * (per_px * per_px) : to - from;
+  return dot(px, search_line.px_per_offset) * (per_px * per_px);
 }
 
 // The sample at an offset, in a layer of depth: 0 is the depth buffer, 1 the layer that it hides.
-SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
+// `far` is the result of is_far(), or false.
+SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset, bool far) {
   SearchLine search_line = half_slice.search_line;
-  vec2 px = search_line.px_per_offset * offset;
-  vec2 biased = px + kRoundingBias;
-  ivec2 texel = floatBitsToInt(biased) + half_slice.texel_bias;
-  if (kSnapToTexels) {
-    px = vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
+  SamplePlace place;
+  float depth_ndc;
+  if (far) {
+    place = far_place(half_slice, offset);
+    depth_ndc = texelFetch(far_depth_image, place.texel, 0).r;
+  } else {
+    place = near_place(half_slice, offset);
+    depth_ndc = layer == 0u ? texelFetch(depth_image, place.texel, 0).r
+                            : texelFetch(second_image, place.texel, 0).r;
   }
+  vec2 px = place.px;
   SliceSample found;
-  found.inverse_depth = sample_inverse_depth(layer == 0u ? texelFetch(depth_image, texel, 0).r
-                                                         : texelFetch(second_image, texel, 0).r);
+  found.inverse_depth = sample_inverse_depth(depth_ndc);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
   float y_of_texel = offset * search_line.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;
@@ -257,7 +329,7 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   y = on_plane ? offset * search_line.tangent_rise + max(y, 0.0) : y_of_texel;
   found.point = vec3(offset, y, kPerspective ? found.inverse_depth : 1.0);
   if (kBackFaces) {
-    float back = inverse_depth_of(texelFetch(back_image, texel, 0).r);
+    float back = inverse_depth_of(texelFetch(back_image, place.texel, 0).r);
     // The back face may not lie in front of the front face.
     float end = farther_inverse_depth(found.inverse_depth, back, kPerspective);
     found.back = ends_occluder(found.inverse_depth, back, kPerspective)

@@ -77,7 +77,7 @@ Surface fetch_surface(ivec2 texel) {
   surface.sky = is_sky(found.depth_ndc);
   float scale = kPerspective ? inverse_depth : 1.0;
   // The change of inverse depth per unit of raw depth.
-  float per_ndc = grows_with_inverse_depth(kPerspective, kReversed)
+  float per_ndc = is_counted_from_zero(kPerspective, kReversed)
                       ? parameters.inverse_depth_from_ndc.x
                       : -parameters.inverse_depth_from_ndc.x;
   vec2 to_inner = (found.inner - found.depth_ndc) * (found.way * per_ndc);

@@ -24,55 +24,6 @@ float largest_gap(std::vector<float> values) {
   return gap;
 }
 
-TEST(PaperPattern, FourByFourPixelsHaveSixteenSliceDirectionsAndFourStepOffsets) {
-  for (unsigned frame = 0; frame < 24; ++frame) {
-    std::set<float> directions, offsets;
-    for (unsigned y = 0; y < 4; ++y) {
-      for (unsigned x = 0; x < 4; ++x) {
-        const SliceNoise noise = maths::paper_pattern(uvec2(x, y), frame);
-        directions.insert(noise.direction);
-        offsets.insert(noise.offset);
-        EXPECT_GE(noise.direction, 0.0f);
-        EXPECT_LT(noise.direction, 1.0f);
-        EXPECT_GE(noise.offset, 0.0f);
-        EXPECT_LT(noise.offset, 1.0f);
-      }
-    }
-    EXPECT_EQ(directions.size(), 16u);
-    EXPECT_EQ(offsets.size(), 4u);
-  }
-}
-
-TEST(PaperPattern, FourByFourPixelsHaveNinetySixSliceDirectionsInSixFrames) {
-  std::set<int> directions;
-  for (unsigned frame = 0; frame < 6; ++frame)
-    for (unsigned y = 0; y < 4; ++y)
-      for (unsigned x = 0; x < 4; ++x)
-        directions.insert(
-            int(std::lround(maths::paper_pattern(uvec2(x, y), frame).direction * 96.0f)));
-  EXPECT_EQ(directions.size(), 96u);
-}
-
-TEST(PaperPattern, SliceDirectionsOfAPixelInSixFramesAreSpreadEvenlyOver180Degrees) {
-  for (unsigned pixel = 0; pixel < 16; ++pixel) {
-    std::vector<float> directions;
-    for (unsigned frame = 0; frame < 6; ++frame)
-      directions.push_back(maths::paper_pattern(uvec2(pixel & 3u, pixel >> 2u), frame).direction);
-    std::sort(directions.begin(), directions.end());
-    for (std::size_t k = 0; k < 6; ++k) {
-      const float next = k == 5 ? directions[0] + 1.0f : directions[k + 1];
-      EXPECT_NEAR(next - directions[k], 1.0f / 6, 1.0f / 90);
-    }
-  }
-}
-
-TEST(PaperPattern, PatternRepeatsEveryFourPixelsAndTwentyFourFrames) {
-  const SliceNoise a = maths::paper_pattern(uvec2(5, 6), 7);
-  const SliceNoise b = maths::paper_pattern(uvec2(1, 2), 31);
-  EXPECT_EQ(a.direction, b.direction);
-  EXPECT_EQ(a.offset, b.offset);
-}
-
 TEST(GoldenPattern, BlocksOfFourByFourPixelsCoverSliceDirectionsAndStepOffsetsEvenly) {
   for (unsigned frame : {0u, 1u, 5u, 1000000u}) {
     for (const uvec2 corner : {uvec2(0, 0), uvec2(4, 16), uvec2(1920, 1080)}) {
@@ -180,41 +131,6 @@ TEST(GoldenPattern, EveryFourthFrameOfAPixelCoversSliceDirectionsAndStepOffsetsE
       EXPECT_LT(largest_gap(offsets), 4.2f / 32) << apart;
     }
   }
-}
-
-TEST(HilbertNoise, HilbertCurveVisitsEveryPixelOfASquareOnceInUnitSteps) {
-  std::vector<uvec2> path(4096, uvec2(64));
-  for (unsigned y = 0; y < 64; ++y)
-    for (unsigned x = 0; x < 64; ++x) {
-      const unsigned index = maths::hilbert_index(uvec2(x, y));
-      ASSERT_LT(index, 4096u);
-      EXPECT_EQ(path[index].x, 64u) << "index " << index << " twice";
-      path[index] = uvec2(x, y);
-    }
-  for (std::size_t k = 1; k < path.size(); ++k) {
-    const int dx = int(path[k].x) - int(path[k - 1].x), dy = int(path[k].y) - int(path[k - 1].y);
-    EXPECT_EQ(std::abs(dx) + std::abs(dy), 1) << "index " << k;
-  }
-}
-
-TEST(HilbertNoise, NoiseEqualsTheR2SequenceInExtendedPrecision) {
-  for (unsigned index : {0u, 1u, 17u, 4095u, 22527u}) {
-    const SliceNoise noise = maths::r2_sequence(index);
-    const long double x = 0.5L + index * 0.75487766624669276005L;
-    const long double y = 0.5L + index * 0.56984029099805326591L;
-    EXPECT_NEAR(noise.direction, double(x - std::floor(x)), 1e-5);
-    EXPECT_NEAR(noise.offset, double(y - std::floor(y)), 1e-5);
-  }
-}
-
-TEST(HilbertNoise, NoiseIsEvenlyDistributedOverFourByFourPixelsAndOverFrames) {
-  std::vector<float> pixels, frames;
-  for (unsigned k = 0; k < 16; ++k)
-    pixels.push_back(maths::hilbert_pattern(uvec2(8 + (k & 3u), 12 + (k >> 2u)), 0).direction);
-  for (unsigned frame = 0; frame < 64; ++frame)
-    frames.push_back(maths::hilbert_pattern(uvec2(3, 5), frame).direction);
-  EXPECT_LT(largest_gap(pixels), 4.0f / 16);
-  EXPECT_LT(largest_gap(frames), 4.0f / 64);
 }
 
 TEST(Slices, SliceAnglesAreEvenlySpacedOver180Degrees) {

@@ -80,7 +80,6 @@ TEST_F(BadInput, SettingsOutOfRangeAreReportedByName) {
       {"'thickness' is", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
       {"'thickness' is", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
       {"'hidden_occlusion' is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = 1.5f; }},
-      {"'blend' is", [](View&, OcclusionSettings& s) { s.advanced.blend = kNaN; }},
       {"'falloff' is", [](View&, OcclusionSettings& s) { s.advanced.falloff = -0.5f; }},
       {"with the estimator connected",
        [](View&, OcclusionSettings& s) { s.advanced.falloff = 0.5f; }},

@@ -153,6 +153,7 @@ tl::expected<Textures, Failure> import_images(framegraph::Graph& graph, ImageTab
   const ImageRole bent_normal{"bent normals", Kind::signed_colour, 3, true, false, half_size};
   const ImageRole specular{"specular occlusion", Kind::colour, 1, true, false, half_size};
   Textures textures;
+  textures.inputs.depth_format = view.depth_format;
   textures.inputs.normals_in_view_space = view.normals_in_view_space != VK_FALSE;
   textures.inputs.normal_encoding = *encoding;
   textures.inputs.normals_forward_z = view.normals_forward_z != VK_FALSE;

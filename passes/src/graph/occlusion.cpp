@@ -79,6 +79,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                        .roughness = inputs.roughness,
                                        .back_depth_ndc = inputs.back_depth_ndc,
                                        .second_depth_ndc = inputs.second_depth_ndc,
+                                       .depth_format = inputs.depth_format,
                                        .normal_encoding = encoding,
                                        .normals_forward_z = forward_z},
                                       settings);

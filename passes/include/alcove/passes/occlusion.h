@@ -13,6 +13,7 @@ namespace alcove::passes {
 
 struct OcclusionInputs {
   framegraph::Texture depth_ndc;       // the depth buffer that the view's projection wrote
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;  // see GtaoInputs::depth_format
   framegraph::Texture normals;         // unit vectors; null: they are made from depth
   bool normals_in_view_space = false;  // else in world space
   framegraph::Texture motion;          // as ReconstructInputs::motion; null: only the camera moves

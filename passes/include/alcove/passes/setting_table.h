@@ -76,7 +76,7 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .range = {.minimum = 2, .maximum = 64}},
         settings.steps);
   visit(SettingInfo{.name = "thickness",
-                    .help = "Assumed thickness of occluders, in the unit that thickness_unit "
+                    .help = "Largest thickness of occluders, in the unit that thickness_unit "
                             "selects: by default a fraction of the radius. Larger values darken.",
                     .slider = {.maximum = 1.0f},
                     .matters = has_thickness},
@@ -215,6 +215,12 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                             "image's border) from the average. If off, they count as unoccluded.",
                     .group = advanced},
         settings.advanced.unobserved);
+  visit(SettingInfo{.name = "far_depth",
+                    .help = "For the estimator connected: samples more than 16 pixels away read "
+                            "the depth of one pixel in 4x4, which changes every frame. Loads then "
+                            "touch far fewer cache lines, and the error grows by 1 to 2 %.",
+                    .group = advanced},
+        settings.advanced.far_depth);
 }
 
 }  // namespace alcove::passes
