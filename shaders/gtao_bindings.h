@@ -22,7 +22,6 @@ layout(constant_id = 14) const bool kUnobserved = true;     // excludes unobserv
 layout(constant_id = 15) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
 layout(constant_id = 16) const bool kReversed = false;      // raw depth is 1 at the near plane
 layout(constant_id = 17) const bool kInfiniteFar = false;   // the far plane is infinitely far away
-layout(constant_id = 18) const bool kFarDepth = false;      // far samples read far_depth_image
 
 const uint kBitmask = 1;
 const uint kConnected = 2;
@@ -41,12 +40,8 @@ layout(set = 0, binding = 5) uniform texture2D back_image;
 // The second depth layer. Without kSecondLayer it is never read, and another image is bound in its
 // place.
 layout(set = 0, binding = 6) uniform texture2D second_image;
-// Depth of one pixel in 4x4, as far_depth.comp writes it. Without kFarDepth it is never read, and
-// another image is bound in its
-// place.
-layout(set = 0, binding = 7) uniform texture2D far_depth_image;
 #ifdef SPECULAR
-layout(set = 0, binding = 8) uniform texture2D roughness_image;  // perceptual
+layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;
 #else
 const bool kLobe = false;

@@ -32,7 +32,7 @@ uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer
   float last_px = 0.0;
   uint k = is_empty(half_slice) ? kStepCount : 0u;
   while (k < kStepCount) {
-    SliceSample here = fetch_sample(half_slice, layer, sample_offset(half_slice, float(k)), false);
+    SliceSample here = fetch_sample(half_slice, layer, sample_offset(half_slice, float(k)));
     float front = sector_position(per_diamond_angle, here.point.xy);
     bool known = kBackFaces && here.back.y < kNoBack;
     vec2 back = known ? here.back : here.point.xy - vec2(0.0, settings_thickness(here));

@@ -124,8 +124,7 @@ float edge_distance(SegmentState state) { return 2.0 * kEdgeShare * state.half_i
 void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice half_slice,
                  float sectors, uint layer, uint k) {
   float half_interval = state.half_interval + half_slice.growth;
-  float offset = 2.0 * half_interval + here.point.x;
-  SliceSample next = fetch_sample(half_slice, layer, offset, is_far(half_slice, layer, offset));
+  SliceSample next = fetch_sample(half_slice, layer, 2.0 * half_interval + here.point.x);
   float rise = next.point.y - here.point.y;
   DepthDiscontinuity discontinuity =
       discontinuity_between(state.rise, state.half_interval, rise, half_interval);
@@ -142,8 +141,8 @@ void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice hal
 SegmentState first_state(HalfSlice half_slice, float sectors, uint layer, out SliceSample here) {
   float first_offset = sample_offset(half_slice, 0.0);
   float half_interval = first_half_interval(half_slice);
-  SliceSample first = fetch_sample(half_slice, layer, first_offset, false);
-  here = fetch_sample(half_slice, layer, 2.0 * half_interval + first_offset, false);
+  SliceSample first = fetch_sample(half_slice, layer, first_offset);
+  here = fetch_sample(half_slice, layer, 2.0 * half_interval + first_offset);
   SegmentState state;
   state.occluded = 0u;
   state.begin = 0.0;
@@ -169,11 +168,11 @@ SegmentState first_state(HalfSlice half_slice, float sectors, uint layer, out Sl
 // to the tangent plane is measured between the texels of these samples, because rounding the
 // positions to texels changes their distance by up to a pixel. Two samples of one texel have no
 // slope.
-uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sectors, uint layer,
+uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sectors,
                           SliceSample last) {
   SearchLine search_line = half_slice.search_line;
   float interval = 2.0 * state.half_interval;
-  float between_texels = sample_distance(half_slice, layer, last.point.x - interval, last.point.x);
+  float between_texels = place_distance(half_slice, last.point.x - interval, last.point.x);
   float above_tangent = (state.rise - interval * search_line.tangent_rise) /
                         max(between_texels, 0.5 * search_line.offset_per_px);
   float slope = search_line.tangent_rise + above_tangent;
@@ -231,8 +230,7 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   // No sample follows the last one, so it is connected only if there is no discontinuity before it.
   add_sample(state, sectors, layer, last, here, !is_discontinuous(state.discontinuity),
              edge_distance(state));
-  uint extrapolated =
-      kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, layer, here) : 0u;
+  uint extrapolated = kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, here) : 0u;
   Occluders found;
   found.occluded = state.occluded | extrapolated;
   found.hidden_occlusion = hidden_occlusion_of(state, half_slice, here.point.x);

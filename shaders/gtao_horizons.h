@@ -41,7 +41,7 @@ void add_horizons(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   uint k = is_empty(half_slice) ? kStepCount : 0u;
   while (k < kStepCount) {
     float cosine = sample_cosine(
-        half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k)), false).point);
+        half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k))).point);
     horizon = max(horizon, cosine);
     ++k;
   }

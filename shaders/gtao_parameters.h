@@ -10,7 +10,6 @@ struct GtaoParameters {
   vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
   vec2 inverse_depth_from_ndc;  // scale and offset of inverse_depth_of_ndc()
   vec2 interleave_offset;       // the pixel of each tile that is traced in this frame
-  vec2 far_depth_offset;        // the pixel of 4x4 that far_depth_image has
   float radius;                 // scene units
   uint frame;                   // number of the frame, which rotates the directions of the slices
   float thickness;        // of occluders, scene units, or a fraction of the distance from the eye
@@ -21,11 +20,6 @@ struct GtaoParameters {
   // C++.
   float depth_step;
   float depth_step_per_inverse_depth;
-};
-
-struct FarDepthParameters {
-  vec2 offset;  // the pixel of each 4x4 that is copied
-  float sky;    // the depth of the sky
 };
 
 ALCOVE_MATHS_END

@@ -37,10 +37,6 @@ SliceSum no_sum(Surface surface) {
 // much as four additions on GCN.
 const float kRoundingBias = 12582912.0;  // 1.5 * 2^23
 const int kRoundingBits = 0x4B400000;
-// Adding this float rounds to the nearest multiple of four, and the quotient stands in the low
-// bits.
-const float kFarRoundingBias = 50331648.0;  // 1.5 * 2^25
-const int kFarRoundingBits = 0x4C400000;
 
 // The line along which a half-slice is searched. Offsets grow outwards from the shaded point.
 struct SearchLine {
@@ -120,7 +116,6 @@ struct HalfSlice {
   float step_offset;     // of all samples, in steps, [0,1)
   vec2 border;           // offset of the image's border in this direction (x) and the other (y)
   ivec2 texel_bias;      // the shaded pixel minus kRoundingBits
-  vec2 from_far_texel;   // the shaded pixel minus the pixel of texel (1,1) of far_depth_image
   float nearness;        // the radius divided by the distance in perspective, else 0
   vec2 height;           // gradient of the height over the tangent plane in the slice's plane
   float tangent_cosine;  // cosine of the tangent plane's horizon
@@ -220,7 +215,6 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.border = border;
   half_slice.step_offset = step_offset;
   half_slice.texel_bias = surface.pixel - kRoundingBits;
-  half_slice.from_far_texel = vec2(surface.pixel) - parameters.far_depth_offset;
   half_slice.nearness = kPerspective ? parameters.radius * surface.inverse_depth : 0.0;
   return half_slice;
 }
@@ -253,72 +247,43 @@ bool is_sky_sample(SliceSample here) {
                       : here.inverse_depth == sky_inverse_depth(kPerspective);
 }
 
-// Subtracts a rounding bias. `precise` keeps compilers from cancelling it against its addition.
-// This is a function of its own because `precise` would otherwise extend to that addition, which
-// could then not be fused with a multiplication.
-float subtract_rounding_bias(float biased, float bias) {
-  precise float rounded = biased - bias;
+// Subtracts kRoundingBias. `precise` keeps compilers from cancelling it against its addition. This
+// is a function of its own because `precise` would otherwise extend to that addition, which could
+// then not be fused with a multiplication.
+float subtract_rounding_bias(float biased) {
+  precise float rounded = biased - kRoundingBias;
   return rounded;
-}
-
-// From this distance, in pixels, samples read far_depth_image.
-const float kFarPixels = 16.0;
-
-bool is_far(HalfSlice half_slice, uint layer, float offset) {
-  return kFarDepth && !kBackFaces && layer == 0u &&
-         offset > kFarPixels * half_slice.search_line.offset_per_px;
 }
 
 // The place at which a sample is taken.
 struct SamplePlace {
-  ivec2 texel;  // of far_depth_image for far samples, else of the other images
-  vec2 px;      // the pixels between the shaded pixel and the place
+  ivec2 texel;
+  vec2 px;  // the pixels between the shaded pixel and the place
 };
 
-SamplePlace near_place(HalfSlice half_slice, float offset) {
+SamplePlace place_of(HalfSlice half_slice, float offset) {
   vec2 px = half_slice.search_line.px_per_offset * offset;
   vec2 biased = px + kRoundingBias;
-  vec2 rounded = vec2(subtract_rounding_bias(biased.x, kRoundingBias),
-                      subtract_rounding_bias(biased.y, kRoundingBias));
+  vec2 rounded = vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
   return SamplePlace(floatBitsToInt(biased) + half_slice.texel_bias, kSnapToTexels ? rounded : px);
 }
 
-SamplePlace far_place(HalfSlice half_slice, float offset) {
-  vec2 px = half_slice.search_line.px_per_offset * offset;
-  vec2 biased = px + half_slice.from_far_texel + kFarRoundingBias;
-  vec2 rounded = vec2(subtract_rounding_bias(biased.x, kFarRoundingBias),
-                      subtract_rounding_bias(biased.y, kFarRoundingBias));
-  return SamplePlace(floatBitsToInt(biased) - (kFarRoundingBits - 1),
-                     rounded - half_slice.from_far_texel);
-}
-
-// The distance along the line between the places at which samples at two offsets are taken.
-float sample_distance(HalfSlice half_slice, uint layer, float from, float to) {
-  SearchLine search_line = half_slice.search_line;
-  bool far = is_far(half_slice, layer, from);
-  vec2 px = far ? far_place(half_slice, to).px - far_place(half_slice, from).px
-                : near_place(half_slice, to).px - near_place(half_slice, from).px;
-  float per_px = search_line.offset_per_px;
-  return dot(px, search_line.px_per_offset) * (per_px * per_px);
+// The distance along the line between the places of samples at two offsets.
+float place_distance(HalfSlice half_slice, float from, float to) {
+  vec2 px = place_of(half_slice, to).px - place_of(half_slice, from).px;
+  float per_px = half_slice.search_line.offset_per_px;
+  return dot(px, half_slice.search_line.px_per_offset) * (per_px * per_px);
 }
 
 // The sample at an offset, in a layer of depth: 0 is the depth buffer, 1 the layer that it hides.
-// `far` is the result of is_far(), or false.
-SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset, bool far) {
+SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   SearchLine search_line = half_slice.search_line;
-  SamplePlace place;
-  float depth_ndc;
-  if (far) {
-    place = far_place(half_slice, offset);
-    depth_ndc = texelFetch(far_depth_image, place.texel, 0).r;
-  } else {
-    place = near_place(half_slice, offset);
-    depth_ndc = layer == 0u ? texelFetch(depth_image, place.texel, 0).r
-                            : texelFetch(second_image, place.texel, 0).r;
-  }
+  SamplePlace place = place_of(half_slice, offset);
   vec2 px = place.px;
   SliceSample found;
-  found.inverse_depth = sample_inverse_depth(depth_ndc);
+  found.inverse_depth =
+      sample_inverse_depth(layer == 0u ? texelFetch(depth_image, place.texel, 0).r
+                                       : texelFetch(second_image, place.texel, 0).r);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
   float y_of_texel = offset * search_line.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;

@@ -12,8 +12,7 @@ constexpr double kOccluderRuns = 2.5;
 // image loads, because compilers unroll some loops, so that the nesting depth of a loop does not
 // identify it.
 struct Samples {
-  std::uint32_t loads_per_step = 1;       // image loads of one step in the first depth layer
-  std::uint32_t second_loads = 1;         // those of one step in the second layer
+  std::uint32_t loads_per_step = 1;       // image loads of one step in one depth layer
   std::uint32_t steps_per_iteration = 1;  // of the loop over steps, kUnrolled of gtao.comp
   std::uint32_t iterations = 1;           // of the loop over steps
   std::uint32_t half_slice = 1;           // image loads of a half-slice
@@ -22,13 +21,9 @@ struct Samples {
 Samples samples_of(const OcclusionSettings& settings) {
   const bool connected = settings.advanced.estimator == Estimator::connected;
   Samples samples;
-  const bool far = needs_far_depth(settings);
-  samples.second_loads = needs_back_depth(settings) ? 2 : 1;
-  // A step has a load for near samples and one for far samples, except the first two steps, whose
-  // samples are always near. One of the two runs, but both are counted.
-  samples.loads_per_step = far ? 2 : samples.second_loads;
-  samples.half_slice = settings.steps * samples.loads_per_step - (far ? 2 : 0) +
-                       (needs_second_depth(settings) ? settings.steps * samples.second_loads : 0);
+  samples.loads_per_step = needs_back_depth(settings) ? 2 : 1;
+  samples.half_slice =
+      settings.steps * samples.loads_per_step * (needs_second_depth(settings) ? 2 : 1);
   samples.steps_per_iteration = connected ? (settings.slices > 1 ? 2 : 4) : 1;
   // With connected samples the first two steps, and a remainder, are outside of the loop.
   samples.iterations =
@@ -73,8 +68,7 @@ std::optional<double> sampling_iterations(const PassWork& work, std::uint32_t in
   if (*loads == 2.0 * samples.half_slice) {
     return work.settings.slices;
   }
-  if (*loads == samples.steps_per_iteration * samples.loads_per_step ||
-      *loads == samples.steps_per_iteration * samples.second_loads) {
+  if (*loads == samples.steps_per_iteration * samples.loads_per_step) {
     return samples.iterations;
   }
   return std::nullopt;

@@ -37,7 +37,7 @@ const std::map<std::string, Offsets> kExpected = {
      {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
       ALCOVE_OFFSET(GtaoParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(GtaoParameters, interleave_offset),
-      ALCOVE_OFFSET(GtaoParameters, far_depth_offset), ALCOVE_OFFSET(GtaoParameters, radius),
+      ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
       ALCOVE_OFFSET(GtaoParameters, hidden_exponent), ALCOVE_OFFSET(GtaoParameters, falloff),
       ALCOVE_OFFSET(GtaoParameters, roughness), ALCOVE_OFFSET(GtaoParameters, depth_step),

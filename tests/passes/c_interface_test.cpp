@@ -113,7 +113,6 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
          g.settings.advanced.snap_to_texels = false;
          g.settings.advanced.extrapolation = false;
          g.settings.advanced.unobserved = false;
-         g.settings.advanced.far_depth = false;
        }},
       {"power and intensity",
        [](GivenView& g) {

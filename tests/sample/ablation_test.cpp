@@ -102,7 +102,6 @@ TEST(StepLadder, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
     base.steps = 16;
     base.history_frames = 0;
     base.advanced.filter_radius = 0;
-    base.advanced.far_depth = false;
     const auto gpu = open_validated();
     ASSERT_TRUE(gpu);
     auto runner = VariantRunner::create(*gpu, scene, setup, base);

@@ -94,7 +94,6 @@ TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   settings.advanced.snap_to_texels = false;
   settings.advanced.extrapolation = false;
   settings.advanced.unobserved = false;
-  settings.advanced.far_depth = false;
   settings.advanced.filter_radius = 0;
   settings.advanced.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;

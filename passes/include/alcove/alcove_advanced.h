@@ -70,10 +70,6 @@ typedef struct AlcoveAdvancedSettings {
   // These are directions hidden behind a foreground or beyond the border of the image. If off, they
   // count as unoccluded. Read by CONNECTED. [true]
   VkBool32 unobserved;
-  // Whether samples more than 16 pixels away read a copy of the depth of one pixel in 4x4, which
-  // takes a small pass. Their loads then touch far fewer cache lines. Read by CONNECTED, except
-  // with BACK_FACES. [VK_TRUE in MEDIUM and HIGH]
-  VkBool32 far_depth;
 } AlcoveAdvancedSettings;
 
 // Fills `settings`, whose struct_size must be set, with the advanced settings of a preset. They are

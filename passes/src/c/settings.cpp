@@ -67,7 +67,6 @@ void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.snap_to_texels, ours.snap_to_texels);
   visit(theirs.extrapolation, ours.extrapolation);
   visit(theirs.unobserved, ours.unobserved);
-  visit(theirs.far_depth, ours.far_depth);
 }
 
 constexpr auto kToCpp = [](const auto& theirs, auto& ours) {

@@ -69,7 +69,7 @@ bool of_distance(const OcclusionSettings& settings) {
          settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
-std::array<NamedConstant, 19> constants_of(const GtaoInputs& inputs,
+std::array<NamedConstant, 18> constants_of(const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   const AdvancedSettings& advanced = settings.advanced;
@@ -90,40 +90,7 @@ std::array<NamedConstant, 19> constants_of(const GtaoInputs& inputs,
            {"kUnobserved", flag(advanced.unobserved)},
            {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
            {"kReversed", flag(is_reversed(projection))},
-           {"kInfiniteFar", flag(has_infinite_far(projection))},
-           {"kFarDepth", flag(needs_far_depth(settings))}}};
-}
-
-// The pixel of each 4x4 that far samples read in a frame.
-maths::vec2 far_depth_offset(const Frame& frame) {
-  const InterleaveOffset offset = interleave_offset_of(4, frame.index);
-  return {static_cast<float>(offset.x), static_cast<float>(offset.y)};
-}
-
-// Adds the pass that copies the depth of one pixel in 4x4, with a border of a texel.
-tl::expected<Texture, Error> add_far_depth(const Frame& frame, Texture depth,
-                                           const maths::Projection& projection) {
-  const auto kernel = frame.kernels.get(Shader::far_depth);
-  if (!kernel) {
-    return tl::unexpected(kernel.error());
-  }
-  const VkExtent3D size = frame.graph.extent(depth);
-  Texture copy = frame.graph.create_texture(
-      "far depth", {VK_FORMAT_R32_SFLOAT,
-                    framegraph::Extent::absolute(size.width / 4 + 2, size.height / 4 + 2)});
-  auto pass = frame.graph.add_pass("far depth");
-  pass.read(depth, framegraph::access::sampled_compute);
-  copy = pass.write(copy, framegraph::access::storage_write_compute, {},
-                    framegraph::Contents::discard);
-  const maths::FarDepthParameters parameters{far_depth_offset(frame),
-                                             is_reversed(projection) ? 0.0f : 1.0f};
-  pass.record([&kernels = frame.kernels, kernel = *kernel, depth, copy,
-               parameters](RecordContext& context) {
-    const auto views = std::to_array<NamedView>(
-        {{"depth_image", context.view(depth)}, {"far_depth_image", context.view(copy)}});
-    kernels.dispatch(context, kernel, views, bytes_of(parameters), context.extent(copy));
-  });
-  return copy;
+           {"kInfiniteFar", flag(has_infinite_far(projection))}}};
 }
 
 // Returns the size with which Kernels::dispatch() starts groups for all tiles. The image is divided
@@ -137,7 +104,7 @@ VkExtent3D in_strips(VkExtent3D tiles) {
 }
 
 void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, const Reads& reads,
-                      Texture far_depth, RawOcclusionTextures& result) {
+                      RawOcclusionTextures& result) {
   const auto& sampled = framegraph::access::sampled_compute;
   const auto& stored = framegraph::access::storage_write_compute;
   pass.read(inputs.depth_ndc, sampled);
@@ -156,9 +123,6 @@ void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, c
   if (reads.second_layer) {
     pass.read(inputs.second_depth_ndc, sampled);
   }
-  if (far_depth) {
-    pass.read(far_depth, sampled);
-  }
 }
 
 maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs,
@@ -175,7 +139,6 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
                   projection.uv_to_slope.w),
       inverse_depth_from_ndc(projection),
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
-      far_depth_offset(frame),
       radius,
       frame.index,
       settings.thickness * (of_distance(settings) ? 1.0f : radius),
@@ -188,9 +151,8 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
 
 // Returns the image views of a dispatch. Every binding needs a view, so that an image that the
 // settings do not use is replaced by another image of the same type.
-std::array<NamedView, 8> views_of(RecordContext& context, const GtaoInputs& inputs,
-                                  const Reads& reads, Texture far_depth,
-                                  const RawOcclusionTextures& result) {
+std::array<NamedView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
+                                  const Reads& reads, const RawOcclusionTextures& result) {
   const VkImageView depth = context.view(inputs.depth_ndc);
   const VkImageView normals = context.view(inputs.normals);
   const VkImageView raw_occlusion = context.view(result.raw_occlusion);
@@ -200,7 +162,6 @@ std::array<NamedView, 8> views_of(RecordContext& context, const GtaoInputs& inpu
            {"bent_image", result.bent ? context.view(result.bent) : raw_occlusion},
            {"back_image", reads.back_faces ? context.view(inputs.back_depth_ndc) : depth},
            {"second_image", reads.second_layer ? context.view(inputs.second_depth_ndc) : depth},
-           {"far_depth_image", far_depth ? context.view(far_depth) : depth},
            {"roughness_image", reads.roughness ? context.view(inputs.roughness) : normals}}};
 }
 
@@ -223,20 +184,12 @@ tl::expected<RawOcclusionTextures, Error> add_gtao(const Frame& frame, const Gta
     return tl::unexpected(kernel.error());
   }
   RawOcclusionTextures result = create_raw_occlusion(frame, inputs.depth_ndc, settings);
-  Texture far_depth;
-  if (needs_far_depth(settings)) {
-    auto copy = add_far_depth(frame, inputs.depth_ndc, *projection);
-    if (!copy) {
-      return tl::unexpected(std::move(copy.error()));
-    }
-    far_depth = *copy;
-  }
   auto pass = frame.graph.add_pass("gtao");
-  declare_accesses(pass, inputs, reads, far_depth, result);
+  declare_accesses(pass, inputs, reads, result);
   pass.record(
-      [&kernels = frame.kernels, kernel = *kernel, inputs, result, reads, far_depth,
+      [&kernels = frame.kernels, kernel = *kernel, inputs, result, reads,
        parameters = parameters_of(frame, inputs, settings, *projection)](RecordContext& context) {
-        kernels.dispatch(context, kernel, views_of(context, inputs, reads, far_depth, result),
+        kernels.dispatch(context, kernel, views_of(context, inputs, reads, result),
                          bytes_of(parameters), in_strips(context.extent(result.raw_occlusion)));
       });
   return result;

@@ -80,12 +80,10 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.slices = 1;
       settings.steps = 8;
       settings.half_resolution = true;
-      settings.advanced.far_depth = false;
       break;
     case Quality::low:
       settings.slices = 1;
       settings.steps = 8;
-      settings.advanced.far_depth = false;
       break;
     case Quality::medium:
       break;
@@ -101,7 +99,6 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.precision = Precision::float32;
       settings.advanced.estimator = Estimator::horizons;
       settings.advanced.filter_radius = 0;
-      settings.advanced.far_depth = false;
       break;
   }
   return settings;

@@ -6,7 +6,6 @@
 #include "spirv/environment_harmonics.h"
 #include "spirv/environment_map.h"
 #include "spirv/environment_prefilter.h"
-#include "spirv/far_depth.h"
 #include "spirv/gtao.h"
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
@@ -38,8 +37,6 @@ ShaderSource shader_source(Shader shader) {
       return {"linear_depth", kLinearDepth};
     case Shader::normals:
       return {"normals", kNormals};
-    case Shader::far_depth:
-      return {"far_depth", kFarDepth};
     case Shader::gtao:
       return {"gtao", kGtao};
     case Shader::gtao_specular:

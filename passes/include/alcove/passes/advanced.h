@@ -70,10 +70,6 @@ struct AdvancedSettings {
   // image's border) are partly excluded from the average; see shaders/maths/unobserved.h. If not,
   // such directions count as unoccluded. Only the estimator `connected` reads it.
   bool unobserved = true;
-  // Whether samples more than 16 pixels away read a copy of the depth of one pixel in 4x4, which
-  // takes a small pass. Their loads then touch far fewer cache lines. Only the estimator
-  // `connected` reads it, and not with ThicknessUnit::back_faces.
-  bool far_depth = true;
 
   friend bool operator==(const AdvancedSettings&, const AdvancedSettings&) = default;
 };

@@ -27,7 +27,6 @@ struct Error {
 enum class Shader : std::uint8_t {
   linear_depth,
   normals,
-  far_depth,
   gtao,
   gtao_specular,
   reconstruct,

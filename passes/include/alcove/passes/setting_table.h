@@ -215,12 +215,6 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                             "image's border) from the average. If off, they count as unoccluded.",
                     .group = advanced},
         settings.advanced.unobserved);
-  visit(SettingInfo{.name = "far_depth",
-                    .help = "For the estimator connected: samples more than 16 pixels away read "
-                            "the depth of one pixel in 4x4, which changes every frame. Loads then "
-                            "touch far fewer cache lines, and the error grows by 1 to 2 %.",
-                    .group = advanced},
-        settings.advanced.far_depth);
 }
 
 }  // namespace alcove::passes

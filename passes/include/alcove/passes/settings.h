@@ -110,12 +110,6 @@ struct OcclusionSettings {
   return has_thickness(settings.advanced.estimator) && settings.depth_layers > 1;
 }
 
-// Returns whether far samples read a copy of the depth of one pixel in 4x4.
-[[nodiscard]] constexpr bool needs_far_depth(const OcclusionSettings& settings) {
-  return settings.advanced.far_depth && settings.advanced.estimator == Estimator::connected &&
-         !needs_back_depth(settings);
-}
-
 // Returns whether add_gtso() computes specular occlusion, from visibility and the bent normal.
 [[nodiscard]] constexpr bool specular_reads_bent_normal(const OcclusionSettings& settings) {
   return settings.specular == Specular::table || settings.specular == Specular::cone;
