@@ -66,7 +66,8 @@ RawOcclusion leave_out(RawOcclusion sum, float part) {
   return RawOcclusion(max(sum.visible - part, 0.0), sum.open - part);
 }
 
-// Searches both half-slices of a slice, and integrates their visible parts.
+// Searches both half-slices of a slice, and integrates their visible parts: the inner integral of
+// [Jimenez 2016, section 4.1].
 SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   Slice slice = make_slice(surface.normal, direction, surface.view);
   SearchLine search_line = make_search_line(surface, direction);
@@ -137,7 +138,8 @@ SearchResult sky_result() {
                       uvec2(0u));
 }
 
-// The contribution of slice `i`, with the weight of its angle.
+// The contribution of slice `i`, with the weight of its angle. Slices contain the view direction,
+// and the noise rotates them (section 4.4).
 SliceResult weighted_slice(Surface surface, SliceNoise noise, uint i) {
   ViewBasis basis = make_view_basis(surface.view);
   WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
@@ -177,7 +179,8 @@ float depth_step_length(Surface surface) {
                       : max(constant + per_inverse_depth * surface.depth, 0.0);
 }
 
-// Searches all slices of a pixel that is not the sky.
+// Searches all slices of a pixel that is not the sky: the outer integral of section 4.1, a mean over
+// the angles of the slices.
 SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, inverse_depth);
   SliceResult sum = no_result();

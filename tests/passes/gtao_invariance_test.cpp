@@ -111,11 +111,12 @@ TEST_F(GtaoInvariance, OrthographicViewGivesTheVisibilityOfANarrowPerspectiveFro
   }
 }
 
-// The sizes are not multiples of the tile size, so that the border cuts tiles. Every pixel must be
-// written.
+// The sizes are not multiples of the tile size, so that the border cuts tiles, and the highest
+// image has several strips of groups, of which the last is not full. Every pixel must be written.
 TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
   const TestView view = test_views()[2];
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1}, {3, 5}, {17, 9}, {33, 1}};
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{
+      {1, 1}, {3, 5}, {17, 9}, {33, 1}, {5, 400}};
   for (const auto& [width, height] : sizes) {
     const Drawing drawing = draw(view, width, height, {tilted_plane(40.0, 4.0)});
     for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
