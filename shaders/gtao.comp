@@ -179,8 +179,8 @@ float depth_step_length(Surface surface) {
                       : max(constant + per_inverse_depth * surface.depth, 0.0);
 }
 
-// Searches all slices of a pixel that is not the sky: the outer integral of section 4.1, a mean over
-// the angles of the slices.
+// Searches all slices of a pixel that is not the sky: the outer integral of section 4.1, a mean
+// over the angles of the slices.
 SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, inverse_depth);
   SliceResult sum = no_result();
