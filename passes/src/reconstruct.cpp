@@ -94,6 +94,11 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const ReconstructInpu
   return get(past);
 }
 
+// The number of texels that an invocation reconstructs, kBlocks of the shader.
+std::uint32_t blocks_of(std::uint32_t tile_size, const OcclusionSettings& settings) {
+  return tile_size > texel_size(settings) ? 4 : 1;
+}
+
 // Returns the frame without its previous view and sizes, which are not read if there is no history.
 Frame without_past(const Frame& frame) {
   Frame alone = frame;
@@ -166,10 +171,14 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   // because the upsampling pass reads those texels.
   const VkExtent3D half_extent{std::min(half_size.width + 1, stored.width),
                                std::min(half_size.height + 1, stored.height), 1};
-  pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters,
-               half_extent](RecordContext& context) {
+  const std::uint32_t blocks = blocks_of(inputs.raw_occlusion.tile_size, settings);
+  pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters, half_extent,
+               blocks](RecordContext& context) {
+    VkExtent3D extent =
+        is_half(textures) ? half_extent : context.extent(textures.inputs.depth_ndc);
+    extent.height = (extent.height + blocks - 1) / blocks;
     kernels.dispatch(context, kernel, reconstruct_views(context, textures), bytes_of(parameters),
-                     is_half(textures) ? half_extent : context.extent(textures.inputs.depth_ndc));
+                     extent);
   });
   if (!is_half(textures)) {
     return textures.result;

@@ -67,7 +67,7 @@ class Run {
   std::uint32_t frames() const { return request_.frames; }
 
   Camera camera(std::uint32_t frame) const {
-    return orbited(camera_, request_.orbit * static_cast<float>(frame));
+    return orbited(camera_, request_.orbit_start + request_.orbit * static_cast<float>(frame));
   }
 
   FrameRequest request(std::uint32_t frame, Outputs outputs) const {
