@@ -67,7 +67,7 @@ const int kTexelSize = 1;
 #ifdef HALF
 const bool kByNormal = false;
 #else
-const bool kByNormal = kFresh;
+const bool kByNormal = (kFresh || kStatic) && kFilterRadius > 0;
 #endif
 
 // Lower bound of the cosine between the normal and the view direction. Without it, the tangent
@@ -142,6 +142,13 @@ struct Surface {
   vec3 plane;
 };
 
+// Returns the cosine between normal and view direction, on the camera's axis, for a HalfTexel::tilt.
+float n_dot_v_of(vec2 tilt, vec2 centre) {
+  vec2 ray = parameters.slope.zw + (kPerspective ? centre * parameters.slope.xy : vec2(0.0));
+  float z = 1.0 + dot(tilt, ray);
+  return inversesqrt(dot(tilt, tilt) + z * z);
+}
+
 void set_plane(inout Surface surface) {
   float per_distance = surface.n_dot_v * parameters.tolerance;
   surface.per_inverse_depth = per_distance * surface.depth;
@@ -153,6 +160,9 @@ void set_plane(inout Surface surface) {
 // has no valid normal, returns the direction to the eye instead. It is exact enough for the
 // filter's weights. A NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
+  if (kNormalEncoding == kNoNormals) {
+    return depth_normal(pixel);
+  }
   vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }

@@ -16,7 +16,7 @@ const float kFarthestOffPlane = 1e7;
 struct Window {
   // In sum_near() between traced pixels, the weight along an axis is max(1 - sharpness d^2, 0)^2 at a
   // distance of d pixels. In other sums it is 1 / (1 + inverse_squared_width d^2)^4, where
-  // inverse_squared_width is `sharpness` over parameters.near_sharpness.
+  // inverse_squared_width is `sharpness` times parameters.wide_sharpness.
   float sharpness;
   // At least 1: the square of the factor on distances from the tangent plane.
   float squared_plane_factor;
@@ -70,7 +70,7 @@ void add_traced(inout Sums sums, Surface surface, Window window, Traced found, i
   float off_plane =
       min(abs(found.inverse_depth * surface.per_inverse_depth - expected), kFarthestOffPlane);
   float near = 1.0 + (offset.y * offset.y + offset.x * offset.x) *
-                         (window.sharpness / parameters.near_sharpness);
+                         (window.sharpness * parameters.wide_sharpness);
   float level = 1.0 + off_plane * off_plane * window.squared_plane_factor;
   if (kByNormal) {
     level += min(squared_angle(surface.stereographic, found.stereographic), kLargestSquaredAngle);
@@ -106,8 +106,12 @@ Sums sum_four(Surface surface, Window window) {
       Traced found = load_shared(around.first_tile + j * kSpan + i);
       float off_plane = found.inverse_depth * surface.per_inverse_depth -
                         (expected + offsets[2 * i] * surface.plane.x);
-      float root =
-          clamp(1.0 - off_plane * off_plane * (0.5 * window.squared_plane_factor), 0.0, 1.0);
+      float apart = off_plane * off_plane * window.squared_plane_factor;
+      if (kByNormal) {
+        apart +=
+            min(squared_angle(surface.stereographic, found.stereographic), kLargestSquaredAngle);
+      }
+      float root = clamp(1.0 - 0.5 * apart, 0.0, 1.0);
       float on_plane = root * root;
       add_weighted(sums, found, on_plane * (near[2 * i] * near[2 * j + 1]), surface.lobe);
       if (kClamp) {
@@ -134,9 +138,11 @@ Sums sum_near(Surface surface, Window window) {
   return sums;
 }
 
-// A sum_near() is to be multiplied by this, by the area of a tile and by Window::sharpness. The mean
-// over pixels of the sums of weights is then about 1 for every window and tile size.
-const float kNearScale = kBetween ? 1.195 : 1.3;
+// A sum over traced pixels is to be multiplied by this, by the area of a tile and by the sharpness or
+// the inverse squared width of its window. The mean over pixels of the sums of weights is then about 1
+// for every window and tile size.
+const float kWideScale = 1.3;
+const float kNearScale = kBetween ? 1.195 : kWideScale;
 
 // Returns the sums over the traced pixels within kFilterRadius, without the corners, on the scale of
 // sum_near(). If there is a history, few texels run this, and they read the traced pixels from the
@@ -163,7 +169,7 @@ Sums sum_wide(Surface surface, Window window) {
       }
     }
   }
-  float scale = 1.3 / (kNearScale * parameters.near_sharpness);
+  float scale = kWideScale / kNearScale * parameters.wide_sharpness;
   sums.occluded *= scale;
   sums.open *= scale;
   sums.residual *= scale;

@@ -87,11 +87,7 @@ Surface fetch_surface(Place place) {
   float inverse_scale = 1.0 / scale;
   surface.tilt =
       gradient * parameters.pixels_per_slope * (kPerspective ? -inverse_scale : inverse_scale);
-  vec2 ray =
-      parameters.slope.zw + (kPerspective ? place.centre * parameters.slope.xy : vec2(0.0));
-  float z = 1.0 + dot(surface.tilt, ray);
-  float per_length = inversesqrt(dot(surface.tilt, surface.tilt) + z * z);
-  surface.n_dot_v = max(per_length, kLeastNDotV);
+  surface.n_dot_v = max(n_dot_v_of(surface.tilt, place.centre), kLeastNDotV);
   // The plane at the texel's centre, bounded where it is seen edge-on.
   float moved = inverse_depth + 0.5 * dot(found.way, gradient);
   surface.inverse_depth =

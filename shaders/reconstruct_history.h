@@ -239,7 +239,7 @@ void reconstruct(Surface surface) {
     const float unchanged = 0.01;
     follow_change(history,
                   (now.occluded + unchanged * history.recent) / max(now.open + unchanged, 1e-37),
-                  now.open * (kNearScale * parameters.near_sharpness / 1.3));
+                  now.open * (kNearScale / kWideScale / parameters.wide_sharpness));
   }
   // The sums are not normalised: a frame that traced the pixel itself has more weight than a frame
   // that traced its neighbours.
@@ -248,7 +248,7 @@ void reconstruct(Surface surface) {
   float inverse_total = 1.0 / total;
   Result result;
   result.occlusion =
-      saturate((history.weight * history.occlusion + scale * now.occluded) * inverse_total);
+      clamp((history.weight * history.occlusion + scale * now.occluded) * inverse_total, 0.0, 1.0);
   if (kBentNormal) {
     vec3 fresh =
         converged_residual(now.residual, now.expected_residual, 1.0 - result.occlusion) * scale;
@@ -256,7 +256,7 @@ void reconstruct(Surface surface) {
   }
   result.lobe =
       kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
-  store_history(surface, result, total, kMotion ? history.recent : result.occlusion);
+  store_history(surface, result, total, kMotion ? history.recent : kNoRecent);
 }
 
 #endif

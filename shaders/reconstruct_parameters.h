@@ -33,7 +33,7 @@ struct ReconstructParameters {
   // distance from centres adds per unit of History::between.
   vec2 smallest_window;
   float first_sharpness;  // Window::sharpness in a first frame
-  float near_sharpness;   // see Window::sharpness
+  float wide_sharpness;   // see Window::sharpness
   // The change of inverse depth, in scene units, for a change of 0.5 in the depth buffer.
   float half_inverse_depth_per_ndc;
   float depth_step;    // of the depth buffer, see depth_step()

@@ -19,6 +19,12 @@ void set_plane_of_normal(inout Surface surface, vec3 normal) {
   surface.lobe = fetch_lobe_surface(surface.pixel, normal);
 }
 
+// Returns Surface::stereographic for a HalfTexel::tilt.
+vec3 stereographic_of_tilt(vec2 tilt, float n_dot_v) {
+  vec2 xy = tilt * n_dot_v;
+  return vec3(xy, 1.0 + sqrt(max(1.0 - dot(xy, xy), 0.0)));
+}
+
 Surface fetch_surface(Place place) {
   Surface surface;
   surface.place = place;
@@ -34,10 +40,13 @@ Surface fetch_surface(Place place) {
   vec2 next = vec2(after.z, after.x);
   vec2 last = vec2(before.x, before.z);
   vec2 gradient = (next - last) * (parameters.half_inverse_depth_per_ndc * surface.depth);
-  vec2 tilt = gradient * parameters.pixels_per_slope;
-  float n_dot_v = inversesqrt(1.0 + dot(tilt, tilt));  // without the angle of the pixel's ray
+  vec2 tilt = gradient * parameters.pixels_per_slope * (kPerspective ? -1.0 : 1.0);
+  // The pixel's ray matters to angles, but hardly to the scale of distances.
+  float n_dot_v =
+      kByNormal ? n_dot_v_of(tilt, place.centre) : inversesqrt(1.0 + dot(tilt, tilt));
   surface.n_dot_v = max(n_dot_v, kLeastNDotV);
   surface.slope = gradient * n_dot_v;
+  surface.stereographic = stereographic_of_tilt(tilt, n_dot_v);
   vec2 bend = abs(next + last - 2.0 * depth_ndc);
   float off_plane = (max(bend.x, bend.y) + parameters.depth_step) * surface.depth * surface.n_dot_v;
   // The comparison is true for NaN.

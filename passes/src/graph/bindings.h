@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include "alcove/framegraph/graph.h"
+#include "alcove/passes/frame.h"
+#include "maths/normal_encoding.h"
 
 namespace alcove::passes {
 
@@ -14,6 +16,12 @@ namespace alcove::passes {
 // texture is not read, the value is 0: all settings of the channel then share one pipeline.
 [[nodiscard]] constexpr std::uint32_t channel_if(bool read, std::uint32_t channel) {
   return read ? channel : 0;
+}
+
+// Returns the value of the specialisation constant kNormalEncoding for normals that may be null.
+[[nodiscard]] inline std::uint32_t encoding_of(framegraph::Texture normals,
+                                                  NormalEncoding encoding) {
+  return normals ? static_cast<std::uint32_t>(encoding) : maths::kNoNormals;
 }
 
 // Returns the view of `texture`, or the view of `instead` if `texture` is null. Every binding needs

@@ -30,7 +30,7 @@ tl::expected<void, Error> check_motion(const MotionConvention& motion) {
 tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
   const auto or_depth = [&](Texture texture) { return texture ? texture : inputs.depth_ndc; };
   const std::array<NamedInput, 4> needed{{{"depth", inputs.depth_ndc},
-                                          {"normals", inputs.normals},
+                                          {"normals", or_depth(inputs.normals)},
                                           {"motion vectors", or_depth(inputs.motion)},
                                           {"roughness", or_depth(inputs.roughness)}}};
   return check_inputs(frame.graph, "reconstruct", needed);

@@ -52,8 +52,8 @@ tl::expected<void, Error> check_textures(const Frame& frame, const GtaoInputs& i
                                          const Reads& reads) {
   const std::array<NamedInput, 5> needed{
       {{"depth", inputs.depth_ndc},
-       {"normals", inputs.normals},
-       {"roughness", reads.roughness ? inputs.roughness : inputs.normals},
+       {"normals", inputs.normals ? inputs.normals : inputs.depth_ndc},
+       {"roughness", reads.roughness ? inputs.roughness : inputs.depth_ndc},
        {"back-face depth", reads.back_faces ? inputs.back_depth_ndc : inputs.depth_ndc},
        {"second depth", reads.second_layer ? inputs.second_depth_ndc : inputs.depth_ndc}}};
   return check_inputs(frame.graph, "gtao", needed);
@@ -90,7 +90,7 @@ std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
            {"kSecondLayer", flag(reads.second_layer)},
            {"kExtrapolation", flag(advanced.extrapolation)},
            {"kUnobserved", flag(advanced.unobserved)},
-           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
            {"kReversed", flag(is_reversed(projection))},
            {"kInfiniteFar", flag(has_infinite_far(projection))}}};
 }
@@ -100,7 +100,9 @@ void declare_accesses(framegraph::PassBuilder& pass, const GtaoInputs& inputs, c
   const auto& sampled = framegraph::access::sampled_compute;
   const auto& stored = framegraph::access::storage_write_compute;
   pass.read(inputs.depth_ndc, sampled);
-  pass.read(inputs.normals, sampled);
+  if (inputs.normals) {
+    pass.read(inputs.normals, sampled);
+  }
   result.raw_occlusion =
       pass.write(result.raw_occlusion, stored, {}, framegraph::Contents::discard);
   if (result.bent) {
@@ -126,7 +128,8 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
                                                            ? inputs.depth_format
                                                            : frame.graph.format(inputs.depth_ndc));
   return {
-      view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z),
+      view_from_normal(frame, inputs.normals_in_view_space || !inputs.normals,
+                       inputs.normals && inputs.normals_forward_z),
       maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                   projection.uv_to_slope.w),
       inverse_depth_from_ndc(projection),
@@ -147,7 +150,7 @@ maths::GtaoParameters parameters_of(const Frame& frame, const GtaoInputs& inputs
 std::array<NamedView, 7> views_of(RecordContext& context, const GtaoInputs& inputs,
                                   const Reads& reads, const RawOcclusionTextures& result) {
   const VkImageView depth = context.view(inputs.depth_ndc);
-  const VkImageView normals = context.view(inputs.normals);
+  const VkImageView normals = view_or(context, inputs.normals, inputs.depth_ndc);
   const VkImageView raw_occlusion = context.view(result.raw_occlusion);
   return {{{"depth_image", depth},
            {"normal_image", normals},

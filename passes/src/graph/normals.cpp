@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "graph/bindings.h"
 #include "graph/check_inputs.h"
 #include "normals_parameters.h"
 #include "work/view_parameters.h"
@@ -20,7 +21,9 @@ tl::expected<Texture, Error> add_normals(const Frame& frame, Texture depth) {
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const auto kernel = frame.kernels.get(Shader::normals);
+  const auto constants =
+      std::to_array<NamedConstant>({{"kPerspective", flag(is_perspective(*projection))}});
+  const auto kernel = frame.kernels.get(Shader::normals, constants);
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
@@ -30,7 +33,8 @@ tl::expected<Texture, Error> add_normals(const Frame& frame, Texture depth) {
   pass.read(depth, framegraph::access::sampled_compute);
   normals = pass.write(normals, framegraph::access::storage_write_compute, {},
                        framegraph::Contents::discard);
-  const maths::NormalsParameters parameters{*projection};
+  const maths::NormalsParameters parameters{maths::vec4(
+      maths::ray_per_px(*projection), projection->uv_to_slope.z, projection->uv_to_slope.w)};
   pass.record([&kernels = frame.kernels, kernel = *kernel, depth, normals,
                parameters](RecordContext& context) {
     const auto views = std::to_array<NamedView>(

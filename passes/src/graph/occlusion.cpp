@@ -62,10 +62,7 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   }
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
-  // Normals from depth are signed vectors in view space with the camera looking along -Z.
-  const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
-  const bool forward_z = normals && inputs.normals_forward_z;
-  if (!normals) {
+  if (!normals) {  // for specular models and for the caller
     auto made = add_normals(frame, *depth);
     if (!made) {
       return tl::unexpected(std::move(made.error()));
@@ -74,13 +71,13 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   }
   const auto raw_occlusion = add_gtao(frame,
                                       {.depth_ndc = inputs.depth_ndc,
-                                       .normals = normals,
+                                       .normals = inputs.normals,
                                        .normals_in_view_space = in_view_space,
                                        .roughness = inputs.roughness,
                                        .back_depth_ndc = inputs.back_depth_ndc,
                                        .second_depth_ndc = inputs.second_depth_ndc,
-                                       .normal_encoding = encoding,
-                                       .normals_forward_z = forward_z},
+                                       .normal_encoding = inputs.normal_encoding,
+                                       .normals_forward_z = inputs.normals_forward_z},
                                       settings);
   if (!raw_occlusion) {
     return tl::unexpected(raw_occlusion.error());
@@ -88,13 +85,13 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
   const auto filtered = add_reconstruct(frame,
                                         {.raw_occlusion = *raw_occlusion,
                                          .depth_ndc = inputs.depth_ndc,
-                                         .normals = normals,
+                                         .normals = inputs.normals,
                                          .normals_in_view_space = in_view_space,
                                          .motion = inputs.motion,
                                          .roughness = inputs.roughness,
                                          .into = inputs.into,
-                                         .normal_encoding = encoding,
-                                         .normals_forward_z = forward_z,
+                                         .normal_encoding = inputs.normal_encoding,
+                                         .normals_forward_z = inputs.normals_forward_z,
                                          .motion_convention = inputs.motion_convention,
                                          .visibility_channel = inputs.visibility_channel,
                                          .half_size_results = inputs.half_size_outputs},

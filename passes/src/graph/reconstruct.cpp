@@ -68,7 +68,7 @@ std::array<NamedConstant, 16> constants_of(const ReconstructInputs& inputs,
            {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},
            {"kFresh", flag(past == Past::none)},
            {"kVisibility", flag(needs_visibility(settings))},
-           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
            {"kShaped", flag(!settings.half_resolution && shaped)},
            {"kReversed", flag(is_reversed(projection))},
            {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
@@ -121,6 +121,10 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   }
   if (!inputs.raw_occlusion.lobe) {
     inputs.roughness = {};
+  }
+  if (!inputs.normals) {  // those from depth are in view space
+    inputs.normals_in_view_space = true;
+    inputs.normals_forward_z = false;
   }
   if (!inputs.into.visibility || !needs_visibility(settings)) {
     inputs.visibility_channel = VisibilityChannel::all;

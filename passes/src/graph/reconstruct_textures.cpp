@@ -187,8 +187,7 @@ ReconstructViews reconstruct_views(RecordContext& context, const ReconstructText
   // At half resolution the upsampling pass writes the results, and this pass writes none.
   const Occlusion out = half ? Occlusion{} : textures.result;
   const Texture written = any_of(out);
-  // At half resolution the normals may be null.
-  const Texture sampled = half ? in.depth_ndc : in.normals;
+  const Texture sampled = in.depth_ndc;
   const bool keeps = in.visibility_channel != VisibilityChannel::all;
   const HistoryTextures& history = textures.history;
   return {{{"raw_image", view(in.raw_occlusion.raw_occlusion)},

@@ -31,7 +31,7 @@ tl::expected<Kernel, Error> get_kernel(const Frame& frame, const UpsampleInputs&
                                        const Occlusion& result, const OcclusionSettings& settings,
                                        const maths::Projection& projection) {
   const std::uint32_t encoding =
-      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u;
+      result.bent_normal ? encoding_of(inputs.normals, inputs.normal_encoding) : 0u;
   const auto constants = std::to_array<NamedConstant>(
       {{"kPerspective", flag(is_perspective(projection))},
        {"kVisibility", flag(bool(result.visibility))},
@@ -53,7 +53,9 @@ void declare_accesses(const Frame& frame, framegraph::PassBuilder& pass,
   }
   pass.read(inputs.depth_ndc, sampled);
   if (result.bent_normal) {
-    pass.read(inputs.normals, sampled);
+    if (inputs.normals) {
+      pass.read(inputs.normals, sampled);
+    }
     pass.read(inputs.residuals, sampled);
   }
   if (result.specular) {

@@ -112,7 +112,7 @@ bool is_between(const ReconstructInputs& inputs, const OcclusionSettings& settin
   return inputs.raw_occlusion.tile_size > 1 && settings.advanced.filter_radius > 0;
 }
 
-// Returns ReconstructParameters::near_sharpness. The four traced pixels around a pixel are needed
+// Returns 1 / ReconstructParameters::wide_sharpness. The four traced pixels around a pixel are needed
 // less the more slices each of them has. A static image averages ever more frames, which make the
 // samples of neighbours dispensable. Fitted to the errors of `alcove compare --frames`, with and
 // without --orbit.
@@ -226,10 +226,10 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
                   maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px / texel + 0.5f);
   parameters.roughness = settings.roughness;
   const float window = window_px(inputs.raw_occlusion);
-  parameters.near_sharpness = is_between(inputs, settings) ? near_sharpness(frame, inputs) : 1.0f;
-  parameters.first_sharpness = parameters.near_sharpness * 0.125f / (window * window);
-  parameters.smallest_window =
-      smallest_window(inputs.raw_occlusion, texel) / parameters.near_sharpness;
+  const float sharpness = is_between(inputs, settings) ? near_sharpness(frame, inputs) : 1.0f;
+  parameters.wide_sharpness = 1.0f / sharpness;
+  parameters.first_sharpness = sharpness * 0.125f / (window * window);
+  parameters.smallest_window = smallest_window(inputs.raw_occlusion, texel) / sharpness;
   // More slices narrow the window. They also reduce the distance from the tangent plane that is
   // tolerated.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
