@@ -84,7 +84,7 @@ tl::expected<std::vector<ImageTraffic>, std::string> traffic_of(const GraphDescr
     const double bytes = image_bytes(image, access.range);
     if (bytes == 0) {
       return Failure("The cost model does not know the format of the image '" + name +
-                     "': add it to sample/gpu_cost/recorded_frame.cpp.");
+                     "': add it to sample/lab/gpu_cost/recorded_frame.cpp.");
     }
     if ((access.access & kReads) != 0) {
       traffic.push_back({name, Direction::read, bytes});
