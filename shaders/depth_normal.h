@@ -5,9 +5,9 @@
 
 // Returns how badly the inverse depths of the first and second neighbour on one side continue that
 // of the pixel: how far a line through them misses it. A quarter of the step to the first neighbour
-// is added. It is needed on a strip that is two pixels wide: there, the lines on both sides miss, and
-// the addition prefers the neighbour on the strip itself. At a crease between two planes the addition
-// is too small to change the choice.
+// is added. It is needed on a strip that is two pixels wide: there, the lines on both sides miss,
+// and the addition prefers the neighbour on the strip itself. At a crease between two planes the
+// addition is too small to change the choice.
 float miss(float here, float first, float second) {
   return abs(2.0 * first - second - here) + 0.25 * abs(first - here);
 }

@@ -31,8 +31,8 @@ void main() {
   if (any(greaterThanEqual(pixel, size_px()))) {
     return;
   }
-  vec2 slope = kPerspective ? parameters.slope.zw + (vec2(pixel) + 0.5) * parameters.slope.xy
-                            : vec2(0.0);
+  vec2 slope =
+      kPerspective ? parameters.slope.zw + (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0);
   bool sky = load_inverse_depth(pixel) == sky_inverse_depth(kPerspective);
   vec3 normal = sky ? normalize(vec3(-slope, 1.0)) : depth_normal(pixel);
   imageStore(normal_image, pixel, vec4(normal, 0.0));

@@ -9,14 +9,15 @@
 // One pixel of each tile of kTileSize x kTileSize pixels is traced in a frame, at a position that
 // moves through the tile from frame to frame (`interleave_pixel`). A group of 8x8 invocations
 // reconstructs a column of kBlocks blocks of 8x8 texels. It first unpacks the traced pixels around
-// the column into shared memory. Each invocation then computes one texel of each block as a weighted
-// average of the traced pixels around it. A texel with a history averages 2x2 of them. A texel
-// without one averages those up to kFilterRadius tiles away on each side, except at the corners.
+// the column into shared memory. Each invocation then computes one texel of each block as a
+// weighted average of the traced pixels around it. A texel with a history averages 2x2 of them. A
+// texel without one averages those up to kFilterRadius tiles away on each side, except at the
+// corners.
 //
 // The weight of a traced pixel falls with its distance on the image and with its distance from the
-// pixel's tangent plane, so that a plane at any tilt is filtered as a whole and nothing leaks across
-// a depth edge. Without any history it also falls with the angle between the two normals, so that
-// little leaks across a crease. Weights for the GGX lobe also depend on the difference of the
+// pixel's tangent plane, so that a plane at any tilt is filtered as a whole and nothing leaks
+// across a depth edge. Without any history it also falls with the angle between the two normals, so
+// that little leaks across a crease. Weights for the GGX lobe also depend on the difference of the
 // roughnesses. Occluded and unoccluded parts are summed separately and divided last.
 //
 // Sums hold occlusion rather than visibility: an unoccluded surface then sums zeros, and its
@@ -88,12 +89,12 @@ float load_inverse_depth(ivec2 pixel) {
 // The place of a texel, and values that depend on it alone. From block to block of a column each of
 // them changes by a constant.
 struct Place {
-  ivec2 texel;          // at which results are stored
-  vec2 centre;          // pixels
-  vec2 uv;              // of the upper left corner, on the depth buffer
+  ivec2 texel;  // at which results are stored
+  vec2 centre;  // pixels
+  vec2 uv;      // of the upper left corner, on the depth buffer
   TracedPixels around;
-  vec4 previous;        // of an inverse depth of 0, after ReconstructParameters::previous_from_pixel
-  float dither;         // for dither_of()
+  vec4 previous;  // of an inverse depth of 0, after ReconstructParameters::previous_from_pixel
+  float dither;   // for dither_of()
 };
 
 // Change of Place::dither from one pixel to the next [Jimenez 2014, interleaved gradient noise].
@@ -142,7 +143,8 @@ struct Surface {
   vec3 plane;
 };
 
-// Returns the cosine between normal and view direction, on the camera's axis, for a HalfTexel::tilt.
+// Returns the cosine between normal and view direction, on the camera's axis, for a
+// HalfTexel::tilt.
 float n_dot_v_of(vec2 tilt, vec2 centre) {
   vec2 ray = parameters.slope.zw + (kPerspective ? centre * parameters.slope.xy : vec2(0.0));
   float z = 1.0 + dot(tilt, ray);

@@ -14,8 +14,8 @@ const float kFarthestOffPlane = 1e7;
 
 // How weights fall with distance.
 struct Window {
-  // In sum_near() between traced pixels, the weight along an axis is max(1 - sharpness d^2, 0)^2 at a
-  // distance of d pixels. In other sums it is 1 / (1 + inverse_squared_width d^2)^4, where
+  // In sum_near() between traced pixels, the weight along an axis is max(1 - sharpness d^2, 0)^2 at
+  // a distance of d pixels. In other sums it is 1 / (1 + inverse_squared_width d^2)^4, where
   // inverse_squared_width is `sharpness` times parameters.wide_sharpness.
   float sharpness;
   // At least 1: the square of the factor on distances from the tangent plane.
@@ -92,8 +92,8 @@ bool is_corner(int i, int j) {
          (j == kFirstWide || j == kFilterRadius);
 }
 
-// Adds up the four traced pixels around a texel, from shared memory. Their weights fall to zero at a
-// finite distance, which needs no division.
+// Adds up the four traced pixels around a texel, from shared memory. Their weights fall to zero at
+// a finite distance, which needs no division.
 Sums sum_four(Surface surface, Window window) {
   Sums sums = no_sums();
   TracedPixels around = surface.place.around;
@@ -138,15 +138,15 @@ Sums sum_near(Surface surface, Window window) {
   return sums;
 }
 
-// A sum over traced pixels is to be multiplied by this, by the area of a tile and by the sharpness or
-// the inverse squared width of its window. The mean over pixels of the sums of weights is then about 1
-// for every window and tile size.
+// A sum over traced pixels is to be multiplied by this, by the area of a tile and by the sharpness
+// or the inverse squared width of its window. The mean over pixels of the sums of weights is then
+// about 1 for every window and tile size.
 const float kWideScale = 1.3;
 const float kNearScale = kBetween ? 1.195 : kWideScale;
 
-// Returns the sums over the traced pixels within kFilterRadius, without the corners, on the scale of
-// sum_near(). If there is a history, few texels run this, and they read the traced pixels from the
-// image.
+// Returns the sums over the traced pixels within kFilterRadius, without the corners, on the scale
+// of sum_near(). If there is a history, few texels run this, and they read the traced pixels from
+// the image.
 Sums sum_wide(Surface surface, Window window) {
   Sums sums = no_sums();
   if (kFresh) {

@@ -23,10 +23,12 @@ HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2
   texels.occlusions = textureGather(history_image, uv, 0);
   texels.weights = textureGather(history_image, uv, 1);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    texels.recents[i] = kMotion ? half_texel_recent(depths[i], texels.occlusions[i]) : 0.0;
+    texels.recents[i] = kMotion ? half_texel_recent_code(depths[i]) : 0.0;
   }
   return texels;
 }
+
+float recent_of_mean(float mean, float otherwise) { return half_recent_of_code(mean, otherwise); }
 
 float occlusion_of_mean(float mean) { return mean; }
 
@@ -40,7 +42,7 @@ History fetch_history(Surface surface) {
                    (surface.depth * parameters.history_sharpness * surface.n_dot_v);
   History history = no_history();
   history.occlusion = stored.x;
-  history.recent = half_texel_recent(depth, stored.x);
+  history.recent = half_recent_of_code(half_texel_recent_code(depth), stored.x);
   history.weight =
       distance <= kSameTexel + history_slack(surface) ? stored.y * kHalfTexelWeightUnit : 0.0;
   return history;

@@ -44,8 +44,8 @@ Previous reproject(Surface surface) {
     vec2 moved =
         surface.place.centre * parameters.previous_extent.zw - parameters.motion.zw - motion;
     // More than the rounding of motion vectors, which is 2^-11 in half precision.
-    previous.moves = distance(moved, position) >
-                     0.1 / float(kTexelSize) + length(motion) * (1.0 / 512.0);
+    previous.moves = any(
+        greaterThan(abs(moved - position), abs(motion) * (1.0 / 512.0) + 0.1 / float(kTexelSize)));
     // A NaN would stay in the history.
     position = moved == moved ? moved : vec2(-1e6);
   }
@@ -93,7 +93,7 @@ struct HistoryTexels {
   vec4 distances;
   vec4 occlusions;
   vec4 weights;  // for mean_weight()
-  vec4 recents;  // as History::recent; only with kMotion
+  vec4 recents;  // for recent_of_mean(); only with kMotion
 };
 
 #ifdef HALF
@@ -130,7 +130,7 @@ History read_moving(Surface surface) {
   history.weight = known ? weight_after_blur(weight, variance, 1.0 - total) : 0.0;
   history.between = dot(part, 1.0 - part);
   if (kMotion) {
-    history.recent = dot(weights, texels.recents) * scale;
+    history.recent = recent_of_mean(dot(weights, texels.recents) * scale, history.occlusion);
   }
   if (kBentNormal) {
     // The difference from 0 is weighted, so that the rounding of weights does not change a 0.
@@ -158,7 +158,8 @@ History read_static(Surface surface) {
   History history = fetch_history(surface);
   history.weight = min(history.weight, parameters.largest_weight);
   if (kBentNormal) {
-    history.residual = unpack_half_residual(texelFetch(bent_history_image, surface.place.texel, 0).xyz);
+    history.residual =
+        unpack_half_residual(texelFetch(bent_history_image, surface.place.texel, 0).xyz);
   }
 #ifdef SPECULAR
   LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.place.texel, 0).r);
@@ -177,8 +178,8 @@ const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 // of 4x4 pixels by 0.0018. Fitted to the error after 4 to 32 frames (`alcove compare --frames`).
 const float kNarrowing = kTileTexels > 2 ? 3.0 : 0.5;
 
-// Returns Window::sharpness. The window narrows as the weight of the history grows, down to a smallest
-// width, which is larger between the centres of texels of the history.
+// Returns Window::sharpness. The window narrows as the weight of the history grows, down to a
+// smallest width, which is larger between the centres of texels of the history.
 float sharpness_of(History history) {
   return min(1.0 / (parameters.smallest_window.x + parameters.smallest_window.y * history.between),
              parameters.first_sharpness * (kNarrowing * history.weight + 1.0));

@@ -34,10 +34,12 @@ HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2
   [[unroll]] for (int i = 0; i < 4; ++i) {
     texels.weights[i] = texel_codes(values[i]);
     texels.occlusions[i] = fract(texels.weights[i]);
-    texels.recents[i] = kMotion ? texel_recent(depths[i], texel_occlusion(texels.occlusions[i])) : 0.0;
+    texels.recents[i] = kMotion ? texel_recent_code(depths[i]) : 0.0;
   }
   return texels;
 }
+
+float recent_of_mean(float mean, float otherwise) { return recent_of_code(mean, otherwise); }
 
 float occlusion_of_mean(float mean) { return texel_occlusion(mean); }
 

@@ -42,8 +42,7 @@ Surface fetch_surface(Place place) {
   vec2 gradient = (next - last) * (parameters.half_inverse_depth_per_ndc * surface.depth);
   vec2 tilt = gradient * parameters.pixels_per_slope * (kPerspective ? -1.0 : 1.0);
   // The pixel's ray matters to angles, but hardly to the scale of distances.
-  float n_dot_v =
-      kByNormal ? n_dot_v_of(tilt, place.centre) : inversesqrt(1.0 + dot(tilt, tilt));
+  float n_dot_v = kByNormal ? n_dot_v_of(tilt, place.centre) : inversesqrt(1.0 + dot(tilt, tilt));
   surface.n_dot_v = max(n_dot_v, kLeastNDotV);
   surface.slope = gradient * n_dot_v;
   surface.stereographic = stereographic_of_tilt(tilt, n_dot_v);
@@ -58,8 +57,8 @@ Surface fetch_surface(Place place) {
 
 // Returns the unit normal in view space, as the search uses it.
 vec3 traced_normal(Surface surface) {
-  vec2 slope = parameters.slope.zw +
-               (kPerspective ? surface.place.centre * parameters.slope.xy : vec2(0.0));
+  vec2 slope =
+      parameters.slope.zw + (kPerspective ? surface.place.centre * parameters.slope.xy : vec2(0.0));
   vec3 given = decode_normal(texelFetch(normal_image, surface.pixel, 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
   return seen_normal(surface.pixel, given, normalize(vec3(-slope, 1.0)));

@@ -84,8 +84,7 @@ Traced fetch_traced(ivec2 tile) {
 }
 
 void store_shared(Traced found, int i) {
-  shared_traced[i] =
-      vec4(found.inverse_depth, found.occluded, found.open, found.stereographic.x);
+  shared_traced[i] = vec4(found.inverse_depth, found.occluded, found.open, found.stereographic.x);
   if (kByNormal) {
     shared_stereographic_y[i] = found.stereographic.y;
   }
@@ -132,11 +131,10 @@ void load_tiles() {
       ivec2 tile = first + ivec2(i - row * kSpan, row);
       Traced found = fetch_traced(clamp(tile, ivec2(0), last_tile()));
       if (kBetween && !kFresh) {
-        // sum_near() assumes that the pixels are traced at regular distances. A pixel that would lie
-        // outside of the image gets a depth that lies on no plane.
+        // sum_near() assumes that the pixels are traced at regular distances. A pixel that would
+        // lie outside of the image gets a depth that lies on no plane.
         ivec2 pixel = tile * kTileSize + parameters.interleave_pixel;
-        bool outside =
-            any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size_px()));
+        bool outside = any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size_px()));
         found.inverse_depth = outside ? 1e30 : found.inverse_depth;
       }
       store_shared(found, i);

@@ -1,4 +1,6 @@
 // Loops and traffic of shaders/reconstruct.comp.
+#include <algorithm>
+
 #include "pass_work.h"
 
 namespace alcove::passes::cost {
@@ -6,7 +8,8 @@ namespace alcove::passes::cost {
 namespace {
 
 // The share of the 64-byte blocks of normals that contain a pixel whose tangent plane needs the
-// normal. It was measured in the atrium, the arcade and the helmet, where 5 to 8 % of the pixels do.
+// normal. It was measured in the atrium, the arcade and the helmet, where 5 to 8 % of the pixels
+// do.
 constexpr double kNormalShare = 0.2;
 
 // Whether the tangent plane of most pixels comes from depth alone.
@@ -39,7 +42,8 @@ std::vector<LoadPattern> reconstruct_loads(const PassWork& work) {
   std::vector<LoadPattern> loads;
   // load_tiles(): the raw occlusion of adjacent tiles, in up to four instructions.
   const std::uint32_t span =
-      (half ? 16u : 8u) / settings.tile_size + 2 * settings.advanced.filter_radius;
+      (half ? 16u : 8u) / settings.tile_size +
+      2 * std::min(settings.advanced.filter_radius, work.state == FrameState::first ? 3u : 1u);
   const std::uint32_t across = (span + 7) / 8;
   loads.push_back({.texel_bytes = 8, .anywhere = true, .count = across * across});
   if (half) {
@@ -47,8 +51,12 @@ std::vector<LoadPattern> reconstruct_loads(const PassWork& work) {
     loads.push_back({.pitch = 2, .footprint = 2, .first = -1, .count = 2});
     loads.push_back({.pitch = 2, .footprint = 2, .first = 1, .count = 2});
   } else {
-    loads.push_back({});                  // depth
-    loads.push_back({.texel_bytes = 8});  // normal
+    // The two gathers of the depths, the first of which begins a pixel before the pixels.
+    loads.push_back({.footprint = 2, .first = -1});
+    loads.push_back({.footprint = 2});
+    if (!has_depth_planes(work)) {
+      loads.push_back({.texel_bytes = 8});  // normal
+    }
   }
   if (settings.history_frames == 0 || work.state == FrameState::first) {
     return loads;

@@ -51,14 +51,13 @@ Errors errors_of(const Rendering& rendering, const Truths& truths) {
 }
 
 nlohmann::ordered_json errors_json(const Errors& errors) {
-  nlohmann::ordered_json json{
-          {"scene_truth", to_json(errors.scene)},
-          {"height_field_truth", to_json(errors.height_field)},
-          {"height_field_limit", to_json(errors.limit)},
-          {"bent_normal", to_json(errors.bent_normal)},
-          {"surface_normal", to_json(errors.surface_normal)},
-          {"open_surfaces", to_json(errors.open)},
-          {"weave", to_json(errors.weave)}};
+  nlohmann::ordered_json json{{"scene_truth", to_json(errors.scene)},
+                              {"height_field_truth", to_json(errors.height_field)},
+                              {"height_field_limit", to_json(errors.limit)},
+                              {"bent_normal", to_json(errors.bent_normal)},
+                              {"surface_normal", to_json(errors.surface_normal)},
+                              {"open_surfaces", to_json(errors.open)},
+                              {"weave", to_json(errors.weave)}};
   if (errors.static_weave) {
     json["static_weave"] = to_json(*errors.static_weave);
   }

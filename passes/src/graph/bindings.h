@@ -20,7 +20,7 @@ namespace alcove::passes {
 
 // Returns the value of the specialisation constant kNormalEncoding for normals that may be null.
 [[nodiscard]] inline std::uint32_t encoding_of(framegraph::Texture normals,
-                                                  NormalEncoding encoding) {
+                                               NormalEncoding encoding) {
   return normals ? static_cast<std::uint32_t>(encoding) : maths::kNoNormals;
 }
 

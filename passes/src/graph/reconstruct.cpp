@@ -178,8 +178,7 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& given_frame,
   const std::uint32_t blocks = blocks_of(inputs.raw_occlusion.tile_size, settings);
   pass.record([&kernels = frame.kernels, kernel = *kernel, textures, parameters, half_extent,
                blocks](RecordContext& context) {
-    VkExtent3D extent =
-        is_half(textures) ? half_extent : context.extent(textures.inputs.depth_ndc);
+    VkExtent3D extent = is_half(textures) ? half_extent : context.extent(textures.inputs.depth_ndc);
     extent.height = (extent.height + blocks - 1) / blocks;
     kernels.dispatch(context, kernel, reconstruct_views(context, textures), bytes_of(parameters),
                      extent);

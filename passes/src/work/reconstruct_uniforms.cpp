@@ -112,30 +112,31 @@ bool is_between(const ReconstructInputs& inputs, const OcclusionSettings& settin
   return inputs.raw_occlusion.tile_size > 1 && settings.advanced.filter_radius > 0;
 }
 
-// Returns 1 / ReconstructParameters::wide_sharpness. The four traced pixels around a pixel are needed
-// less the more slices each of them has. A static image averages ever more frames, which make the
-// samples of neighbours dispensable. Fitted to the errors of `alcove compare --frames`, with and
-// without --orbit.
-float near_sharpness(const Frame& frame, const ReconstructInputs& inputs) {
+// Returns 1 / ReconstructParameters::wide_sharpness. The four traced pixels around a pixel are
+// needed less the more slices each of them has. A static image averages ever more frames, which
+// make the samples of neighbours dispensable. Fitted to error and grain of `alcove compare --frames
+// 8`, 24 and 32, with and without --orbit.
+float near_sharpness(const Frame& frame, const ReconstructInputs& inputs, float texel) {
   const bool is_static = frame.view == frame.previous_view && !inputs.motion;
   if (!is_static) {
-    return inputs.raw_occlusion.slices > 1 ? 1.7f : 1.3f;
+    const float one_slice = texel > 1.0f ? 1.0f : 1.3f;
+    return inputs.raw_occlusion.slices > 1 ? 1.7f : one_slice;
   }
   const auto frames = static_cast<float>(frame.static_frames);
-  return std::lerp(1.0f, 2.2f, std::clamp((frames - 8.0f) / 16.0f, 0.0f, 1.0f));
+  return std::lerp(0.8f, 2.2f, std::clamp((frames - 8.0f) / 16.0f, 0.0f, 1.0f));
 }
 
 // Returns the filter's smallest window in units of 8 squared pixels: x at the centre of a texel of
 // the history, and y what the distance from centres adds, because the interpolation of the history
 // blurs there anyway. With tiles of 4 texels few samples are a texel's own even in time, so the
-// window stays wider. With one slice, whose noise is large, it widens more between centres: a surface
-// that moves over the image meets other directions in each frame than the pattern has prepared for
-// one pixel. Fitted to error and grain (`alcove compare --orbit 0.4`).
+// window stays wider. With one slice, whose noise is large, it then widens more between centres: a
+// surface that moves over the image meets other directions in each frame than the pattern has
+// prepared for one pixel. Fitted to error and grain (`alcove compare --orbit 0.4`).
 maths::vec2 smallest_window(const RawOcclusionTextures& raw_occlusion, float texel) {
-  const float own = static_cast<float>(raw_occlusion.tile_size) > 2.0f * texel ? 1.45f : 0.58f;
-  const auto slices = static_cast<float>(raw_occlusion.slices);
-  return 8.0f * texel * texel *
-         maths::vec2(own * own, std::max(10.4f / (slices * slices), 2.6f));
+  const bool wide = static_cast<float>(raw_occlusion.tile_size) > 2.0f * texel;
+  const float own = wide ? 1.45f : 0.58f;
+  const float between = wide && raw_occlusion.slices == 1 ? 10.4f : 2.6f;
+  return 8.0f * texel * texel * maths::vec2(own * own, between);
 }
 
 // Returns the width of the filter's window in pixels for a frame without history: wide if there are
@@ -146,8 +147,8 @@ float window_px(const RawOcclusionTextures& raw_occlusion) {
   return static_cast<float>(raw_occlusion.tile_size) * std::max(few, 0.55f);
 }
 
-// The second difference of depth, in units of the tolerance, up to which a tangent plane is computed
-// from depth instead of the normal. Fitted to the errors of `alcove compare`.
+// The second difference of depth, in units of the tolerance, up to which a tangent plane is
+// computed from depth instead of the normal. Fitted to the errors of `alcove compare`.
 constexpr float kLargestBend = 0.05f;
 
 // Returns ReconstructParameters::traced_range: the positions of the first and the last traced
@@ -221,12 +222,13 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   // evenly over any number of successive frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
-  parameters.motion =
-      maths::vec4(maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px / texel,
-                  maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px / texel + 0.5f);
+  parameters.motion = maths::vec4(
+      maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px / texel,
+      maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px / texel + 0.5f);
   parameters.roughness = settings.roughness;
   const float window = window_px(inputs.raw_occlusion);
-  const float sharpness = is_between(inputs, settings) ? near_sharpness(frame, inputs) : 1.0f;
+  const float sharpness =
+      is_between(inputs, settings) ? near_sharpness(frame, inputs, texel) : 1.0f;
   parameters.wide_sharpness = 1.0f / sharpness;
   parameters.first_sharpness = sharpness * 0.125f / (window * window);
   parameters.smallest_window = smallest_window(inputs.raw_occlusion, texel) / sharpness;
@@ -236,15 +238,15 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   const auto [offset_x, offset_y] =
       interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
   parameters.interleave_pixel = {offset_x, offset_y};
-  parameters.traced_range = traced_range(projection.size_px, maths::vec2(parameters.interleave_pixel),
-                                         static_cast<float>(inputs.raw_occlusion.tile_size));
+  parameters.traced_range =
+      traced_range(projection.size_px, maths::vec2(parameters.interleave_pixel),
+                   static_cast<float>(inputs.raw_occlusion.tile_size));
   const float per_ndc = parameters.inverse_depth_from_ndc.x;
   const bool grows =
       maths::grows_with_inverse_depth(is_perspective(projection), is_reversed(projection));
   parameters.half_inverse_depth_per_ndc = grows ? 0.5f * per_ndc : -0.5f * per_ndc;
   const VkFormat depth_format = frame.graph.format(inputs.depth_ndc);
-  parameters.depth_step =
-      std::max(depth_step(projection, depth_format).constant, 0.0f) / per_ndc;
+  parameters.depth_step = std::max(depth_step(projection, depth_format).constant, 0.0f) / per_ndc;
   parameters.largest_bend = kLargestBend / (per_ndc * parameters.tolerance);
   parameters.power = settings.power;
   parameters.intensity = settings.intensity;
