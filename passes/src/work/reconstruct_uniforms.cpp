@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "graph/reconstruct_textures.h"
 #include "maths/slice_line.h"
 #include "work/interleave_offset.h"
 #include "work/view_parameters.h"
@@ -116,7 +115,7 @@ bool is_between(const ReconstructInputs& inputs, const OcclusionSettings& settin
 // needed less the more slices each of them has. A static image averages ever more frames, which
 // make the samples of neighbours dispensable. Fitted to error and grain of `alcove compare --frames
 // 8`, 24 and 32, with and without --orbit.
-float near_sharpness(const Frame& frame, const ReconstructInputs& inputs, float texel) {
+float near_sharpness(const WorkFrame& frame, const ReconstructInputs& inputs, float texel) {
   const bool is_static = frame.view == frame.previous_view && !inputs.motion;
   if (!is_static) {
     const float one_slice = texel > 1.0f ? 1.0f : 1.3f;
@@ -162,22 +161,20 @@ maths::vec4 traced_range(maths::vec2 size_px, maths::vec2 offset, float tile_siz
 
 }  // namespace
 
-maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
-                                                    const maths::Projection& projection,
-                                                    const maths::Projection& previous,
-                                                    const ReconstructInputs& inputs,
-                                                    const OcclusionSettings& settings) {
+maths::ReconstructParameters reconstruct_parameters(
+    const WorkFrame& frame, const maths::Projection& projection, const maths::Projection& previous,
+    const ReconstructInputs& inputs, const OcclusionSettings& settings, VkFormat depth_format) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // This matrix is computed in double, because the translations nearly cancel if the camera is far
   // from the origin.
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
                                    maths::inverse(to_rigid(frame.view.view_from_world));
   const maths::mat4 to_view =
-      view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z);
+      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z);
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
       maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
-  const auto texel = static_cast<float>(texel_size(settings));
+  const float texel = settings.half_resolution ? 2.0f : 1.0f;
   // From pixels to texels, from the centre of the first one.
   const maths::vec4 x = previous_from_pixel[0] / texel - 0.5f * previous_from_pixel[3];
   const maths::vec4 y = previous_from_pixel[1] / texel - 0.5f * previous_from_pixel[3];
@@ -245,7 +242,6 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   const bool grows =
       maths::grows_with_inverse_depth(is_perspective(projection), is_reversed(projection));
   parameters.half_inverse_depth_per_ndc = grows ? 0.5f * per_ndc : -0.5f * per_ndc;
-  const VkFormat depth_format = frame.graph.format(inputs.depth_ndc);
   parameters.depth_step = std::max(depth_step(projection, depth_format).constant, 0.0f) / per_ndc;
   parameters.largest_bend = kLargestBend / (per_ndc * parameters.tolerance);
   parameters.power = settings.power;

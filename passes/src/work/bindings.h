@@ -1,10 +1,9 @@
-// Values that passes give to their shaders in addition to the parameters.
+// Values and images that passes give to their shaders.
 #pragma once
 
 #include <cstdint>
 
-#include "alcove/framegraph/graph.h"
-#include "alcove/passes/frame.h"
+#include "alcove/passes/work.h"
 #include "maths/normal_encoding.h"
 
 namespace alcove::passes {
@@ -18,17 +17,24 @@ namespace alcove::passes {
   return read ? channel : 0;
 }
 
+// Returns `texture`, or `instead` if it is null. Every binding needs an image of its type, even if
+// the shader does not use it.
+[[nodiscard]] constexpr framegraph::Texture or_else(framegraph::Texture texture,
+                                                    framegraph::Texture instead) {
+  return texture.index != framegraph::kNone ? texture : instead;
+}
+
+// Returns the texture that the caller gave for a result, or a new transient if it gave none.
+[[nodiscard]] inline framegraph::Texture given_or_added(WorkList& list, framegraph::Texture given,
+                                                        const char* name, VkFormat format,
+                                                        VkExtent2D size) {
+  return given ? given : list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, format, size);
+}
+
 // Returns the value of the specialisation constant kNormalEncoding for normals that may be null.
 [[nodiscard]] inline std::uint32_t encoding_of(framegraph::Texture normals,
                                                NormalEncoding encoding) {
   return normals ? static_cast<std::uint32_t>(encoding) : maths::kNoNormals;
-}
-
-// Returns the view of `texture`, or the view of `instead` if `texture` is null. Every binding needs
-// a view of its type, even if the shader does not use it.
-[[nodiscard]] inline VkImageView view_or(const framegraph::RecordContext& context,
-                                         framegraph::Texture texture, framegraph::Texture instead) {
-  return context.view(texture ? texture : instead);
 }
 
 }  // namespace alcove::passes
