@@ -27,31 +27,43 @@ ALCOVE_INLINE uint hash_of(uvec2 position) {
   return bits ^ (bits >> 16u);
 }
 
-// Lattices over the image whose steps from pixel to pixel are irrational. They are rotated from
-// frame to frame by the golden ratio (directions) and by an R2 number (offsets). Few adjacent
-// pixels cover directions and offsets evenly, and so do successive frames at one pixel. The
-// directions step by the two numbers of the R2 sequence [Roberts 2018], the offsets by the golden
-// ratio and the square root of 2.
+// Directions that are even over few adjacent pixels and over successive frames of a pixel.
 //
-// The error of a pixel depends on the direction of its slices. A lattice over the whole image would
-// show each harmonic of this dependence as waves of one length, which the spatial filter and few
-// frames do not remove. The directions of each block of 4x4 pixels are therefore shifted by a
-// random amount, which is constant over time. A block still covers all directions evenly.
+// If `moves` is false, directions and offsets are lattices over the image whose steps from pixel to
+// pixel are irrational: the two numbers of the R2 sequence [Roberts 2018] for directions, the
+// golden ratio and the square root of 2 for offsets. Frames rotate them by the golden ratio
+// (directions) and by an R2 number (offsets). The error of a pixel depends on the direction of its
+// slices, and a lattice over the whole image would show each harmonic of this dependence as waves
+// of one length. The directions of each block of 4x4 pixels are therefore shifted by a random
+// amount, which is constant over time.
 //
-// If `moves` is true, the traced pixel moves through the pixels of a tile and returns after four
-// frames. The rotation per frame is then a quarter of such a number, so that the frames in which a
-// pixel itself is traced cover directions and offsets evenly.
+// If `moves` is true, a pixel is that of a tile, the traced pixel moves through the pixels of the
+// tile, and the filter averages 2x2 tiles. The four tiles of any 2x2 then have one direction in
+// each quarter of the range, wherever the 2x2 begin. Within its quarter a tile has a random
+// direction, which is constant over time. When the camera moves, a surface is seen by other tiles
+// in each frame, and blocks whose borders it crosses would not give it even directions. The
+// rotation per frame is a quarter of the golden ratio, so that the frames in which a pixel itself
+// is traced, every fourth, cover directions evenly; modulo a quarter of the range it is a quarter
+// of the golden ratio's fraction, so that successive frames fill the quarters evenly whichever tile
+// sees the surface.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
   // Rotations per frame, of the directions and of the offsets, as fractions of
   // 2^32, so that they are exact for every frame. The fractions are those of 1.6180339887 and
   // 0.7548776662, or, if `moves` is true, a quarter of 1.6180339887 and of 2.5698402910.
   uint direction_rotation = moves ? 1737350766u : 2654435769u;
   uint offset_rotation = moves ? 2759345001u : 3242174889u;
-  uint random_shift = hash_of(uvec2(pixel.x >> 2u, pixel.y >> 2u));
-  // Steps to the right and downwards: 0.7548776662 and 0.5698402910 for directions, 0.6180339887
-  // and 0.4142135624 for offsets.
-  uint direction_bits =
-      random_shift + pixel.x * 3242174889u + pixel.y * 2447445414u + frame * direction_rotation;
+  uint direction_bits = frame * direction_rotation;
+  if (moves) {
+    // The quarters of 2x2 tiles: 0 and 2 above, 3 and 1 below.
+    uint below = pixel.y & 1u;
+    uint quarter = (((pixel.x ^ pixel.y) & 1u) << 1u) | below;
+    direction_bits += (quarter << 30u) + (hash_of(pixel) >> 2u);
+  } else {
+    // Steps to the right and downwards: 0.7548776662 and 0.5698402910.
+    direction_bits += hash_of(uvec2(pixel.x >> 2u, pixel.y >> 2u)) + pixel.x * 3242174889u +
+                      pixel.y * 2447445414u;
+  }
+  // Steps to the right and downwards: 0.6180339887 and 0.4142135624.
   uint offset_bits =
       (1u << 29u) + pixel.x * 2654435769u + pixel.y * 1779033704u + frame * offset_rotation;
   SliceNoise noise;

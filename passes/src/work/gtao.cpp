@@ -61,7 +61,7 @@ std::array<NamedConstant, 18> constants_of(const GtaoInputs& inputs,
            {"kSecondLayer", flag(reads.second_layer)},
            {"kExtrapolation", flag(advanced.extrapolation)},
            {"kUnobserved", flag(advanced.unobserved)},
-           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
            {"kReversed", flag(is_reversed(projection))},
            {"kInfiniteFar", flag(has_infinite_far(projection))}}};
 }
@@ -85,7 +85,8 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
                                                            ? inputs.depth_format
                                                            : list.format(inputs.depth_ndc));
   return {
-      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z),
+      view_from_normal(frame.view, inputs.normals_in_view_space || !inputs.normals,
+                       inputs.normals && inputs.normals_forward_z),
       maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                   projection.uv_to_slope.w),
       inverse_depth_from_ndc(projection),
@@ -109,13 +110,14 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
   const auto optional = [](bool read, Texture texture, Texture instead) {
     return read ? texture : instead;
   };
-  const Texture roughness = optional(reads.roughness, inputs.roughness, inputs.normals);
+  const Texture normals = or_else(inputs.normals, inputs.depth_ndc);
+  const Texture roughness = optional(reads.roughness, inputs.roughness, inputs.depth_ndc);
   const Texture back = optional(reads.back_faces, inputs.back_depth_ndc, inputs.depth_ndc);
   const Texture second = optional(reads.second_layer, inputs.second_depth_ndc, inputs.depth_ndc);
   auto good = validate(settings).and_then([&] {
     return check_inputs(list, "gtao",
                         {{"depth", inputs.depth_ndc},
-                         {"normals", inputs.normals},
+                         {"normals", normals},
                          {"roughness", roughness},
                          {"back-face depth", back},
                          {"second depth", second}});
@@ -139,7 +141,7 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
         list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, "bent-normal residual", kBentRawFormat, size);
   }
   const NamedTexture images[] = {{"depth_image", inputs.depth_ndc},
-                                 {"normal_image", inputs.normals},
+                                 {"normal_image", normals},
                                  {"raw_image", result.raw_occlusion},
                                  {"bent_image", or_else(result.bent, result.raw_occlusion)},
                                  {"back_image", back},
