@@ -92,43 +92,48 @@ void Replay::begin_frame(bool first) {
   order_.next();
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
+    resources_[r].used = false;
     for (Sub& sub : resources_[r].subs) {
       sub.content = kGarbage;
-      sub.spoiled = sub.released = false;
+      sub.spoiled = sub.released = sub.written = false;
       sub.family = sub.series = kNone;
       if (record.external == kNone) continue;
       const ExternalRecord& external = graph_.externals[record.external];
       const auto queue = static_cast<std::uint8_t>(external.queue);
       sub.last = {};
-      apply_initial_state(sub, queue, external.initial_state);
+      apply_initial_state(sub, queue, external.initial_state, record.origin == Origin::imported);
       sub.layout = external.initial_state.layout;
       if (!external.has_contents) continue;
       sub.content = kInitial;
-      sub.family = family(queue);
+      sub.family = owner(r, queue);
     }
   }
 }
 
 // Sets the state of a subresource that comes from outside the frame. Earlier writes are visible to
 // the read accesses of the initial state and to nothing else. An initial state without access bits
-// only names stages: later work must wait for all of them, and no write is visible yet.
-void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state) {
+// only names stages: later work must wait for all of them, and no write is visible yet. What the
+// reads of an import see is seen on every queue, because its writes came before the frame.
+void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state,
+                                 bool is_import) {
   using Kind = Operation::Kind;
   const Stages stages = expand_stages(initial_state.stages);
   const Accesses accesses = expand_accesses(initial_state.access);
   const Time time = order_.next();
   if (is_write(accesses)) {
     const Accesses writes = accesses & ~reads_of(accesses);
-    if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
+    if (stages != 0)
+      sub.last.writes.push_back({Kind::access, queue, false, time, stages, writes, 0});
     return;
   }
   // Creates one operation for each stage. Only stages that the frame or the plan names are tracked;
   // waiting for the others would make no difference.
   for (Stages left = accesses == 0 ? stages & order_.tracked_stages() : 0; left != 0;
        left &= left - 1)
-    sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
-  if (accesses != 0) sub.last.writes.push_back({Kind::change, queue, time, stages, 0, accesses});
-  if (stages != 0) sub.last.reads.push_back({Kind::access, queue, time, stages, 0, 0});
+    sub.last.writes.push_back({Kind::change, queue, false, time, left & (~left + 1), 0, 0});
+  if (accesses != 0)
+    sub.last.writes.push_back({Kind::change, queue, is_import, time, stages, 0, accesses});
+  if (stages != 0) sub.last.reads.push_back({Kind::access, queue, false, time, stages, 0, 0});
 }
 
 void Replay::submission(std::uint32_t index) {
@@ -230,16 +235,16 @@ void Replay::change(const Transition& t, QueueClass on) {
     sub.series = kNone;
     sub.fresh = false;
     if (releases) {
-      sub.last.writes.push_back({Kind::release, barrier.queue, time, ~Stages{0}, 0, 0});
+      sub.last.writes.push_back({Kind::release, barrier.queue, false, time, ~Stages{0}, 0, 0});
       sub.released = true;
       sub.released_to = dst;
       sub.released_layout = t.new_layout;
       return;
     }
     sub.last.writes.push_back(
-        {Kind::change, barrier.queue, time, barrier.dst, 0, barrier.dst_access});
+        {Kind::change, barrier.queue, false, time, barrier.dst, 0, barrier.dst_access});
     sub.released = false;
-    sub.family = family(barrier.queue);
+    sub.family = owner(t.resource, barrier.queue);
     if (graph_.resources[t.resource].kind != ResourceKind::texture) return;
     if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED) sub.content = kGarbage;
     sub.layout = t.new_layout;
