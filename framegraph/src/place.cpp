@@ -116,7 +116,8 @@ class Placer {
     if (best_ > bound) try_falling([&](const PlaceItem& item) { return item.size * span(item); });
     if (best_ > bound) try_falling(span);
     if (best_ > bound) try_from_peak();
-    const std::size_t rounds = std::clamp<std::size_t>(400 / s_.items.size(), 4, 32);
+    const std::size_t rounds =
+        std::clamp<std::size_t>(40'000 / (s_.items.size() * s_.items.size()), 4, 64);
     for (std::size_t round = 0; round < rounds && best_ > bound; ++round) {
       // The resource whose bytes end at the peak was placed too late.
       const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
