@@ -111,7 +111,7 @@ class QueueAssigner {
             (access.flags & kWrite) != 0 ||
             (access.kind() == ResourceKind::texture && uses.layout != access.layout) ||
             (!shares && uses.owner != queue);
-        if (uses.changed == kNobody) s_.opened[position] |= opening_of(access, queue, changes);
+        if (uses.changed == kNobody) s_.opened[position] |= opening_of(access, queue);
         for (std::size_t other = 0; other < kQueueClasses; ++other) {
           if (other == own) continue;
           std::uint32_t user = uses.last[other];
@@ -174,23 +174,17 @@ class QueueAssigner {
 
   // Returns the bit of the queue that used the resource before the frame, if the access must wait
   // for that use, and 0 otherwise.
-  std::uint8_t opening_of(const AccessRecord& access, QueueClass queue, bool changes) const {
+  std::uint8_t opening_of(const AccessRecord& access, QueueClass queue) const {
     const ResourceRecord& resource = graph_.resources[access.resource];
     if (resource.external == kNone) return 0;
     const ExternalRecord& external = graph_.externals[resource.external];
-    const State& initial = external.initial_state;
     const QueueClass owner = initial_queue(external);
     if (owner == queue) return 0;
     const bool transfers = external.has_contents && !(access.flags & kDiscard) &&
                            family(owner) != family(queue) && !external.concurrent;
-    // Earlier writes to an import are visible to the read accesses of its initial state.
-    const bool visible = resource.origin == Origin::imported &&
-                         (initial.access & kWriteBits) == 0 &&
-                         ((initial.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0 ||
-                          (access.stages & ~initial.stages) == 0) &&
-                         ((initial.access & VK_ACCESS_2_MEMORY_READ_BIT) != 0 ||
-                          (access.access & ~initial.access) == 0);
-    if (!transfers && (initial.stages == 0 || (visible && !changes))) return 0;
+    // An initial state with stages means that earlier work on its queue must be done. Even if its
+    // writes are visible to reads, they are so on that queue only.
+    if (!transfers && external.initial_state.stages == 0) return 0;
     return static_cast<std::uint8_t>(1u << static_cast<unsigned>(owner));
   }
 

@@ -236,8 +236,8 @@ TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands)
   expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
 }
 
-// The earlier write is available by the barrier before the read. It must become visible to the write,
-// because the reads may have been of another part.
+// The earlier write is available by the barrier before the read. It must become visible to the
+// write, because the reads may have been of another part.
 TEST(Barriers, WriteAfterReadsNeedsNothingMadeAvailable) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});

@@ -1,7 +1,7 @@
 // Tests random frames on the device. Their passes mix what they read into what they write; some
 // passes write two textures and update one of them. The contents must be those that a simple model
-// of the frame computes on the CPU, both if transients share memory and if they do not. A history and
-// a persistent texture must be valid, and hold their contents, exactly if the model says so.
+// of the frame computes on the CPU, both if transients share memory and if they do not. A history
+// and a persistent texture must be valid, and hold their contents, exactly if the model says so.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -387,8 +387,8 @@ tl::expected<Executor, Errors> make_executor(const Gpu& gpu, const Way& way) {
   options.verify = verify;
   options.check_uses = true;
   DeviceHandles handles = gpu.handles();
-  // One queue is used for all queue classes. Submissions and semaphores are the same as with several
-  // queues.
+  // One queue is used for all queue classes. Submissions and semaphores are the same as with
+  // several queues.
   if (way.path >= Path::submit_to_two) handles.queues[1] = handles.queues[0];
   if (way.path == Path::submit_to_three) handles.queues[2] = handles.queues[0];
   return Executor::create(handles, options);

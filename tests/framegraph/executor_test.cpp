@@ -53,7 +53,8 @@ TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
     graph.reset();
     const TextureHistory history =
         graph.create_texture_history("history", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
-    const Texture other = graph.create_texture("other", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
+    const Texture other =
+        graph.create_texture("other", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
     PassBuilder clear = graph.add_pass("clear");
     const Texture cleared = clear.write(history.current, access::clear);
     clear.record([=](RecordContext& c) {
@@ -84,8 +85,7 @@ TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
 TEST_F(ExecutorTest, CulledWriteOfAMipIsNotUsedThoughThePassReadsAnotherMip) {
   Executor executor = make({.check_uses = true});
   Graph graph;
-  Texture texture =
-      graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4), 2});
+  Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4), 2});
   PassBuilder clear = graph.add_pass("clear");
   texture = clear.write(texture, access::clear, Range::mip(0));
   clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 1); });
@@ -105,8 +105,8 @@ TEST_F(ExecutorTest, CulledWriteOfAMipIsNotUsedThoughThePassReadsAnotherMip) {
   EXPECT_EQ(calls, 1);
 }
 
-// A fill of a whole buffer, a copy from its first half, and a copy to its second half, which nothing
-// has read since the fill.
+// A fill of a whole buffer, a copy from its first half, and a copy to its second half, which
+// nothing has read since the fill.
 TEST_F(ExecutorTest, WriteOfAPartOfABufferFollowsTheFillOfTheWholeAndTheReadOfAnotherPart) {
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(64);
@@ -115,9 +115,8 @@ TEST_F(ExecutorTest, WriteOfAPartOfABufferFollowsTheFillOfTheWholeAndTheReadOfAn
   Buffer data = graph.create_buffer("data", {64});
   PassBuilder fill = graph.add_pass("fill");
   data = fill.write(data, buffer_access::fill, Contents::discard);
-  fill.record([=](RecordContext& c) {
-    vkCmdFillBuffer(c.commands, c.buffer(data), 0, VK_WHOLE_SIZE, 5);
-  });
+  fill.record(
+      [=](RecordContext& c) { vkCmdFillBuffer(c.commands, c.buffer(data), 0, VK_WHOLE_SIZE, 5); });
   const auto copy = [&](Buffer from, Buffer& to, VkBufferCopy region) {
     PassBuilder pass = graph.add_pass("copy");
     pass.read(from, buffer_access::transfer_source);
@@ -156,8 +155,8 @@ TEST_F(ExecutorTest, ImportsThatAreNewInEveryFrameCostNoFullBarrierAndKeepTheRes
     graph.reset();
     Buffer buffer = graph.import_buffer("buffer", Gpu::imported(gpu_.make_host_buffer(4)));
     Texture texture = graph.import_texture(
-        "texture", {.image = gpu_.make_image(desc, VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                                                       VK_IMAGE_USAGE_STORAGE_BIT),
+        "texture", {.image = gpu_.make_image(
+                        desc, VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_STORAGE_BIT),
                     .desc = desc,
                     .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_STORAGE_BIT});
     PassBuilder pass = graph.add_pass("fill");
@@ -183,8 +182,7 @@ TEST_F(ExecutorTest, MemoryThatSmallerFramesDoNotNeedIsFreed) {
   Graph graph;
   const auto allocated = [&](std::uint32_t side) {
     graph.reset();
-    Texture texture =
-        graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(side, side)});
+    Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(side, side)});
     PassBuilder pass = graph.add_pass("clear");
     texture = pass.write(texture, access::clear);
     pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), side); });

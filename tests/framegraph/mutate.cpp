@@ -134,7 +134,8 @@ class Mutator {
     visit_("shift an offset out of the heap", mutant);
   }
 
-  // Makes mutants that say something else about what the frame has written to a history, or nothing.
+  // Makes mutants that say something else about what the frame has written to a history, or
+  // nothing.
   void misstate_history(std::uint32_t index) {
     for (const Written written : {Written::nothing, Written::part, Written::whole}) {
       if (plan_.finals[index].written == written) continue;

@@ -205,33 +205,31 @@ TEST_F(Queues, HistoryWrittenOnOneQueueAndReadOnAnotherIsValidInTheNextFrame) {
 //   static --> occlusion (compute) --> lighting (graphics)
 //      +------------- depth (graphics) ----^
 TEST_F(Queues, ReadingAnImportThatNoQueueWritesNeedsNoSubmissionsWithoutPasses) {
-  for (const State& state :
-       {State{0, 0, VK_IMAGE_LAYOUT_GENERAL}, State{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
-                                                    VK_IMAGE_LAYOUT_GENERAL}}) {
-    for (const bool has_final_state : {false, true}) {
-      graph_.reset();
-      limits_.queue_families[1] = 0;
-      const Texture fixed =
-          graph_.import_texture("static", {.image = fake_handle<VkImage>(),
-                                           .desc = kDesc,
-                                           .usage = VK_IMAGE_USAGE_STORAGE_BIT,
-                                           .initial_state = state,
-                                           .final_state = has_final_state ? state : State{}});
-      PassBuilder depth = graph_.add_pass("depth");
-      depth.read(fixed, access::storage_read_fragment);
-      const Texture drawn = depth.write(make("depth"), access::color_attachment);
-      PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
-      occlusion.read(fixed, access::storage_read_compute);
-      const Texture occluded = occlusion.write(make("occlusion"), access::storage_write_compute);
-      PassBuilder lighting = graph_.add_pass("lighting");
-      lighting.read(drawn, access::sampled_fragment);
-      lighting.read(occluded, access::sampled_fragment);
-      lighting.side_effect();
-      const Plan plan = compiled();
-      EXPECT_EQ(plan.submissions.size(), 3u);
-      EXPECT_EQ(plan.waits.size(), 1u) << "only the lighting has to wait";
-    }
+  const State state{0, 0, VK_IMAGE_LAYOUT_GENERAL};
+  const State final_state{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+                          VK_IMAGE_LAYOUT_GENERAL};
+  for (const bool has_final_state : {false, true}) {
+    graph_.reset();
+    limits_.queue_families[1] = 0;
+    const Texture fixed =
+        graph_.import_texture("static", {.image = fake_handle<VkImage>(),
+                                         .desc = kDesc,
+                                         .usage = VK_IMAGE_USAGE_STORAGE_BIT,
+                                         .initial_state = state,
+                                         .final_state = has_final_state ? final_state : State{}});
+    PassBuilder depth = graph_.add_pass("depth");
+    depth.read(fixed, access::storage_read_fragment);
+    const Texture drawn = depth.write(make("depth"), access::color_attachment);
+    PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
+    occlusion.read(fixed, access::storage_read_compute);
+    const Texture occluded = occlusion.write(make("occlusion"), access::storage_write_compute);
+    PassBuilder lighting = graph_.add_pass("lighting");
+    lighting.read(drawn, access::sampled_fragment);
+    lighting.read(occluded, access::sampled_fragment);
+    lighting.side_effect();
+    const Plan plan = compiled();
+    EXPECT_EQ(plan.submissions.size(), 3u);
+    EXPECT_EQ(plan.waits.size(), 1u) << "only the lighting has to wait";
   }
 }
 
@@ -240,8 +238,8 @@ TEST_F(Queues, QueuesThatOnlyReadATextureDoNotWaitForEachOther) {
   limits_.queue_families[1] = 0;
   PassBuilder writer = graph_.add_pass("writer");
   const Texture shared = writer.write(make("shared"), access::storage_write_compute);
-  for (const QueueClass queue : {QueueClass::graphics, QueueClass::compute, QueueClass::graphics,
-                                 QueueClass::compute}) {
+  for (const QueueClass queue :
+       {QueueClass::graphics, QueueClass::compute, QueueClass::graphics, QueueClass::compute}) {
     PassBuilder reader = graph_.add_pass("reader", queue);
     reader.read(shared, access::storage_read_compute);
     reader.side_effect();

@@ -102,7 +102,7 @@ void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
   const AccessRecord& access = graph_.accesses[access_index];
   const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
   const Accesses accesses = expand_accesses(access.access);
-  Operation operation{Operation::Kind::access,      queue, false, order_.now(),
+  Operation operation{Operation::Kind::access,      queue, order_.now(),
                       expand_stages(access.stages), 0,     0};
   resources_[access.resource].used = true;
   if (access.flags & kWrite) operation.writes = accesses & ~reads_of(accesses);
@@ -168,8 +168,8 @@ void Replay::check_final_state(std::uint32_t resource) {
     if (expected != kGarbage && (sub.content != expected || sub.spoiled))
       fail(name(resource) + " does not leave with what was written for it");
     for (const Operation& read : sub.last.reads) {
-      // Work after the frame waits only for the stages of the final state. Reads in other stages must
-      // therefore be ordered before them.
+      // Work after the frame waits only for the stages of the final state. Reads in other stages
+      // must therefore be ordered before them.
       Operation rest = read;
       if (!is_write(final_state.access) && read.queue == queue)
         rest.stages &= ~expand_stages(final_state.stages);

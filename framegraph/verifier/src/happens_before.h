@@ -38,7 +38,6 @@ struct Operation {
   };
   Kind kind = Kind::access;
   std::uint8_t queue = 0;
-  bool on_all_queues = false;  // of a change: it happens before the commands of every queue
   Time time = 0;
   Stages stages = 0;     // expanded by expand_stages()
   Accesses writes = 0;   // of an access: its bits that write
@@ -135,8 +134,8 @@ class HappensBefore {
   // Returns whether `stage` is in the second scope of the barrier that made the layout change. The
   // layout change happens before the commands of those stages.
   static bool is_own(const Operation& operation, std::uint8_t queue, Stages stage) {
-    return operation.kind == Operation::Kind::change &&
-           (operation.queue == queue || operation.on_all_queues) && (operation.stages & stage) != 0;
+    return operation.kind == Operation::Kind::change && operation.queue == queue &&
+           (operation.stages & stage) != 0;
   }
 
   std::vector<Stages> stages_;      // one bit each

@@ -101,7 +101,7 @@ void Replay::begin_frame(bool first) {
       const ExternalRecord& external = graph_.externals[record.external];
       const auto queue = static_cast<std::uint8_t>(external.queue);
       sub.last = {};
-      apply_initial_state(sub, queue, external.initial_state, record.origin == Origin::imported);
+      apply_initial_state(sub, queue, external.initial_state);
       sub.layout = external.initial_state.layout;
       if (!external.has_contents) continue;
       sub.content = kInitial;
@@ -112,28 +112,24 @@ void Replay::begin_frame(bool first) {
 
 // Sets the state of a subresource that comes from outside the frame. Earlier writes are visible to
 // the read accesses of the initial state and to nothing else. An initial state without access bits
-// only names stages: later work must wait for all of them, and no write is visible yet. What the
-// reads of an import see is seen on every queue, because its writes came before the frame.
-void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state,
-                                 bool is_import) {
+// only names stages: later work must wait for all of them, and no write is visible yet.
+void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state) {
   using Kind = Operation::Kind;
   const Stages stages = expand_stages(initial_state.stages);
   const Accesses accesses = expand_accesses(initial_state.access);
   const Time time = order_.next();
   if (is_write(accesses)) {
     const Accesses writes = accesses & ~reads_of(accesses);
-    if (stages != 0)
-      sub.last.writes.push_back({Kind::access, queue, false, time, stages, writes, 0});
+    if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
     return;
   }
   // Creates one operation for each stage. Only stages that the frame or the plan names are tracked;
   // waiting for the others would make no difference.
   for (Stages left = accesses == 0 ? stages & order_.tracked_stages() : 0; left != 0;
        left &= left - 1)
-    sub.last.writes.push_back({Kind::change, queue, false, time, left & (~left + 1), 0, 0});
-  if (accesses != 0)
-    sub.last.writes.push_back({Kind::change, queue, is_import, time, stages, 0, accesses});
-  if (stages != 0) sub.last.reads.push_back({Kind::access, queue, false, time, stages, 0, 0});
+    sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
+  if (accesses != 0) sub.last.writes.push_back({Kind::change, queue, time, stages, 0, accesses});
+  if (stages != 0) sub.last.reads.push_back({Kind::access, queue, time, stages, 0, 0});
 }
 
 void Replay::submission(std::uint32_t index) {
@@ -235,14 +231,14 @@ void Replay::change(const Transition& t, QueueClass on) {
     sub.series = kNone;
     sub.fresh = false;
     if (releases) {
-      sub.last.writes.push_back({Kind::release, barrier.queue, false, time, ~Stages{0}, 0, 0});
+      sub.last.writes.push_back({Kind::release, barrier.queue, time, ~Stages{0}, 0, 0});
       sub.released = true;
       sub.released_to = dst;
       sub.released_layout = t.new_layout;
       return;
     }
     sub.last.writes.push_back(
-        {Kind::change, barrier.queue, false, time, barrier.dst, 0, barrier.dst_access});
+        {Kind::change, barrier.queue, time, barrier.dst, 0, barrier.dst_access});
     sub.released = false;
     sub.family = owner(t.resource, barrier.queue);
     if (graph_.resources[t.resource].kind != ResourceKind::texture) return;

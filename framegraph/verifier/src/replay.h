@@ -77,8 +77,7 @@ class Replay {
   }
   void find_expected();
   void begin_frame(bool first);
-  void apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state,
-                           bool is_import);
+  void apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state);
   void submission(std::uint32_t index);
   void batches(std::uint32_t first, std::uint32_t count, QueueClass queue);
   void change(const Transition& transition, QueueClass queue);

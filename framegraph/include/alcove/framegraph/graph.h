@@ -65,8 +65,8 @@ class PassBuilder {
   // Sets the callback that records the pass's commands. It is called with a RecordContext& once in
   // each frame in which the pass is not culled. The callable is moved into the graph's own memory
   // and lives until reset(). It must not throw if the library is built without exceptions.
-  // Otherwise an exception propagates out of Executor::record or submit after all recording threads
-  // have finished, and the frame counts as failed.
+  // Otherwise an exception propagates out of Executor::record or submit, and the frame counts as
+  // failed.
   template <typename Callable>
   void record(Callable&& callable);
 

@@ -105,7 +105,9 @@ struct Range {
 // and accesses outside the graph and, for a texture, the layout. An initial_state with
 // VK_IMAGE_LAYOUT_UNDEFINED (for a buffer: without accesses) means that the resource has no
 // contents. Earlier writes are assumed to be visible to the read accesses of an initial_state
-// already; the graph makes them visible to other stages and accesses.
+// already; the graph makes them visible to other stages and accesses. A pass on another queue than
+// graphics waits for the graphics queue's earlier work if an initial_state has stages. Leave it
+// without stages if no wait is needed, for example for a texture that never changes.
 struct State {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
