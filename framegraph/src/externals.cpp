@@ -69,15 +69,19 @@ void Synchroniser::apply_final_states() {
     const ExternalRecord& external = graph_.externals[resource.external];
     const bool used = plan_.placements[r].first != kNone;
     set_queue(QueueClass::graphics);
-    const UseState& state = states_[workspace_.first_sub[r]];
+    const auto begin = states_ + workspace_.first_sub[r];
+    const auto end_of_subs = states_ + workspace_.first_sub[r + 1];
     if (external.has_final_state) {
       end_reads(r, external.final_state);
       use(end, use_outside_frame(r, external.final_state));
-    } else if (resource.origin == Origin::imported && used && state.used && several() &&
-               !queues_share(graph_, workspace_, r)) {
+    } else if (resource.origin == Origin::imported && several() &&
+               !queues_share(graph_, workspace_, r) &&
+               std::any_of(begin, end_of_subs, [this](const UseState& state) {
+                 return state.used && family(state.owner) != family(queue_);
+               })) {
       // The next frame expects the import to belong to the graphics queue.
       use(end, use_outside_frame(r, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                     VK_ACCESS_2_MEMORY_READ_BIT, state.layout}));
+                                     VK_ACCESS_2_MEMORY_READ_BIT, begin->layout}));
     }
     if (used && resource.origin == Origin::history) leave_history_slot(r);
   }
