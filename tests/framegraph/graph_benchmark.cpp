@@ -17,7 +17,8 @@
 // Finally, it prints how long verify() takes for the plans of `random`.
 //
 // With --against PROGRAM, it runs this program of another build in turn with its own, three times
-// each, and prints the ratios of own to other times for the rows that both print.
+// each, and prints the ratios of own to other times for the rows that both print. With --rows, it
+// prints only these rows.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -207,7 +208,7 @@ using Row = std::array<double, 4>;
 // Runs a program and adds the rows of its first table to `lowest`, with the lowest time of all
 // runs.
 bool run(const std::string& program, std::map<std::string, Row>& lowest) {
-  std::FILE* const output = popen(("'" + program + "'").c_str(), "r");
+  std::FILE* const output = popen(program.c_str(), "r");
   if (output == nullptr) return false;
   char line[256];
   while (std::fgets(line, sizeof line, output) != nullptr) {
@@ -230,7 +231,7 @@ int compare(const std::string& own, const std::string& other) {
   std::map<std::string, Row> own_rows;
   std::map<std::string, Row> other_rows;
   for (int round = 0; round < 3; ++round) {
-    if (!run(other, other_rows) || !run(own, own_rows)) {
+    if (!run("'" + other + "'", other_rows) || !run("'" + own + "' --rows", own_rows)) {
       std::fprintf(stderr, "%s did not run: give the framegraph_benchmark of another build\n",
                    other.c_str());
       return 1;
@@ -262,6 +263,7 @@ int main(int count, char** arguments) {
   for (const Shape shape : {Shape::chain, Shape::random, Shape::sizes}) {
     for (const std::uint32_t passes : {10u, 100u, 1000u, 5000u}) measure(shape, passes);
   }
+  if (count == 2 && std::strcmp(arguments[1], "--rows") == 0) return 0;
   std::printf("\nmilliseconds of processor time of a changed frame, peak over lower bound\n");
   std::printf("frame     passes   median highest   median highest\n");
   for (const bool all_sizes : {true, false}) {
