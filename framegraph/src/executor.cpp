@@ -281,7 +281,8 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   if (auto done = find_physical(graph, *cached); !done)
     return tl::unexpected(std::move(done.error()));
   cached->last_frame = frame;
-  recorder->begin({&graph, &cached->plan, &cached->physical, options.check_uses, info.slot});
+  recorder->begin({&graph, &cached->plan, &cached->physical, options.check_uses,
+                   starts_anew(*cached), info.slot});
   report.plan = &cached->plan;
   for (const Heap& heap : cached->plan.heaps) {
     report.memory.aliased += heap.size;

@@ -23,6 +23,11 @@ void Recorder::begin(const RecordedFrame& frame) {
   graph_ = frame.graph;
   plan_ = frame.plan;
   errors_.clear();
+  shares_with_buffers_ = false;
+  for (std::uint32_t r = 0; r < plan_->placements.size(); ++r) {
+    shares_with_buffers_ |= plan_->placements[r].heap != kNone &&
+                            graph_->description().resources[r].kind == ResourceKind::buffer;
+  }
   has_outside_families_ = false;
   for (const ImportHandles& import : graph_->imports_)
     has_outside_families_ |= import.initial_family != kNone || import.final_family != kNone;
@@ -106,8 +111,8 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
       // report a hazard between two other resources that this image barrier orders. A memory
       // barrier over the same stages avoids the false report. It makes nothing available or visible
       // that the image barrier does not.
-      if (device_.handles.debug_utils)
-        add_memory(t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED ? memory : execution(t));
+      const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_;
+      add_memory(takes_over ? memory : execution(t));
     } else if (t.resource != kNone) {
       buffers_.push_back(buffer_barrier(t));
     } else {
@@ -142,11 +147,12 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = t.src_stages;
   barrier.srcAccessMask = t.src_access;
-  // The validation layers (1.3.239) forget the last use of memory by other resources, and uses
-  // before full_barrier(), unless the barrier names an access. There is nothing left to make
-  // available, so that naming it changes nothing.
-  if (device_.handles.debug_utils && t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
-    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  // The validation layers (1.3.239) forget the last use of memory by a buffer, and uses before
+  // full_barrier(), unless the barrier names an access. There is nothing left to make available.
+  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
+    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
+  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && frame_.starts_anew)
+    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstStageMask = t.dst_stages;
   barrier.dstAccessMask = t.dst_access;
   barrier.oldLayout = t.old_layout;

@@ -18,6 +18,7 @@ struct RecordedFrame {
   const Plan* plan = nullptr;
   const std::vector<Physical*>* physical = nullptr;
   bool check_uses = false;
+  bool starts_anew = false;  // it follows a frame of another plan: it begins with full_barrier()
   std::uint32_t slot = 0;
 };
 
@@ -74,6 +75,7 @@ class Recorder {
   RecordedFrame frame_;
   const Graph* graph_ = nullptr;
   const Plan* plan_ = nullptr;
+  bool shares_with_buffers_ = false;   // the plan has transient buffers
   bool has_outside_families_ = false;  // an import is transferred from or to another queue family
   std::vector<VkImageMemoryBarrier2> images_;
   std::vector<VkBufferMemoryBarrier2> buffers_;
