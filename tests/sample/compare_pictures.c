@@ -1,5 +1,5 @@
-/* Compares two grey pictures of one size: compare_pictures A.pgm B.pgm LARGEST. Ends with 1 if a pixel
- * differs by more than LARGEST, and prints how many differ, and by how much. */
+/* Compares two grey pictures of one size: compare_pictures A.pgm B.pgm LARGEST. Ends with 1 if a
+ * pixel differs by more than LARGEST, and prints how many differ, and by how much. */
 #include <stdio.h>
 #include <stdlib.h>
 
