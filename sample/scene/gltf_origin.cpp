@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -12,47 +11,25 @@
 namespace alcove::sample {
 namespace {
 
-// The bounding sphere of the box of a primitive, in mesh space.
-struct Extent {
-  glm::dvec3 centre{0.0};
-  double radius = 0.0;
-};
-
-// Reads the bounding spheres of primitives. Each accessor is read only once.
-class ExtentReader {
- public:
-  ExtentReader(const tinygltf::Model& model, uint64_t most_vertices)
-      : model_(model), vertices_left_(most_vertices) {}
-
-  // Returns null if the positions cannot be read. add_primitive() reports that error later.
-  std::optional<Extent> extent_of(const tinygltf::Primitive& primitive) {
-    const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end()) return std::nullopt;
-    const auto [known, is_new] = extents_.try_emplace(position->second);
-    if (is_new) known->second = read(position->second);
-    return known->second;
+// Returns up to eight vertices of a primitive in mesh space, evenly spaced in the file. Vertices
+// that cannot be read are left out; add_primitive() reports the error later.
+std::vector<glm::dvec3> some_vertices(const tinygltf::Model& model,
+                                      const tinygltf::Primitive& primitive) {
+  constexpr uint64_t kMost = 8;
+  const int accessor = attribute(primitive.attributes, "POSITION");
+  if (accessor < 0 || static_cast<size_t>(accessor) >= model.accessors.size()) return {};
+  const uint64_t count = model.accessors[static_cast<size_t>(accessor)].count;
+  std::vector<uint32_t> chosen;
+  for (uint64_t i = 0; i < std::min(count, kMost); ++i) {
+    chosen.push_back(static_cast<uint32_t>(count <= kMost ? i : i * ((count - 1) / (kMost - 1))));
   }
-
- private:
-  std::optional<Extent> read(int accessor) {
-    const auto values = read_floats(model_, accessor, 3, vertices_left_);
-    if (!values || values->empty()) return std::nullopt;
-    vertices_left_ -= values->size() / 3;
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (size_t i = 0; i + 2 < values->size(); i += 3) {
-      const glm::dvec3 at((*values)[i], (*values)[i + 1], (*values)[i + 2]);
-      low = glm::min(low, at);
-      high = glm::max(high, at);
-    }
-    const Extent out{0.5 * (low + high), 0.5 * glm::length(high - low)};
-    if (!std::isfinite(out.radius) || !std::isfinite(glm::length(out.centre))) return std::nullopt;
-    return out;
+  const auto values = read_floats(model, accessor, 3, 0, &chosen);
+  std::vector<glm::dvec3> out;
+  for (size_t i = 0; values && i + 2 < values->size(); i += 3) {
+    out.emplace_back((*values)[i], (*values)[i + 1], (*values)[i + 2]);
   }
-
-  const tinygltf::Model& model_;
-  uint64_t vertices_left_;
-  std::map<int, std::optional<Extent>> extents_;  // by accessor
-};
+  return out;
+}
 
 // Returns the transform from the mesh of a drawn node to the space of the file. For several
 // instances it is that of the middle one, for a skin that of its first joint. Returns null if the
@@ -71,26 +48,24 @@ std::optional<glm::dmat4> placement_of(const tinygltf::Model& model, const Layou
   return world * drawn.instances.at(drawn.instances.size() / 2);
 }
 
-// Returns the bounding spheres of the primitives of all drawn nodes in the space of the file, at
-// most a million.
-std::vector<Extent> placed_extents(const tinygltf::Model& model, const Layout& layout,
-                                   uint64_t most_vertices) {
+// Returns some vertices of the primitives of all drawn nodes in the space of the file.
+std::vector<glm::dvec3> placed_vertices(const tinygltf::Model& model, const Layout& layout) {
   constexpr size_t kMost = 1'000'000;
-  ExtentReader reader(model, most_vertices);
-  std::vector<Extent> out;
+  std::map<const tinygltf::Primitive*, std::vector<glm::dvec3>> known;
+  std::vector<glm::dvec3> out;
   for (const DrawnNode& drawn : layout.drawn) {
     const int mesh = model.nodes[drawn.node].mesh;
     if (mesh < 0 || static_cast<size_t>(mesh) >= model.meshes.size()) continue;
     const auto placed = placement_of(model, layout, drawn);
     if (!placed) continue;
-    const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(*placed))));
     for (const auto& primitive : model.meshes[static_cast<size_t>(mesh)].primitives) {
-      if (out.size() == kMost) return out;
-      const auto extent = reader.extent_of(primitive);
-      if (!extent) continue;
-      const glm::dvec3 centre(*placed * glm::dvec4(extent->centre, 1.0));
-      if (!std::isfinite(glm::length(centre)) || !std::isfinite(scale)) continue;
-      out.push_back({centre, extent->radius * scale});
+      if (out.size() >= kMost) return out;
+      const auto [vertices, is_new] = known.try_emplace(&primitive);
+      if (is_new) vertices->second = some_vertices(model, primitive);
+      for (const glm::dvec3& vertex : vertices->second) {
+        const glm::dvec3 at(*placed * glm::dvec4(vertex, 1.0));
+        if (std::isfinite(glm::length(at))) out.push_back(at);
+      }
     }
   }
   return out;
@@ -107,25 +82,22 @@ double quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout,
-                         uint64_t most_vertices) {
+glm::dvec3 chosen_origin(const tinygltf::Model& model, const Layout& layout) {
   constexpr double kFarthest = 256.0;  // in sizes of the scene
   constexpr double kMostShift = 1e15;  // as positions
-  const std::vector<Extent> extents = placed_extents(model, layout, most_vertices);
-  if (extents.empty()) return glm::dvec3(0.0);
+  const std::vector<glm::dvec3> vertices = placed_vertices(model, layout);
+  if (vertices.empty()) return glm::dvec3(0.0);
+  const auto values = [&](const auto& value) {
+    std::vector<double> out(vertices.size());
+    std::ranges::transform(vertices, out.begin(), value);
+    return out;
+  };
   glm::dvec3 centre(0.0);
   for (int c = 0; c < 3; ++c) {
-    std::vector<double> values;
-    values.reserve(extents.size());
-    for (const Extent& extent : extents) values.push_back(extent.centre[c]);
-    centre[c] = quantile(std::move(values), 0.5);
+    centre[c] = quantile(values([c](const glm::dvec3& at) { return at[c]; }), 0.5);
   }
-  std::vector<double> distances;
-  distances.reserve(extents.size());
-  for (const Extent& extent : extents) {
-    distances.push_back(glm::distance(extent.centre, centre) + extent.radius);
-  }
-  const double size = quantile(std::move(distances), 0.75);
+  const double size =
+      quantile(values([&](const glm::dvec3& at) { return glm::distance(at, centre); }), 0.75);
   const double away = glm::length(centre);
   if (!(away > kFarthest * size) || !(size > 0.0) || away > kMostShift) return glm::dvec3(0.0);
   // Whole units are used if they are precise enough, so that printed positions have few digits.
