@@ -1,6 +1,6 @@
 // Facts about the occlusion passes that a compiler cannot know: how often each loop of a shader
 // runs, and how much of an image a pass actually reads or writes. The GPU cost model
-// (sample/gpu_cost) multiplies the instructions of each loop by these counts.
+// (sample/lab/gpu_cost) multiplies the instructions of each loop by these counts.
 //
 // A commit that changes a loop of a shader, or the texels that a pass uses, must also change
 // gtao.cpp or reconstruct.cpp in this folder. A loop without a count is an error that names the

@@ -20,25 +20,26 @@ tl::expected<void, std::string> run(const Options& options) {
   switch (options.command) {
     case Command::kRender:
       return alcove::sample::run_render(options);
+    case Command::kView:
+      return alcove::sample::run_view(options);
     case Command::kCompare:
       return alcove::sample::run_compare(options);
+    case Command::kRecommend:
+      return alcove::sample::run_recommend(options);
+    case Command::kGraph:
+      return alcove::sample::run_graph(options);
+    case Command::kDoctor:
+      return alcove::sample::run_doctor(options);
     case Command::kMotion:
       return alcove::sample::run_motion(options);
     case Command::kAblate:
       return alcove::sample::run_ablate(options);
     case Command::kBench:
       return alcove::sample::run_bench(options);
-    case Command::kRecommend:
-      return alcove::sample::run_recommend(options);
     case Command::kCost:
       return alcove::sample::run_cost(options);
-    case Command::kGraph:
-      return alcove::sample::run_graph(options);
-    case Command::kView:
-      return alcove::sample::run_view(options);
-    default:
-      return alcove::sample::run_doctor(options);
   }
+  return {};  // not reached: a missing command does not compile
 }
 
 // Prints an error sentence. It is shortened, and bytes that are not printable are replaced, because

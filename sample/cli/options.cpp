@@ -126,36 +126,40 @@ void add_doctor_command(CLI::App& app, Options& options) {
   add_device(app, options);
 }
 
+constexpr const char* kUse = "Commands";
+constexpr const char* kLaboratory = "Laboratory, for measurements";
+
 struct Entry {
   Command command;
+  const char* group;
   const char* name;
   const char* help;
   void (*add_options)(CLI::App& app, Options& options);
 };
 constexpr std::array<Entry, 10> kCommands{{
-    {Command::kRender, "render", "render a scene to occlusion images and print timings",
+    {Command::kRender, kUse, "render", "render a scene to occlusion images and print timings",
      add_render},
-    {Command::kCompare, "compare",
+    {Command::kView, kUse, "view",
+     "open a window to orbit a scene, change settings and see their cost", add_window},
+    {Command::kCompare, kUse, "compare",
      "render a scene and print the errors against ray-traced and height-field truth", add_compare},
-    {Command::kMotion, "motion", "measure errors and flicker while the camera or an object moves",
-     add_motion_command},
-    {Command::kAblate, "ablate",
-     "change one part of the occlusion at a time and print its cost and error", add_ablate},
-    {Command::kBench, "bench",
-     "measure time and error of many settings, and write a table, a plot and JSON", add_bench},
-    {Command::kRecommend, "recommend",
+    {Command::kRecommend, kUse, "recommend",
      "find the most accurate setting within a time, or the fastest within an error", add_recommend},
-    {Command::kCost, "cost",
-     "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
-     add_cost_command},
-    {Command::kGraph, "graph", "print the compiled plan of a frame: passes, barriers, memory",
+    {Command::kGraph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory",
      add_graph},
-    {Command::kView, "view", "open a window to orbit a scene, change settings and see their cost",
-     add_window},
-    {Command::kDoctor, "doctor",
+    {Command::kDoctor, kUse, "doctor",
      "list the Vulkan devices and the features that they lack, or check a scene with "
      "alcoveDiagnose",
      add_doctor_command},
+    {Command::kMotion, kLaboratory, "motion",
+     "measure errors and flicker while the camera or an object moves", add_motion_command},
+    {Command::kAblate, kLaboratory, "ablate",
+     "change one part of the occlusion at a time and print its cost and error", add_ablate},
+    {Command::kBench, kLaboratory, "bench",
+     "measure time and error of many settings, and write a table, a plot and JSON", add_bench},
+    {Command::kCost, kLaboratory, "cost",
+     "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
+     add_cost_command},
 }};
 
 // Joins the lines of a message of CLI11.
@@ -200,7 +204,8 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
   std::array<Options, kCommands.size()> options;
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
     options[i].command = kCommands[i].command;
-    kCommands[i].add_options(*app.add_subcommand(kCommands[i].name, kCommands[i].help), options[i]);
+    CLI::App& command = *app.add_subcommand(kCommands[i].name, kCommands[i].help);
+    kCommands[i].add_options(*command.group(kCommands[i].group), options[i]);
   }
   app.require_subcommand(1);
   app.set_version_flag("--version", "alcove " ALCOVE_VERSION);

@@ -21,16 +21,18 @@
 namespace alcove::sample {
 
 enum class Command {
+  // For users.
   kRender,
+  kView,
   kCompare,
+  kRecommend,
+  kGraph,
+  kDoctor,
+  // The laboratory.
   kMotion,
   kAblate,
   kBench,
-  kRecommend,
-  kCost,
-  kGraph,
-  kView,
-  kDoctor
+  kCost
 };
 // Names are in the order of the enumerators.
 enum class GraphFormat { kText, kDot };
