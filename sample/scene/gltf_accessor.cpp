@@ -19,36 +19,14 @@ struct Elements {
 };
 
 uint64_t component_size(int type) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
-  }
+  const int size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(type));
+  return size > 0 ? static_cast<uint64_t>(size) : 0;
 }
 
+// Matrices of 2 or 3 columns are not read, because no property that is read has them.
 int component_count(int type) {
-  switch (type) {
-    case TINYGLTF_TYPE_SCALAR:
-      return 1;
-    case TINYGLTF_TYPE_VEC2:
-      return 2;
-    case TINYGLTF_TYPE_VEC3:
-      return 3;
-    case TINYGLTF_TYPE_VEC4:
-      return 4;
-    case TINYGLTF_TYPE_MAT4:  // columns of bytes and shorts would be padded; floats are not
-      return 16;
-    default:
-      return 0;
-  }
+  if (type == TINYGLTF_TYPE_MAT2 || type == TINYGLTF_TYPE_MAT3) return 0;
+  return std::max(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)), 0);
 }
 
 template <class T>

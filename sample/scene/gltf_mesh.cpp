@@ -245,7 +245,8 @@ PrimitiveReader::Read PrimitiveReader::charge_budget() {
 tl::expected<std::vector<float>, std::string> PrimitiveReader::values(const std::string& name,
                                                                       int components) {
   auto sum = read_floats(model_, attribute(primitive_.attributes, name), components, 0, &vertices_);
-  if (!sum || placement_.morph_weights == nullptr) return sum;
+  const bool morphs = name == "POSITION" || name == "NORMAL" || name == "TANGENT";
+  if (!sum || !morphs || placement_.morph_weights == nullptr) return sum;
   const size_t targets = std::min(primitive_.targets.size(), placement_.morph_weights->size());
   for (size_t t = 0; t < targets; ++t) {
     const int delta = attribute(primitive_.targets[t], name);

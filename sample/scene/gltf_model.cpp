@@ -128,45 +128,6 @@ Checked check_scenes(const json& root) {
   return {};
 }
 
-Failure reached_twice(size_t node) {
-  return Failure("node " + std::to_string(node) +
-                 " is reached twice: nodes form a cycle or have two parents");
-}
-
-// Checks that the nodes form a forest (glTF 2.0 section 3.5.2), including nodes that no scene
-// shows.
-Checked check_node_tree(const json& root) {
-  const auto nodes = root.find("nodes");
-  if (nodes == root.end()) return {};
-  constexpr size_t kNone = SIZE_MAX;
-  std::vector<size_t> parents(nodes->size(), kNone);
-  for (size_t i = 0; i < nodes->size(); ++i) {
-    const auto children = (*nodes)[i].find("children");
-    if (children == (*nodes)[i].end()) continue;
-    for (const json& child : *children) {
-      const auto index = child.get<size_t>();
-      if (index >= parents.size()) {
-        return Failure("nodes[" + std::to_string(i) + "].children names node " +
-                       std::to_string(index) + ", which does not exist");
-      }
-      if (std::exchange(parents[index], i) != kNone) return reached_twice(index);
-    }
-  }
-  // Follows the parents of every node. If a walk has more steps than there are nodes, it is in a
-  // cycle. `cleared` marks nodes that are known to lead to a root.
-  std::vector<char> cleared(parents.size(), 0);
-  for (size_t start = 0; start < parents.size(); ++start) {
-    size_t steps = 0;
-    for (size_t node = start; node != kNone && !cleared[node]; node = parents[node]) {
-      if (++steps > parents.size()) return reached_twice(node);
-    }
-    for (size_t node = start; node != kNone && !cleared[node]; node = parents[node]) {
-      cleared[node] = 1;
-    }
-  }
-  return {};
-}
-
 // Converts the elements of an array of the JSON by a function of tinygltf.
 template <class Element, class Convert>
 void convert(const json& root, const char* name, std::vector<Element>& out,
@@ -275,7 +236,6 @@ tl::expected<GltfModel, std::string> read_gltf_model(std::vector<uint8_t> file,
   if (!notes) return Failure(notes.error());
   GltfModel out{{}, GltfFiles(folder), std::move(*notes)};
   const auto read = check_scenes(*root)
-                        .and_then([&] { return check_node_tree(*root); })
                         .and_then([&] { return fill_model(*root, out.model); })
                         .and_then([&] {
                           return fill_buffers(root->value("buffers", json::array()),

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "scene/gltf_layout.h"
-#include "scene/gltf_origin.h"
 
 namespace alcove::sample {
 namespace {

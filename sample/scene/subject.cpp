@@ -12,7 +12,7 @@
 namespace alcove::sample {
 namespace {
 
-constexpr size_t kMostGrouped = size_t{1} << 16;  // parts; smaller ones do not change the bounds
+constexpr size_t kMostGrouped = size_t{1} << 16;  // parts; of more parts a sample is grouped
 
 glm::dvec3 centre_of(const Bounds& bounds) {
   return 0.5 * (glm::dvec3(bounds.low) + glm::dvec3(bounds.high));
@@ -267,7 +267,7 @@ double distance_to(const WorldTriangle& triangle, const glm::dvec3& from, const 
 }
 
 // How a part surrounds a point, and whether it is flat.
-struct View {
+struct Enclosure {
   std::array<int, kRays> hits{};
   std::array<double, kRays> nearest;
   std::array<bool, kRays> shows_front{};  // of the nearest hit
@@ -276,7 +276,7 @@ struct View {
   glm::dvec3 sum{0.0};
   glm::dmat3 products{0.0};
 
-  View() { nearest.fill(INFINITY); }
+  Enclosure() { nearest.fill(INFINITY); }
 
   void add(const WorldTriangle& triangle, const glm::dvec3& from,
            const std::array<glm::dvec3, kRays>& directions) {
@@ -335,27 +335,27 @@ enum class Kind { kSubject, kSurroundings, kRoom };
 
 // Judges the candidates, large parts that have been seen from the centre of the rest.
 Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidates,
-           const std::vector<View>& views, const Bounds& rest) {
+           const std::vector<Enclosure>& enclosures, const Bounds& rest) {
   const glm::dvec3 centre = centre_of(rest);
-  View all;
+  Enclosure all;
   bool all_flat = true, all_behind = true;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Bounds& bounds = parts[candidates[i]].bounds_ws;
-    const bool flat = views[i].is_plane_behind(centre, bounds);
-    if (!flat && !(views[i].is_sheet() && views[i].directions(0, kDown) >= 2)) {
+    const bool flat = enclosures[i].is_plane_behind(centre, bounds);
+    if (!flat && !(enclosures[i].is_sheet() && enclosures[i].directions(0, kDown) >= 2)) {
       return Kind::kSubject;
     }
     all_flat &= flat;
     all_behind &= flat || (contains(bounds, rest.low + 0.05f * (rest.high - rest.low)) &&
                            contains(bounds, rest.high - 0.05f * (rest.high - rest.low)));
-    all.double_sided |= views[i].double_sided;
-    all.area += views[i].area;
-    all.upright_area += views[i].upright_area;
+    all.double_sided |= enclosures[i].double_sided;
+    all.area += enclosures[i].area;
+    all.upright_area += enclosures[i].upright_area;
     for (size_t r = 0; r < kRays; ++r) {
-      all.hits[r] += views[i].hits[r];
-      if (views[i].nearest[r] >= all.nearest[r]) continue;
-      all.nearest[r] = views[i].nearest[r];
-      all.shows_front[r] = views[i].shows_front[r];
+      all.hits[r] += enclosures[i].hits[r];
+      if (enclosures[i].nearest[r] >= all.nearest[r]) continue;
+      all.nearest[r] = enclosures[i].nearest[r];
+      all.shows_front[r] = enclosures[i].shows_front[r];
     }
   }
   const double ratio = diagonal(parts[candidates.back()].bounds_ws) / diagonal(rest);
@@ -384,10 +384,16 @@ Subject find_subject(const Scene& scene) {
   if (parts.empty()) return {};
   std::vector<uint32_t> order(parts.size());
   std::iota(order.begin(), order.end(), 0u);
-  if (order.size() > kMostGrouped) {
-    std::ranges::nth_element(order, order.begin() + kMostGrouped, std::greater<>(),
-                             [&](uint32_t p) { return parts[p].area; });
-    order.resize(kMostGrouped);
+  const bool sampled = order.size() > kMostGrouped;
+  if (sampled) {
+    // The largest parts, which may be surroundings, and evenly spaced ones of the others.
+    constexpr size_t kLargest = 1024;
+    std::ranges::nth_element(order, order.begin() + kLargest, std::greater<>(),
+                             [&](uint32_t p) { return diagonal(parts[p].bounds_ws); });
+    const size_t step = order.size() / kMostGrouped + 1;
+    size_t count = kLargest;
+    for (size_t i = kLargest; i < order.size(); i += step) order[count++] = order[i];
+    order.resize(count);
   }
   const auto size = [&](size_t i) { return diagonal(parts[order[i]].bounds_ws); };
   std::ranges::stable_sort(order, std::greater<>(),
@@ -408,18 +414,20 @@ Subject find_subject(const Scene& scene) {
     const std::vector<uint32_t> candidates(order.begin(), begin);
     std::vector<char> chosen(parts.size(), 0);  // one more than the index of a candidate
     for (size_t i = 0; i < k; ++i) chosen[candidates[i]] = static_cast<char>(i + 1);
-    std::vector<View> views(k);
+    std::vector<Enclosure> enclosures(k);
     found.for_each_triangle(chosen, [&](size_t part, const WorldTriangle& triangle) {
-      views[static_cast<size_t>(chosen[part] - 1)].add(triangle, centre_of(bounds), directions);
+      enclosures[static_cast<size_t>(chosen[part] - 1)].add(triangle, centre_of(bounds),
+                                                            directions);
     });
-    const Kind kind = judge(parts, candidates, views, bounds);
+    const Kind kind = judge(parts, candidates, enclosures, bounds);
     if (kind == Kind::kSubject) continue;
     // The eye stays inside of a sky, and of a room that hides its inside from eyes outside. A
     // ground or backdrop, which no ray up meets, hides nothing.
     shells.assign(parts.size(), 0);
     for (size_t i = 0; i < k; ++i) {
-      shells[candidates[i]] = views[i].is_sheet() && views[i].directions(kSides, kUp) > 0 &&
-                              (kind == Kind::kSurroundings || views[i].double_sided);
+      shells[candidates[i]] = enclosures[i].is_sheet() &&
+                              enclosures[i].directions(kSides, kUp) > 0 &&
+                              (kind == Kind::kSurroundings || enclosures[i].double_sided);
     }
     if (kind == Kind::kSurroundings) group = rest;
   }
@@ -429,17 +437,24 @@ Subject find_subject(const Scene& scene) {
     grouped[p] = 1;
     out.bounds_ws = united(out.bounds_ws, parts[p].bounds_ws);
   }
-  View shell;
+  Enclosure shell;
   found.for_each_triangle(shells, [&](size_t, const WorldTriangle& triangle) {
     shell.add(triangle, centre_of(out.bounds_ws), directions);
   });
   std::transform(shell.nearest.begin() + kToEyes, shell.nearest.end(), out.free_distance_ws.begin(),
                  [](double d) { return static_cast<float>(d); });
+  // Parts that were not sampled belong to the subject if they lie in it or at its border.
+  const float border = sampled ? static_cast<float>(0.05 * diagonal(out.bounds_ws)) : 0.0f;
+  const Bounds around{out.bounds_ws.low - border, out.bounds_ws.high + border};
+  const double largest = diagonal(out.bounds_ws);
   for (size_t p = 0; p < parts.size(); ++p) {
-    // Parts that were too many to be grouped belong to the subject if they lie in it.
-    const bool within = contains(out.bounds_ws, glm::vec3(centre_of(parts[p].bounds_ws))) &&
-                        diagonal(parts[p].bounds_ws) < diagonal(out.bounds_ws);
-    if (!grouped[p] && !within) out.triangles_outside += parts[p].triangles;
+    const Bounds& bounds = parts[p].bounds_ws;
+    if (!grouped[p] &&
+        !(contains(around, glm::vec3(centre_of(bounds))) && diagonal(bounds) < largest)) {
+      out.triangles_outside += parts[p].triangles;
+    } else if (sampled) {
+      out.bounds_ws = united(out.bounds_ws, bounds);
+    }
   }
   return out;
 }

@@ -59,7 +59,7 @@ TEST(GltfRepeatedData, InstancesCountTowardsTheLimitOnceForEachPrimitive) {
 
 TEST(GltfRepeatedData, EachSetOfJointsAndWeightsCountsTowardsTheVertexLimit) {
   GltfLimits limits;
-  limits.vertices = 6;
+  limits.vertices = 9;  // 3 vertices and 2 sets for each
   EXPECT_TRUE(parsed_within(skinned_triangle(2), limits));
   const auto scene = parsed_within(skinned_triangle(3), limits);
   ASSERT_FALSE(scene);

@@ -35,7 +35,7 @@ TEST_P(MalformedGltf, FileWithOneFaultIsRefusedInOneSentence) {
 
 const Fault kFaults[] = {
     {"AccessorOfFourBillionElements",
-     [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4000000000u; }, "accessor 0"},
+     [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4000000000u; }, "too many vertices"},
     {"AccessorLongerThanItsBufferView", [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4; },
      "past the end"},
     {"AccessorOffsetBeyondItsBufferView",
@@ -115,7 +115,7 @@ const Fault kFaults[] = {
        m.json["nodes"] = {
            {{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"mesh", 0}, {"children", {1}}}};
      },
-     "twice"},
+     "node 1 is in a cycle"},
     {"NodeWithTwoParents",
      [](GltfMaker& m) {
        m.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}};
@@ -139,7 +139,7 @@ const Fault kFaults[] = {
      },
      "compressed buffer view 0 is damaged"},
     {"NoSuchChild", [](GltfMaker& m) { m.json["nodes"][0]["children"] = {7}; },
-     "nodes[0].children names node 7"},
+     "it names node 7, which does not exist"},
     {"NewerMinimumVersion", [](GltfMaker& m) { m.json["asset"]["minVersion"] = "2.1"; },
      "it is glTF 2.1 (asset.minVersion)"},
     {"VersionThatIsNotANumber", [](GltfMaker& m) { m.json["asset"]["version"] = "two"; },

@@ -155,7 +155,10 @@ GltfMaker morphed_triangle() {
   const int turns =
       maker.accessor(maker.view<float>({2, 0, -2, 2, 0, -2, 2, 0, -2}), 5126, "VEC3", 3);
   maker.primitive()["attributes"]["NORMAL"] = normals;
-  maker.primitive()["targets"] = {{{"POSITION", moves}, {"NORMAL", turns}}, {{"POSITION", moves}}};
+  // Morphed texture coordinates have two components and are not read.
+  const int uvs = maker.accessor(maker.view<float>({0, 0, 0, 0, 0, 0}), 5126, "VEC2", 3);
+  maker.primitive()["targets"] = {{{"POSITION", moves}, {"NORMAL", turns}, {"TEXCOORD_0", uvs}},
+                                  {{"POSITION", moves}}};
   maker.json["meshes"][0]["weights"] = {0.5, 0.0};
   return maker;
 }
