@@ -96,8 +96,10 @@ framegraph::State to_state(const AlcoveState& state) {
   return {state.stages, state.access, state.layout};
 }
 
-tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& image,
-                                  const AlcoveImage& depth, std::uint32_t view) {
+}  // namespace
+
+tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage& image,
+                                        const AlcoveImage& depth, std::uint32_t view) {
   const auto fail = [&](const std::string& what) {
     return invalid("View " + std::to_string(view) + ": the image of " + role.name + " " + what);
   };
@@ -151,15 +153,13 @@ tl::expected<void, Failure> check(const ImageRole& role, const AlcoveImage& imag
   return {};
 }
 
-}  // namespace
-
 tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, const ImageRole& role,
                                                   const AlcoveImage& image,
                                                   const AlcoveImage& depth, std::uint32_t view) {
   if (image.image == VK_NULL_HANDLE) {
     return Texture{};
   }
-  if (auto right = check(role, image, depth, view); !right) {
+  if (auto right = check_image(role, image, depth, view); !right) {
     return tl::unexpected(std::move(right.error()));
   }
   const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);

@@ -21,6 +21,12 @@ struct ImageRole {
   bool half_size = false;       // it has half of depth's size, rounded up
 };
 
+// Checks an image of the view with the id `view`. Its size must be that of `depth`, or with
+// ImageRole::half_size half of it.
+[[nodiscard]] tl::expected<void, Failure> check_image(const ImageRole& role,
+                                                      const AlcoveImage& image,
+                                                      const AlcoveImage& depth, std::uint32_t view);
+
 // The images of one frame. An image that serves as several inputs becomes one texture of the graph.
 class ImageTable {
  public:
@@ -28,8 +34,8 @@ class ImageTable {
 
   void reset() { count_ = 0; }
 
-  // Imports an image of the view with the id `view`. Returns a null texture if there is no image.
-  // The size of the image must be that of `depth`, or with ImageRole::half_size half of it.
+  // Checks and imports an image of the view with the id `view`. Returns a null texture if there is
+  // no image.
   [[nodiscard]] tl::expected<framegraph::Texture, Failure> import(framegraph::Graph& graph,
                                                                   const ImageRole& role,
                                                                   const AlcoveImage& image,

@@ -1,10 +1,11 @@
-// Declares the passes of one view of the C interface.
+// Converts a view of the C interface, and adds its passes.
 #pragma once
 
 #include "alcove/alcove.h"
 #include "alcove/passes/frame.h"
 #include "c/failure.h"
 #include "c/images.h"
+#include "work/view_work.h"
 
 namespace alcove::passes {
 
@@ -18,6 +19,30 @@ class ViewName {
  private:
   std::array<char, 16> text_{};  // "view 4294967295"
 };
+
+// Returns the beginning of a sentence about the view, such as "View 3".
+[[nodiscard]] std::string view_name(const AlcoveView& view);
+
+// Copies the matrices. The passes check them.
+[[nodiscard]] View to_view(const AlcoveCamera& camera);
+
+// Makes a texture of an image of a view, or a null texture if there is no image.
+struct ImageImporter {
+  tl::expected<framegraph::Texture, Failure> (*import)(void* user, const ImageRole& role,
+                                                       const AlcoveImage& image,
+                                                       const AlcoveView& view);
+  void* user;
+};
+
+// The inputs of a view, and its settings with the outputs that it has images for.
+struct SettledView {
+  ViewInputs inputs;
+  OcclusionSettings settings;
+};
+
+// Checks a view and imports its images.
+[[nodiscard]] tl::expected<SettledView, Failure> settle(const AlcoveView& view,
+                                                        const ImageImporter& importer);
 
 class PixelObserver;
 

@@ -5,14 +5,17 @@
 #include <cstring>
 #include <tuple>
 
+#include "work/shader_table.h"
+
 namespace alcove::passes {
 namespace {
 
 // The most descriptors of a type that one of the shaders binds.
-std::uint32_t most_bound(std::span<const ShaderInterface> interfaces, VkDescriptorType type) {
+std::uint32_t most_bound(VkDescriptorType type) {
   std::ptrdiff_t most = 0;
-  for (const ShaderInterface& shader : interfaces) {
-    most = std::max(most, std::ranges::count(shader.bindings, type, &ShaderBinding::type));
+  for (std::size_t shader = 0; shader < static_cast<std::size_t>(Shader::count); ++shader) {
+    most = std::max(most, std::ranges::count(shader_interface(static_cast<Shader>(shader)).bindings,
+                                             type, &ShaderBinding::type));
   }
   return static_cast<std::uint32_t>(most);
 }
@@ -21,9 +24,9 @@ std::uint32_t most_bound(std::span<const ShaderInterface> interfaces, VkDescript
 
 tl::expected<std::unique_ptr<DescriptorSets>, Error> DescriptorSets::create(
     const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
-    std::span<const ShaderInterface> interfaces, std::uint32_t slot_count) {
+    std::uint32_t slot_count) {
   std::unique_ptr<DescriptorSets> made(new DescriptorSets(vk, device));
-  if (const VkResult result = made->create_pools(interfaces, slot_count); result != VK_SUCCESS) {
+  if (const VkResult result = made->create_pools(slot_count); result != VK_SUCCESS) {
     return tl::unexpected(
         Error{"The occlusion passes could not create a descriptor pool.", result});
   }
@@ -43,8 +46,7 @@ DescriptorSets::~DescriptorSets() {
   }
 }
 
-VkResult DescriptorSets::create_pools(std::span<const ShaderInterface> interfaces,
-                                      std::uint32_t slot_count) {
+VkResult DescriptorSets::create_pools(std::uint32_t slot_count) {
   constexpr auto kSets = static_cast<std::uint32_t>(
       Kernels::kMaxDispatches * std::tuple_size_v<decltype(DispatchSets::sets)>);
   std::array<VkDescriptorPoolSize, 5> sizes{{{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
@@ -53,7 +55,7 @@ VkResult DescriptorSets::create_pools(std::span<const ShaderInterface> interface
                                              {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                              {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}}};
   for (VkDescriptorPoolSize& size : sizes) {
-    size.descriptorCount = kSets * most_bound(interfaces, size.type);
+    size.descriptorCount = kSets * most_bound(size.type);
   }
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
@@ -171,12 +173,10 @@ bool DescriptorSets::is_stored_to(const DispatchBindings& bound, VkImageView vie
   std::size_t image = 0;
   for (const ShaderBinding& binding : bound.interface->bindings) {
     const bool stored = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    const bool is_image = stored || binding.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE ||
-                          binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     if (stored && bound.views[image] == view) {
       return true;
     }
-    image += is_image ? 1 : 0;
+    image += binding.is_image() ? 1 : 0;
   }
   return false;
 }

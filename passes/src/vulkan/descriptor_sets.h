@@ -16,7 +16,7 @@
 
 namespace alcove::passes {
 
-inline constexpr std::size_t kMaxBindings = 17;  // of a shader, with its parameters
+inline constexpr std::size_t kMaxBindings = ALCOVE_MAX_WORK_BINDINGS;
 
 // One dispatch: its shader, and the objects that its descriptor set points to.
 struct DispatchBindings {
@@ -33,11 +33,11 @@ struct DispatchBindings {
 // earlier one finds the sets of that frame, and neither allocates nor writes any.
 class DescriptorSets {
  public:
-  // Creates the object. `interfaces` are those of all shaders; the descriptor pools are sized for
-  // them. `vk` and `device` must outlive the result.
+  // Creates the object. The descriptor pools are sized for the interfaces of all shaders. `vk` and
+  // `device` must outlive the result.
   static tl::expected<std::unique_ptr<DescriptorSets>, Error> create(
       const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
-      std::span<const ShaderInterface> interfaces, std::uint32_t slot_count);
+      std::uint32_t slot_count);
   DescriptorSets(const DescriptorSets&) = delete;
   DescriptorSets& operator=(const DescriptorSets&) = delete;
   ~DescriptorSets();
@@ -89,7 +89,7 @@ class DescriptorSets {
       : vk_(vk), device_(device) {}
   static bool holds(const Set& set, const DispatchBindings& bound,
                     const framegraph::RecordContext& context);
-  VkResult create_pools(std::span<const ShaderInterface> interfaces, std::uint32_t slot_count);
+  VkResult create_pools(std::uint32_t slot_count);
   VkResult allocate(Set& set, const DispatchBindings& bound);
   Claim claim(framegraph::RecordContext& context, const DispatchBindings& bound);
   static bool is_stored_to(const DispatchBindings& bound, VkImageView view);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <cstddef>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -10,7 +10,6 @@
 
 #include "vulkan/descriptor_sets.h"
 #include "vulkan/host_buffer.h"
-#include "work/shader_interface.h"
 #include "work/shader_table.h"
 
 namespace alcove::passes {
@@ -24,6 +23,10 @@ tl::unexpected<Error> failure(std::string_view what, VkResult result) {
       Error{"The occlusion passes could not create " + std::string(what) + ".", result});
 }
 
+const ShaderInterface& interface_of(std::size_t shader) {
+  return shader_interface(static_cast<Shader>(shader));
+}
+
 // The Vulkan objects of one shader. The module and the table are created with its first pipeline.
 struct ShaderObjects {
   VkShaderModule module = VK_NULL_HANDLE;
@@ -34,33 +37,9 @@ struct ShaderObjects {
 
 struct Pipeline {
   Shader shader = Shader::count;
-  std::vector<std::uint32_t> constants;  // in the order of ShaderInterface::constants
+  std::vector<AlcoveWorkConstant> constants;
   VkPipeline pipeline = VK_NULL_HANDLE;
 };
-
-// Returns the element of `given` whose name is `name`, or null. Looks at the index `expected`
-// first, because lists usually have the order of the shader's declarations.
-template <typename Named>
-const Named* find_named(std::span<const Named> given, std::string_view name, std::size_t expected) {
-  if (expected < given.size() && given[expected].name == name) {
-    return &given[expected];
-  }
-  const auto found = std::ranges::find(given, name, &Named::name);
-  return found == given.end() ? nullptr : &*found;
-}
-
-// Returns the first element of `given` whose name is not in `known`, which is sorted, or null.
-template <typename Named>
-const Named* find_unknown(std::span<const Named> given, std::span<const std::string_view> known) {
-  const auto found = std::ranges::find_if(
-      given, [&](const Named& named) { return !std::ranges::binary_search(known, named.name); });
-  return found == given.end() ? nullptr : &*found;
-}
-
-bool is_image(const ShaderBinding& binding) {
-  return binding.type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER &&
-         binding.type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-}
 
 }  // namespace
 
@@ -69,10 +48,6 @@ struct Kernels::State {
   framegraph::DeviceHandles handles;
   VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
   VkSampler sampler = VK_NULL_HANDLE;      // of all sampled images that have one: nearest, clamped
-  std::array<ShaderInterface, kShaderCount> interfaces;
-  // Names of the specialisation constants and image bindings of all shaders, sorted.
-  std::vector<std::string_view> constant_names;
-  std::vector<std::string_view> image_names;
   std::array<ShaderObjects, kShaderCount> shaders;
   std::vector<Pipeline> pipelines;
   std::unique_ptr<DescriptorSets> sets;
@@ -85,7 +60,6 @@ struct Kernels::State {
   State& operator=(const State&) = delete;
   ~State();
 
-  void read_interfaces();
   tl::expected<void, Error> check_limits() const;
   tl::expected<void, Error> create_sampler();
   tl::expected<void, Error> create_layout(std::size_t shader);
@@ -94,7 +68,7 @@ struct Kernels::State {
   tl::expected<void, Error> create_module(std::size_t shader);
   tl::expected<void, Error> create_table(std::size_t shader);
   tl::expected<Kernel, Error> create_pipeline(Shader shader,
-                                              std::span<const std::uint32_t> constants);
+                                              std::span<const AlcoveWorkConstant> constants);
 };
 
 Kernels::State::~State() {
@@ -112,22 +86,6 @@ Kernels::State::~State() {
   vk.vkDestroySampler(device(), sampler, callbacks());
 }
 
-void Kernels::State::read_interfaces() {
-  for (std::size_t shader = 0; shader < kShaderCount; ++shader) {
-    interfaces[shader] = read_shader_interface(shader_source(static_cast<Shader>(shader)).code);
-    for (const ShaderConstant& constant : interfaces[shader].constants) {
-      constant_names.push_back(constant.name);
-    }
-    for (const ShaderBinding& binding : interfaces[shader].bindings) {
-      if (is_image(binding)) {
-        image_names.push_back(binding.name);
-      }
-    }
-  }
-  std::ranges::sort(constant_names);
-  std::ranges::sort(image_names);
-}
-
 // Checks the device limit on storage images per stage. It is the only descriptor limit that the
 // shaders may exceed: Vulkan guarantees only 4.
 tl::expected<void, Error> Kernels::State::check_limits() const {
@@ -135,9 +93,10 @@ tl::expected<void, Error> Kernels::State::check_limits() const {
   vk.vkGetPhysicalDeviceProperties(handles.physical_device, &properties);
   const std::uint32_t limit = properties.limits.maxPerStageDescriptorStorageImages;
   std::ptrdiff_t needed = 0;
-  for (const ShaderInterface& shader : interfaces) {
-    needed = std::max(needed, std::ranges::count(shader.bindings, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                                 &ShaderBinding::type));
+  for (std::size_t shader = 0; shader < kShaderCount; ++shader) {
+    needed = std::max(
+        needed, std::ranges::count(interface_of(shader).bindings, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                   &ShaderBinding::type));
   }
   if (limit >= static_cast<std::size_t>(needed)) {
     return {};
@@ -163,7 +122,7 @@ tl::expected<void, Error> Kernels::State::create_sampler() {
 }
 
 tl::expected<void, Error> Kernels::State::create_layout(std::size_t shader) {
-  const std::vector<ShaderBinding>& bindings = interfaces[shader].bindings;
+  const std::vector<ShaderBinding>& bindings = interface_of(shader).bindings;
   std::array<VkDescriptorSetLayoutBinding, kMaxBindings> described{};
   for (std::size_t i = 0; i < bindings.size(); ++i) {
     const bool sampled = bindings[i].type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -200,7 +159,7 @@ tl::expected<void, Error> Kernels::State::create_layouts() {
 }
 
 tl::expected<void, Error> Kernels::State::create_sets(std::uint32_t slot_count) {
-  auto made = DescriptorSets::create(vk, handles, interfaces, slot_count);
+  auto made = DescriptorSets::create(vk, handles, slot_count);
   if (!made) {
     return tl::unexpected(std::move(made.error()));
   }
@@ -241,14 +200,17 @@ tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
 }
 
 tl::expected<Kernel, Error> Kernels::State::create_pipeline(
-    Shader shader, std::span<const std::uint32_t> constants) {
+    Shader shader, std::span<const AlcoveWorkConstant> constants) {
   const auto index = static_cast<std::size_t>(shader);
   if (auto made = create_module(index).and_then([&] { return create_table(index); }); !made) {
     return tl::unexpected(std::move(made.error()));
   }
   std::array<VkSpecializationMapEntry, kMaxConstants> entries;
   for (std::uint32_t i = 0; i < constants.size(); ++i) {
-    entries.at(i) = {interfaces[index].constants[i].id, i * 4, 4};
+    entries.at(i) = {constants[i].id,
+                     static_cast<std::uint32_t>(i * sizeof(AlcoveWorkConstant) +
+                                                offsetof(AlcoveWorkConstant, value)),
+                     sizeof constants[i].value};
   }
   const VkSpecializationInfo specialisation{static_cast<std::uint32_t>(constants.size()),
                                             entries.data(), constants.size_bytes(),
@@ -309,7 +271,6 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
   }
   state->handles = device;
   state->cache = cache;
-  state->read_interfaces();
   auto done = state->check_limits()
                   .and_then([&] { return state->create_sampler(); })
                   .and_then([&] { return state->create_layouts(); })
@@ -323,82 +284,75 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
 void Kernels::begin_frame(std::uint32_t slot) { state_->sets->begin_frame(slot); }
 
 tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const NamedConstant> constants) {
-  const std::vector<ShaderConstant>& declared =
-      state_->interfaces[static_cast<std::size_t>(shader)].constants;
-  assert(declared.size() <= kMaxConstants);
-  std::array<std::uint32_t, kMaxConstants> values;
-  for (std::size_t i = 0; i < declared.size(); ++i) {
-    const NamedConstant* const given = find_named(constants, declared[i].name, i);
-    if (given == nullptr) {
-      return tl::unexpected(
-          Error{std::string("The shader '").append(shader_source(shader).name) +
-                "' has a specialisation constant '" + std::string(declared[i].name) +
-                "', for which its pass gives no value; name it in the pass's list of constants."});
-    }
-    values.at(i) = given->value;
-  }
-  if (constants.size() > declared.size()) {
-    if (const NamedConstant* const unknown = find_unknown(constants, {state_->constant_names})) {
-      return tl::unexpected(
-          Error{"The pass of the shader '" + std::string(shader_source(shader).name) +
-                "' gives a value for a specialisation constant '" + std::string(unknown->name) +
-                "', which no shader declares; correct the name or remove it."});
-    }
-  }
-  const std::span<const std::uint32_t> used(values.data(), declared.size());
+  std::array<AlcoveWorkConstant, kMaxConstants> values;
+  return resolve_constants(shader, constants, values).and_then([&](std::uint32_t count) {
+    return get(shader, std::span(std::as_const(values)).first(count));
+  });
+}
+
+tl::expected<Kernel, Error> Kernels::get(Shader shader,
+                                         std::span<const AlcoveWorkConstant> constants) {
   for (const Pipeline& made : state_->pipelines) {
-    if (made.shader == shader && std::ranges::equal(made.constants, used)) {
+    if (made.shader == shader &&
+        std::ranges::equal(made.constants, constants, {}, &AlcoveWorkConstant::value,
+                           &AlcoveWorkConstant::value)) {
       return Kernel{made.pipeline, shader};
     }
   }
-  return state_->create_pipeline(shader, used);
+  return state_->create_pipeline(shader, constants);
 }
 
 void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                        std::span<const NamedView> views, std::span<const std::byte> parameters,
                        VkExtent3D size) {
-  const State& s = *state_;
-  const auto index = static_cast<std::size_t>(kernel.shader);
   std::array<VkImageView, kMaxBindings> bound;
   std::size_t count = 0;
-  for (const ShaderBinding& binding : s.interfaces[index].bindings) {
-    if (!is_image(binding)) {
+  const auto fail = [&](std::string_view what, std::string_view name, std::string_view why) {
+    context.fail(std::string(what)
+                     .append(" '")
+                     .append(name)
+                     .append("' of the shader '")
+                     .append(shader_source(kernel.shader).name)
+                     .append("', ")
+                     .append(why)
+                     .append(","),
+                 VK_ERROR_UNKNOWN);
+  };
+  for (const ShaderBinding& binding : shader_interface(kernel.shader).bindings) {
+    if (!binding.is_image()) {
       continue;
     }
     const NamedView* const given = find_named(views, binding.name, count);
     if (given == nullptr) {
-      context.fail(std::string("view of the binding '")
-                       .append(binding.name)
-                       .append("' of the shader '")
-                       .append(shader_source(kernel.shader).name)
-                       .append("', which the pass does not name,"),
-                   VK_ERROR_UNKNOWN);
-      return;
-    }
-    // A view that could not be created is an error of the frame's record already.
-    if (given->view == VK_NULL_HANDLE) {
-      return;
+      return fail("view of the binding", binding.name, "which the pass does not name");
     }
     bound.at(count++) = given->view;
   }
   if (views.size() > count) {
-    if (const NamedView* const unknown = find_unknown(views, {s.image_names})) {
-      context.fail(std::string("view '")
-                       .append(unknown->name)
-                       .append("' of the shader '")
-                       .append(shader_source(kernel.shader).name)
-                       .append("', a name that no shader declares,"),
-                   VK_ERROR_UNKNOWN);
-      return;
+    if (const NamedView* const unknown = find_unknown(views, known_images())) {
+      return fail("view", unknown->name, "a name that no shader declares");
     }
   }
-  const ShaderObjects& shader = s.shaders[index];
+  const auto groups = [](std::uint32_t of) { return (of + kGroupSize - 1) / kGroupSize; };
+  dispatch(context, kernel, std::span<const VkImageView>(bound).first(count), parameters,
+           std::array{groups(size.width), groups(size.height), size.depth});
+}
+
+void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
+                       std::span<const VkImageView> views, std::span<const std::byte> parameters,
+                       const std::array<std::uint32_t, 3>& groups) {
+  // A view that could not be created is an error of the frame's record already.
+  if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) {
+    return;
+  }
+  const State& s = *state_;
+  const ShaderObjects& shader = s.shaders[static_cast<std::size_t>(kernel.shader)];
   const VkDescriptorSet set = s.sets->get(
       context, {.shader = kernel.shader,
-                .interface = &s.interfaces[index],
+                .interface = &shader_interface(kernel.shader),
                 .layout = shader.set_layout,
                 .table = shader.table ? shader.table->buffer() : VkBuffer{VK_NULL_HANDLE},
-                .views = std::span(bound).first(count),
+                .views = views,
                 .parameters = parameters});
   if (set == VK_NULL_HANDLE) {
     return;
@@ -407,8 +361,7 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
   s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   s.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline_layout, 0,
                                1, &set, 0, nullptr);
-  s.vk.vkCmdDispatch(commands, (size.width + kGroupSize - 1) / kGroupSize,
-                     (size.height + kGroupSize - 1) / kGroupSize, size.depth);
+  s.vk.vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
 }
 
 std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }

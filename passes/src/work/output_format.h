@@ -51,17 +51,27 @@ inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
 inline constexpr VkFormat kHalfFormat = VK_FORMAT_R16G16B16A16_SNORM;
 inline constexpr VkFormat kHalfDepthFormat = VK_FORMAT_R32_SFLOAT;
 
-// Returns the bytes per pixel of all textures of a history that add_reconstruct() declares. Each
-// texture has two slots.
-[[nodiscard]] inline std::uint64_t history_bytes(bool lobe, bool bent) {
-  const std::uint64_t texel = 4u + (lobe ? 2u : 0u) + (bent ? 4u : 0u);
-  return 2u * texel;
-}
-
-// Returns the bytes per texel of 2x2 pixels of all textures of a history at half resolution.
-[[nodiscard]] inline std::uint64_t half_history_bytes(bool lobe, bool bent) {
-  constexpr std::uint64_t kTexel = 8;  // bytes of kHalfFormat
-  return history_bytes(lobe, bent) + 2u * kTexel;
+// Returns the bytes per texel of a format that the passes create.
+[[nodiscard]] inline std::uint64_t texel_bytes(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R8_UNORM:
+      return 1;
+    case VK_FORMAT_R16_SFLOAT:
+    case VK_FORMAT_R16_UINT:
+      return 2;
+    case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R8G8B8A8_SNORM:
+    case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R16G16_UNORM:
+    case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
+      return 4;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_SNORM:
+    case VK_FORMAT_R32G32_UINT:
+      return 8;
+    default:
+      return 16;
+  }
 }
 
 }  // namespace alcove::passes

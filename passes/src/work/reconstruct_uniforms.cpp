@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "graph/reconstruct_textures.h"
 #include "maths/slice_line.h"
 #include "work/interleave_offset.h"
 #include "work/view_parameters.h"
@@ -125,7 +124,7 @@ maths::vec4 traced_range(maths::vec2 size_px, maths::vec2 offset, float tile_siz
 
 }  // namespace
 
-maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
+maths::ReconstructParameters reconstruct_parameters(const WorkFrame& frame,
                                                     const maths::Projection& projection,
                                                     const maths::Projection& previous,
                                                     const ReconstructInputs& inputs,
@@ -136,7 +135,7 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
                                    maths::inverse(to_rigid(frame.view.view_from_world));
   const maths::mat4 to_view =
-      view_from_normal(frame, inputs.normals_in_view_space, inputs.normals_forward_z);
+      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z);
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
       maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
@@ -152,7 +151,7 @@ maths::ReconstructParameters reconstruct_parameters(const Frame& frame,
       1.0f / (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   parameters.clamp_width = settings.advanced.clamp_width;
-  const auto texel = static_cast<float>(texel_size(settings));
+  const float texel = settings.half_resolution ? 2.0f : 1.0f;
   parameters.previous_extent = maths::vec4(maths::ceil(previous.size_px / texel) - 0.5f,
                                            previous.size_px / projection.size_px);
   parameters.pixel_uv = 1.0f / projection.size_px;

@@ -1,7 +1,7 @@
 // The parameters of shaders/reconstruct.comp.
 #pragma once
 
-#include "alcove/passes/reconstruct.h"
+#include "alcove/passes/work.h"
 #include "maths/projection.h"
 #include "reconstruct_parameters.h"
 
@@ -11,7 +11,7 @@ namespace alcove::passes {
 // frame's projection. ReconstructParameters::largest_weight is set to its value for a view that is
 // not static.
 [[nodiscard]] maths::ReconstructParameters reconstruct_parameters(
-    const Frame& frame, const maths::Projection& projection, const maths::Projection& previous,
+    const WorkFrame& frame, const maths::Projection& projection, const maths::Projection& previous,
     const ReconstructInputs& inputs, const OcclusionSettings& settings);
 
 }  // namespace alcove::passes

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "alcove/alcove_work.h"
+
 namespace alcove::passes {
 namespace {
 
@@ -21,6 +23,8 @@ enum Op : std::uint32_t {
   kOpDecorate = 71,
 };
 constexpr std::uint32_t kDecorationSpecId = 1;
+constexpr std::uint32_t kDecorationNonWritable = 24;
+constexpr std::uint32_t kDecorationNonReadable = 25;
 constexpr std::uint32_t kDecorationBinding = 33;
 constexpr std::uint32_t kStorageClassUniform = 2;
 constexpr std::uint32_t kStorageClassStorageBuffer = 12;
@@ -34,6 +38,8 @@ struct Id {
   Words definition;  // the instruction of a type or a variable, with its first word
   std::optional<std::uint32_t> binding;
   std::optional<std::uint32_t> constant_id;
+  bool non_writable = false;
+  bool non_readable = false;
 };
 
 // A literal string has its first character in the lowest byte of its first word.
@@ -56,6 +62,10 @@ void read_instruction(Words words, std::vector<Id>& ids) {
         ids.at(words[1]).binding = words[3];
       } else if (words[2] == kDecorationSpecId) {
         ids.at(words[1]).constant_id = words[3];
+      } else if (words[2] == kDecorationNonWritable) {
+        ids.at(words[1]).non_writable = true;
+      } else if (words[2] == kDecorationNonReadable) {
+        ids.at(words[1]).non_readable = true;
       }
       break;
     case kOpTypeImage:
@@ -104,6 +114,22 @@ VkDescriptorType descriptor_type(const std::vector<Id>& ids, const Id& variable)
                                          : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
 }
 
+// Only storage images are written. (The members of a storage block, not the variable, have the
+// decoration of a block that is only read. The blocks of this library are tables.)
+std::uint32_t access_of(const Id& variable, VkDescriptorType type) {
+  if (type != VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) {
+    return ALCOVE_WORK_ACCESS_READ;
+  }
+  std::uint32_t access = ALCOVE_WORK_ACCESS_READ | ALCOVE_WORK_ACCESS_WRITE;
+  if (variable.non_readable) {
+    access &= ~std::uint32_t{ALCOVE_WORK_ACCESS_READ};
+  }
+  if (variable.non_writable) {
+    access &= ~std::uint32_t{ALCOVE_WORK_ACCESS_WRITE};
+  }
+  return access;
+}
+
 }  // namespace
 
 ShaderInterface read_shader_interface(Words module) {
@@ -111,7 +137,8 @@ ShaderInterface read_shader_interface(Words module) {
   ShaderInterface result;
   for (const Id& id : ids) {
     if (id.binding) {
-      result.bindings.push_back({id.name, *id.binding, descriptor_type(ids, id)});
+      const VkDescriptorType type = descriptor_type(ids, id);
+      result.bindings.push_back({id.name, *id.binding, type, access_of(id, type)});
     } else if (id.constant_id) {
       result.constants.push_back({id.name, *id.constant_id});
     }

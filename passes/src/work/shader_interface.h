@@ -19,6 +19,11 @@ struct ShaderBinding {
   std::uint32_t number = 0;  // layout(binding = number)
   // VK_DESCRIPTOR_TYPE_MAX_ENUM if read_shader_interface() does not know the variable's type.
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_MAX_ENUM;
+  std::uint32_t access = 0;  // a combination of AlcoveWorkAccess
+
+  bool is_image() const {
+    return type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER && type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  }
 };
 
 struct ShaderConstant {

@@ -7,7 +7,7 @@
 #include <span>
 #include <type_traits>
 
-#include "alcove/passes/frame.h"
+#include "alcove/passes/work.h"
 #include "maths/make_projection.h"
 #include "maths/slice_line.h"
 #include "work/rigid_transform.h"
@@ -42,19 +42,12 @@ namespace alcove::passes {
       .map_error(unusable);
 }
 
-// Returns the projection of a view over the whole of `texture`.
-[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
-    const Frame& frame, const View& view, framegraph::Texture texture) {
-  const VkExtent3D extent = frame.graph.extent(texture);
-  return projection_of(view, {extent.width, extent.height});
-}
-
 // Returns the rotation or reflection from the space of the normals to view space. `forward_z` says
 // that the normals are in a view space whose z axis points away from the eye.
-[[nodiscard]] inline maths::mat4 view_from_normal(const Frame& frame, bool normals_in_view_space,
+[[nodiscard]] inline maths::mat4 view_from_normal(const View& view, bool normals_in_view_space,
                                                   bool forward_z = false) {
   maths::mat4 result =
-      normals_in_view_space ? maths::mat4(1.0f) : maths::mat4(to_rigid(frame.view.view_from_world));
+      normals_in_view_space ? maths::mat4(1.0f) : maths::mat4(to_rigid(view.view_from_world));
   if (normals_in_view_space && forward_z) {
     result[2][2] = -1.0f;
   }
@@ -123,7 +116,7 @@ namespace alcove::passes {
 template <typename Parameters>
 [[nodiscard]] std::span<const std::byte> bytes_of(const Parameters& parameters) {
   static_assert(std::is_trivially_copyable_v<Parameters> &&
-                sizeof(Parameters) <= Kernels::kMaxParameterBytes);
+                sizeof(Parameters) <= ALCOVE_MAX_WORK_PARAMETER_BYTES);
   return std::as_bytes(std::span(&parameters, 1));
 }
 

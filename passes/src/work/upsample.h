@@ -1,7 +1,7 @@
 // Makes pixels from what is reconstructed at half resolution.
 #pragma once
 
-#include "alcove/passes/reconstruct.h"
+#include "alcove/passes/work.h"
 
 namespace alcove::passes {
 
@@ -20,13 +20,14 @@ struct UpsampleInputs {
   bool half_size_results = false;  // as ReconstructInputs has it: nothing is upsampled
 };
 
-// Adds the pass that writes `result`. Its textures have the size of the results and were created
-// but not yet written. A texture of `result` that is null is not written.
+// Describes the pass that writes `result`. Its textures have the size of the results and were
+// created but not yet written. A texture of `result` that is null is not written.
 //
-// Errors: a view that cannot be used, or a pipeline that cannot be created.
-[[nodiscard]] tl::expected<Occlusion, Error> add_upsample(const Frame& frame,
-                                                          const UpsampleInputs& inputs,
-                                                          const Occlusion& result,
-                                                          const OcclusionSettings& settings);
+// Errors: a view that cannot be used.
+[[nodiscard]] tl::expected<Occlusion, Error> describe_upsample(WorkList& list,
+                                                               const WorkFrame& frame,
+                                                               const UpsampleInputs& inputs,
+                                                               const Occlusion& result,
+                                                               const OcclusionSettings& settings);
 
 }  // namespace alcove::passes

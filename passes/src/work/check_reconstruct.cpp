@@ -1,10 +1,10 @@
-#include "graph/check_reconstruct.h"
+#include "work/check_reconstruct.h"
 
 #include <array>
 #include <cmath>
 #include <string>
 
-#include "graph/check_inputs.h"
+#include "work/check_inputs.h"
 #include "work/format_name.h"
 #include "work/kept_channels.h"
 #include "work/number_text.h"
@@ -27,18 +27,19 @@ tl::expected<void, Error> check_motion(const MotionConvention& motion) {
   return {};
 }
 
-tl::expected<void, Error> check_textures(const Frame& frame, const ReconstructInputs& inputs) {
+tl::expected<void, Error> check_textures(const WorkList& list, const ReconstructInputs& inputs) {
   const auto or_depth = [&](Texture texture) { return texture ? texture : inputs.depth_ndc; };
-  const std::array<NamedInput, 4> needed{{{"depth", inputs.depth_ndc},
-                                          {"normals", inputs.normals},
-                                          {"motion vectors", or_depth(inputs.motion)},
-                                          {"roughness", or_depth(inputs.roughness)}}};
-  return check_inputs(frame.graph, "reconstruct", needed);
+  return check_inputs(list, "reconstruct",
+                      {{"depth", inputs.depth_ndc},
+                       {"normals", inputs.normals},
+                       {"motion vectors", or_depth(inputs.motion)},
+                       {"roughness", or_depth(inputs.roughness)}});
 }
 
 // Checks the sizes of the caller's textures for results.
-tl::expected<void, Error> check_result_sizes(const Frame& frame, const ReconstructInputs& inputs) {
-  const VkExtent3D depth = frame.graph.extent(inputs.depth_ndc);
+tl::expected<void, Error> check_result_sizes(const WorkList& list,
+                                             const ReconstructInputs& inputs) {
+  const VkExtent2D depth = list.size(inputs.depth_ndc);
   const bool half = inputs.half_size_results;
   const VkExtent2D wanted{half ? (depth.width + 1) / 2 : depth.width,
                           half ? (depth.height + 1) / 2 : depth.height};
@@ -49,7 +50,7 @@ tl::expected<void, Error> check_result_sizes(const Frame& frame, const Reconstru
     if (!texture.texture) {
       continue;
     }
-    const VkExtent3D found = frame.graph.extent(texture.texture);
+    const VkExtent2D found = list.size(texture.texture);
     if (found.width != wanted.width || found.height != wanted.height) {
       return tl::unexpected(
           Error{"The pass reconstruct was given a texture for " + std::string(texture.name) +
@@ -63,11 +64,11 @@ tl::expected<void, Error> check_result_sizes(const Frame& frame, const Reconstru
 }
 
 // Checks that the channels beside that of visibility can be read and written back.
-tl::expected<void, Error> check_channel(const Frame& frame, const ReconstructInputs& inputs) {
+tl::expected<void, Error> check_channel(const WorkList& list, const ReconstructInputs& inputs) {
   if (inputs.visibility_channel == VisibilityChannel::all) {
     return {};
   }
-  const VkFormat format = frame.graph.format(inputs.into.visibility);
+  const VkFormat format = list.format(inputs.into.visibility);
   if (channel_index(inputs.visibility_channel) >= kept_channels(format)) {
     return tl::unexpected(Error{"Visibility cannot be written to a channel of the format " +
                                 format_name(format) + "; " + kKeptFormats + "."});
@@ -76,11 +77,11 @@ tl::expected<void, Error> check_channel(const Frame& frame, const ReconstructInp
 }
 
 // Checks size and format of a texture of the raw occlusion, which the caller may have made.
-tl::expected<void, Error> check_blocks(const Frame& frame, Texture depth, std::uint32_t tile_size,
+tl::expected<void, Error> check_blocks(const WorkList& list, Texture depth, std::uint32_t tile_size,
                                        Texture texture, VkFormat format, const char* name) {
-  const VkExtent3D pixels = frame.graph.extent(depth);
-  const VkExtent3D found = frame.graph.extent(texture);
-  const VkFormat found_format = frame.graph.format(texture);
+  const VkExtent2D pixels = list.size(depth);
+  const VkExtent2D found = list.size(texture);
+  const VkFormat found_format = list.format(texture);
   const VkExtent2D blocks{(pixels.width + tile_size - 1) / tile_size,
                           (pixels.height + tile_size - 1) / tile_size};
   if (found.width == blocks.width && found.height == blocks.height && found_format == format) {
@@ -101,11 +102,11 @@ tl::expected<void, Error> check_tracing(const RawOcclusionTextures& raw_occlusio
   return validate(settings);
 }
 
-tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const ReconstructInputs& inputs,
+tl::expected<void, Error> check_raw_occlusion(const WorkList& list, const ReconstructInputs& inputs,
                                               bool half_resolution) {
   const RawOcclusionTextures& raw_occlusion = inputs.raw_occlusion;
   const auto check = [&](Texture texture, VkFormat format, const char* name) {
-    return check_blocks(frame, inputs.depth_ndc, raw_occlusion.tile_size, texture, format, name);
+    return check_blocks(list, inputs.depth_ndc, raw_occlusion.tile_size, texture, format, name);
   };
   return check_tracing(raw_occlusion)
       .and_then([&]() -> tl::expected<void, Error> {
@@ -127,7 +128,7 @@ tl::expected<void, Error> check_raw_occlusion(const Frame& frame, const Reconstr
 
 }  // namespace
 
-tl::expected<void, Error> check_reconstruct(const Frame& frame, const ReconstructInputs& inputs,
+tl::expected<void, Error> check_reconstruct(const WorkList& list, const ReconstructInputs& inputs,
                                             const OcclusionSettings& settings) {
   if (!needs_visibility(settings) && !inputs.raw_occlusion.bent && !inputs.raw_occlusion.lobe) {
     return tl::unexpected(
@@ -143,15 +144,13 @@ tl::expected<void, Error> check_reconstruct(const Frame& frame, const Reconstruc
         }
         return {};
       })
-      .and_then([&] { return check_textures(frame, inputs); })
-      .and_then([&] { return check_result_sizes(frame, inputs); })
-      .and_then([&] { return check_channel(frame, inputs); })
-      .and_then([&] { return check_raw_occlusion(frame, inputs, settings.half_resolution); });
+      .and_then([&] { return check_textures(list, inputs); })
+      .and_then([&] { return check_result_sizes(list, inputs); })
+      .and_then([&] { return check_channel(list, inputs); })
+      .and_then([&] { return check_raw_occlusion(list, inputs, settings.half_resolution); });
 }
 
-tl::expected<ReconstructSizes, Error> reconstruct_sizes(const Frame& frame, Texture depth) {
-  const VkExtent3D extent = frame.graph.extent(depth);
-  const VkExtent2D now{extent.width, extent.height};
+tl::expected<ReconstructSizes, Error> reconstruct_sizes(const WorkFrame& frame, VkExtent2D now) {
   const auto or_now = [&](VkExtent2D given) {
     return given.width == 0 && given.height == 0 ? now : given;
   };

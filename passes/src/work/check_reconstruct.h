@@ -3,12 +3,12 @@
 
 #include <cstdint>
 
-#include "alcove/passes/reconstruct.h"
+#include "alcove/passes/work.h"
 
 namespace alcove::passes {
 
 // Checks settings and textures.
-[[nodiscard]] tl::expected<void, Error> check_reconstruct(const Frame& frame,
+[[nodiscard]] tl::expected<void, Error> check_reconstruct(const WorkList& list,
                                                           const ReconstructInputs& inputs,
                                                           const OcclusionSettings& settings);
 
@@ -19,9 +19,9 @@ struct ReconstructSizes {
   VkExtent2D largest;
 };
 
-// Returns the current size of `depth`, and the previous and the largest size that `frame` states,
+// Returns `now`, the size of the depth, and the previous and the largest size that `frame` states,
 // or an error if a size is larger than the largest.
-[[nodiscard]] tl::expected<ReconstructSizes, Error> reconstruct_sizes(const Frame& frame,
-                                                                      framegraph::Texture depth);
+[[nodiscard]] tl::expected<ReconstructSizes, Error> reconstruct_sizes(const WorkFrame& frame,
+                                                                      VkExtent2D now);
 
 }  // namespace alcove::passes
