@@ -23,9 +23,6 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& sessi
   };
   const CameraMatrices matrices =
       camera_matrices(session.camera, options.view.width, options.view.height);
-  passes::View view;
-  view.clip_from_view = to_matrix(matrices.clip_from_view);
-  view.view_from_world = to_matrix(matrices.view_from_world);
   const HiddenDepths hidden = hidden_depths_of(session.settings);
   Surfaces surfaces;
   surfaces.normals = options.occlusion.normals;
@@ -36,16 +33,17 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& sessi
   surfaces.gbuffer.normal = texture("normals", kNormalFormat);
   surfaces.gbuffer.albedo = texture("albedo and roughness", kAlbedoFormat);
   if (hidden.back_faces) {
-    surfaces.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
+    surfaces.gbuffer.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
   }
   if (hidden.second_layer) {
-    surfaces.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
+    surfaces.gbuffer.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
   }
+  const GbufferView view{matrices.view_from_world, matrices.clip_from_view,
+                         matrices.view_from_world, matrices.clip_from_view};
   const auto outputs =
-      passes::add_occlusion({graph, session.gpu->kernels(), view}, occlusion_inputs(surfaces),
-                            with_roughness(session.settings, surfaces));
+      add_occlusion(pass_frame(graph, *session.gpu, view), surfaces, session.settings);
   if (!outputs) {
-    return tl::unexpected(outputs.error().message);
+    return tl::unexpected(outputs.error());
   }
   for (const framegraph::Texture output :
        {outputs->visibility, outputs->bent_normal, outputs->specular}) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "render/shot.h"
+#include "render/session.h"
 
 namespace alcove::sample {
 

@@ -34,21 +34,17 @@ tl::expected<std::unique_ptr<HostBuffer>, std::string> HostBuffer::create(
   const VkBufferCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
   VkResult result = vkCreateBuffer(device.device(), &info, nullptr, &made->buffer_);
-  VkMemoryRequirements needs{};
   if (result == VK_SUCCESS) {
+    VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device.device(), made->buffer_, &needs);
-    const VkMemoryAllocateInfo allocation{
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = needs.size,
-        .memoryTypeIndex =
-            device.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                         VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)};
-    result = vkAllocateMemory(device.device(), &allocation, nullptr, &made->memory_);
+    result = device.allocate(
+        needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+        made->memory_);
   }
-  void* mapped = nullptr;
   if (result == VK_SUCCESS) {
     result = vkBindBufferMemory(device.device(), made->buffer_, made->memory_, 0);
   }
+  void* mapped = nullptr;
   if (result == VK_SUCCESS) {
     result = vkMapMemory(device.device(), made->memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
   }
@@ -76,15 +72,10 @@ framegraph::ImportedBuffer HostBuffer::import() const {
 
 tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
     const DeviceOptions& options, const framegraph::ExecutorOptions& executor_options) {
-  auto device = VulkanDevice::create(options);
-  if (!device) {
-    return Failure(std::move(device.error()));
-  }
   std::unique_ptr<Gpu> made(new Gpu);
-  made->device_ = std::move(*device);
   made->frames_in_flight_ = executor_options.frames_in_flight;
-  if (const VkResult result = made->create_commands(); result != VK_SUCCESS) {
-    return device_failure("create a command buffer", result);
+  if (auto opened = assign(made->device_, VulkanDevice::create(options)); !opened) {
+    return Failure(std::move(opened.error()));
   }
   framegraph::DeviceHandles handles = handles_of(*made->device_);
   handles.debug_utils = options.validation;
@@ -92,89 +83,44 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
   if (!executor) {
     return Failure(framegraph::to_string(executor.error()));
   }
-  made->executor_ = std::make_unique<framegraph::Executor>(std::move(*executor));
+  made->executor_.emplace(std::move(*executor));
   auto kernels = passes::Kernels::create(handles, executor_options.frames_in_flight);
   if (!kernels) {
     return Failure(std::move(kernels.error().message));
   }
-  made->kernels_ = std::make_unique<passes::Kernels>(std::move(*kernels));
+  made->kernels_.emplace(std::move(*kernels));
   return made;
 }
 
 Gpu::~Gpu() {
   if (device_) {
     vkDeviceWaitIdle(device_->device());
-    vkDestroyFence(device_->device(), fence_, nullptr);
-    vkDestroyCommandPool(device_->device(), pool_, nullptr);
   }
 }
 
-tl::expected<framegraph::FrameReport, std::string> Gpu::record(const Declare& declare,
-                                                               VkCommandBuffer commands,
-                                                               std::uint32_t slot) {
+tl::expected<void, std::string> Gpu::wait(std::uint32_t slot) {
+  return executor_->wait(slot).map_error(
+      [](const framegraph::Errors& errors) { return framegraph::to_string(errors); });
+}
+
+tl::expected<framegraph::FrameReport, std::string> Gpu::submit(const Declare& declare,
+                                                               const framegraph::FrameInfo& frame) {
+  if (auto waited = wait(frame.slot); !waited) {
+    return Failure(std::move(waited.error()));
+  }
   graph_.reset();
-  kernels_->begin_frame(slot);
+  kernels_->begin_frame(frame.slot);
   if (auto declared = declare(graph_); !declared) {
     return Failure(std::move(declared.error()));
   }
-  auto report = executor_->record(graph_, commands, {slot});
-  if (!report) {
-    return Failure(framegraph::to_string(report.error()));
-  }
-  return *report;
+  return executor_->submit(graph_, frame).map_error([](const framegraph::Errors& errors) {
+    return framegraph::to_string(errors);
+  });
 }
 
 tl::expected<framegraph::FrameReport, std::string> Gpu::run(const Declare& declare) {
-  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  VkResult result = vkBeginCommandBuffer(commands_, &begin);
-  if (result != VK_SUCCESS) {
-    return device_failure("begin a frame's commands", result);
-  }
-  auto report = record(declare, commands_, 0);
-  result = vkEndCommandBuffer(commands_);
-  if (!report) {
-    return report;
-  }
-  if (result == VK_SUCCESS) {
-    result = submit_and_wait();
-  }
-  if (result != VK_SUCCESS) {
-    return device_failure("run a frame", result);
-  }
-  return report;
-}
-
-VkResult Gpu::submit_and_wait() {
-  const VkSubmitInfo submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                            .commandBufferCount = 1,
-                            .pCommandBuffers = &commands_};
-  const VkDevice device = device_->device();
-  VkResult result = vkQueueSubmit(device_->queue(), 1, &submit, fence_);
-  if (result == VK_SUCCESS) {
-    result = vkWaitForFences(device, 1, &fence_, VK_TRUE, UINT64_MAX);
-  }
-  return result == VK_SUCCESS ? vkResetFences(device, 1, &fence_) : result;
-}
-
-VkResult Gpu::create_commands() {
-  const VkDevice device = device_->device();
-  const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                     .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                     .queueFamilyIndex = device_->queue_family()};
-  VkResult result = vkCreateCommandPool(device, &pool, nullptr, &pool_);
-  if (result == VK_SUCCESS) {
-    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                           .commandPool = pool_,
-                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                           .commandBufferCount = 1};
-    result = vkAllocateCommandBuffers(device, &info, &commands_);
-  }
-  if (result == VK_SUCCESS) {
-    const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    result = vkCreateFence(device, &fence, nullptr, &fence_);
-  }
-  return result;
+  return submit(declare).and_then(
+      [&](const framegraph::FrameReport& report) { return wait().map([&] { return report; }); });
 }
 
 Texture add_copy(Graph& graph, const HostBuffer& source, Texture target) {
@@ -201,7 +147,8 @@ Texture add_mips(Graph& graph, Texture texture, std::uint32_t mips) {
     pass.record([texture, mip](RecordContext& context) {
       const auto corner = [&](std::uint32_t of) {
         const VkExtent3D size = context.extent(texture, of);
-        return VkOffset3D{static_cast<int32_t>(size.width), static_cast<int32_t>(size.height), 1};
+        return VkOffset3D{static_cast<std::int32_t>(size.width),
+                          static_cast<std::int32_t>(size.height), 1};
       };
       const VkImageBlit2 region{.sType = VK_STRUCTURE_TYPE_IMAGE_BLIT_2,
                                 .srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1},

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
@@ -57,8 +58,6 @@ class Gpu {
   [[nodiscard]] static tl::expected<std::unique_ptr<Gpu>, std::string> create(
       const DeviceOptions& options = {}, const framegraph::ExecutorOptions& executor = {});
   ~Gpu();
-  Gpu(const Gpu&) = delete;
-  Gpu& operator=(const Gpu&) = delete;
 
   const VulkanDevice& device() const { return *device_; }
   passes::Kernels& kernels() { return *kernels_; }
@@ -68,29 +67,25 @@ class Gpu {
   // the error has one sentence for each fault, on separate lines.
   using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&)>;
   [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> run(const Declare& declare);
-  // Records a frame that `declare` declares, for callers with several frames in flight, who submit
-  // `commands` themselves. `commands` must be in the recording state and belong to the device's
-  // queue family. `slot` cycles from 0 to frames_in_flight() - 1. The device must have finished the
-  // last frame of the slot; after an error it must have finished all recorded frames.
-  [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> record(const Declare& declare,
-                                                                          VkCommandBuffer commands,
-                                                                          std::uint32_t slot);
+  // Declares a frame and submits it without waiting, for callers with several frames in flight.
+  // frame.slot cycles from 0 to frames_in_flight() - 1. Waits for the last frame of the slot first.
+  [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> submit(
+      const Declare& declare, const framegraph::FrameInfo& frame = {});
+  // Waits until the device has finished the last frame of a slot.
+  [[nodiscard]] tl::expected<void, std::string> wait(std::uint32_t slot = 0);
   std::uint32_t frames_in_flight() const { return frames_in_flight_; }
 
-  // Timings of the passes of the last frame.
-  std::span<const framegraph::PassTiming> timings() { return executor_->timings(); }
+  // Timings of the passes of the last frame of a slot, which the device must have finished.
+  std::span<const framegraph::PassTiming> timings(std::uint32_t slot = 0) {
+    return executor_->timings(slot);
+  }
 
  private:
   Gpu() = default;
-  VkResult create_commands();
-  VkResult submit_and_wait();
 
   std::unique_ptr<VulkanDevice> device_;
-  VkCommandPool pool_ = VK_NULL_HANDLE;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  VkFence fence_ = VK_NULL_HANDLE;
-  std::unique_ptr<framegraph::Executor> executor_;
-  std::unique_ptr<passes::Kernels> kernels_;
+  std::optional<framegraph::Executor> executor_;
+  std::optional<passes::Kernels> kernels_;
   framegraph::Graph graph_;
   std::uint32_t frames_in_flight_ = 1;
 };

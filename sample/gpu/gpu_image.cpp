@@ -43,12 +43,7 @@ tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(
     if (needs.size > owner.max_allocation()) {
       return too_large(name, needs.size, owner);
     }
-    const VkMemoryAllocateInfo allocation{
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = needs.size,
-        .memoryTypeIndex =
-            owner.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
-    result = vkAllocateMemory(device, &allocation, nullptr, &made->memory_);
+    result = owner.allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, made->memory_);
   }
   if (result == VK_SUCCESS) {
     result = vkBindImageMemory(device, made->image_, made->memory_, 0);
@@ -85,6 +80,7 @@ framegraph::ImportedTexture GpuImage::import() const {
 
 framegraph::ImportedTexture GpuImage::import_to_fill(framegraph::State final_state) const {
   framegraph::ImportedTexture result = import();
+  result.initial_state = {final_state.stages, 0, VK_IMAGE_LAYOUT_UNDEFINED};
   result.final_state = final_state;
   return result;
 }

@@ -25,7 +25,8 @@ class GpuImage {
   VkImageView view() const { return view_; }  // null if the usage allows none
   std::uint32_t mips() const { return desc_.mips; }
 
-  // Returns the import for a frame that overwrites the image and leaves it in `final_state`.
+  // Returns the import for a frame that overwrites the image and leaves it in `final_state`, which
+  // is also the state, if any, in which the frame before left it.
   framegraph::ImportedTexture import_to_fill(framegraph::State final_state) const;
   // Returns the import for a frame that finds the image in `initial_state`, reads it, and leaves it
   // in that state.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 
 namespace alcove::sample {
 namespace {
@@ -13,41 +12,27 @@ constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 constexpr const char* kQueueSubmitCheck =
     "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT";
 
+constexpr VkApplicationInfo kApplication{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                         .pApplicationName = "alcove",
+                                         .apiVersion = VK_API_VERSION_1_3};
+
 using Failure = tl::unexpected<std::string>;
 
 Failure failure(std::string what, VkResult result) {
   return Failure(std::move(what) + " (" + std::string(result_name(result)) + ").");
 }
 
-bool has_layer(const char* name) {
-  uint32_t count = 0;
-  vkEnumerateInstanceLayerProperties(&count, nullptr);
-  std::vector<VkLayerProperties> layers(count);
-  vkEnumerateInstanceLayerProperties(&count, layers.data());
-  return std::any_of(layers.begin(), layers.end(), [&](const VkLayerProperties& layer) {
-    return std::strcmp(layer.layerName, name) == 0;
-  });
-}
-
-// The structures of the Vulkan 1.3 features that Alcove uses, as a pNext chain. fill() queries them
-// from the device.
+// The structures of the Vulkan 1.3 features that Alcove uses, as a pNext chain.
 struct Features {
   VkPhysicalDeviceVulkan13Features v13{.sType =
                                            VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-  VkPhysicalDeviceVulkan12Features v12{.sType =
-                                           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceFeatures2 all{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-
-  Features() { link(); }
-  Features(const Features&) = delete;
-  Features& operator=(const Features&) = delete;
-  void link() {
-    v12.pNext = &v13;
-    all.pNext = &v12;
-  }
+  VkPhysicalDeviceVulkan12Features v12{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &v13};
+  VkPhysicalDeviceFeatures2 all{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                .pNext = &v12};
 };
 
-std::string missing_features(VkPhysicalDevice device, uint32_t api_version) {
+std::string missing_features(VkPhysicalDevice device, std::uint32_t api_version) {
   if (api_version < VK_API_VERSION_1_3) {
     return "Vulkan 1.3";
   }
@@ -70,13 +55,13 @@ std::string missing_features(VkPhysicalDevice device, uint32_t api_version) {
   return missing;
 }
 
-uint32_t find_queue_family(VkPhysicalDevice device) {
-  uint32_t count = 0;
+std::uint32_t find_queue_family(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
   constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < count; ++i) {
     if ((families[i].queueFlags & kNeeded) == kNeeded) {
       return i;
     }
@@ -109,7 +94,7 @@ DeviceSummary summarise(VkPhysicalDevice device) {
 }
 
 std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
-  uint32_t count = 0;
+  std::uint32_t count = 0;
   vkEnumeratePhysicalDevices(instance, &count, nullptr);
   std::vector<VkPhysicalDevice> devices(count);
   vkEnumeratePhysicalDevices(instance, &count, devices.data());
@@ -133,32 +118,21 @@ int preference(VkPhysicalDeviceType type) {
 }  // namespace
 
 std::string_view result_name(VkResult result) {
-  switch (result) {
-    case VK_SUCCESS:
-      return "VK_SUCCESS";
-    case VK_TIMEOUT:
-      return "VK_TIMEOUT";
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-      return "VK_ERROR_OUT_OF_HOST_MEMORY";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-    case VK_ERROR_INITIALIZATION_FAILED:
-      return "VK_ERROR_INITIALIZATION_FAILED";
-    case VK_ERROR_DEVICE_LOST:
-      return "VK_ERROR_DEVICE_LOST";
-    case VK_ERROR_LAYER_NOT_PRESENT:
-      return "VK_ERROR_LAYER_NOT_PRESENT";
-    case VK_ERROR_EXTENSION_NOT_PRESENT:
-      return "VK_ERROR_EXTENSION_NOT_PRESENT";
-    case VK_ERROR_FEATURE_NOT_PRESENT:
-      return "VK_ERROR_FEATURE_NOT_PRESENT";
-    case VK_ERROR_INCOMPATIBLE_DRIVER:
-      return "VK_ERROR_INCOMPATIBLE_DRIVER";
-    case VK_ERROR_OUT_OF_DATE_KHR:
-      return "VK_ERROR_OUT_OF_DATE_KHR";
-    default:
-      return "a Vulkan error";
-  }
+  constexpr std::pair<VkResult, std::string_view> kNames[] = {
+      {VK_SUCCESS, "VK_SUCCESS"},
+      {VK_TIMEOUT, "VK_TIMEOUT"},
+      {VK_ERROR_OUT_OF_HOST_MEMORY, "VK_ERROR_OUT_OF_HOST_MEMORY"},
+      {VK_ERROR_OUT_OF_DEVICE_MEMORY, "VK_ERROR_OUT_OF_DEVICE_MEMORY"},
+      {VK_ERROR_INITIALIZATION_FAILED, "VK_ERROR_INITIALIZATION_FAILED"},
+      {VK_ERROR_DEVICE_LOST, "VK_ERROR_DEVICE_LOST"},
+      {VK_ERROR_LAYER_NOT_PRESENT, "VK_ERROR_LAYER_NOT_PRESENT"},
+      {VK_ERROR_EXTENSION_NOT_PRESENT, "VK_ERROR_EXTENSION_NOT_PRESENT"},
+      {VK_ERROR_FEATURE_NOT_PRESENT, "VK_ERROR_FEATURE_NOT_PRESENT"},
+      {VK_ERROR_INCOMPATIBLE_DRIVER, "VK_ERROR_INCOMPATIBLE_DRIVER"},
+      {VK_ERROR_OUT_OF_DATE_KHR, "VK_ERROR_OUT_OF_DATE_KHR"}};
+  const auto found =
+      std::ranges::find(kNames, result, &std::pair<VkResult, std::string_view>::first);
+  return found == std::end(kNames) ? "a Vulkan error" : found->second;
 }
 
 tl::unexpected<std::string> too_large(const std::string& what, VkDeviceSize bytes,
@@ -174,6 +148,13 @@ tl::unexpected<std::string> device_failure(const std::string& what, VkResult res
   return failure("The device could not " + what, result);
 }
 
+tl::expected<void, std::string> check(VkResult result, const std::string& what) {
+  if (result != VK_SUCCESS) {
+    return device_failure(what, result);
+  }
+  return {};
+}
+
 VKAPI_ATTR VkBool32 VKAPI_CALL VulkanDevice::receive_message(
     VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/, VkDebugUtilsMessageTypeFlagsEXT /*types*/,
     const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {
@@ -182,9 +163,6 @@ VKAPI_ATTR VkBool32 VKAPI_CALL VulkanDevice::receive_message(
 }
 
 tl::expected<void, std::string> VulkanDevice::create_instance(const DeviceOptions& options) {
-  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                      .pApplicationName = "alcove",
-                                      .apiVersion = VK_API_VERSION_1_3};
   std::vector<const char*> extensions = options.surface_extensions;
   std::vector<const char*> layers;
   const VkDebugUtilsMessengerCreateInfoEXT messenger{
@@ -202,25 +180,27 @@ tl::expected<void, std::string> VulkanDevice::create_instance(const DeviceOption
                                          .enabledValidationFeatureCount = 1,
                                          .pEnabledValidationFeatures = checks};
   if (options.validation) {
-    if (!has_layer(kValidationLayer)) {
-      return Failure(
-          "The Khronos validation layer is not installed; on Debian, install the package "
-          "vulkan-validationlayers.");
-    }
 #ifndef _WIN32
     setenv("VK_LAYER_ENABLES", kQueueSubmitCheck, 1);
 #endif
     layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
-  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                  .pNext = options.validation ? &features : nullptr,
-                                  .pApplicationInfo = &application,
-                                  .enabledLayerCount = static_cast<uint32_t>(layers.size()),
-                                  .ppEnabledLayerNames = layers.data(),
-                                  .enabledExtensionCount = static_cast<uint32_t>(extensions.size()),
-                                  .ppEnabledExtensionNames = extensions.data()};
-  if (const VkResult result = vkCreateInstance(&info, nullptr, &instance_); result != VK_SUCCESS) {
+  const VkInstanceCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+      .pNext = options.validation ? &features : nullptr,
+      .pApplicationInfo = &kApplication,
+      .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
+      .ppEnabledLayerNames = layers.data(),
+      .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+      .ppEnabledExtensionNames = extensions.data()};
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (result == VK_ERROR_LAYER_NOT_PRESENT) {
+    return Failure(
+        "The Khronos validation layer is not installed; on Debian, install the package "
+        "vulkan-validationlayers.");
+  }
+  if (result != VK_SUCCESS) {
     return failure(
         "No Vulkan 1.3 instance could be created; install a Vulkan driver (on Debian, "
         "mesa-vulkan-drivers brings a software one)",
@@ -246,7 +226,7 @@ tl::expected<void, std::string> VulkanDevice::choose_physical_device(int index) 
                    std::to_string(devices.size() - 1) + "; `alcove doctor` lists them.");
   }
   if (index >= 0) {
-    physical_device_ = devices[static_cast<size_t>(index)];
+    physical_device_ = devices[static_cast<std::size_t>(index)];
     if (const DeviceSummary summary = summarise(physical_device_); !summary.missing.empty()) {
       return Failure("The device " + summary.name + " lacks " + summary.missing + ".");
     }
@@ -304,12 +284,13 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
   if (presentation) {
     extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   }
-  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                .pNext = &enabled.all,
-                                .queueCreateInfoCount = 1,
-                                .pQueueCreateInfos = &queue,
-                                .enabledExtensionCount = static_cast<uint32_t>(extensions.size()),
-                                .ppEnabledExtensionNames = extensions.data()};
+  const VkDeviceCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+      .pNext = &enabled.all,
+      .queueCreateInfoCount = 1,
+      .pQueueCreateInfos = &queue,
+      .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+      .ppEnabledExtensionNames = extensions.data()};
   const VkResult result = vkCreateDevice(physical_device_, &info, nullptr, &device_);
   if (result != VK_SUCCESS) {
     return failure("The device " + std::string(properties_.deviceName) + " could not be opened",
@@ -347,8 +328,17 @@ VulkanDevice::~VulkanDevice() {
   }
 }
 
-uint32_t VulkanDevice::memory_type(uint32_t type_bits, VkMemoryPropertyFlags flags) const {
-  for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+VkResult VulkanDevice::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags,
+                                VkDeviceMemory& memory) const {
+  const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                  .allocationSize = needs.size,
+                                  .memoryTypeIndex = memory_type(needs.memoryTypeBits, flags)};
+  return vkAllocateMemory(device_, &info, nullptr, &memory);
+}
+
+std::uint32_t VulkanDevice::memory_type(std::uint32_t type_bits,
+                                        VkMemoryPropertyFlags flags) const {
+  for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
     if ((type_bits >> i & 1u) != 0 && (memory_.memoryTypes[i].propertyFlags & flags) == flags) {
       return i;
     }
@@ -357,11 +347,8 @@ uint32_t VulkanDevice::memory_type(uint32_t type_bits, VkMemoryPropertyFlags fla
 }
 
 tl::expected<std::vector<DeviceSummary>, std::string> list_devices() {
-  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                      .pApplicationName = "alcove",
-                                      .apiVersion = VK_API_VERSION_1_3};
   const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                  .pApplicationInfo = &application};
+                                  .pApplicationInfo = &kApplication};
   VkInstance instance = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateInstance(&info, nullptr, &instance); result != VK_SUCCESS) {
     return failure("No Vulkan 1.3 instance could be created; install a Vulkan driver", result);

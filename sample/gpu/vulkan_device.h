@@ -2,10 +2,12 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 namespace alcove::sample {
@@ -26,8 +28,8 @@ struct DeviceOptions {
 // A physical device as `alcove doctor` lists it.
 struct DeviceSummary {
   std::string name;
-  std::string driver;    // name and version as the driver reports them
-  uint32_t api_version;  // VK_MAKE_API_VERSION
+  std::string driver;         // name and version as the driver reports them
+  std::uint32_t api_version;  // VK_MAKE_API_VERSION
   VkPhysicalDeviceType type;
   std::string missing;  // requirements of Alcove that the device lacks; empty if it has all
 };
@@ -47,13 +49,12 @@ class VulkanDevice {
   VkPhysicalDevice physical_device() const { return physical_device_; }
   VkDevice device() const { return device_; }
   VkQueue queue() const { return queue_; }
-  uint32_t queue_family() const { return queue_family_; }
+  std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   const std::string& driver() const { return driver_; }
   // Returns the largest anisotropy for samplers: 1 on software devices and on devices without
   // anisotropic filtering.
   float max_anisotropy() const { return max_anisotropy_; }
-
   // Returns the largest allocation in bytes, which also limits the size of buffers and images.
   VkDeviceSize max_allocation() const { return max_allocation_; }
 
@@ -62,7 +63,11 @@ class VulkanDevice {
 
   // Returns the first memory type allowed by `type_bits` with all of `flags`, or UINT32_MAX if
   // there is none.
-  uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags flags) const;
+  std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags flags) const;
+
+  // Allocates memory of the first type that `needs` allows and that has all of `flags`.
+  [[nodiscard]] VkResult allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags,
+                                  VkDeviceMemory& memory) const;
 
  private:
   VulkanDevice() = default;
@@ -78,7 +83,7 @@ class VulkanDevice {
   VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
-  uint32_t queue_family_ = 0;
+  std::uint32_t queue_family_ = 0;
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   std::string driver_;
@@ -95,9 +100,18 @@ class VulkanDevice {
 // Returns the error "The device could not WHAT (RESULT).", for example with RESULT
 // VK_ERROR_DEVICE_LOST.
 [[nodiscard]] tl::unexpected<std::string> device_failure(const std::string& what, VkResult result);
+// Returns that error if `result` is not VK_SUCCESS.
+[[nodiscard]] tl::expected<void, std::string> check(VkResult result, const std::string& what);
 // Returns the error for an object of `bytes` bytes that exceeds VulkanDevice::max_allocation().
 // Drivers may crash if they are asked for more.
 [[nodiscard]] tl::unexpected<std::string> too_large(const std::string& what, VkDeviceSize bytes,
                                                     const VulkanDevice& device);
+
+// Moves the value of `result` to `target`, or returns its error.
+template <typename T>
+[[nodiscard]] tl::expected<void, std::string> assign(T& target,
+                                                     tl::expected<T, std::string> result) {
+  return std::move(result).map([&](T&& value) { target = std::move(value); });
+}
 
 }  // namespace alcove::sample

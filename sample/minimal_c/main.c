@@ -205,7 +205,9 @@ int main(int argc, char** argv) {
   clip[5] = -kFocal; /* Vulkan's clip space has y down */
   clip[11] = -1;
   clip[14] = kNear;
-  for (int i = 0; i < 4; ++i) view.camera.view_from_world[5 * i] = 1; /* the eye is the origin */
+  for (int i = 0; i < 4; ++i) {
+    view.camera.view_from_world[5 * i] = 1; /* the eye is the origin */
+  }
   view.previous_camera = view.camera;
   view.depth = (AlcoveImage){
       .image = depth.image,

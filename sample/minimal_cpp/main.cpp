@@ -29,24 +29,23 @@ constexpr std::uint32_t kWidth = 480, kHeight = 270, kFrames = 32;
 constexpr float kNear = 0.1f;     // The projection is reversed and infinite: depth = near / z.
 constexpr float kFocal = 1.732f;  // 1 / tan(fov_y / 2), 60 degrees
 
-[[noreturn]] void fail(const std::string& what) {
-  std::cerr << "alcove_minimal_cpp: " << what << "\n";
-  std::exit(1);
+void require(bool condition, const std::string& message) {
+  if (!condition) {
+    std::cerr << "alcove_minimal_cpp: " << message << "\n";
+    std::exit(1);
+  }
 }
 
-void check(VkResult result, const char* what) {
-  if (result != VK_SUCCESS) fail(std::string(what) + " failed");
+void check(VkResult result, const std::string& what) {
+  require(result == VK_SUCCESS, what + " failed");
 }
 
-template <typename T>
-T value_of(tl::expected<T, framegraph::Errors> result) {
-  if (!result) fail(framegraph::to_string(result.error()));
-  return std::move(*result);
-}
+std::string text(const framegraph::Errors& errors) { return framegraph::to_string(errors); }
+std::string text(const passes::Error& error) { return error.message; }
 
-template <typename T>
-T value_of(tl::expected<T, passes::Error> result) {
-  if (!result) fail(result.error().message);
+template <typename T, typename Error>
+T value_of(tl::expected<T, Error> result) {
+  require(result.has_value(), result ? "" : text(result.error()));
   return std::move(*result);
 }
 
@@ -63,7 +62,7 @@ framegraph::DeviceHandles create_device() {
   check(vkCreateInstance(&instance, nullptr, &handles.instance), "vkCreateInstance");
   std::uint32_t count = 1;
   vkEnumeratePhysicalDevices(handles.instance, &count, &handles.physical_device);
-  if (count == 0) fail("there is no Vulkan device");
+  require(count != 0, "there is no Vulkan device");
   vkGetPhysicalDeviceQueueFamilyProperties(handles.physical_device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(handles.physical_device, &count, families.data());
@@ -71,7 +70,7 @@ framegraph::DeviceHandles create_device() {
     constexpr VkQueueFlags kWanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     return (f.queueFlags & kWanted) == kWanted;
   });
-  if (family == families.end()) fail("no queue family draws and computes");
+  require(family != families.end(), "no queue family draws and computes");
   framegraph::QueueHandle& queue = handles.queues[0];
   queue.family = static_cast<std::uint32_t>(family - families.begin());
 
@@ -194,7 +193,7 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) fail("usage: alcove_minimal_cpp FILE.pgm");
+  require(argc == 2, "usage: alcove_minimal_cpp FILE.pgm");
   const framegraph::DeviceHandles handles = create_device();
   const HostBuffer upload = create_host_buffer(handles, kWidth * kHeight * sizeof(float));
   const HostBuffer result = create_host_buffer(handles, kWidth * kHeight);
@@ -210,14 +209,15 @@ int main(int argc, char** argv) {
       kernels.begin_frame(0);
       declare(graph, kernels, upload, result, i);
       (void)value_of(executor.submit(graph));
-      if (const auto done = executor.wait(); !done) fail(framegraph::to_string(done.error()));
+      const auto done = executor.wait();
+      require(done.has_value(), done ? "" : text(done.error()));
     }
   }
   std::ofstream file(argv[1], std::ios::binary);
   file << "P5\n" << kWidth << " " << kHeight << "\n255\n";
   file.write(static_cast<const char*>(result.mapped), kWidth * kHeight);
   file.close();
-  if (!file) fail(std::string(argv[1]) + " cannot be written");
+  require(file.good(), std::string(argv[1]) + " cannot be written");
 
   for (const HostBuffer& buffer : {upload, result}) {
     vkDestroyBuffer(handles.device, buffer.import.buffer, nullptr);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -9,8 +11,11 @@
 #include "alcove/framegraph/executor.h"
 #include "alcove/passes/occlusion.h"
 #include "gpu/gpu.h"
+#include "gpu/gpu_image.h"
 #include "render/gbuffer.h"
-#include "render/normal_source.h"
+#include "render/probe.h"
+#include "render/read_back.h"
+#include "render/surfaces.h"
 #include "scene/environment.h"
 #include "support/image.h"
 
@@ -79,9 +84,6 @@ class FrameRenderer {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<FrameRenderer>, std::string> create(
       Gpu& gpu, const Scene& scene, VkExtent2D size, NormalSource normals);
-  ~FrameRenderer();
-  FrameRenderer(const FrameRenderer&) = delete;
-  FrameRenderer& operator=(const FrameRenderer&) = delete;
 
   // Draws a frame without reading images back. It is used for the frames before the one whose
   // images are needed.
@@ -90,12 +92,47 @@ class FrameRenderer {
   [[nodiscard]] tl::expected<FrameImages, std::string> draw_and_read(const FrameRequest& request);
 
   // Returns the memory of the occlusion passes' transients in the most recent frame.
-  const framegraph::MemoryStatistics& memory() const;
+  const framegraph::MemoryStatistics& memory() const { return memory_; }
 
  private:
-  struct State;
-  explicit FrameRenderer(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  // The textures of a frame that computes occlusion.
+  struct DeclaredFrame {
+    passes::Frame frame;
+    Surfaces surfaces;
+    passes::OcclusionOutputs outputs;
+    std::vector<framegraph::Texture> specular_occlusion;
+  };
+
+  FrameRenderer(Gpu& gpu, VkExtent2D size, NormalSource normals)
+      : gpu_(gpu), size_(size), normals_(normals) {}
+  tl::expected<void, std::string> create_target(std::size_t target);
+  // Returns whether the texture of this target is drawn for these hidden depths.
+  static bool is_drawn(const GbufferTarget& target, const HiddenDepths& hidden);
+  // Draws the g-buffer, unless it was already drawn with the same view and the same previous view.
+  tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
+  tl::expected<DeclaredFrame, std::string> declare_occlusion(framegraph::Graph& graph,
+                                                             const FrameRequest& request);
+  // Reads back the textures of declare_occlusion() and, below, of the passes that it adds.
+  static void read_occlusion(framegraph::Graph& graph, const DeclaredFrame& declared,
+                             ReadBack& read_back, FrameImages& images);
+  tl::expected<void, std::string> declare_light(framegraph::Graph& graph,
+                                                const FrameRequest& request,
+                                                const DeclaredFrame& declared, const Probe* probe,
+                                                ReadBack& read_back, FrameImages& images);
+  void append_times(FrameCost& cost, bool occlusion);
+
+  Gpu& gpu_;
+  VkExtent2D size_;
+  NormalSource normals_;
+  std::unique_ptr<GbufferRenderer> gbuffer_;
+  // The view that the targets were drawn with; null before the first drawing.
+  std::optional<GbufferView> drawn_view_;
+  HiddenDepths drawn_depths_;  // the hidden depths that were drawn for that view
+  // All hidden depths that were ever drawn; null: nothing was drawn yet.
+  std::optional<HiddenDepths> compiled_;
+  std::vector<PassTime> gbuffer_times_;  // times of the last drawing of the g-buffer
+  std::array<std::unique_ptr<GpuImage>, kGbufferTargets.size()> targets_;
+  framegraph::MemoryStatistics memory_;
 };
 
 }  // namespace alcove::sample

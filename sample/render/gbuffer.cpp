@@ -4,14 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
-#include <optional>
 #include <utility>
-#include <vector>
 
-#include "render/gbuffer_pipelines.h"
-#include "render/gpu_meshes.h"
-#include "render/gpu_textures.h"
 #include "render/shaders/gbuffer.h"
+#include "spirv/gbuffer_fragment.h"
+#include "spirv/gbuffer_vertex.h"
+#include "spirv/second_layer_fragment.h"
+#include "spirv/second_layer_vertex.h"
 
 namespace alcove::sample {
 namespace {
@@ -51,260 +50,190 @@ maths::GbufferMaterial parameters_of(const Material& material) {
   return out;
 }
 
+constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
+                                                 kEmissiveFormat};
+
+// The numbers of the descriptor sets. Each material has a set of its own, because few devices allow
+// hundreds of textures in one set.
+constexpr std::uint32_t kFrameSet = 0;     // the parameters of the frame, with a dynamic offset
+constexpr std::uint32_t kLayerSet = 1;     // only of the second layer: the depth of the first one
+constexpr std::uint32_t kMaterialSet = 2;  // the textures and the parameters of a material
+
+// Locations are those of shaders/gbuffer_vertex.h. The attributes that the second layer reads come
+// first.
+constexpr VkVertexInputAttributeDescription attribute(std::uint32_t location, VertexStream stream,
+                                                      VkFormat format, std::uint32_t offset = 0) {
+  return {location, static_cast<std::uint32_t>(stream), format, offset};
+}
+constexpr std::array kAttributes{
+    attribute(0, VertexStream::position, VK_FORMAT_R32G32B32_SFLOAT),
+    attribute(2, VertexStream::uv, VK_FORMAT_R32G32_SFLOAT),
+    attribute(3, VertexStream::second_uv, VK_FORMAT_R32G32_SFLOAT),
+    attribute(5, VertexStream::color, VK_FORMAT_R8G8B8A8_UNORM),
+    attribute(6, VertexStream::instance, VK_FORMAT_R32G32B32A32_SFLOAT),
+    attribute(7, VertexStream::instance, VK_FORMAT_R32G32B32A32_SFLOAT, 16),
+    attribute(8, VertexStream::instance, VK_FORMAT_R32G32B32A32_SFLOAT, 32),
+    attribute(1, VertexStream::normals, VK_FORMAT_R16G16B16A16_SNORM),
+    attribute(4, VertexStream::tangent, VK_FORMAT_R16G16B16A16_SNORM)};
+constexpr std::size_t kDepthAttributes = 7;
+
 }  // namespace
 
-struct GbufferRenderer::State {
-  // The state with which the scene is drawn in one pass.
-  struct Drawing {
-    bool reversed_z = false;
-    std::uint32_t parameters_at = 0;
-    VkCullModeFlags culled = VK_CULL_MODE_BACK_BIT;     // of single-sided materials
-    VkCullModeFlags double_culled = VK_CULL_MODE_NONE;  // of double-sided ones
-    // Depth of the first layer, which the pass of the second layer reads; may be null.
-    Texture first;
+tl::expected<void, std::string> GbufferRenderer::upload(const Scene& scene) {
+  const VulkanDevice& device = gpu_.device();
+  const auto uniform = [&](std::size_t stride, std::size_t count) {
+    return HostBuffer::create(device, VkDeviceSize{stride} * std::max<std::size_t>(count, 1),
+                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   };
-  explicit State(Gpu& owner) : gpu(owner), device(owner.device().device()) {}
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State();
-
-  tl::expected<void, std::string> upload(const Scene& scene);
-  tl::expected<void, std::string> create_sets(const Scene& scene);
-  void write_sets(const Scene& scene) const;
-  // Writes the parameters of a view, and returns their offset in the parameter buffer.
-  std::uint32_t write_parameters(const GbufferView& view);
-  void record(RecordContext& context, const Gbuffer& gbuffer, const Drawing& drawing) const;
-  void bind_first_layer(RecordContext& context, Texture depth) const;
-  void begin_rendering(RecordContext& context, const Gbuffer& gbuffer, bool reversed_z) const;
-
-  Gpu& gpu;
-  VkDevice device;
-  std::vector<bool> double_sided;  // by material
-  std::unique_ptr<GpuMeshes> meshes;
-  std::unique_ptr<HostBuffer> materials;   // GbufferMaterial at multiples of kMaterialStride
-  std::unique_ptr<HostBuffer> parameters;  // one set of parameters for each frame in flight
-  std::optional<GbufferView> written;      // the view that was written most recently
-  std::uint32_t latest = 0;                // offset of its parameters
-  std::unique_ptr<GpuTextures> textures;
-  std::unique_ptr<GbufferPipelines> pipelines;
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-  VkDescriptorSet frame_set = VK_NULL_HANDLE;
-  std::vector<VkDescriptorSet> layer_sets;  // one for each frame in flight
-  std::vector<VkDescriptorSet> material_sets;
-};
-
-GbufferRenderer::State::~State() { vkDestroyDescriptorPool(device, pool, nullptr); }
-
-tl::expected<void, std::string> GbufferRenderer::State::upload(const Scene& scene) {
-  auto uploaded = GpuMeshes::create(gpu.device(), scene);
-  if (!uploaded) {
-    return Failure(std::move(uploaded.error()));
-  }
-  meshes = std::move(*uploaded);
-  auto constants = HostBuffer::create(
-      gpu.device(),
-      VkDeviceSize{kMaterialStride} * std::max<std::size_t>(scene.materials.size(), 1),
-      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  if (!constants) {
-    return Failure(std::move(constants.error()));
-  }
-  materials = std::move(*constants);
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+  auto done = assign(meshes_, GpuMeshes::create(device, scene))
+                  .and_then([&] {
+                    return assign(materials_, uniform(kMaterialStride, scene.materials.size()));
+                  })
+                  .and_then([&] {
+                    return assign(parameters_, uniform(kParameterStride, gpu_.frames_in_flight()));
+                  })
+                  .and_then([&] { return assign(textures_, GpuTextures::create(gpu_, scene)); });
+  for (std::size_t i = 0; done && i < scene.materials.size(); ++i) {
     const maths::GbufferMaterial material = parameters_of(scene.materials[i]);
-    std::memcpy(materials->bytes().data() + i * kMaterialStride, &material, sizeof(material));
-    double_sided.push_back(scene.materials[i].double_sided);
+    std::memcpy(materials_->bytes().data() + i * kMaterialStride, &material, sizeof(material));
+    double_sided_.push_back(scene.materials[i].double_sided);
   }
-  auto uniform =
-      HostBuffer::create(gpu.device(), VkDeviceSize{kParameterStride} * gpu.frames_in_flight(),
-                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  if (!uniform) {
-    return Failure(std::move(uniform.error()));
-  }
-  parameters = std::move(*uniform);
-  auto made = GpuTextures::create(gpu, scene);
-  if (!made) {
-    return Failure(std::move(made.error()));
-  }
-  textures = std::move(*made);
-  return {};
+  return done;
 }
 
-tl::expected<void, std::string> GbufferRenderer::State::create_sets(const Scene& scene) {
-  const uint32_t frames = gpu.frames_in_flight();
-  const auto count = static_cast<uint32_t>(scene.materials.size());
-  const std::array<VkDescriptorPoolSize, 4> sizes{
-      {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1},
-       {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, std::max(count, 1u)},
-       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, maths::kMaterialTextures * std::max(count, 1u)},
-       {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, frames}}};
-  const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                             .maxSets = 1 + frames + count,
-                                             .poolSizeCount = static_cast<uint32_t>(sizes.size()),
-                                             .pPoolSizes = sizes.data()};
-  VkResult result = vkCreateDescriptorPool(device, &pool_info, nullptr, &pool);
-  const auto allocate = [&](VkDescriptorSetLayout layout, VkDescriptorSet& made) {
-    const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                           .descriptorPool = pool,
-                                           .descriptorSetCount = 1,
-                                           .pSetLayouts = &layout};
-    if (result == VK_SUCCESS) {
-      result = vkAllocateDescriptorSets(device, &info, &made);
-    }
-  };
-  allocate(pipelines->frame_set(), frame_set);
-  layer_sets.resize(frames);
-  for (VkDescriptorSet& layer : layer_sets) {
-    allocate(pipelines->layer_set(), layer);
-  }
-  material_sets.resize(count);
-  for (VkDescriptorSet& material : material_sets) {
-    allocate(pipelines->material_set(), material);
-  }
+VkResult GbufferRenderer::create_layout(const Scene& scene) {
+  constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+  constexpr VkDescriptorType kImages = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  constexpr VkDescriptorType kParameters = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
+  const auto count = static_cast<std::uint32_t>(scene.materials.size());
+  const SetDescription sets[] = {
+      {{{kParameters, kBoth}}, 1},
+      {{{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT}}, gpu_.frames_in_flight()},
+      {{{kImages, VK_SHADER_STAGE_FRAGMENT_BIT, maths::kMaterialTextures},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kBoth}},
+       count}};
+  const VkResult result =
+      layout_.create(sets, {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(maths::GbufferDraw)});
   if (result != VK_SUCCESS) {
-    return device_failure("create the descriptor sets of the g-buffer", result);
+    return result;
   }
-  write_sets(scene);
-  return {};
-}
-
-void GbufferRenderer::State::write_sets(const Scene& scene) const {
-  const VkDescriptorBufferInfo buffer{parameters->buffer(), 0, sizeof(maths::GbufferParameters)};
-  const VkWriteDescriptorSet frame{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = frame_set,
-                                   .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
-                                   .pBufferInfo = &buffer};
-  vkUpdateDescriptorSets(device, 1, &frame, 0, nullptr);
-  for (std::size_t i = 0; i < material_sets.size(); ++i) {
-    const auto images = textures->descriptors_of(scene.materials[i]);
-    const VkDescriptorBufferInfo constants{materials->buffer(), i * VkDeviceSize{kMaterialStride},
+  const VkDescriptorBufferInfo frame{parameters_->buffer(), 0, sizeof(maths::GbufferParameters)};
+  layout_.write(layout_.set(kFrameSet, 0), 0, kParameters, {}, &frame);
+  for (std::size_t i = 0; i < count; ++i) {
+    const VkDescriptorSet set = layout_.set(kMaterialSet, i);
+    const VkDescriptorBufferInfo constants{materials_->buffer(), i * VkDeviceSize{kMaterialStride},
                                            sizeof(maths::GbufferMaterial)};
-    const std::array<VkWriteDescriptorSet, 2> writes{
-        {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-          .dstSet = material_sets[i],
-          .dstBinding = 0,
-          .descriptorCount = static_cast<uint32_t>(images.size()),
-          .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-          .pImageInfo = images.data()},
-         {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-          .dstSet = material_sets[i],
-          .dstBinding = 1,
-          .descriptorCount = 1,
-          .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-          .pBufferInfo = &constants}}};
-    vkUpdateDescriptorSets(device, static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
+    layout_.write(set, 0, kImages, textures_->descriptors_of(scene.materials[i]));
+    layout_.write(set, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, {}, &constants);
+  }
+  return VK_SUCCESS;
+}
+
+VkResult GbufferRenderer::create_pipelines(bool second_layer, bool geometric_normals) {
+  const std::uint32_t geometric = geometric_normals ? 1 : 0;
+  const VkSpecializationMapEntry entry{0, 0, sizeof geometric};
+  const VkSpecializationInfo specialisation{1, &entry, sizeof geometric, &geometric};
+  std::array<VkVertexInputBindingDescription, kVertexStreams> streams{};
+  for (std::uint32_t i = 0; i < kVertexStreams; ++i) {
+    streams[i] = {i, 0,
+                  i == static_cast<std::uint32_t>(VertexStream::instance)
+                      ? VK_VERTEX_INPUT_RATE_INSTANCE
+                      : VK_VERTEX_INPUT_RATE_VERTEX};
+  }
+  PipelineDescription description{
+      .vertex_code = kGbufferVertex,
+      .fragment_code = kGbufferFragment,
+      .fragment_constants = &specialisation,
+      .streams = streams,
+      .attributes = kAttributes,
+      .colour_formats = kColourFormats,
+      .depth_format = kDepthFormat,
+      .dynamic_states = {VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE,
+                         VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE},
+      .layout = layout_.handle()};
+  if (second_layer) {
+    description.vertex_code = kSecondLayerVertex;
+    description.fragment_code = kSecondLayerFragment;
+    description.attributes = description.attributes.first(kDepthAttributes);
+  }
+  VkPipeline* const made = &pipelines_[second_layer ? 2 : 0];
+  const VkResult result = create_pipeline(gpu_.device().device(), description, made[0]);
+  description.depth_compare = VK_COMPARE_OP_GREATER;
+  return result == VK_SUCCESS ? create_pipeline(gpu_.device().device(), description, made[1])
+                              : result;
+}
+
+GbufferRenderer::~GbufferRenderer() {
+  for (const VkPipeline pipeline : pipelines_) {
+    vkDestroyPipeline(gpu_.device().device(), pipeline, nullptr);
   }
 }
 
-void GbufferRenderer::State::begin_rendering(RecordContext& context, const Gbuffer& gbuffer,
-                                             bool reversed_z) const {
-  const std::array targets{gbuffer.normal, gbuffer.albedo, gbuffer.motion, gbuffer.emissive};
-  std::array<VkRenderingAttachmentInfo, std::tuple_size_v<decltype(targets)>> colours;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    // An attachment without a view discards what the shader writes to it.
-    colours[i] = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                  .imageView = targets[i] ? context.view(targets[i]) : VkImageView{VK_NULL_HANDLE},
-                  .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                  .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                  .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
-  }
-  VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                  .imageView = context.view(gbuffer.depth),
-                                  .imageLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-                                  .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                  .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
-  depth.clearValue.depthStencil.depth = reversed_z ? 0.0f : 1.0f;
-  const VkExtent3D size = context.extent(gbuffer.depth);
-  const VkRect2D area{{0, 0}, {size.width, size.height}};
-  const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                             .renderArea = area,
-                             .layerCount = 1,
-                             .colorAttachmentCount = static_cast<uint32_t>(colours.size()),
-                             .pColorAttachments = colours.data(),
-                             .pDepthAttachment = &depth};
-  vkCmdBeginRendering(context.commands, &info);
-  const VkViewport viewport{
-      0.0f, 0.0f, static_cast<float>(size.width), static_cast<float>(size.height), 0.0f, 1.0f};
-  vkCmdSetViewport(context.commands, 0, 1, &viewport);
-  vkCmdSetScissor(context.commands, 0, 1, &area);
-}
-
-void GbufferRenderer::State::bind_first_layer(RecordContext& context, Texture depth) const {
-  const VkDescriptorSet layer = layer_sets[context.frame_slot];
-  const VkDescriptorImageInfo image{.imageView = context.view(depth),
-                                    .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = layer,
-                                   .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
-                                   .pImageInfo = &image};
-  vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
-  vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines->layout(), 1,
-                          1, &layer, 0, nullptr);
-}
-
-void GbufferRenderer::State::record(RecordContext& context, const Gbuffer& gbuffer,
-                                    const Drawing& drawing) const {
-  begin_rendering(context, gbuffer, drawing.reversed_z);
-  using Kind = GbufferPipelines::Kind;
-  const Kind kind = drawing.first ? Kind::second_layer : Kind::all;
-  vkCmdBindPipeline(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                    pipelines->pipeline(kind, drawing.reversed_z));
-  const VkPipelineLayout layout = pipelines->layout();
-  vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
-                          &frame_set, 1, &drawing.parameters_at);
+void GbufferRenderer::record(RecordContext& context, const Gbuffer& gbuffer,
+                             const Drawing& drawing) const {
+  const VkCommandBuffer commands = context.commands;
+  const VkClearValue black{};
+  const VkClearValue farthest{.depthStencil = {drawing.reversed_z ? 0.0f : 1.0f, 0}};
+  const framegraph::Attachment colours[] = {{gbuffer.normal, &black},
+                                            {gbuffer.albedo, &black},
+                                            {gbuffer.motion, &black},
+                                            {gbuffer.emissive, &black}};
+  begin_rendering(context, colours, {gbuffer.depth, &farthest});
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                    pipelines_[(drawing.first ? 2 : 0) + (drawing.reversed_z ? 1 : 0)]);
+  layout_.bind(commands, kFrameSet, layout_.set(kFrameSet, 0), {&drawing.parameters_offset, 1});
   if (drawing.first) {
-    bind_first_layer(context, drawing.first);
+    const VkDescriptorSet set = layout_.set(kLayerSet, context.frame_slot);
+    const VkDescriptorImageInfo image{.imageView = context.view(drawing.first),
+                                      .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    layout_.write(set, 0, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, {&image, 1});
+    layout_.bind(commands, kLayerSet, set);
   }
   std::optional<std::uint32_t> bound_material;
-  for (const MeshDraw& draw : meshes->draws()) {
+  for (const MeshDraw& draw : meshes_->draws()) {
     if (bound_material != draw.material) {
-      vkCmdBindDescriptorSets(context.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
-                              &material_sets[draw.material], 0, nullptr);
+      layout_.bind(commands, kMaterialSet, layout_.set(kMaterialSet, draw.material));
       bound_material = draw.material;
     }
     const maths::GbufferDraw pushed{draw.moves ? 1u : 0u, draw.faceted ? 1u : 0u};
-    vkCmdPushConstants(context.commands, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(pushed),
+    vkCmdPushConstants(commands, layout_.handle(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(pushed),
                        &pushed);
-    vkCmdSetCullMode(context.commands,
-                     double_sided[draw.material] ? drawing.double_culled : drawing.culled);
-    vkCmdSetFrontFace(context.commands,
+    vkCmdSetCullMode(commands,
+                     double_sided_[draw.material] ? drawing.double_culled : drawing.culled);
+    vkCmdSetFrontFace(commands,
                       draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
-    vkCmdBindVertexBuffers2(context.commands, 0, kVertexStreams, draw.buffers.data(),
-                            draw.offsets.data(), nullptr, draw.strides.data());
-    vkCmdBindIndexBuffer(context.commands, draw.index_buffer, draw.index_offset,
-                         VK_INDEX_TYPE_UINT32);
-    vkCmdDrawIndexed(context.commands, draw.index_count, draw.instance_count, 0, 0, 0);
+    vkCmdBindVertexBuffers2(commands, 0, kVertexStreams, draw.buffers.data(), draw.offsets.data(),
+                            nullptr, draw.strides.data());
+    vkCmdBindIndexBuffer(commands, draw.index_buffer, draw.index_offset, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(commands, draw.index_count, draw.instance_count, 0, 0, 0);
   }
-  vkCmdEndRendering(context.commands);
+  vkCmdEndRendering(commands);
 }
-
-GbufferRenderer::GbufferRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
-GbufferRenderer::~GbufferRenderer() = default;
 
 tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::create(
     Gpu& gpu, const Scene& scene, bool geometric_normals) {
-  auto state = std::make_unique<State>(gpu);
-  if (auto done = state->upload(scene); !done) {
+  std::unique_ptr<GbufferRenderer> made(new GbufferRenderer(gpu));
+  if (auto done = made->upload(scene); !done) {
     return Failure(std::move(done.error()));
   }
-  auto pipelines = GbufferPipelines::create(state->device, geometric_normals);
-  if (!pipelines) {
-    return Failure(std::move(pipelines.error()));
+  VkResult result = made->create_layout(scene);
+  for (const bool second_layer : {false, true}) {
+    if (result == VK_SUCCESS) {
+      result = made->create_pipelines(second_layer, geometric_normals);
+    }
   }
-  state->pipelines = std::move(*pipelines);
-  if (auto done = state->create_sets(scene); !done) {
-    return Failure(std::move(done.error()));
+  if (result != VK_SUCCESS) {
+    return device_failure("create the pipelines of the g-buffer", result);
   }
-  return std::unique_ptr<GbufferRenderer>(new GbufferRenderer(std::move(state)));
+  return made;
 }
 
-std::uint32_t GbufferRenderer::State::write_parameters(const GbufferView& view) {
-  if (written == view) {
-    return latest;
+std::uint32_t GbufferRenderer::write_parameters(const GbufferView& view) {
+  if (written_ == view) {
+    return latest_;
   }
-  written = view;
-  latest = (latest + kParameterStride) % (kParameterStride * gpu.frames_in_flight());
+  written_ = view;
+  latest_ = (latest_ + kParameterStride) % (kParameterStride * gpu_.frames_in_flight());
   maths::GbufferParameters frame;
   frame.clip_from_world = view.clip_from_view * view.view_from_world;
   frame.previous_clip_from_world = view.previous_clip_from_view * view.previous_view_from_world;
@@ -316,12 +245,17 @@ std::uint32_t GbufferRenderer::State::write_parameters(const GbufferView& view) 
                            -view.clip_from_view[2][3], view.clip_from_view[2][2]};
   frame.eye_ws = perspective ? glm::vec4(glm::vec3(world_from_view[3]), 1.0f)
                              : glm::vec4(glm::vec3(world_from_view[2]), 0.0f);
-  std::memcpy(parameters->bytes().data() + latest, &frame, sizeof(frame));
-  return latest;
+  std::memcpy(parameters_->bytes().data() + latest_, &frame, sizeof(frame));
+  return latest_;
 }
 
+// The second layer culls the back faces of double-sided materials too. Exporters often mark closed
+// solids as double-sided. If their back faces were drawn, the second layer of a pixel would usually
+// be the back of the first solid, which says nothing about the surfaces behind it. The
+// disadvantage: a thin double-sided surface, such as a leaf, that is seen from behind is missing in
+// the second layer, so that it does not occlude there.
 Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {
-  const std::uint32_t at = state_->write_parameters(view);
+  Drawing drawing{view.reversed_z, write_parameters(view)};
   Gbuffer gbuffer = targets;
   auto pass = graph.add_pass("g-buffer");
   gbuffer.depth = pass.write(targets.depth, framegraph::access::depth_attachment, {},
@@ -333,42 +267,30 @@ Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffe
     }
   }
   pass.record(
-      [state = state_.get(), gbuffer, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, gbuffer, {reversed, at});
-      });
+      [this, gbuffer, drawing](RecordContext& context) { record(context, gbuffer, drawing); });
+  if (targets.back_depth) {
+    drawing.culled = drawing.double_culled = VK_CULL_MODE_FRONT_BIT;
+    gbuffer.back_depth = add_depth(graph, "back faces", targets.back_depth, drawing);
+  }
+  if (targets.second_depth) {
+    drawing.culled = drawing.double_culled = VK_CULL_MODE_BACK_BIT;
+    drawing.first = gbuffer.depth;
+    gbuffer.second_depth = add_depth(graph, "second layer", targets.second_depth, drawing);
+  }
   return gbuffer;
 }
 
-Texture GbufferRenderer::add_back_faces(Graph& graph, const GbufferView& view, Texture depth) {
-  const std::uint32_t at = state_->write_parameters(view);
-  auto pass = graph.add_pass("back faces");
+Texture GbufferRenderer::add_depth(Graph& graph, const char* name, Texture depth,
+                                   const Drawing& drawing) {
+  auto pass = graph.add_pass(name);
+  if (drawing.first) {
+    pass.read(drawing.first, framegraph::access::sampled_fragment);
+  }
   depth =
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
-  pass.record(
-      [state = state_.get(), depth, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, {.depth = depth},
-                      {reversed, at, VK_CULL_MODE_FRONT_BIT, VK_CULL_MODE_FRONT_BIT});
-      });
-  return depth;
-}
-
-// Culls the back faces of double-sided materials too. Exporters often mark closed solids as
-// double-sided. If their back faces were drawn, the second layer of a pixel would usually be the
-// back of the first solid, which says nothing about the surfaces behind it. The disadvantage: a
-// thin double-sided surface, such as a leaf, that is seen from behind is missing in the second
-// layer, so that it does not occlude there.
-Texture GbufferRenderer::add_second_layer(Graph& graph, const GbufferView& view, Texture first,
-                                          Texture depth) {
-  const std::uint32_t at = state_->write_parameters(view);
-  auto pass = graph.add_pass("second layer");
-  pass.read(first, framegraph::access::sampled_fragment);
-  depth =
-      pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
-  pass.record(
-      [state = state_.get(), first, depth, reversed = view.reversed_z, at](RecordContext& context) {
-        state->record(context, {.depth = depth},
-                      {reversed, at, VK_CULL_MODE_BACK_BIT, VK_CULL_MODE_BACK_BIT, first});
-      });
+  pass.record([this, depth, drawing](RecordContext& context) {
+    record(context, {.depth = depth}, drawing);
+  });
   return depth;
 }
 

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "alcove/framegraph/graph.h"
 #include "gpu/gpu.h"
+#include "render/gpu_meshes.h"
+#include "render/gpu_textures.h"
+#include "render/graphics.h"
 #include "scene/scene.h"
 
 namespace alcove::sample {
@@ -24,14 +30,18 @@ struct GbufferView {
   bool operator==(const GbufferView&) const = default;
 };
 
-// The textures that the rasterisation of a frame writes, with the formats named here. A texture
-// that is null is not drawn. Depth is required.
+// The textures that the rasterisation of a frame writes. A texture that is null is not drawn. Depth
+// is required.
 struct Gbuffer {
-  framegraph::Texture depth;     // D32_SFLOAT, as the projection writes it; sky at the far plane
-  framegraph::Texture normal;    // RGBA16_SFLOAT, xyz unit, world space, towards the eye
-  framegraph::Texture albedo;    // RGBA8_UNORM: linear RGB, alpha perceptual roughness
-  framegraph::Texture motion;    // RG16_SFLOAT: uv in this frame minus uv in the previous frame
-  framegraph::Texture emissive;  // RGBA16_SFLOAT: linear RGB, alpha metallic
+  framegraph::Texture depth;       // as the projection writes it; sky at the far plane
+  framegraph::Texture normal;      // xyz unit, world space, towards the eye
+  framegraph::Texture albedo;      // linear RGB, alpha perceptual roughness
+  framegraph::Texture motion;      // uv in this frame minus uv in the previous frame
+  framegraph::Texture emissive;    // linear RGB, alpha metallic
+  framegraph::Texture back_depth;  // depth of the nearest back faces of all materials
+  // The second depth layer: the nearest front faces of all materials that lie behind `depth` by
+  // more than a thousandth of its distance.
+  framegraph::Texture second_depth;
 };
 
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
@@ -39,6 +49,21 @@ inline constexpr VkFormat kNormalFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kAlbedoFormat = VK_FORMAT_R8G8B8A8_UNORM;
 inline constexpr VkFormat kMotionFormat = VK_FORMAT_R16G16_SFLOAT;
 inline constexpr VkFormat kEmissiveFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+
+// Each texture of a Gbuffer with its format.
+struct GbufferTarget {
+  framegraph::Texture Gbuffer::*texture;
+  VkFormat format;
+  const char* name;
+};
+inline constexpr std::array<GbufferTarget, 7> kGbufferTargets{
+    {{&Gbuffer::depth, kDepthFormat, "depth"},
+     {&Gbuffer::normal, kNormalFormat, "normals"},
+     {&Gbuffer::albedo, kAlbedoFormat, "albedo"},
+     {&Gbuffer::motion, kMotionFormat, "motion"},
+     {&Gbuffer::emissive, kEmissiveFormat, "emissive"},
+     {&Gbuffer::back_depth, kDepthFormat, "back-face depth"},
+     {&Gbuffer::second_depth, kDepthFormat, "second depth"}}};
 
 // Draws the g-buffer of a scene. Owns the meshes, textures and pipelines of the scene on one
 // device. Back faces of materials that are not double-sided are culled.
@@ -50,30 +75,44 @@ class GbufferRenderer {
   [[nodiscard]] static tl::expected<std::unique_ptr<GbufferRenderer>, std::string> create(
       Gpu& gpu, const Scene& scene, bool geometric_normals);
   ~GbufferRenderer();
-  GbufferRenderer(const GbufferRenderer&) = delete;
-  GbufferRenderer& operator=(const GbufferRenderer&) = delete;
 
-  // Adds the pass that fills `targets`, and returns their filled versions. All calls in one frame
+  // Adds the passes that fill `targets`, and returns their filled versions. All calls in one frame
   // must have the same view, because only one set of parameters is kept for each frame in flight.
   [[nodiscard]] Gbuffer add(framegraph::Graph& graph, const GbufferView& view,
                             const Gbuffer& targets);
-  // Adds the pass that fills `depth`, a texture like Gbuffer::depth, with the nearest back faces of
-  // all materials. `view` must be the same as in add().
-  [[nodiscard]] framegraph::Texture add_back_faces(framegraph::Graph& graph,
-                                                   const GbufferView& view,
-                                                   framegraph::Texture depth);
-  // Adds the pass that fills a texture like Gbuffer::depth with the second depth layer: the nearest
-  // front faces of all materials that lie behind `first` by more than a thousandth of its distance.
-  // `first` is the Gbuffer::depth of the same view.
-  [[nodiscard]] framegraph::Texture add_second_layer(framegraph::Graph& graph,
-                                                     const GbufferView& view,
-                                                     framegraph::Texture first,
-                                                     framegraph::Texture depth);
 
  private:
-  struct State;
-  explicit GbufferRenderer(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  // The state with which the scene is drawn in one pass.
+  struct Drawing {
+    bool reversed_z = false;
+    std::uint32_t parameters_offset = 0;
+    VkCullModeFlags culled = VK_CULL_MODE_BACK_BIT;     // of single-sided materials
+    VkCullModeFlags double_culled = VK_CULL_MODE_NONE;  // of double-sided ones
+    // Depth of the first layer, which the pass of the second layer reads; may be null.
+    framegraph::Texture first;
+  };
+
+  explicit GbufferRenderer(Gpu& gpu) : gpu_(gpu), layout_(gpu.device().device()) {}
+  tl::expected<void, std::string> upload(const Scene& scene);
+  VkResult create_layout(const Scene& scene);
+  VkResult create_pipelines(bool second_layer, bool geometric_normals);
+  // Writes the parameters of a view, and returns their offset in the parameter buffer.
+  std::uint32_t write_parameters(const GbufferView& view);
+  framegraph::Texture add_depth(framegraph::Graph& graph, const char* name,
+                                framegraph::Texture depth, const Drawing& drawing);
+  void record(framegraph::RecordContext& context, const Gbuffer& gbuffer,
+              const Drawing& drawing) const;
+
+  Gpu& gpu_;
+  std::vector<bool> double_sided_;  // by material
+  std::unique_ptr<GpuMeshes> meshes_;
+  std::unique_ptr<GpuTextures> textures_;
+  std::unique_ptr<HostBuffer> materials_;   // GbufferMaterial at multiples of kMaterialStride
+  std::unique_ptr<HostBuffer> parameters_;  // one set of parameters for each frame in flight
+  std::optional<GbufferView> written_;      // the view that was written most recently
+  std::uint32_t latest_ = 0;                // offset of its parameters
+  PipelineLayout layout_;
+  std::array<VkPipeline, 4> pipelines_{};  // 2: of the second layer; 1: with reversed depth
 };
 
 }  // namespace alcove::sample

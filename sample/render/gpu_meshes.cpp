@@ -43,7 +43,9 @@ struct Part {
 };
 
 PackedTangent packed_tangent(const glm::vec4& tangent) {
-  if (glm::vec3(tangent) == glm::vec3(0.0f)) return {{0, 0}, 0, 0};
+  if (glm::vec3(tangent) == glm::vec3(0.0f)) {
+    return {{0, 0}, 0, 0};
+  }
   return {packed_direction(glm::vec3(tangent)),
           static_cast<std::int16_t>(tangent.w < 0.0f ? -32767 : 32767), 0};
 }
@@ -59,7 +61,21 @@ class PartBuilder {
 
   // Returns the next part, with at most `most_triangles` triangles. It has no indices if no
   // triangle is left. Triangles without an area are left out.
-  Part next(std::size_t most_triangles);
+  Part next(std::size_t most_triangles) {
+    part_ = {};
+    if (tangents_.empty()) {
+      copy_of_vertex_.assign(mesh_.positions.size(), kNone);
+    }
+    copy_of_corner_.clear();
+    is_first_.clear();
+    const std::size_t left = (mesh_.indices.size() - at_) / 3;
+    part_.indices.reserve(3 * std::min(most_triangles, left));
+    for (; at_ + 2 < mesh_.indices.size() && part_.indices.size() < 3 * most_triangles; at_ += 3) {
+      add_triangle();
+    }
+    part_.faces.resize(part_.sources.size());
+    return std::move(part_);
+  }
 
  private:
   struct Corner {
@@ -72,81 +88,69 @@ class PartBuilder {
       return std::hash<std::uint64_t>()((corner.tangent + corner.vertex) * 0x9e3779b97f4a7c15u);
     }
   };
-
-  std::uint32_t vertex_of(std::size_t index, Part& part);
-  std::uint32_t copy_of(std::uint32_t vertex, Part& part) const;
-
   static constexpr std::uint32_t kNone = UINT32_MAX;
-  const Mesh& mesh_;
-  std::vector<glm::vec4> tangents_;  // one for each index; empty without a normal map
-  // For each vertex of the mesh, its copy in the current part.
-  std::vector<std::uint32_t> of_vertex_;
-  // The copies of corners that differ in their tangents.
-  std::unordered_map<Corner, std::uint32_t, CornerHash> of_corner_;
-  // For each vertex of the part, whether it is already the first vertex of a triangle.
-  std::vector<bool> is_first_;
-  std::size_t at_ = 0;  // position of the next triangle's indices
-};
 
-std::uint32_t PartBuilder::vertex_of(std::size_t index, Part& part) {
-  const std::uint32_t source = mesh_.indices[index];
-  const auto add = [&] {
-    part.sources.push_back(source);
+  std::uint32_t add_vertex(std::uint32_t source) {
+    part_.sources.push_back(source);
     is_first_.push_back(false);
-    return static_cast<std::uint32_t>(part.sources.size() - 1);
-  };
-  if (tangents_.empty()) {
-    std::uint32_t& known = of_vertex_[source];
-    if (known == kNone) known = add();
-    return known;
+    return static_cast<std::uint32_t>(part_.sources.size() - 1);
   }
-  const PackedTangent tangent = packed_tangent(tangents_[index]);
-  Corner corner{source, 0};
-  std::memcpy(&corner.tangent, &tangent, sizeof(tangent));
-  const auto [known, is_new] = of_corner_.try_emplace(corner, 0);
-  if (is_new) {
-    known->second = add();
-    part.tangents.push_back(tangent);
-  }
-  return known->second;
-}
 
-std::uint32_t PartBuilder::copy_of(std::uint32_t vertex, Part& part) const {
-  part.sources.push_back(part.sources[vertex]);
-  if (!tangents_.empty()) part.tangents.push_back(part.tangents[vertex]);
-  return static_cast<std::uint32_t>(part.sources.size() - 1);
-}
-
-Part PartBuilder::next(std::size_t most_triangles) {
-  Part part;
-  if (tangents_.empty()) {
-    of_vertex_.assign(mesh_.positions.size(), kNone);
+  // Returns the vertex of the part for an index of the mesh.
+  std::uint32_t vertex_at(std::size_t index) {
+    const std::uint32_t source = mesh_.indices[index];
+    if (tangents_.empty()) {
+      std::uint32_t& known = copy_of_vertex_[source];
+      if (known == kNone) {
+        known = add_vertex(source);
+      }
+      return known;
+    }
+    const PackedTangent tangent = packed_tangent(tangents_[index]);
+    Corner corner{source, 0};
+    std::memcpy(&corner.tangent, &tangent, sizeof(tangent));
+    const auto [known, is_new] = copy_of_corner_.try_emplace(corner, 0);
+    if (is_new) {
+      known->second = add_vertex(source);
+      part_.tangents.push_back(tangent);
+    }
+    return known->second;
   }
-  of_corner_.clear();
-  is_first_.clear();
-  const std::size_t left = (mesh_.indices.size() - at_) / 3;
-  part.indices.reserve(3 * std::min(most_triangles, left));
-  for (; at_ + 2 < mesh_.indices.size() && part.indices.size() < 3 * most_triangles; at_ += 3) {
+
+  void add_triangle() {
     const glm::dvec3 area = area_of(mesh_, at_);
     const double length = glm::length(area);
-    if (!(length > 0.0)) continue;
-    std::array<std::uint32_t, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = vertex_of(at_ + k, part);
+    if (!(length > 0.0)) {
+      return;
+    }
+    std::array corners{vertex_at(at_), vertex_at(at_ + 1), vertex_at(at_ + 2)};
     const auto free = std::ranges::find_if(corners, [&](std::uint32_t v) { return !is_first_[v]; });
     if (free != corners.end()) {
       std::rotate(corners.begin(), free, corners.end());
     } else {
-      corners[0] = copy_of(corners[0], part);
-      is_first_.push_back(false);
+      const std::uint32_t original = corners[0];
+      corners[0] = add_vertex(part_.sources[original]);
+      if (!tangents_.empty()) {
+        part_.tangents.push_back(part_.tangents[original]);
+      }
     }
     is_first_[corners[0]] = true;
-    part.faces.resize(part.sources.size());
-    part.faces[corners[0]] = packed_direction(glm::vec3(area / length));
-    part.indices.insert(part.indices.end(), corners.begin(), corners.end());
+    part_.faces.resize(part_.sources.size());
+    part_.faces[corners[0]] = packed_direction(glm::vec3(area / length));
+    part_.indices.insert(part_.indices.end(), corners.begin(), corners.end());
   }
-  part.faces.resize(part.sources.size());
-  return part;
-}
+
+  const Mesh& mesh_;
+  std::vector<glm::vec4> tangents_;  // one for each index; empty without a normal map
+  Part part_;                        // the current part
+  // For each vertex of the mesh, its copy in the current part.
+  std::vector<std::uint32_t> copy_of_vertex_;
+  // The copies of corners that differ in their tangents.
+  std::unordered_map<Corner, std::uint32_t, CornerHash> copy_of_corner_;
+  // For each vertex of the part, whether it is already the first vertex of a triangle.
+  std::vector<bool> is_first_;
+  std::size_t at_ = 0;  // position of the next triangle's indices
+};
 
 }  // namespace
 
@@ -161,23 +165,160 @@ class GpuMeshes::Builder {
   Builder(const VulkanDevice& device, VkDeviceSize most_bytes, GpuMeshes& meshes)
       : device_(device), most_bytes_(most_bytes), meshes_(meshes) {}
 
-  tl::expected<void, std::string> add_constants();
-  tl::expected<void, std::string> add(const Mesh& mesh, const Material& material);
+  tl::expected<void, std::string> add_constants() {
+    struct Constants {
+      std::array<float, 4> zero{};
+      std::array<std::uint8_t, 16> white{};
+      glm::mat4x3 identity{1.0f};
+    } constants;
+    constants.white.fill(255);
+    return store(1, [&](std::size_t) { return constants; }).map([&](const Place& place) {
+      constants_.buffers.fill(place.buffer);
+      constants_.offsets.fill(place.offset);
+      constants_.offsets[index_of(VertexStream::color)] += offsetof(Constants, white);
+      constants_.offsets[index_of(VertexStream::instance)] += offsetof(Constants, identity);
+    });
+  }
+
+  tl::expected<void, std::string> add(const Mesh& mesh, const Material& material) {
+    // With this limit on the number of triangles, the largest stream of a part fits into a page
+    // even if no two triangles share a vertex.
+    const std::size_t most_triangles =
+        std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
+    PartBuilder builder(mesh, material);
+    std::vector<MeshDraw> parts;
+    for (Part part = builder.next(most_triangles); !part.indices.empty();
+         part = builder.next(most_triangles)) {
+      if (auto done = add_part(mesh, part, parts); !done) {
+        return done;
+      }
+    }
+    return add_instances(mesh, parts);
+  }
 
  private:
-  tl::expected<Place, std::string> reserve(VkDeviceSize bytes, std::byte*& data);
+  static constexpr std::size_t index_of(VertexStream stream) {
+    return static_cast<std::size_t>(stream);
+  }
+
+  tl::expected<Place, std::string> reserve(VkDeviceSize bytes, std::byte*& data) {
+    auto& pages = meshes_.pages_;
+    VkDeviceSize at = (used_ + kAlignment - 1) / kAlignment * kAlignment;
+    if (pages.empty() || at > pages.back()->bytes().size() ||
+        bytes > pages.back()->bytes().size() - at) {
+      const VkDeviceSize size = std::max(std::min(next_page_, most_bytes_), bytes);
+      auto page = HostBuffer::create(
+          device_, size, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+      if (!page) {
+        return Failure("the device has no memory for the scene's triangles after " +
+                       std::to_string(meshes_.bytes()) + " bytes: " + page.error());
+      }
+      pages.push_back(std::move(*page));
+      next_page_ = std::min(2 * next_page_, kLargestPage);
+      at = 0;
+    }
+    used_ = at + bytes;
+    data = pages.back()->bytes().data() + at;
+    return Place{pages.back()->buffer(), at};
+  }
+
   // Copies element(i) for each i below `count` into a page.
   template <class Element>
-  tl::expected<Place, std::string> store(std::size_t count, const Element& element);
+  tl::expected<Place, std::string> store(std::size_t count, const Element& element) {
+    using Value = decltype(element(std::size_t{}));
+    std::byte* data = nullptr;
+    auto place = reserve(count * sizeof(Value), data);
+    for (std::size_t i = 0; place && i < count; ++i) {
+      const Value value = element(i);
+      std::memcpy(data + i * sizeof(Value), &value, sizeof(Value));
+    }
+    return place;
+  }
+
   template <class Element>
-  void stream(MeshDraw& draw, VertexStream which, std::size_t count, const Element& element);
+  tl::expected<void, std::string> stream(MeshDraw& draw, VertexStream which, std::size_t count,
+                                         const Element& element) {
+    return store(count, element).map([&](const Place& place) {
+      draw.buffers[index_of(which)] = place.buffer;
+      draw.offsets[index_of(which)] = place.offset;
+      draw.strides[index_of(which)] = sizeof(element(std::size_t{}));
+    });
+  }
+
   tl::expected<void, std::string> add_part(const Mesh& mesh, const Part& part,
-                                           std::vector<MeshDraw>& draws);
+                                           std::vector<MeshDraw>& draws) {
+    MeshDraw draw = constants_;
+    draw.material = mesh.material;
+    draw.index_count = static_cast<std::uint32_t>(part.indices.size());
+    draw.instance_count = 1;
+    draw.moves = mesh.moves;
+    draw.faceted = mesh.normals.empty();
+    const std::size_t count = part.sources.size();
+    // Stores one value for each vertex of the mesh, unless the mesh has none.
+    const auto add_values = [&](VertexStream which, const auto& values) {
+      return values.empty() ? tl::expected<void, std::string>()
+                            : stream(draw, which, count,
+                                     [&](std::size_t i) { return values[part.sources[i]]; });
+    };
+    const auto normals = [&](std::size_t i) {
+      return PackedNormals{
+          draw.faceted ? PackedDirection{} : packed_direction(mesh.normals[part.sources[i]]),
+          part.faces[i]};
+    };
+    return add_values(VertexStream::position, mesh.positions)
+        .and_then([&] { return stream(draw, VertexStream::normals, count, normals); })
+        .and_then([&] { return add_values(VertexStream::uv, mesh.uvs); })
+        .and_then([&] { return add_values(VertexStream::second_uv, mesh.second_uvs); })
+        .and_then([&] {
+          return part.tangents.empty() ? tl::expected<void, std::string>()
+                                       : stream(draw, VertexStream::tangent, count,
+                                                [&](std::size_t i) { return part.tangents[i]; });
+        })
+        .and_then([&] { return add_values(VertexStream::color, mesh.colors); })
+        .and_then([&] {
+          return store(part.indices.size(), [&](std::size_t i) { return part.indices[i]; });
+        })
+        .map([&](const Place& indices) {
+          draw.index_buffer = indices.buffer;
+          draw.index_offset = indices.offset;
+          draws.push_back(draw);
+        });
+  }
+
   tl::expected<void, std::string> add_instances(const Mesh& mesh,
-                                                const std::vector<MeshDraw>& parts);
-  void bind_constant(MeshDraw& draw, VertexStream which, const Place& place) {
-    draw.buffers[static_cast<std::size_t>(which)] = place.buffer;
-    draw.offsets[static_cast<std::size_t>(which)] = place.offset;
+                                                const std::vector<MeshDraw>& parts) {
+    if (mesh.instances.empty()) {
+      meshes_.draws_.insert(meshes_.draws_.end(), parts.begin(), parts.end());
+      return {};
+    }
+    const std::size_t most = most_bytes_ / sizeof(glm::mat4x3);
+    for (const bool mirrored : {false, true}) {
+      std::vector<std::uint32_t> chosen;
+      for (std::uint32_t i = 0; i < mesh.instances.size(); ++i) {
+        if ((glm::determinant(glm::mat3(mesh.instances[i])) < 0.0f) == mirrored) {
+          chosen.push_back(i);
+        }
+      }
+      for (std::size_t first = 0; first < chosen.size(); first += most) {
+        const std::size_t count = std::min(most, chosen.size() - first);
+        MeshDraw instanced;
+        const auto done = stream(instanced, VertexStream::instance, count,
+                                 [&](std::size_t i) { return mesh.instances[chosen[first + i]]; });
+        if (!done) {
+          return done;
+        }
+        constexpr std::size_t kAt = index_of(VertexStream::instance);
+        for (MeshDraw draw : parts) {
+          draw.mirrored = mirrored;
+          draw.instance_count = static_cast<std::uint32_t>(count);
+          draw.buffers[kAt] = instanced.buffers[kAt];
+          draw.offsets[kAt] = instanced.offsets[kAt];
+          draw.strides[kAt] = instanced.strides[kAt];
+          meshes_.draws_.push_back(draw);
+        }
+      }
+    }
+    return {};
   }
 
   const VulkanDevice& device_;
@@ -185,173 +326,8 @@ class GpuMeshes::Builder {
   GpuMeshes& meshes_;
   VkDeviceSize used_ = 0;  // bytes of the last page that are in use
   VkDeviceSize next_page_ = kFirstPage;
-  MeshDraw constants_;   // with every stream bound to its constant
-  std::string failure_;  // the first error while storing the streams of a draw
+  MeshDraw constants_;  // with every stream bound to its constant
 };
-
-tl::expected<Place, std::string> GpuMeshes::Builder::reserve(VkDeviceSize bytes, std::byte*& data) {
-  auto& pages = meshes_.pages_;
-  const VkDeviceSize at = (used_ + kAlignment - 1) / kAlignment * kAlignment;
-  if (pages.empty() || at > pages.back()->bytes().size() ||
-      bytes > pages.back()->bytes().size() - at) {
-    const VkDeviceSize size = std::max(std::min(next_page_, most_bytes_), bytes);
-    auto page = HostBuffer::create(
-        device_, size, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
-    if (!page) {
-      return Failure("the device has no memory for the scene's triangles after " +
-                     std::to_string(meshes_.bytes()) + " bytes: " + page.error());
-    }
-    pages.push_back(std::move(*page));
-    next_page_ = std::min(2 * next_page_, kLargestPage);
-    used_ = bytes;
-    data = pages.back()->bytes().data();
-    return Place{pages.back()->buffer(), 0};
-  }
-  used_ = at + bytes;
-  data = pages.back()->bytes().data() + at;
-  return Place{pages.back()->buffer(), at};
-}
-
-template <class Element>
-tl::expected<Place, std::string> GpuMeshes::Builder::store(std::size_t count,
-                                                           const Element& element) {
-  using Value = decltype(element(std::size_t{}));
-  std::byte* data = nullptr;
-  auto place = reserve(count * sizeof(Value), data);
-  for (std::size_t i = 0; place && i < count; ++i) {
-    const Value value = element(i);
-    std::memcpy(data + i * sizeof(Value), &value, sizeof(Value));
-  }
-  return place;
-}
-
-template <class Element>
-void GpuMeshes::Builder::stream(MeshDraw& draw, VertexStream which, std::size_t count,
-                                const Element& element) {
-  if (!failure_.empty()) return;
-  const auto place = store(count, element);
-  if (!place) {
-    failure_ = place.error();
-    return;
-  }
-  bind_constant(draw, which, *place);
-  draw.strides[static_cast<std::size_t>(which)] = sizeof(element(std::size_t{}));
-}
-
-tl::expected<void, std::string> GpuMeshes::Builder::add_constants() {
-  struct Constants {
-    std::array<float, 4> zero{};
-    std::array<std::uint8_t, 16> white{};
-    glm::mat4x3 identity{1.0f};
-  } constants;
-  constants.white.fill(255);
-  const auto place = store(1, [&](std::size_t) { return constants; });
-  if (!place) return Failure(place.error());
-  for (const VertexStream which :
-       {VertexStream::kPosition, VertexStream::kNormals, VertexStream::kUv, VertexStream::kSecondUv,
-        VertexStream::kTangent}) {
-    bind_constant(constants_, which, *place);
-  }
-  bind_constant(constants_, VertexStream::kColor,
-                {place->buffer, place->offset + offsetof(Constants, white)});
-  bind_constant(constants_, VertexStream::kInstance,
-                {place->buffer, place->offset + offsetof(Constants, identity)});
-  return {};
-}
-
-tl::expected<void, std::string> GpuMeshes::Builder::add_part(const Mesh& mesh, const Part& part,
-                                                             std::vector<MeshDraw>& draws) {
-  MeshDraw draw = constants_;
-  draw.material = mesh.material;
-  draw.index_count = static_cast<std::uint32_t>(part.indices.size());
-  draw.instance_count = 1;
-  draw.moves = mesh.moves;
-  draw.faceted = mesh.normals.empty();
-  const std::size_t count = part.sources.size();
-  stream(draw, VertexStream::kPosition, count,
-         [&](std::size_t i) { return mesh.positions[part.sources[i]]; });
-  stream(draw, VertexStream::kNormals, count, [&](std::size_t i) {
-    return PackedNormals{
-        draw.faceted ? PackedDirection{} : packed_direction(mesh.normals[part.sources[i]]),
-        part.faces[i]};
-  });
-  if (!mesh.uvs.empty()) {
-    stream(draw, VertexStream::kUv, count,
-           [&](std::size_t i) { return mesh.uvs[part.sources[i]]; });
-  }
-  if (!mesh.second_uvs.empty()) {
-    stream(draw, VertexStream::kSecondUv, count,
-           [&](std::size_t i) { return mesh.second_uvs[part.sources[i]]; });
-  }
-  if (!part.tangents.empty()) {
-    stream(draw, VertexStream::kTangent, count, [&](std::size_t i) { return part.tangents[i]; });
-  }
-  if (!mesh.colors.empty()) {
-    stream(draw, VertexStream::kColor, count,
-           [&](std::size_t i) { return mesh.colors[part.sources[i]]; });
-  }
-  if (!failure_.empty()) return Failure(failure_);
-  const auto indices = store(part.indices.size(), [&](std::size_t i) { return part.indices[i]; });
-  if (!indices) return Failure(indices.error());
-  draw.index_buffer = indices->buffer;
-  draw.index_offset = indices->offset;
-  draws.push_back(draw);
-  return {};
-}
-
-tl::expected<void, std::string> GpuMeshes::Builder::add_instances(
-    const Mesh& mesh, const std::vector<MeshDraw>& parts) {
-  if (mesh.instances.empty()) {
-    meshes_.draws_.insert(meshes_.draws_.end(), parts.begin(), parts.end());
-    return {};
-  }
-  const std::size_t most = most_bytes_ / sizeof(glm::mat4x3);
-  for (const bool mirrored : {false, true}) {
-    std::vector<std::uint32_t> chosen;
-    const auto flush = [&]() -> tl::expected<void, std::string> {
-      MeshDraw instanced;
-      stream(instanced, VertexStream::kInstance, chosen.size(),
-             [&](std::size_t i) { return mesh.instances[chosen[i]]; });
-      if (!failure_.empty()) return Failure(failure_);
-      constexpr auto kAt = static_cast<std::size_t>(VertexStream::kInstance);
-      for (MeshDraw draw : parts) {
-        draw.mirrored = mirrored;
-        draw.instance_count = static_cast<std::uint32_t>(chosen.size());
-        draw.buffers[kAt] = instanced.buffers[kAt];
-        draw.offsets[kAt] = instanced.offsets[kAt];
-        draw.strides[kAt] = instanced.strides[kAt];
-        meshes_.draws_.push_back(draw);
-      }
-      chosen.clear();
-      return {};
-    };
-    for (std::uint32_t i = 0; i < mesh.instances.size(); ++i) {
-      if ((glm::determinant(glm::mat3(mesh.instances[i])) < 0.0f) != mirrored) continue;
-      chosen.push_back(i);
-      if (chosen.size() == most) {
-        if (auto done = flush(); !done) return done;
-      }
-    }
-    if (!chosen.empty()) {
-      if (auto done = flush(); !done) return done;
-    }
-  }
-  return {};
-}
-
-tl::expected<void, std::string> GpuMeshes::Builder::add(const Mesh& mesh,
-                                                        const Material& material) {
-  // With this limit on the number of triangles, the largest stream of a part fits into a page even
-  // if no two triangles share a vertex.
-  const std::size_t most_triangles = std::min(most_bytes_, kLargestPage) / (3 * sizeof(glm::vec3));
-  PartBuilder builder(mesh, material);
-  std::vector<MeshDraw> parts;
-  for (Part part = builder.next(most_triangles); !part.indices.empty();
-       part = builder.next(most_triangles)) {
-    if (auto done = add_part(mesh, part, parts); !done) return done;
-  }
-  return add_instances(mesh, parts);
-}
 
 tl::expected<std::unique_ptr<GpuMeshes>, std::string> GpuMeshes::create(const VulkanDevice& device,
                                                                         const Scene& scene,
@@ -363,13 +339,17 @@ tl::expected<std::unique_ptr<GpuMeshes>, std::string> GpuMeshes::create(const Vu
   for (std::size_t i = 0; done && i < scene.meshes.size(); ++i) {
     done = builder.add(scene.meshes[i], scene.materials[scene.meshes[i].material]);
   }
-  if (!done) return Failure(done.error());
+  if (!done) {
+    return Failure(done.error());
+  }
   return made;
 }
 
 VkDeviceSize GpuMeshes::bytes() const {
   VkDeviceSize sum = 0;
-  for (const auto& page : pages_) sum += page->bytes().size();
+  for (const auto& page : pages_) {
+    sum += page->bytes().size();
+  }
   return sum;
 }
 

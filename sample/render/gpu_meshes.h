@@ -17,13 +17,13 @@ namespace alcove::sample {
 // The vertex buffers of a draw; the values are their binding numbers. Every draw binds all of them.
 // If a mesh does not have a stream, one constant element is bound with a stride of zero.
 enum class VertexStream : std::uint8_t {
-  kPosition,  // 3 floats
-  kNormals,   // PackedNormals
-  kUv,        // 2 floats; zero if the mesh has none
-  kSecondUv,  // 2 floats; zero if the mesh has none
-  kTangent,   // PackedTangent; zero if the mesh has none
-  kColor,     // 4 bytes, linear RGB and alpha; white if the mesh has none
-  kInstance,  // the columns of world_from_mesh, 12 floats; the identity. One for each instance
+  position,   // 3 floats
+  normals,    // PackedNormals
+  uv,         // 2 floats; zero if the mesh has none
+  second_uv,  // 2 floats; zero if the mesh has none
+  tangent,    // PackedTangent; zero if the mesh has none
+  color,      // 4 bytes, linear RGB and alpha; white if the mesh has none
+  instance,   // the columns of world_from_mesh, 12 floats; the identity. One for each instance
 };
 inline constexpr std::size_t kVertexStreams = 7;
 

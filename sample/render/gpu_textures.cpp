@@ -14,7 +14,7 @@ using Failure = tl::unexpected<std::string>;
 constexpr VkImageUsageFlags kUsage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
-constexpr std::array<uint8_t, 4> kWhite{255, 255, 255, 255};
+constexpr std::array<std::uint8_t, 4> kWhite{255, 255, 255, 255};
 
 VkSamplerAddressMode address_mode(Wrap wrap) {
   switch (wrap) {
@@ -31,34 +31,50 @@ VkFilter vulkan_filter(Filter filter) {
   return filter == Filter::kNearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
 }
 
-std::span<const uint8_t> texels_of(const Scene& scene, std::int32_t image) {
-  return image < 0 ? std::span<const uint8_t>(kWhite)
-                   : std::span<const uint8_t>(scene.images[static_cast<std::size_t>(image)].rgba);
+std::span<const std::uint8_t> texels_of(const Scene& scene, std::int32_t image) {
+  return image < 0
+             ? std::span<const std::uint8_t>(kWhite)
+             : std::span<const std::uint8_t>(scene.images[static_cast<std::size_t>(image)].rgba);
 }
 
 }  // namespace
 
-TextureUse mask_of(const Material& material) {
-  TextureUse use = material.base_color_texture;
-  use.sampler.minify = use.sampler.magnify;
-  use.sampler.mips = MipFilter::kNone;
-  return use;
+std::array<GpuTextures::Use, maths::kMaterialTextures> GpuTextures::uses_of(
+    const Material& material) {
+  const auto use = [](const TextureUse& texture, bool srgb) {
+    return Use{texture.image, srgb, texture.sampler};
+  };
+  std::array<Use, maths::kMaterialTextures> uses;
+  uses[maths::kBaseColourTexture] = use(material.base_color_texture, true);
+  uses[maths::kMetallicRoughnessTexture] = use(material.metal_roughness_texture, false);
+  uses[maths::kEmissiveTexture] = use(material.emissive_texture, true);
+  uses[maths::kNormalTexture] = use(material.normal_texture, false);
+  if (material.alpha_mode == AlphaMode::kMask) {
+    // The alpha test reads the base colour from mip 0, like the ray tracer, so that both cut out
+    // the same shapes and distant surfaces keep their coverage. It needs a separate sampler,
+    // because some drivers ignore an explicit mip level with an anisotropic sampler.
+    Use& mask = uses[maths::kMaskTexture];
+    mask = uses[maths::kBaseColourTexture];
+    mask.sampler.minify = mask.sampler.magnify;
+    mask.sampler.mips = MipFilter::kNone;
+  }
+  return uses;
 }
 
-tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& scene,
-                                                                std::int32_t image, bool srgb) {
+tl::expected<VkImageView, std::string> GpuTextures::add_texture(const Scene& scene,
+                                                                const Use& use) {
   const auto found = std::ranges::find_if(textures_, [&](const Texture& texture) {
-    return texture.image == image && texture.srgb == srgb;
+    return texture.image == use.image && texture.srgb == use.srgb;
   });
   if (found != textures_.end()) {
-    return static_cast<std::size_t>(found - textures_.begin());
+    return found->gpu->view();
   }
   VkExtent2D size{1, 1};
-  if (image >= 0) {
-    const TextureImage& source = scene.images[static_cast<std::size_t>(image)];
+  if (use.image >= 0) {
+    const TextureImage& source = scene.images[static_cast<std::size_t>(use.image)];
     size = {source.width, source.height};
   }
-  const uint32_t largest = device_.properties().limits.maxImageDimension2D;
+  const std::uint32_t largest = device_.properties().limits.maxImageDimension2D;
   if (size.width > largest || size.height > largest) {
     return Failure("A texture of " + scene.name + " has " + std::to_string(size.width) + "x" +
                    std::to_string(size.height) + " texels; the device takes at most " +
@@ -67,15 +83,15 @@ tl::expected<std::size_t, std::string> GpuTextures::add_texture(const Scene& sce
   // Mips are made by linear blits, which Vulkan guarantees for both formats.
   auto made = GpuImage::create(
       device_,
-      {srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+      {use.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
        framegraph::Extent::absolute(size.width, size.height),
        static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height)))},
       kUsage);
   if (!made) {
     return Failure(std::move(made.error()));
   }
-  textures_.push_back({image, srgb, std::move(*made)});
-  return textures_.size() - 1;
+  textures_.push_back({use.image, use.srgb, std::move(*made)});
+  return textures_.back().gpu->view();
 }
 
 tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sampler) {
@@ -107,33 +123,23 @@ tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sam
   return made;
 }
 
-tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const TextureUse& use,
-                                                     bool srgb) {
-  const Use wanted{use.image, srgb, use.sampler};
-  if (std::ranges::find(uses_, wanted) != uses_.end()) {
+tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const Use& use) {
+  if (std::ranges::find(uses_, use) != uses_.end()) {
     return {};
-  }
-  const auto texture = add_texture(scene, use.image, srgb);
-  if (!texture) {
-    return Failure(texture.error());
   }
   // Uses with equal samplers share one VkSampler. A linear search is enough, because a scene has
   // few different samplers.
+  VkDescriptorImageInfo descriptor{.imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  auto done = assign(descriptor.imageView, add_texture(scene, use));
   const auto like = std::ranges::find(uses_, use.sampler, &Use::sampler);
-  VkSampler sampler = VK_NULL_HANDLE;
-  if (like != uses_.end()) {
-    sampler = descriptors_[static_cast<std::size_t>(like - uses_.begin())].sampler;
-  } else {
-    const auto made = add_sampler(use.sampler);
-    if (!made) {
-      return Failure(made.error());
-    }
-    sampler = *made;
+  if (done && like != uses_.end()) {
+    descriptor.sampler = descriptors_[static_cast<std::size_t>(like - uses_.begin())].sampler;
+  } else if (done) {
+    done = assign(descriptor.sampler, add_sampler(use.sampler));
   }
-  uses_.push_back(wanted);
-  descriptors_.push_back(
-      {sampler, textures_[*texture].gpu->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
-  return {};
+  uses_.push_back(use);
+  descriptors_.push_back(descriptor);
+  return done;
 }
 
 tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
@@ -161,15 +167,10 @@ tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene
 tl::expected<std::unique_ptr<GpuTextures>, std::string> GpuTextures::create(Gpu& gpu,
                                                                             const Scene& scene) {
   std::unique_ptr<GpuTextures> made(new GpuTextures(gpu.device()));
-  auto done = made->add_use(scene, {}, false);
+  tl::expected<void, std::string> done;
   for (const Material& material : scene.materials) {
-    done =
-        done.and_then([&] { return made->add_use(scene, material.base_color_texture, true); })
-            .and_then([&] { return made->add_use(scene, material.metal_roughness_texture, false); })
-            .and_then([&] { return made->add_use(scene, material.emissive_texture, true); })
-            .and_then([&] { return made->add_use(scene, material.normal_texture, false); });
-    if (material.alpha_mode == AlphaMode::kMask) {
-      done = done.and_then([&] { return made->add_use(scene, mask_of(material), true); });
+    for (const Use& use : uses_of(material)) {
+      done = done.and_then([&] { return made->add_use(scene, use); });
     }
   }
   done = done.and_then([&] { return made->upload(gpu, scene); });
@@ -188,22 +189,11 @@ GpuTextures::~GpuTextures() {
 std::array<VkDescriptorImageInfo, maths::kMaterialTextures> GpuTextures::descriptors_of(
     const Material& material) const {
   std::array<VkDescriptorImageInfo, maths::kMaterialTextures> found;
-  found.fill(descriptors_.front());
-  found[maths::kBaseColourTexture] = descriptor_of(material.base_color_texture, true);
-  if (material.alpha_mode == AlphaMode::kMask) {
-    found[maths::kMaskTexture] = descriptor_of(mask_of(material), true);
-  }
-  found[maths::kMetallicRoughnessTexture] = descriptor_of(material.metal_roughness_texture, false);
-  found[maths::kEmissiveTexture] = descriptor_of(material.emissive_texture, true);
-  found[maths::kNormalTexture] = descriptor_of(material.normal_texture, false);
+  std::ranges::transform(uses_of(material), found.begin(), [&](const Use& use) {
+    const auto at = std::ranges::find(uses_, use);
+    return descriptors_[static_cast<std::size_t>(at - uses_.begin())];
+  });
   return found;
-}
-
-const VkDescriptorImageInfo& GpuTextures::descriptor_of(const TextureUse& use, bool srgb) const {
-  const Use wanted{use.image, srgb, use.sampler};
-  const auto found = std::ranges::find(uses_, wanted);
-  return found == uses_.end() ? descriptors_.front()
-                              : descriptors_[static_cast<std::size_t>(found - uses_.begin())];
 }
 
 }  // namespace alcove::sample

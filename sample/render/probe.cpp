@@ -15,34 +15,35 @@ constexpr passes::EnvironmentSettings kSettings;
 
 // Adds a pass that copies every mip of a transient texture to an image that is kept after the
 // frame.
-void add_keep(Graph& graph, Texture from, const GpuImage& to, std::uint32_t mips) {
+void add_image_copy(Graph& graph, Texture from, const GpuImage& to, std::uint32_t mips) {
   auto pass = graph.add_pass("keep");
   pass.read(from, framegraph::access::transfer_source);
-  const Texture kept =
+  const Texture filled =
       pass.write(graph.import_texture("kept", to.import_to_fill(kSampledState)),
                  framegraph::access::transfer_destination, {}, framegraph::Contents::discard);
-  pass.record([from, kept, mips](RecordContext& context) {
+  pass.record([from, filled, mips](RecordContext& context) {
     std::vector<VkImageCopy> copies;
     for (std::uint32_t mip = 0; mip < mips; ++mip) {
       const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
-      copies.push_back({layers, {}, layers, {}, context.extent(kept, mip)});
+      copies.push_back({layers, {}, layers, {}, context.extent(filled, mip)});
     }
     vkCmdCopyImage(context.commands, context.image(from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                   context.image(kept), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, mips, copies.data());
+                   context.image(filled), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, mips,
+                   copies.data());
   });
 }
 
-}  // namespace
-
+// Adds the passes that compute a probe. `upload` receives the buffer that they read: it must
+// outlive the frame.
 tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& frame, Gpu& gpu,
                                                          const EnvironmentImage& image,
                                                          std::unique_ptr<HostBuffer>& upload) {
-  auto buffer = HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
-                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  if (!buffer) {
-    return Failure(std::move(buffer.error()));
+  auto created =
+      assign(upload, HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
+                                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
+  if (!created) {
+    return Failure(std::move(created.error()));
   }
-  upload = std::move(*buffer);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::vec4 texel(image.pixels[i], 1.0f);
     std::memcpy(upload->bytes().data() + i * sizeof(texel), &texel, sizeof(texel));
@@ -50,35 +51,35 @@ tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& fr
   const Texture source = frame.graph.create_texture(
       "equirectangular",
       {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(image.width, image.height)});
-  auto made = passes::add_environment(frame, add_copy(frame.graph, *upload, source), kSettings);
-  if (!made) {
-    return Failure(std::move(made.error().message));
-  }
-  return *made;
+  return passes::add_environment(frame, add_copy(frame.graph, *upload, source), kSettings)
+      .map_error([](const passes::Error& error) { return error.message; });
 }
+
+}  // namespace
 
 tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
                                                                 const EnvironmentImage& image) {
   constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   std::unique_ptr<Probe> made(new Probe);
+  const auto create = [&](std::unique_ptr<GpuImage>& target, const framegraph::TextureDesc& desc) {
+    return assign(target, GpuImage::create(gpu.device(), desc, kUsage));
+  };
   using framegraph::Extent;
-  auto harmonics = GpuImage::create(
-      gpu.device(), {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(9, 1)}, kUsage);
-  auto map = GpuImage::create(gpu.device(),
-                              {VK_FORMAT_R16G16B16A16_SFLOAT,
-                               Extent::absolute(kSettings.size, kSettings.size), kSettings.levels},
-                              kUsage);
-  if (!harmonics || !map) {
-    return Failure(std::move(harmonics ? map.error() : harmonics.error()));
+  auto created = create(made->harmonics_, {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(9, 1)})
+                     .and_then([&] {
+                       return create(made->map_, {VK_FORMAT_R16G16B16A16_SFLOAT,
+                                                  Extent::absolute(kSettings.size, kSettings.size),
+                                                  kSettings.levels});
+                     });
+  if (!created) {
+    return Failure(std::move(created.error()));
   }
-  made->harmonics_ = std::move(*harmonics);
-  made->map_ = std::move(*map);
   std::unique_ptr<HostBuffer> upload;
   auto report = gpu.run([&](Graph& graph) {
     return add_probe({graph, gpu.kernels(), {}}, gpu, image, upload)
         .map([&](const passes::Environment& light) {
-          add_keep(graph, light.harmonics, *made->harmonics_, 1);
-          add_keep(graph, light.map, *made->map_, kSettings.levels);
+          add_image_copy(graph, light.harmonics, *made->harmonics_, 1);
+          add_image_copy(graph, light.map, *made->map_, kSettings.levels);
         });
   });
   if (!report) {

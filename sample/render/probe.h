@@ -11,13 +11,7 @@
 
 namespace alcove::sample {
 
-// Adds the passes that compute a probe from an environment image. `upload` receives the buffer that
-// they read: it must outlive the frame.
-[[nodiscard]] tl::expected<passes::Environment, std::string> add_probe(
-    const passes::Frame& frame, Gpu& gpu, const EnvironmentImage& image,
-    std::unique_ptr<HostBuffer>& upload);
-
-// A probe that is computed once and kept for all frames.
+// A probe of an environment image that is computed once and kept for all frames.
 class Probe {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<Probe>, std::string> create(

@@ -45,29 +45,67 @@ Costs medians(const std::vector<FrameCost>& frames) {
   return costs;
 }
 
+Camera frame_camera(const RenderRequest& request, const Camera& camera, std::uint32_t frame) {
+  return orbited(camera, request.orbit * static_cast<float>(frame));
+}
+
 // The outputs of a frame.
 enum class Outputs : std::uint8_t {
-  kVisibility,   // visibility, and specular occlusion if the settings have it
-  kSpecular,     // also specular occlusion
-  kBentNormals,  // visibility, bent normals and multi-bounce
-  kAll,
+  visibility,    // visibility, and specular occlusion if the settings have it
+  specular,      // also specular occlusion
+  bent_normals,  // visibility, bent normals and multi-bounce
+  all,
 };
 
-// The requests for the frames of a run, by frame number. The camera orbits, and motion is relative
-// to the previous frame.
+// The frames of a rendering. The camera orbits, and motion is relative to the previous frame.
+// Reports progress: the fraction of all frames that have been drawn.
 class Run {
  public:
-  Run(const RenderRequest& request, const Camera& camera, const passes::OcclusionSettings& settings)
-      : request_(request), camera_(camera), settings_(settings) {
+  Run(FrameRenderer& renderer, const RenderRequest& request, const Camera& camera,
+      const passes::OcclusionSettings& settings)
+      : renderer_(renderer), request_(request), camera_(camera), settings_(settings) {
     if (!request.light.roughness.empty()) {
       timed_light_.roughness = {request.light.roughness.front()};
     }
   }
 
-  std::uint32_t frames() const { return request_.frames; }
+  // Draws the frames and returns the median times of the last kTimedFrames frames. If the run is
+  // shorter, its last frame is drawn several times.
+  tl::expected<Costs, std::string> time(Outputs outputs) {
+    std::vector<FrameCost> costs;
+    for (std::uint32_t i = 0; i < timed_frames_; ++i) {
+      auto cost = renderer_.draw(request(std::min(i, request_.frames - 1), outputs));
+      if (!cost) {
+        return Failure(std::move(cost.error()));
+      }
+      count();
+      if (i + kTimedFrames >= timed_frames_) {
+        costs.push_back(std::move(*cost));
+      }
+    }
+    return medians(costs);
+  }
 
-  Camera camera(std::uint32_t frame) const {
-    return orbited(camera_, request_.orbit * static_cast<float>(frame));
+  // Returns the images of the last frame. With specular occlusion, slices are rotated towards the
+  // GGX lobe, which makes visibility noisier. If the settings have no specular occlusion,
+  // visibility is therefore taken from a second run without it, which is also the run that is
+  // timed.
+  tl::expected<FrameImages, std::string> draw() {
+    auto all = draw(Outputs::all);
+    if (!all || one_run_) {
+      return all;
+    }
+    auto images = draw(Outputs::bent_normals);
+    if (images) {
+      images->specular_occlusion = std::move(all->specular_occlusion);
+      images->lit = std::move(all->lit);
+    }
+    return images;
+  }
+
+ private:
+  CameraMatrices matrices(std::uint32_t frame) const {
+    return camera_matrices(frame_camera(request_, camera_, frame), request_.width, request_.height);
   }
 
   FrameRequest request(std::uint32_t frame, Outputs outputs) const {
@@ -79,87 +117,41 @@ class Run {
     request.index = frame;
     request.static_frames = request_.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
-    if (outputs == Outputs::kSpecular || outputs == Outputs::kAll) {
+    if (outputs == Outputs::specular || outputs == Outputs::all) {
       request.occlusion.specular = specular_model(settings_);
     }
-    if (outputs == Outputs::kBentNormals || outputs == Outputs::kAll) {
+    if (outputs == Outputs::bent_normals || outputs == Outputs::all) {
       request.occlusion.bent_normal = true;
     }
-    request.light = outputs == Outputs::kAll ? &request_.light : &timed_light_;
+    request.light = outputs == Outputs::all ? &request_.light : &timed_light_;
     return request;
   }
 
- private:
-  CameraMatrices matrices(std::uint32_t frame) const {
-    return camera_matrices(camera(frame), request_.width, request_.height);
+  tl::expected<FrameImages, std::string> draw(Outputs outputs) {
+    for (std::uint32_t i = 0; i + 1 < request_.frames; ++i) {
+      if (auto cost = renderer_.draw(request(i, outputs)); !cost) {
+        return Failure(std::move(cost.error()));
+      }
+      count();
+    }
+    return renderer_.draw_and_read(request(request_.frames - 1, outputs));
   }
 
+  void count() {
+    const std::uint32_t total = 2 * timed_frames_ + (one_run_ ? 1 : 2) * (request_.frames - 1);
+    progress_(static_cast<double>(++drawn_) / total);
+  }
+
+  FrameRenderer& renderer_;
   const RenderRequest& request_;
   Camera camera_;
   passes::OcclusionSettings settings_;
+  bool one_run_ = settings_.specular == specular_model(settings_);
+  std::uint32_t timed_frames_ = std::max(request_.frames, kTimedFrames + 1);
   IndirectRequest timed_light_;  // one roughness, and no light
-};
-
-// Reports progress: the fraction of all frames that have been drawn.
-class FrameCounter {
- public:
-  explicit FrameCounter(std::uint32_t total) : total_(total) {}
-  void count() { progress_(static_cast<double>(++drawn_) / total_); }
-
- private:
   Progress progress_ = print_progress("frames");
   std::uint32_t drawn_ = 0;
-  std::uint32_t total_;
 };
-
-std::uint32_t timed_frames(const Run& run) { return std::max(run.frames(), kTimedFrames + 1); }
-
-// Draws the frames of a run and returns the median times of the last kTimedFrames frames. If the
-// run is shorter, its last frame is drawn several times.
-tl::expected<Costs, std::string> time_run(FrameRenderer& renderer, const Run& run, Outputs outputs,
-                                          FrameCounter& counter) {
-  std::vector<FrameCost> costs;
-  const std::uint32_t drawn = timed_frames(run);
-  for (std::uint32_t i = 0; i < drawn; ++i) {
-    auto cost = renderer.draw(run.request(std::min(i, run.frames() - 1), outputs));
-    if (!cost) {
-      return Failure(std::move(cost.error()));
-    }
-    counter.count();
-    if (i + kTimedFrames >= drawn) {
-      costs.push_back(std::move(*cost));
-    }
-  }
-  return medians(costs);
-}
-
-tl::expected<FrameImages, std::string> draw_run(FrameRenderer& renderer, const Run& run,
-                                                Outputs outputs, FrameCounter& counter) {
-  for (std::uint32_t i = 0; i + 1 < run.frames(); ++i) {
-    if (auto cost = renderer.draw(run.request(i, outputs)); !cost) {
-      return Failure(std::move(cost.error()));
-    }
-    counter.count();
-  }
-  return renderer.draw_and_read(run.request(run.frames() - 1, outputs));
-}
-
-// Returns the images of the last frame. With specular occlusion, slices are rotated towards the GGX
-// lobe, which makes visibility noisier. If the settings have no specular occlusion, visibility is
-// therefore taken from a second run without it, which is also the run that is timed.
-tl::expected<FrameImages, std::string> draw_images(FrameRenderer& renderer, const Run& run,
-                                                   bool one_run, FrameCounter& counter) {
-  auto all = draw_run(renderer, run, Outputs::kAll, counter);
-  if (!all || one_run) {
-    return all;
-  }
-  auto images = draw_run(renderer, run, Outputs::kBentNormals, counter);
-  if (images) {
-    images->specular_occlusion = std::move(all->specular_occlusion);
-    images->lit = std::move(all->lit);
-  }
-  return images;
-}
 
 }  // namespace
 
@@ -177,35 +169,19 @@ tl::expected<Rendering, std::string> render(Session session, const RenderRequest
   result.device = gpu.device().properties().deviceName;
   result.driver = gpu.device().driver();
 
-  const Run run(request, session.camera, result.settings);
-  result.camera = run.camera(run.frames() - 1);
+  result.camera = frame_camera(request, session.camera, request.frames - 1);
   auto renderer =
       FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals);
   if (!renderer) {
     return Failure(std::move(renderer.error()));
   }
-  const bool one_run = result.settings.specular == specular_model(result.settings);
-  FrameCounter counter(2 * timed_frames(run) + (one_run ? 1 : 2) * (run.frames() - 1));
-  auto costs = time_run(**renderer, run, Outputs::kVisibility, counter);
-  if (!costs) {
-    return Failure(std::move(costs.error()));
-  }
-  result.costs = std::move(*costs);
-  result.memory = (*renderer)->memory();
-  costs = time_run(**renderer, run, Outputs::kSpecular, counter);
-  if (!costs) {
-    return Failure(std::move(costs.error()));
-  }
-  result.costs_with_specular = std::move(*costs);
-  auto images = draw_images(**renderer, run, one_run, counter);
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
-  result.images = std::move(*images);
-  if (auto valid = check_validation(gpu); !valid) {
-    return Failure(std::move(valid.error()));
-  }
-  return result;
+  Run run(**renderer, request, session.camera, result.settings);
+  return assign(result.costs, run.time(Outputs::visibility))
+      .map([&] { result.memory = (*renderer)->memory(); })
+      .and_then([&] { return assign(result.costs_with_specular, run.time(Outputs::specular)); })
+      .and_then([&] { return assign(result.images, run.draw()); })
+      .and_then([&] { return check_validation(gpu); })
+      .map([&] { return std::move(result); });
 }
 
 Image<float> linear_depth(const Rendering& rendering) {
@@ -240,37 +216,25 @@ Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
   return colours;
 }
 
-tl::expected<void, std::string> write_lit(const Rendering& rendering,
-                                          const std::filesystem::path& folder) {
-  const LitImages& lit = rendering.images.lit;
-  const float exposure = exposure_of(rendering.light.environment);
-  return write_exr(folder / "lit.exr", lit.all)
-      .and_then([&] {
-        return write_png(folder / "lit.png",
-                         display_colours(with_sky(rendering, lit.all), exposure));
-      })
-      .and_then([&] {
-        return write_png(folder / "lit_diffuse.png", display_colours(lit.diffuse, exposure));
-      })
-      .and_then([&] {
-        return write_png(folder / "lit_specular.png", display_colours(lit.specular, exposure));
-      });
-}
+// Writes images to a folder, until one cannot be written.
+struct ImageWriter {
+  const std::filesystem::path& folder;
+  tl::expected<void, std::string> written;
 
-tl::expected<void, std::string> write_light(const Rendering& rendering,
-                                            const std::filesystem::path& folder) {
-  const FrameImages& images = rendering.images;
-  auto written = write_exr(folder / "multi_bounce.exr", images.multi_bounce).and_then([&] {
-    return write_png(folder / "multi_bounce.png", images.multi_bounce);
-  });
-  for (std::size_t i = 0; written && i < images.specular_occlusion.size(); ++i) {
-    const std::string name = specular_name(rendering.light, i);
-    written = write_exr(folder / (name + ".exr"), images.specular_occlusion[i]).and_then([&] {
-      return write_png(folder / (name + ".png"), images.specular_occlusion[i]);
-    });
+  template <typename Pixel>
+  void exr(const std::string& name, const Image<Pixel>& image) {
+    written = written.and_then([&] { return write_exr(folder / (name + ".exr"), image); });
   }
-  return written.and_then([&] { return write_lit(rendering, folder); });
-}
+  template <typename Pixel>
+  void png(const std::string& name, const Image<Pixel>& image) {
+    written = written.and_then([&] { return write_png(folder / (name + ".png"), image); });
+  }
+  template <typename Pixel>
+  void both(const std::string& name, const Image<Pixel>& image) {
+    exr(name, image);
+    png(name, image);
+  }
+};
 
 }  // namespace
 
@@ -294,16 +258,25 @@ std::string specular_name(const IndirectRequest& light, std::size_t i) {
 tl::expected<void, std::string> write_images(const Rendering& rendering,
                                              const std::filesystem::path& folder) {
   const FrameImages& images = rendering.images;
-  return write_exr(folder / "ao.exr", images.visibility)
-      .and_then([&] { return write_png(folder / "ao.png", images.visibility); })
-      .and_then([&] { return write_exr(folder / "bent_normal.exr", images.bent_normal_ws); })
-      .and_then(
-          [&] { return write_png(folder / "bent_normal.png", as_colours(images.bent_normal_ws)); })
-      .and_then([&] { return write_light(rendering, folder); })
-      .and_then([&] { return write_exr(folder / "depth.exr", linear_depth(rendering)); })
-      .and_then([&] { return write_exr(folder / "normal.exr", images.normal_ws); })
-      .and_then([&] { return write_png(folder / "normal.png", as_colours(images.normal_ws)); })
-      .and_then([&] { return write_png(folder / "albedo.png", images.albedo); });
+  const LitImages& lit = images.lit;
+  const float exposure = exposure_of(rendering.light.environment);
+  ImageWriter writer{folder, {}};
+  writer.both("ao", images.visibility);
+  writer.exr("bent_normal", images.bent_normal_ws);
+  writer.png("bent_normal", as_colours(images.bent_normal_ws));
+  writer.both("multi_bounce", images.multi_bounce);
+  for (std::size_t i = 0; i < images.specular_occlusion.size(); ++i) {
+    writer.both(specular_name(rendering.light, i), images.specular_occlusion[i]);
+  }
+  writer.exr("lit", lit.all);
+  writer.png("lit", display_colours(with_sky(rendering, lit.all), exposure));
+  writer.png("lit_diffuse", display_colours(lit.diffuse, exposure));
+  writer.png("lit_specular", display_colours(lit.specular, exposure));
+  writer.exr("depth", linear_depth(rendering));
+  writer.exr("normal", images.normal_ws);
+  writer.png("normal", as_colours(images.normal_ws));
+  writer.png("albedo", images.albedo);
+  return writer.written;
 }
 
 }  // namespace alcove::sample

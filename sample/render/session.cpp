@@ -6,7 +6,9 @@ namespace alcove::sample {
 
 tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const DeviceRequest& request) {
   framegraph::ExecutorOptions executor;
-  if (request.validation) executor.verify = framegraph::verify;
+  if (request.validation) {
+    executor.verify = framegraph::verify;
+  }
   executor.check_uses = executor.check_uses || request.validation;
   return Gpu::create({.validation = request.validation,
                       .index = request.index,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -27,6 +29,17 @@ struct Session {
   double load_seconds = 0.0;  // Of the scene.
   DeviceRequest device;
   std::unique_ptr<Gpu> gpu;
+};
+
+// A view of a scene and the settings that its occlusion is drawn with.
+struct Shot {
+  Camera camera;
+  passes::OcclusionSettings settings;
+  // Perceptual, [0,1], of every surface; null: the materials' own roughness.
+  std::optional<float> roughness;
+  std::uint32_t width = 0;  // pixels
+  std::uint32_t height = 0;
+  std::uint32_t frames = 0;  // number of frames to draw; 0: as many as the history averages
 };
 
 // Opens the device. Each call creates a new Gpu with its own histories.

@@ -9,6 +9,14 @@ namespace {
 // the emission).
 constexpr std::uint32_t kAlpha = 3;
 
+passes::Matrix to_matrix(const glm::mat4& matrix) {
+  passes::Matrix result;
+  std::memcpy(result.data(), &matrix, sizeof(result));
+  return result;
+}
+
+std::string message(const passes::Error& error) { return error.message; }
+
 }  // namespace
 
 HiddenDepths HiddenDepths::with(const HiddenDepths& other) const {
@@ -23,32 +31,45 @@ HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings) {
   return {passes::needs_back_depth(settings), passes::needs_second_depth(settings)};
 }
 
-passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces) {
-  passes::OcclusionInputs inputs{.depth_ndc = surfaces.gbuffer.depth};
+passes::Frame pass_frame(Graph& graph, Gpu& gpu, const GbufferView& view, std::uint32_t index,
+                         std::uint32_t static_frames) {
+  return {graph,
+          gpu.kernels(),
+          {to_matrix(view.clip_from_view), to_matrix(view.view_from_world)},
+          index,
+          {to_matrix(view.previous_clip_from_view), to_matrix(view.previous_view_from_world)},
+          static_frames};
+}
+
+tl::expected<passes::OcclusionOutputs, std::string> add_occlusion(
+    const passes::Frame& frame, const Surfaces& surfaces, passes::OcclusionSettings settings,
+    std::string_view history_name) {
+  const Gbuffer& gbuffer = surfaces.gbuffer;
+  passes::OcclusionInputs inputs{.depth_ndc = gbuffer.depth};
+  inputs.back_depth_ndc = gbuffer.back_depth;
+  inputs.second_depth_ndc = gbuffer.second_depth;
   if (surfaces.normals != NormalSource::kDepth) {
-    inputs.normals = surfaces.gbuffer.normal;
+    inputs.normals = gbuffer.normal;
   }
-  if (!surfaces.roughness) {
-    inputs.roughness = surfaces.gbuffer.albedo;
+  if (surfaces.motion_vectors) {
+    inputs.motion = gbuffer.motion;
   }
-  inputs.back_depth_ndc = surfaces.back_depth;
-  inputs.second_depth_ndc = surfaces.second_depth;
-  return inputs;
-}
-
-passes::OcclusionSettings with_roughness(const passes::OcclusionSettings& settings,
-                                         const Surfaces& surfaces) {
-  passes::OcclusionSettings result = settings;
   if (surfaces.roughness) {
-    result.roughness = *surfaces.roughness;
+    settings.roughness = *surfaces.roughness;
   } else {
-    result.roughness_channel = kAlpha;
+    inputs.roughness = gbuffer.albedo;
+    settings.roughness_channel = kAlpha;
   }
-  return result;
+  return passes::add_occlusion(frame, inputs, settings, history_name).map_error(message);
 }
 
-void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,
-                   const passes::OcclusionOutputs& outputs) {
+tl::expected<passes::AppliedLight, std::string> add_light(const passes::Frame& frame,
+                                                          const Surfaces& surfaces,
+                                                          const passes::OcclusionOutputs& outputs,
+                                                          const passes::Environment& probe,
+                                                          passes::ApplyInputs occlusion,
+                                                          passes::ApplySettings settings) {
+  passes::ApplyInputs& inputs = occlusion;
   inputs.depth = outputs.linear_depth;
   inputs.normals = outputs.normals;
   inputs.albedo = surfaces.gbuffer.albedo;
@@ -57,18 +78,12 @@ void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,
   }
   inputs.metallic = surfaces.gbuffer.emissive;
   inputs.normals_in_view_space = surfaces.normals == NormalSource::kDepth;
-}
-
-passes::ApplySettings apply_settings(const Surfaces& surfaces) {
-  return {.roughness = surfaces.roughness.value_or(0.0f),
-          .roughness_channel = kAlpha,
-          .metallic_channel = kAlpha};
-}
-
-passes::Matrix to_matrix(const glm::mat4& matrix) {
-  passes::Matrix result;
-  std::memcpy(result.data(), &matrix, sizeof(result));
-  return result;
+  inputs.harmonics = probe.harmonics;
+  inputs.map = probe.map;
+  settings.roughness = surfaces.roughness.value_or(0.0f);
+  settings.roughness_channel = kAlpha;
+  settings.metallic_channel = kAlpha;
+  return passes::add_apply(frame, inputs, settings).map_error(message);
 }
 
 }  // namespace alcove::sample

@@ -1,23 +1,26 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
 
 #include "alcove/passes/apply.h"
+#include "alcove/passes/environment.h"
 #include "alcove/passes/occlusion.h"
 #include "render/gbuffer.h"
 #include "render/normal_source.h"
 
+// The passes of a frame, as all programs of the sample add them.
 namespace alcove::sample {
 
-// The g-buffer of a frame and the values that go with it. The functions below pass them to the
-// occlusion and lighting passes, in the same way in all programs of the sample.
+// The g-buffer of a frame and the values that go with it.
 struct Surfaces {
   Gbuffer gbuffer;
-  framegraph::Texture back_depth;    // from GbufferRenderer::add_back_faces; may be null
-  framegraph::Texture second_depth;  // from GbufferRenderer::add_second_layer; may be null
   NormalSource normals = NormalSource::kShading;
   // Perceptual, of every surface; null: the materials' own roughness.
   std::optional<float> roughness;
+  bool motion_vectors = false;  // whether g-buffer motion is used; if not, only the camera moves
 };
 
 // The hidden depths that are read besides the g-buffer: back faces and the second layer.
@@ -31,19 +34,19 @@ struct HiddenDepths {
 };
 [[nodiscard]] HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings);
 
-// Returns the inputs of the occlusion passes: depths, normals and roughness. The caller adds
-// motion.
-[[nodiscard]] passes::OcclusionInputs occlusion_inputs(const Surfaces& surfaces);
-// Returns the settings with the roughness of the surfaces.
-[[nodiscard]] passes::OcclusionSettings with_roughness(const passes::OcclusionSettings& settings,
-                                                       const Surfaces& surfaces);
+[[nodiscard]] passes::Frame pass_frame(framegraph::Graph& graph, Gpu& gpu, const GbufferView& view,
+                                       std::uint32_t index = 0, std::uint32_t static_frames = 0);
 
-// Sets all fields of `inputs` that describe the surfaces, except their occlusion.
-void give_surfaces(passes::ApplyInputs& inputs, const Surfaces& surfaces,
-                   const passes::OcclusionOutputs& outputs);
-[[nodiscard]] passes::ApplySettings apply_settings(const Surfaces& surfaces);
+// Adds the occlusion passes. The roughness of the surfaces replaces that of the settings.
+[[nodiscard]] tl::expected<passes::OcclusionOutputs, std::string> add_occlusion(
+    const passes::Frame& frame, const Surfaces& surfaces, passes::OcclusionSettings settings,
+    std::string_view history_name = "occlusion");
 
-// Converts a matrix to the type that the passes use.
-[[nodiscard]] passes::Matrix to_matrix(const glm::mat4& matrix);
+// Adds the pass that lights the surfaces with a probe. `occlusion` has the textures of the
+// occlusion that is applied, and nothing else.
+[[nodiscard]] tl::expected<passes::AppliedLight, std::string> add_light(
+    const passes::Frame& frame, const Surfaces& surfaces, const passes::OcclusionOutputs& outputs,
+    const passes::Environment& probe, passes::ApplyInputs occlusion,
+    passes::ApplySettings settings = {});
 
 }  // namespace alcove::sample

@@ -5,14 +5,77 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <string_view>
 
 #include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "support/mib.h"
 #include "viewer/orbit_camera.h"
-#include "viewer/setting_widgets.h"
 
 namespace alcove::sample {
 namespace {
+
+using passes::OcclusionSettings;
+using passes::SettingGroup;
+using passes::SettingInfo;
+using passes::SettingRange;
+
+// Lays out a list of names, one for each enumerator.
+template <typename Choice, typename Names>
+void combo(const char* label, Choice& value, const Names& names) {
+  const auto now = static_cast<std::size_t>(value);
+  if (ImGui::BeginCombo(label, names[now].data())) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (ImGui::Selectable(names[i].data(), i == now)) {
+        value = static_cast<Choice>(i);
+      }
+    }
+    ImGui::EndCombo();
+  }
+}
+
+// Returns the range of a slider: the setting's range, or SettingInfo::slider if the range has no
+// maximum.
+SettingRange slider_range(const SettingInfo& info) {
+  SettingRange range = std::isinf(info.range.maximum) ? info.slider : info.range;
+  if (range.above_minimum) {
+    range.minimum += 0.01f * (range.maximum - range.minimum);
+  }
+  return range;
+}
+
+// Each overload lays out the widget for one type of setting. The range is multiplied by `unit`.
+void widget(const SettingInfo& info, float& value, float unit) {
+  const SettingRange range = slider_range(info);
+  ImGui::SliderFloat(info.name, &value, range.minimum * unit, range.maximum * unit, "%.3g",
+                     unit == 1.0f ? ImGuiSliderFlags_None : ImGuiSliderFlags_Logarithmic);
+}
+
+void widget(const SettingInfo& info, std::uint32_t& value, float /*unit*/) {
+  if (info.range.power_of_two) {
+    if (ImGui::BeginCombo(info.name, std::to_string(value).c_str())) {
+      for (std::uint32_t choice = 1; info.range.contains(choice); choice *= 2) {
+        if (ImGui::Selectable(std::to_string(choice).c_str(), choice == value)) {
+          value = choice;
+        }
+      }
+      ImGui::EndCombo();
+    }
+    return;
+  }
+  const auto low = static_cast<std::uint32_t>(info.range.minimum);
+  const auto high = static_cast<std::uint32_t>(info.range.maximum);
+  ImGui::SliderScalar(info.name, ImGuiDataType_U32, &value, &low, &high, "%u");
+}
+
+void widget(const SettingInfo& info, bool& value, float /*unit*/) {
+  ImGui::Checkbox(info.name, &value);
+}
+
+template <typename Choice>
+void widget(const SettingInfo& info, Choice& value, float /*unit*/) {
+  combo(info.name, value, passes::kNames<Choice>);
+}
 
 const ImVec4 kRefused{1.0f, 0.45f, 0.35f, 1.0f};
 constexpr const char* kKeys =
@@ -27,31 +90,44 @@ constexpr const char* kKeys =
     "Escape        close\n"
     "drop a file   open a .gltf or .glb";
 
-template <typename Choice, std::size_t size>
-void combo(const char* label, Choice& value, const std::array<std::string_view, size>& names) {
-  const auto now = static_cast<std::size_t>(value);
-  if (ImGui::BeginCombo(label, names[now].data())) {
-    for (std::size_t i = 0; i < size; ++i) {
-      if (ImGui::Selectable(names[i].data(), i == now)) {
-        value = static_cast<Choice>(i);
-      }
-    }
-    ImGui::EndCombo();
-  }
-}
-
 void lay_out_picture(ViewState& state, const PanelFacts& facts) {
   combo("picture", state.picture, kPictureNames);
   combo("compare with", state.comparison, kComparisonNames);
-  if (state.comparison != Comparison::kNone) {
+  if (state.comparison != Comparison::none) {
     ImGui::SliderFloat("split position", &state.split, 0.0f, 1.0f, "%.2f");
   }
   ImGui::BeginDisabled(!facts.refusal.empty());
   if (ImGui::Button("keep settings for comparison")) {
-    state.kept = state.settings;
-    state.comparison = Comparison::kKept;
+    state.saved = state.settings;
+    state.comparison = Comparison::saved;
   }
   ImGui::EndDisabled();
+}
+
+// Lays out a widget for each setting, with its name in --set, its range, and its help as a tooltip.
+// Settings that have no effect with the other settings are dimmed. Numbers that the user types
+// (control and click) may be out of range; the passes refuse invalid ones. `radius` is the default
+// radius of the scene, and scales the slider of the radius.
+void lay_out_settings(OcclusionSettings& settings, float radius) {
+  const auto lay_out = [&](bool advanced) {
+    passes::for_each_setting(settings, [&](const SettingInfo& info, auto& value) {
+      if ((info.group == SettingGroup::advanced) != advanced ||
+          info.group == SettingGroup::surface) {
+        return;
+      }
+      ImGui::BeginDisabled(info.matters != nullptr && !info.matters(settings));
+      widget(info, value, std::string_view(info.name) == "radius" ? radius : 1.0f);
+      ImGui::EndDisabled();
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        ImGui::SetTooltip("%s", info.help);
+      }
+    });
+  };
+  lay_out(false);
+  if (ImGui::TreeNode("Advanced")) {
+    lay_out(true);
+    ImGui::TreePop();
+  }
 }
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
@@ -84,12 +160,44 @@ bool section(const char* name) {
   return ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen);
 }
 
-// Lays out the choices at the left edge, as high as the window. Returns true if the user asks for a
-// screenshot.
-bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
+void lay_out_times(const SmoothedTimes& times) {
   const float unit = ImGui::GetFontSize();
+  const double total = std::max(times.total_ms(), 1e-6);
+  if (ImGui::BeginTable("times", 3, ImGuiTableFlags_SizingFixedFit)) {
+    for (const PassTime& time : times.passes()) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(time.pass.c_str());
+      ImGui::TableNextColumn();
+      ImGui::Text("%8.3f", time.milliseconds);
+      ImGui::TableNextColumn();
+      ImGui::ProgressBar(static_cast<float>(time.milliseconds / total),
+                         {6.0f * unit, ImGui::GetTextLineHeight()}, "");
+    }
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("total");
+    ImGui::TableNextColumn();
+    ImGui::Text("%8.3f ms", times.total_ms());
+    ImGui::EndTable();
+  }
+}
+
+void lay_out_cost(const PanelFacts& facts) {
+  ImGui::TextUnformatted(facts.device.c_str());
+  ImGui::Text("%ux%u, %.1f frames per second", facts.width, facts.height,
+              static_cast<double>(ImGui::GetIO().Framerate));
+  lay_out_times(facts.times);
+  ImGui::Text("transient memory %.1f MiB (%.1f without aliasing)", mib(facts.memory.aliased),
+              mib(facts.memory.unaliased));
+  ImGui::Text("history          %.1f MiB", mib(facts.memory.history));
+}
+
+// Lays out the choices at the left edge, as high as the window, and the cost too if the window is
+// narrow. Returns true if the user asks for a screenshot.
+bool lay_out_choices(ViewState& state, const PanelFacts& facts, bool narrow) {
+  const float unit = ImGui::GetFontSize();
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.0f, 0.0f});
-  ImGui::SetNextWindowSize({26.0f * unit, ImGui::GetIO().DisplaySize.y});
+  ImGui::SetNextWindowSize({std::min(26.0f * unit, 0.5f * window.x), window.y});
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize;
   bool screenshot = false;
   if (ImGui::Begin("settings", nullptr, kFixed)) {
@@ -113,6 +221,9 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
     if (section("screenshot")) {
       screenshot = ImGui::Button("screenshot and command (P)");
     }
+    if (narrow && section("cost")) {
+      lay_out_cost(facts);
+    }
     if (section("mouse and keys")) {
       ImGui::TextUnformatted(kKeys);
     }
@@ -122,47 +233,46 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts) {
   return screenshot;
 }
 
-void lay_out_times(const SmoothedTimes& times) {
-  const float unit = ImGui::GetFontSize();
-  const double total = std::max(times.total_ms(), 1e-6);
-  if (ImGui::BeginTable("times", 3, ImGuiTableFlags_SizingFixedFit)) {
-    for (const PassTime& time : times.passes()) {
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(time.pass.c_str());
-      ImGui::TableNextColumn();
-      ImGui::Text("%8.3f", time.milliseconds);
-      ImGui::TableNextColumn();
-      ImGui::ProgressBar(static_cast<float>(time.milliseconds / total),
-                         {6.0f * unit, ImGui::GetTextLineHeight()}, "");
-    }
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted("total");
-    ImGui::TableNextColumn();
-    ImGui::Text("%8.3f ms", times.total_ms());
-    ImGui::EndTable();
-  }
-}
-
 // Lays out times and memory in the upper right corner.
-void lay_out_cost(const PanelFacts& facts) {
+void lay_out_corner(const PanelFacts& facts) {
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x, 0.0f}, ImGuiCond_Always, {1.0f, 0.0f});
   if (ImGui::Begin("cost", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize)) {
-    ImGui::TextUnformatted(facts.device.c_str());
-    ImGui::Text("%ux%u, %.1f frames per second", facts.width, facts.height,
-                static_cast<double>(ImGui::GetIO().Framerate));
-    lay_out_times(facts.times);
-    ImGui::Text("transient memory %.1f MiB (%.1f without aliasing)", mib(facts.memory.aliased),
-                mib(facts.memory.unaliased));
-    ImGui::Text("history          %.1f MiB", mib(facts.memory.history));
+    lay_out_cost(facts);
   }
   ImGui::End();
 }
 
 }  // namespace
 
+void SmoothedTimes::add(const std::vector<PassTime>& measured) {
+  if (measured.empty()) {
+    return;
+  }
+  if (!std::ranges::equal(measured, passes_, {}, &PassTime::pass, &PassTime::pass)) {
+    passes_ = measured;
+    return;
+  }
+  constexpr double kShare = 0.05;  // of the newest
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    passes_[i].milliseconds += kShare * (measured[i].milliseconds - passes_[i].milliseconds);
+  }
+}
+
+double SmoothedTimes::total_ms() const {
+  double total = 0.0;
+  for (const PassTime& time : passes_) {
+    total += time.milliseconds;
+  }
+  return total;
+}
+
 bool lay_out_panel(ViewState& state, const PanelFacts& facts) {
-  lay_out_cost(facts);
-  return lay_out_choices(state, facts);
+  constexpr float kBesideEachOther = 58.0f;  // heights of the font; less is narrow
+  const bool narrow = ImGui::GetIO().DisplaySize.x < kBesideEachOther * ImGui::GetFontSize();
+  if (!narrow) {
+    lay_out_corner(facts);
+  }
+  return lay_out_choices(state, facts, narrow);
 }
 
 void move_camera_by_mouse(Camera& camera) {

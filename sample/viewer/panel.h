@@ -1,12 +1,25 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "alcove/framegraph/executor.h"
-#include "viewer/smoothed_times.h"
+#include "gpu/gpu.h"
 #include "viewer/view_state.h"
 
 namespace alcove::sample {
+
+// Moving averages of the times of a frame's passes over about twenty frames, so that the times can
+// be read. The averages restart if the passes change.
+class SmoothedTimes {
+ public:
+  void add(const std::vector<PassTime>& measured);
+  const std::vector<PassTime>& passes() const { return passes_; }
+  double total_ms() const;
+
+ private:
+  std::vector<PassTime> passes_;
+};
 
 // The information that the panel shows besides the ViewState.
 struct PanelFacts {

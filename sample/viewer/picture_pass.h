@@ -3,17 +3,17 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
-#include <vector>
 
 #include "alcove/framegraph/graph.h"
 #include "gpu/gpu.h"
+#include "render/graphics.h"
 #include "render/shaders/picture.h"
 #include "support/glm.h"
 
 namespace alcove::sample {
 
 // The textures that the window shows. All have the size of the window.
-struct Shown {
+struct PictureInputs {
   std::uint32_t show = maths::kShowGrey;
   framegraph::Texture texture;
   framegraph::Texture other;  // shown right of `split`; null without a comparison
@@ -32,28 +32,20 @@ class PicturePass {
   [[nodiscard]] static tl::expected<std::unique_ptr<PicturePass>, std::string> create(
       Gpu& gpu, VkFormat format);
   ~PicturePass();
-  PicturePass(const PicturePass&) = delete;
-  PicturePass& operator=(const PicturePass&) = delete;
 
   // Returns the version of `target` after the pass. To be called once per frame.
   [[nodiscard]] framegraph::Texture add(framegraph::Graph& graph, framegraph::Texture target,
-                                        const Shown& shown);
+                                        const PictureInputs& inputs);
 
  private:
-  explicit PicturePass(const VulkanDevice& device) : device_(device) {}
-  VkResult create_layout();
-  VkResult create_pipeline(VkFormat format);
-  VkResult create_sets(std::uint32_t count);
+  explicit PicturePass(VkDevice device) : device_(device), layout_(device) {}
   void record(framegraph::RecordContext& context, framegraph::Texture target,
-              const Shown& shown) const;
+              const PictureInputs& inputs) const;
 
-  const VulkanDevice& device_;
+  VkDevice device_;
   VkSampler sampler_ = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  PipelineLayout layout_;  // one set for each frame slot
   VkPipeline pipeline_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  std::vector<VkDescriptorSet> sets_;  // by frame slot
 };
 
 }  // namespace alcove::sample

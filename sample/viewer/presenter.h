@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "gpu/gpu.h"
-#include "viewer/swapchain.h"
 #include "viewer/window.h"
 
 namespace alcove::sample {
 
-// Draws frames into a window. The number of frames in flight is that of the Gpu.
+// Draws frames into a window, whose images have 8 bits per channel and no conversion: shaders write
+// sRGB-encoded values. The number of frames in flight is that of the Gpu.
 class Presenter {
  public:
   // Gpu and window must outlive the presenter.
@@ -26,8 +26,8 @@ class Presenter {
   // acquires an image. Returns false if no frame can be drawn now, because the window is minimised
   // or the next call has to create a new swapchain.
   [[nodiscard]] tl::expected<bool, std::string> prepare();
-  VkExtent2D size() const { return swapchain_->size(); }
-  VkFormat format() const { return swapchain_->format(); }
+  VkExtent2D size() const { return size_; }
+  VkFormat format() const { return format_; }
 
   // Declares, submits and presents a frame that draws all of `target`. Call it after prepare().
   // After an error of `declare` or of the graph, another frame may be drawn.
@@ -41,27 +41,29 @@ class Presenter {
   void wait() const;
 
  private:
-  struct Slot {
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    VkFence finished = VK_NULL_HANDLE;
-  };
   Presenter(Gpu& gpu, const Window& window) : gpu_(gpu), window_(window) {}
-  tl::expected<void, std::string> create_slots();
+  // Creates the images of a window of its current size. Errors: the device cannot present to the
+  // surface, or the surface has no 8-bit format without conversion.
   tl::expected<void, std::string> create_swapchain();
-  // Waits for the frame that last used the slot of the next frame, and reads its timings.
-  VkResult wait_for_slot();
-  VkResult submit(const Slot& slot) const;
+  VkResult create_images();
+  void destroy_images();
 
   Gpu& gpu_;
   const Window& window_;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
-  VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::unique_ptr<Swapchain> swapchain_;
-  VkExtent2D window_size_{};  // the size that the swapchain was made for
-  std::vector<Slot> slots_;
-  std::uint32_t slot_ = 0;  // slot of the next frame
-  bool acquired_ = false;   // the swapchain has an image for it
-  bool outdated_ = false;   // the swapchain no longer suits the window
+  VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
+  VkExtent2D size_{};
+  VkFormat format_ = VK_FORMAT_UNDEFINED;
+  std::vector<VkImage> images_;
+  std::vector<VkImageView> views_;
+  std::vector<VkSemaphore> arrived_;  // by frame slot
+  // By image, because only presentation tells when the semaphore is free again.
+  std::vector<VkSemaphore> drawn_;
+  std::uint32_t current_ = 0;  // index of the acquired image
+  VkExtent2D window_size_{};   // the size that the swapchain was made for
+  std::uint32_t slot_ = 0;     // slot of the next frame
+  bool acquired_ = false;      // the swapchain has an image for it
+  bool outdated_ = false;      // the swapchain no longer suits the window
   std::vector<PassTime> timings_;
 };
 

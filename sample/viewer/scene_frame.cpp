@@ -16,9 +16,9 @@ constexpr float kFullMotion = 0.02f;
 
 // Returns the settings with the outputs that the picture needs turned on.
 OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
-  const bool lit = picture == Picture::kLit;
-  settings.bent_normal = settings.bent_normal || lit || picture == Picture::kBentNormal;
-  if ((lit || picture == Picture::kSpecularOcclusion) &&
+  const bool lit = picture == Picture::lit;
+  settings.bent_normal = settings.bent_normal || lit || picture == Picture::bent_normal;
+  if ((lit || picture == Picture::specular_occlusion) &&
       settings.specular == passes::Specular::none) {
     settings.specular = passes::Specular::slices;
   }
@@ -26,8 +26,7 @@ OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
 }
 
 bool reads_albedo(Picture picture) {
-  return picture == Picture::kLit || picture == Picture::kMultiBounce ||
-         picture == Picture::kAlbedo;
+  return picture == Picture::lit || picture == Picture::multi_bounce || picture == Picture::albedo;
 }
 
 glm::mat3 ray_from_ndc(const Camera& camera, const CameraMatrices& matrices) {
@@ -47,21 +46,14 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
     Gpu& gpu, const Scene& scene, const EnvironmentImage& environment, NormalSource normals,
     VkFormat format) {
   std::unique_ptr<SceneFrame> made(new SceneFrame(gpu, normals));
-  auto gbuffer = GbufferRenderer::create(gpu, scene, normals == NormalSource::kGeometric);
-  if (!gbuffer) {
-    return Failure(std::move(gbuffer.error()));
+  auto done =
+      assign(made->gbuffer_,
+             GbufferRenderer::create(gpu, scene, normals == NormalSource::kGeometric))
+          .and_then([&] { return assign(made->probe_, Probe::create(gpu, environment)); })
+          .and_then([&] { return assign(made->picture_, PicturePass::create(gpu, format)); });
+  if (!done) {
+    return Failure(std::move(done.error()));
   }
-  made->gbuffer_ = std::move(*gbuffer);
-  auto probe = Probe::create(gpu, environment);
-  if (!probe) {
-    return Failure(std::move(probe.error()));
-  }
-  made->probe_ = std::move(*probe);
-  auto picture = PicturePass::create(gpu, format);
-  if (!picture) {
-    return Failure(std::move(picture.error()));
-  }
-  made->picture_ = std::move(*picture);
   made->exposure_ = exposure_of(environment);
   return made;
 }
@@ -72,16 +64,16 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
   view_ = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
            matrices.clip_from_view, state.camera.reversed_z};
   ray_from_ndc_ = ray_from_ndc(state.camera, matrices);
-  drawing_ = {state.settings, compared_settings(state), state.roughness};
-  const Kept kept{with_outputs(state.settings, state.picture), size.width, size.height};
-  const bool same_kind = std::exchange(kept_, kept) == kept;
-  if (drawn_ != drawing_) {
+  choices_ = {state.settings, compared_settings(state), state.roughness};
+  const HistoryFormat format{with_outputs(state.settings, state.picture), size.width, size.height};
+  const bool same_kind = std::exchange(format_, format) == format;
+  if (previous_choices_ != choices_) {
     index_ = 0;
     static_frames_ = 0;
     graph.reset_histories();
   } else {
-    view_.previous_view_from_world = drawn_view_->view_from_world;
-    view_.previous_clip_from_view = drawn_view_->clip_from_view;
+    view_.previous_view_from_world = previous_view_->view_from_world;
+    view_.previous_clip_from_view = previous_view_->clip_from_view;
     const bool same = same_kind && view_.view_from_world == view_.previous_view_from_world &&
                       view_.clip_from_view == view_.previous_clip_from_view;
     static_frames_ = same ? static_frames_ + 1 : 0;
@@ -89,18 +81,13 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
 }
 
 void SceneFrame::advance() {
-  drawn_view_ = view_;
-  drawn_ = drawing_;
+  previous_view_ = view_;
+  previous_choices_ = choices_;
   ++index_;
 }
 
 passes::Frame SceneFrame::frame_of(Graph& graph) const {
-  return {graph,
-          gpu_.kernels(),
-          {to_matrix(view_.clip_from_view), to_matrix(view_.view_from_world)},
-          index_,
-          {to_matrix(view_.previous_clip_from_view), to_matrix(view_.previous_view_from_world)},
-          static_frames_};
+  return pass_frame(graph, gpu_, view_, index_, static_frames_);
 }
 
 tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,
@@ -110,94 +97,87 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
   const std::optional<OcclusionSettings> compared = compared_settings(state);
   const bool specular = settings.specular != passes::Specular::none ||
                         (compared && compared->specular != passes::Specular::none);
-
-  const auto create = [&](bool wanted, const char* name, VkFormat format) {
-    return wanted ? graph.create_texture(name, {format, framegraph::Extent::relative(target)})
-                  : Texture{};
-  };
-  Surfaces surfaces{.normals = normals_, .roughness = state.roughness};
-  surfaces.gbuffer =
-      gbuffer_->add(graph, view_,
-                    {create(true, "depth", kDepthFormat),
-                     create(normals_ != NormalSource::kDepth, "normals", kNormalFormat),
-                     create(reads_albedo(state.picture) || (specular && !state.roughness), "albedo",
-                            kAlbedoFormat),
-                     create(state.picture == Picture::kMotion, "motion", kMotionFormat),
-                     create(state.picture == Picture::kLit, "emissive", kEmissiveFormat)});
   const HiddenDepths hidden =
       hidden_depths_of(settings).with(compared ? hidden_depths_of(*compared) : HiddenDepths{});
-  if (hidden.back_faces) {
-    surfaces.back_depth =
-        gbuffer_->add_back_faces(graph, view_, create(true, "back-face depth", kDepthFormat));
+  const bool wanted[kGbufferTargets.size()] = {
+      true,
+      normals_ != NormalSource::kDepth,
+      reads_albedo(state.picture) || (specular && !state.roughness),
+      state.picture == Picture::motion,
+      state.picture == Picture::lit,
+      hidden.back_faces,
+      hidden.second_layer};
+  Surfaces surfaces{.normals = normals_, .roughness = state.roughness};
+  for (std::size_t i = 0; i < kGbufferTargets.size(); ++i) {
+    const auto& [member, format, name] = kGbufferTargets[i];
+    if (wanted[i]) {
+      surfaces.gbuffer.*member =
+          graph.create_texture(name, {format, framegraph::Extent::relative(target)});
+    }
   }
-  if (hidden.second_layer) {
-    surfaces.second_depth = gbuffer_->add_second_layer(graph, view_, surfaces.gbuffer.depth,
-                                                       create(true, "second depth", kDepthFormat));
-  }
+  surfaces.gbuffer = gbuffer_->add(graph, view_, surfaces.gbuffer);
 
-  Shown shown = shown_of(state);
-  auto picture = picture_of(graph, state, surfaces, settings, "occlusion", shown);
+  PictureInputs inputs = picture_inputs(state);
+  auto picture = add_picture(graph, state, surfaces, settings, "occlusion", inputs);
   if (!picture) {
     return picture;
   }
-  shown.texture = *picture;
+  inputs.texture = *picture;
   if (compared) {
-    auto other = picture_of(graph, state, surfaces, with_outputs(*compared, state.picture),
-                            "compared", shown);
+    auto other = add_picture(graph, state, surfaces, with_outputs(*compared, state.picture),
+                             "compared", inputs);
     if (!other) {
       return other;
     }
-    shown.other = *other;
-    shown.split = state.split * static_cast<float>(graph.extent(target).width);
+    inputs.other = *other;
+    inputs.split = state.split * static_cast<float>(graph.extent(target).width);
   }
-  return picture_->add(graph, target, shown);
+  return picture_->add(graph, target, inputs);
 }
 
-Shown SceneFrame::shown_of(const ViewState& state) const {
-  Shown shown;
+PictureInputs SceneFrame::picture_inputs(const ViewState& state) const {
+  PictureInputs inputs;
   switch (state.picture) {
-    case Picture::kLit:
-      shown.show = maths::kShowRadiance;
-      shown.world_from_shown = ray_from_ndc_;
-      shown.scale = exposure_;
+    case Picture::lit:
+      inputs.show = maths::kShowRadiance;
+      inputs.world_from_shown = ray_from_ndc_;
+      inputs.scale = exposure_;
       break;
-    case Picture::kMultiBounce:
-    case Picture::kAlbedo:
-      shown.show = maths::kShowColour;
+    case Picture::multi_bounce:
+    case Picture::albedo:
+      inputs.show = maths::kShowColour;
       break;
-    case Picture::kBentNormal:
-    case Picture::kNormals:
-      shown.show = maths::kShowDirection;
+    case Picture::bent_normal:
+    case Picture::normals:
+      inputs.show = maths::kShowDirection;
       if (normals_ == NormalSource::kDepth) {
-        shown.world_from_shown = glm::transpose(glm::mat3(view_.view_from_world));
+        inputs.world_from_shown = glm::transpose(glm::mat3(view_.view_from_world));
       }
       break;
-    case Picture::kDepth:
-      shown.show = maths::kShowDepth;
-      shown.scale = glm::distance(state.camera.eye_ws, state.camera.target_ws);
+    case Picture::depth:
+      inputs.show = maths::kShowDepth;
+      inputs.scale = glm::distance(state.camera.eye_ws, state.camera.target_ws);
       break;
-    case Picture::kMotion:
-      shown.show = maths::kShowMotion;
-      shown.scale = 1.0f / kFullMotion;
+    case Picture::motion:
+      inputs.show = maths::kShowMotion;
+      inputs.scale = 1.0f / kFullMotion;
       break;
     default:
-      shown.show = maths::kShowGrey;
+      inputs.show = maths::kShowGrey;
   }
-  return shown;
+  return inputs;
 }
 
-// Adds the passes of the picture with `settings`, and returns the texture that is shown.
-tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const ViewState& state,
-                                                          const Surfaces& surfaces,
-                                                          const OcclusionSettings& settings,
-                                                          std::string_view history_name,
-                                                          Shown& shown) {
-  OcclusionSettings wanted = with_roughness(settings, surfaces);
-  wanted.linear_depth = true;  // which lighting and a picture of it read
-  const auto outputs =
-      passes::add_occlusion(frame_of(graph), occlusion_inputs(surfaces), wanted, history_name);
+// Adds the passes of the picture with `settings`, and returns the texture that is inputs.
+tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const ViewState& state,
+                                                           const Surfaces& surfaces,
+                                                           OcclusionSettings settings,
+                                                           std::string_view history_name,
+                                                           PictureInputs& inputs) {
+  settings.linear_depth = true;  // which lighting and a picture of it read
+  const auto outputs = add_occlusion(frame_of(graph), surfaces, settings, history_name);
   if (!outputs) {
-    return Failure(outputs.error().message);
+    return Failure(outputs.error());
   }
   // All outputs of the settings are computed, and timed, whether they are shown or not.
   for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular}) {
@@ -206,24 +186,24 @@ tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const Vi
     }
   }
   switch (state.picture) {
-    case Picture::kLit:
-      return add_lit(graph, surfaces, *outputs, shown);
-    case Picture::kMultiBounce:
+    case Picture::lit:
+      return add_lit(graph, surfaces, *outputs, inputs);
+    case Picture::multi_bounce:
       return passes::add_multi_bounce(frame_of(graph),
                                       {outputs->visibility, surfaces.gbuffer.albedo},
                                       settings.precision)
           .map_error([](const passes::Error& error) { return error.message; });
-    case Picture::kBentNormal:
+    case Picture::bent_normal:
       return outputs->bent_normal;
-    case Picture::kSpecularOcclusion:
+    case Picture::specular_occlusion:
       return outputs->specular;
-    case Picture::kNormals:
+    case Picture::normals:
       return outputs->normals;
-    case Picture::kDepth:
+    case Picture::depth:
       return outputs->linear_depth;
-    case Picture::kAlbedo:
+    case Picture::albedo:
       return surfaces.gbuffer.albedo;
-    case Picture::kMotion:
+    case Picture::motion:
       return surfaces.gbuffer.motion;
     default:
       return outputs->visibility;
@@ -232,23 +212,17 @@ tl::expected<Texture, std::string> SceneFrame::picture_of(Graph& graph, const Vi
 
 tl::expected<Texture, std::string> SceneFrame::add_lit(Graph& graph, const Surfaces& surfaces,
                                                        const passes::OcclusionOutputs& outputs,
-                                                       Shown& shown) {
-  passes::ApplyInputs inputs{.visibility = outputs.visibility,
-                             .bent_normal = outputs.bent_normal,
-                             .specular_occlusion = outputs.specular};
-  give_surfaces(inputs, surfaces, outputs);
+                                                       PictureInputs& inputs) {
   if (!light_.map) {
     light_ = probe_->import(graph);
   }
-  inputs.harmonics = light_.harmonics;
-  inputs.map = light_.map;
-  auto lit = passes::add_apply(frame_of(graph), inputs, apply_settings(surfaces));
-  if (!lit) {
-    return Failure(std::move(lit.error().message));
-  }
-  shown.linear_depth = outputs.linear_depth;
-  shown.environment = light_.map;
-  return lit->lit;
+  inputs.linear_depth = outputs.linear_depth;
+  inputs.environment = light_.map;
+  return add_light(frame_of(graph), surfaces, outputs, light_,
+                   {.visibility = outputs.visibility,
+                    .bent_normal = outputs.bent_normal,
+                    .specular_occlusion = outputs.specular})
+      .map([](const passes::AppliedLight& lit) { return lit.lit; });
 }
 
 }  // namespace alcove::sample

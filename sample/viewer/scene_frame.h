@@ -37,31 +37,31 @@ class SceneFrame {
  private:
   // The choices that determine format and size of the histories. If a frame differs from the
   // previous one in these, it does not count as static.
-  struct Kept {
+  struct HistoryFormat {
     passes::OcclusionSettings settings;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    bool operator==(const Kept&) const = default;
+    bool operator==(const HistoryFormat&) const = default;
   };
   // The choices that the previous frame was drawn with. Histories restart if they change.
-  struct Drawn {
+  struct Choices {
     passes::OcclusionSettings settings;
     std::optional<passes::OcclusionSettings> compared;
     std::optional<float> roughness;
-    bool operator==(const Drawn&) const = default;
+    bool operator==(const Choices&) const = default;
   };
 
   SceneFrame(Gpu& gpu, NormalSource normals) : gpu_(gpu), normals_(normals) {}
   void begin(framegraph::Graph& graph, const ViewState& state, VkExtent3D size);
   passes::Frame frame_of(framegraph::Graph& graph) const;
-  tl::expected<framegraph::Texture, std::string> picture_of(
+  tl::expected<framegraph::Texture, std::string> add_picture(
       framegraph::Graph& graph, const ViewState& state, const Surfaces& surfaces,
-      const passes::OcclusionSettings& settings, std::string_view history_name, Shown& shown);
+      passes::OcclusionSettings settings, std::string_view history_name, PictureInputs& shown);
   tl::expected<framegraph::Texture, std::string> add_lit(framegraph::Graph& graph,
                                                          const Surfaces& surfaces,
                                                          const passes::OcclusionOutputs& outputs,
-                                                         Shown& shown);
-  Shown shown_of(const ViewState& state) const;
+                                                         PictureInputs& shown);
+  PictureInputs picture_inputs(const ViewState& state) const;
 
   Gpu& gpu_;
   NormalSource normals_;
@@ -74,10 +74,10 @@ class SceneFrame {
   std::uint32_t static_frames_ = 0;  // see passes::Frame
   GbufferView view_;                 // of the declared frame
   glm::mat3 ray_from_ndc_{1.0f};     // of the declared frame: the ray of (ndc x, ndc y, 1)
-  Drawn drawing_;
-  std::optional<GbufferView> drawn_view_;
-  std::optional<Drawn> drawn_;
-  Kept kept_;  // of the previous frame
+  Choices choices_;
+  std::optional<GbufferView> previous_view_;
+  std::optional<Choices> previous_choices_;
+  HistoryFormat format_;  // of the previous frame
 };
 
 }  // namespace alcove::sample

@@ -8,7 +8,8 @@
 #include <utility>
 
 #include "scene/environment.h"
-#include "viewer/screenshot.h"
+#include "support/image_io.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -23,46 +24,50 @@ ViewState first_state(const Session& session, std::optional<float> roughness) {
   return state;
 }
 
+// Writes an image to view.png in the folder, or to view-2.png and so on if that file exists.
+// Returns the path of the file. Creates the folder; an empty path is the current folder.
+tl::expected<std::filesystem::path, std::string> write_screenshot(
+    const std::filesystem::path& folder, const Image<glm::vec3>& image) {
+  std::optional<OutputFolder> made;
+  if (!folder.empty()) {
+    auto created = OutputFolder::create(folder);
+    if (!created) {
+      return Failure(std::move(created.error()));
+    }
+    made.emplace(std::move(*created));
+  }
+  std::filesystem::path file = folder / "view.png";
+  for (int i = 2; std::filesystem::exists(file); ++i) {
+    file = folder / ("view-" + std::to_string(i) + ".png");
+  }
+  return write_png(file, image).map([&] { return file; });
+}
+
 }  // namespace
 
 tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(SceneViewRequest wanted) {
   std::unique_ptr<SceneView> made(new SceneView(std::move(wanted)));
   const SceneViewRequest& request = made->request_;
-  auto window = Window::create({request.width, request.height}, request.title);
-  if (!window) {
-    return Failure(std::move(window.error()));
+  auto done =
+      assign(made->window_, Window::create({request.width, request.height}, request.title))
+          .and_then([&] {
+            return assign(made->session_, request.open_session(Window::instance_extensions()));
+          })
+          .and_then([&] {
+            return assign(made->presenter_, Presenter::create(*made->session_.gpu, *made->window_));
+          })
+          .and_then([&] { return made->create_frame(made->session_.scene); })
+          .and_then([&] {
+            return assign(made->gui_, Gui::create(*made->session_.gpu, *made->window_,
+                                                  made->presenter_->format()));
+          });
+  if (!done) {
+    return Failure(std::move(done.error()));
   }
-  made->window_ = std::move(*window);
-  auto session = request.open_session(Window::instance_extensions());
-  if (!session) {
-    return Failure(std::move(session.error()));
-  }
-  made->session_ = std::move(*session);
-  const auto environment = load_environment(request.environment);
-  if (!environment) {
-    return Failure(environment.error());
-  }
-  Gpu& gpu = *made->session_.gpu;
-  auto presenter = Presenter::create(gpu, *made->window_);
-  if (!presenter) {
-    return Failure(std::move(presenter.error()));
-  }
-  made->presenter_ = std::move(*presenter);
-  const VkFormat format = made->presenter_->format();
-  auto frame = SceneFrame::create(gpu, made->session_.scene, *environment, request.normals, format);
-  if (!frame) {
-    return Failure(std::move(frame.error()));
-  }
-  made->frame_ = std::move(*frame);
-  auto gui = Gui::create(gpu, *made->window_, format);
-  if (!gui) {
-    return Failure(std::move(gui.error()));
-  }
-  made->gui_ = std::move(*gui);
   made->state_ = first_state(made->session_, request.roughness);
   made->good_ = {made->state_.settings, made->state_.roughness};
   made->facts_.first_settings = made->state_.settings;
-  made->facts_.device = gpu.device().properties().deviceName;
+  made->facts_.device = made->gpu().device().properties().deviceName;
   made->window_->show();
   return made;
 }
@@ -73,26 +78,22 @@ SceneView::~SceneView() {
   }
 }
 
+tl::expected<void, std::string> SceneView::create_frame(const Scene& scene) {
+  return load_environment(request_.environment).and_then([&](const EnvironmentImage& environment) {
+    presenter_->wait();
+    return assign(frame_, SceneFrame::create(*session_.gpu, scene, environment, request_.normals,
+                                             presenter_->format()));
+  });
+}
+
 tl::expected<void, std::string> SceneView::replace_scene(const std::string& file) {
-  auto loaded = request_.load_session(file);
-  if (!loaded) {
-    return Failure(std::move(loaded.error()));
-  }
-  const auto environment = load_environment(request_.environment);
-  if (!environment) {
-    return Failure(environment.error());
-  }
-  presenter_->wait();
-  auto frame = SceneFrame::create(*session_.gpu, loaded->scene, *environment, request_.normals,
-                                  presenter_->format());
-  if (!frame) {
-    return Failure(std::move(frame.error()));
-  }
-  frame_ = std::move(*frame);
-  session_.scene = std::move(loaded->scene);
-  session_.camera = loaded->camera;
-  session_.settings = loaded->settings;
-  return {};
+  return request_.load_session(file).and_then([&](Session&& loaded) {
+    return create_frame(loaded.scene).map([&] {
+      session_.scene = std::move(loaded.scene);
+      session_.camera = loaded.camera;
+      session_.settings = loaded.settings;
+    });
+  });
 }
 
 void SceneView::open(const std::string& file) {
@@ -102,7 +103,7 @@ void SceneView::open(const std::string& file) {
   }
   state_.camera = session_.camera;
   state_.settings.radius = session_.settings.radius;
-  state_.kept.radius = session_.settings.radius;
+  state_.saved.radius = session_.settings.radius;
   good_ = {state_.settings, state_.roughness};
   refused_.reset();
   facts_.first_settings = session_.settings;
@@ -166,18 +167,19 @@ void SceneView::lay_out() {
   gui_->end();
 }
 
-tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice,
-                                                       const HostBuffer* read_back) {
+tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice, ReadBack* read_back) {
   ViewState state = state_;
   state.camera = camera_around_scene();
   state.settings = choice.settings;
   state.roughness = choice.roughness;
   auto report = presenter_->draw([&](Graph& graph, Texture target) {
-    return frame_->declare(graph, target, state).map([&](Texture drawn) {
+    return frame_->declare(graph, target, state).and_then([&](Texture drawn) {
       drawn = gui_->add(graph, drawn);
-      if (read_back != nullptr) {
-        add_read_back(graph, drawn, *read_back);
+      if (read_back == nullptr) {
+        return tl::expected<void, std::string>();
       }
+      read_back->add(graph, drawn, [this](const Texels& texels) { screenshot_ = rgb(texels); });
+      return read_back->added();
     });
   });
   if (!report) {
@@ -189,7 +191,7 @@ tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice,
   return {};
 }
 
-tl::expected<void, std::string> SceneView::draw_chosen(const HostBuffer* read_back) {
+tl::expected<void, std::string> SceneView::draw_chosen(ReadBack* read_back) {
   const Choice chosen{state_.settings, state_.roughness};
   if (refused_ == chosen) {
     return draw_choice(good_, read_back);
@@ -207,19 +209,11 @@ tl::expected<void, std::string> SceneView::draw_chosen(const HostBuffer* read_ba
 }
 
 tl::expected<void, std::string> SceneView::draw_and_read() {
-  const VkExtent2D size = presenter_->size();
-  constexpr VkDeviceSize kTexelBytes = 4;
-  auto buffer = HostBuffer::create(session_.gpu->device(), kTexelBytes * size.width * size.height,
-                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  if (!buffer) {
-    return Failure(std::move(buffer.error()));
-  }
-  if (auto drawn = draw_chosen(buffer->get()); !drawn) {
-    return drawn;
-  }
-  presenter_->wait();
-  screenshot_ = screenshot(**buffer, size, presenter_->format());
-  return {};
+  ReadBack read_back(gpu().device());
+  return draw_chosen(&read_back).map([&] {
+    presenter_->wait();
+    read_back.finish();
+  });
 }
 
 tl::expected<void, std::string> SceneView::write() {

@@ -9,9 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "render/normal_source.h"
+#include "render/read_back.h"
 #include "render/session.h"
-#include "render/shot.h"
 #include "viewer/gui.h"
 #include "viewer/panel.h"
 #include "viewer/presenter.h"
@@ -46,8 +45,6 @@ class SceneView {
   [[nodiscard]] static tl::expected<std::unique_ptr<SceneView>, std::string> create(
       SceneViewRequest request);
   ~SceneView();
-  SceneView(const SceneView&) = delete;
-  SceneView& operator=(const SceneView&) = delete;
 
   // Processes input and draws a frame. If the window was closed, draws nothing and returns false.
   [[nodiscard]] tl::expected<bool, std::string> draw();
@@ -80,6 +77,8 @@ class SceneView {
   };
 
   explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
+  // Creates the passes that draw a scene. Waits for the frames of the previous scene.
+  tl::expected<void, std::string> create_frame(const Scene& scene);
   tl::expected<void, std::string> replace_scene(const std::string& file);
   // Returns the camera with its far plane moved behind the whole scene, because the user may have
   // moved the camera away from it.
@@ -87,10 +86,10 @@ class SceneView {
   void take_keys();
   void lay_out();
   // Copies the window's image to `read_back` unless it is null.
-  tl::expected<void, std::string> draw_choice(const Choice& choice, const HostBuffer* read_back);
+  tl::expected<void, std::string> draw_choice(const Choice& choice, ReadBack* read_back);
   // Draws a frame with the chosen settings. If the passes refuse them, uses the last settings that
   // could be drawn.
-  tl::expected<void, std::string> draw_chosen(const HostBuffer* read_back);
+  tl::expected<void, std::string> draw_chosen(ReadBack* read_back);
   tl::expected<void, std::string> draw_and_read();
   tl::expected<void, std::string> write();
 

@@ -8,7 +8,7 @@
 namespace alcove::sample {
 namespace {
 
-constexpr uint32_t kSize = 100;
+constexpr std::uint32_t kSize = 100;
 
 Camera some_camera() {
   Camera camera;

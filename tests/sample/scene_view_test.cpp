@@ -75,11 +75,11 @@ TEST_F(ViewerWindowTest, EveryKindOfImageIsDrawnAloneAndBesideAComparisonImage) 
   for (std::size_t i = 0; i < kPictureNames.size(); ++i) {
     SCOPED_TRACE(kPictureNames[i]);
     view_->state().picture = static_cast<Picture>(i);
-    for (const Comparison comparison : {Comparison::kNone, Comparison::kHorizons}) {
+    for (const Comparison comparison : {Comparison::none, Comparison::horizons}) {
       view_->state().comparison = comparison;
       draw(1);
-      const bool nothing_moves = view_->state().picture == Picture::kMotion;
-      EXPECT_EQ(is_plain(draw_and_look()), nothing_moves && comparison == Comparison::kNone);
+      const bool nothing_moves = view_->state().picture == Picture::motion;
+      EXPECT_EQ(is_plain(draw_and_look()), nothing_moves && comparison == Comparison::none);
       EXPECT_EQ(view_->facts().refusal, "");
     }
   }
@@ -149,9 +149,9 @@ TEST_F(ViewerWindowTest, InvalidSettingIsReportedAndAnImageStaysVisible) {
 
 TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDepthLayer) {
   ViewState& state = view_->state();
-  state.kept = state.settings;
-  state.kept.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
-  state.comparison = Comparison::kKept;
+  state.saved = state.settings;
+  state.saved.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  state.comparison = Comparison::saved;
   state.settings.depth_layers = 2;
   state.settings.specular = passes::Specular::table;
   draw(3);
@@ -162,7 +162,7 @@ TEST_F(ViewerWindowTest, ImagesAreDrawnWithAMovingCameraAndNormalsFromDepth) {
   options_.occlusion.normals = NormalSource::kDepth;
   options_.view.orbit = 0.02f;
   ASSERT_NO_FATAL_FAILURE(open());
-  for (const Picture picture : {Picture::kBentNormal, Picture::kLit, Picture::kMotion}) {
+  for (const Picture picture : {Picture::bent_normal, Picture::lit, Picture::motion}) {
     view_->state().picture = picture;
     draw(3);
     EXPECT_FALSE(is_plain(draw_and_look()));
@@ -215,14 +215,14 @@ TEST_F(ViewerWindowTest, FileDroppedOnTheWindowReplacesSceneCameraAndRadius) {
   draw(1);
   EXPECT_EQ(view_->scene().name, "dropped");
   EXPECT_GT(view_->state().settings.radius, 4.0f * radius);
-  view_->state().picture = Picture::kNormals;
+  view_->state().picture = Picture::normals;
   EXPECT_FALSE(is_plain(draw_and_look()));
 }
 
 TEST_F(ViewerWindowTest, SceneMayBeReplacedWhileFramesAreInFlight) {
   const std::string triangle = write_large_triangle(folder_.path);
   for (int i = 0; i < 6; ++i) {
-    view_->state().picture = i % 2 == 0 ? Picture::kLit : Picture::kVisibility;
+    view_->state().picture = i % 2 == 0 ? Picture::lit : Picture::visibility;
     draw(static_cast<std::uint32_t>(i));
     drop(view_->window(), triangle);
     draw(1);

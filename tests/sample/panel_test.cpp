@@ -1,4 +1,4 @@
-#include "viewer/smoothed_times.h"
+#include "viewer/panel.h"
 
 #include <gtest/gtest.h>
 
