@@ -1,27 +1,33 @@
-// Computes normals from depth, for pixels whose given normal is missing. A shader that includes
-// this file must define load_inverse_depth(), parameters.slope, kPerspective and size_px().
+// Computes normals from depth, for pixels without a valid given normal. A shader that includes this
+// file must define load_inverse_depth(), parameters.slope, kPerspective and size_px().
 #ifndef ALCOVE_DEPTH_NORMAL_H
 #define ALCOVE_DEPTH_NORMAL_H
 
-// Marks the change of depth towards a pixel of the sky.
-const float kNoSurface = 1e30;
-
-float inverse_depth_rise(ivec2 pixel, float here) {
-  float there = load_inverse_depth(pixel);
-  return there == sky_inverse_depth(kPerspective) ? kNoSurface : there - here;
+// Returns how badly the inverse depths of the first and second neighbour on one side continue that
+// of the pixel: how far a line through them misses it. A quarter of the step to the first neighbour
+// is added. It is needed on a strip that is two pixels wide: there, the lines on both sides miss,
+// and the addition prefers the neighbour on the strip itself. At a crease between two planes the
+// addition is too small to change the choice.
+float miss(float here, float first, float second) {
+  return abs(2.0 * first - second - here) + 0.25 * abs(first - here);
 }
 
 // Returns the change of the inverse depth from one pixel to the next along an axis of the image. It
-// uses the one of the two neighbours whose depth is closer to that of the pixel, which is more
-// likely to be on the same surface. The result is 0 if both neighbours are sky.
+// uses the one of the two neighbours whose depth continues the pixel's surface better, because the
+// other may belong to another surface. The result is 0 if both neighbours are sky.
 float inverse_depth_gradient(ivec2 pixel, ivec2 axis, float here) {
   ivec2 last = size_px() - 1;
-  float before = -inverse_depth_rise(max(pixel - axis, ivec2(0)), here);
-  float after = inverse_depth_rise(min(pixel + axis, last), here);
-  bool first = any(lessThan(pixel - axis, ivec2(0)));
-  bool final = any(greaterThan(pixel + axis, last));
-  float nearer = first || (!final && abs(after) < abs(before)) ? after : before;
-  return abs(nearer) < kNoSurface ? nearer : 0.0;
+  float before = load_inverse_depth(max(pixel - axis, ivec2(0)));
+  float after = load_inverse_depth(min(pixel + axis, last));
+  float miss_before = miss(here, before, load_inverse_depth(max(pixel - 2 * axis, ivec2(0))));
+  float miss_after = miss(here, after, load_inverse_depth(min(pixel + 2 * axis, last)));
+  float sky = sky_inverse_depth(kPerspective);
+  bool none_before = before == sky || any(lessThan(pixel, axis));
+  bool none_after = after == sky || any(greaterThan(pixel + axis, last));
+  if (none_before || (!none_after && miss_after < miss_before)) {
+    return none_after ? 0.0 : after - here;
+  }
+  return here - before;
 }
 
 // Returns the unit normal from depth in view space. It points towards the eye.

@@ -6,85 +6,34 @@
 // Ground-truth ambient occlusion [Jimenez 2016]. Each traced pixel searches the depth buffer in a
 // few slices, and integrates the visible part of each slice in closed form.
 //
-// This file has the inputs and outputs and the sums over slices. Its parts are, in the order in
-// which a pixel runs through them:
+// This file has the sums over slices; it is best read from main() upwards. Its parts are, in the
+// order in which a pixel runs through them:
+//   gtao_bindings.h     constants, inputs and outputs
 //   gtao_surface.h      the surface that the pixel shows
 //   gtao_search_line.h  the line of a slice on the image, and the depth samples of a half-slice
 //   gtao_connected.h    the default estimator, connected samples: the occluders that the samples
 //                       show, and the visible part of a half-slice
-// Three other estimators take the place of gtao_connected.h: the paper's horizons
-// (gtao_horizons.h), its thickness heuristic (gtao_heuristic.h) and the visibility bitmask
-// (gtao_bitmask.h).
+// Two other estimators take the place of gtao_connected.h: the paper's horizons (gtao_horizons.h)
+// and the visibility bitmask (gtao_bitmask.h).
 //
 // Each traced pixel writes two sums over its slices: the visible part, and the same integral
 // without occluders. Filters and history sum both and divide at the end, because the mean of ratios
 // would be biased. The bent-normal residual is also a sum over slices, in view space. With
 // SPECULAR, the two sums of the surface's GGX lobe are also written.
 
-#include "gtao_parameters.h"
+#include "gtao_bitmask.h"
+#include "gtao_connected.h"
+#include "gtao_horizons.h"
+#include "gtao_surface.h"
 #include "maths/bent_normal.h"
-#include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/lobe_slice.h"
-#include "maths/normal_encoding.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
 #include "maths/sampling.h"
-#include "maths/slice_line.h"
-#include "maths/unobserved.h"
-#include "maths/visibility_bitmask.h"
+#include "maths/slice.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-layout(constant_id = 0) const uint kSliceCount = 1;
-layout(constant_id = 1) const uint kStepCount = 12;  // depth samples of a half-slice
-layout(constant_id = 2) const bool kBentNormal = false;
-layout(constant_id = 3) const uint kEstimator = 0;  // a value of the C++ enum Estimator
-layout(constant_id = 4) const int kTileSize = 1;    // one pixel is traced in a tile of this width
-layout(constant_id = 5) const uint kPattern = 0;    // a value of the C++ enum Pattern
-layout(constant_id = 6) const bool kPerspective = true;
-layout(constant_id = 7) const bool kRoughnessTexture = false;
-layout(constant_id = 8) const int kRoughnessChannel = 0;
-layout(constant_id = 9) const bool kUniformWeight = false;  // no cosine of the normal
-layout(constant_id = 10) const bool kFalloff = false;       // occluders fade towards the radius
-layout(constant_id = 11) const bool kThicknessOfDistance = false;  // else a part of the radius
-layout(constant_id = 12) const bool kBackFaces = false;            // back_image tells the thickness
-layout(constant_id = 13) const bool kSnapToTexels = true;   // samples lie at centres of texels
-layout(constant_id = 14) const bool kSecondLayer = false;   // second_image occludes too
-layout(constant_id = 15) const bool kExtrapolation = true;  // surfaces continue beyond the image
-layout(constant_id = 16) const bool kUnobserved = true;     // excludes unobserved directions
-layout(constant_id = 17) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
-layout(constant_id = 18) const bool kReversed = false;      // raw depth is 1 at the near plane
-layout(constant_id = 19) const bool kInfiniteFar = false;   // the far plane is infinitely far away
-
-const uint kHeuristic = 1;
-const uint kBitmask = 2;
-const uint kConnected = 3;
-const bool kLeaveOutUnobserved = kEstimator == kConnected && kUnobserved;
-
-layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
-layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it
-layout(set = 0, binding = 2) uniform texture2D normal_image;  // view_from_normal rotates it
-// Packed RawOcclusion and inverse depth; with SPECULAR also those of the GGX lobe and its surface.
-layout(set = 0, binding = 3) uniform writeonly uimage2D raw_image;
-// Without kBentNormal it is never written, and the raw occlusion is bound in its place.
-layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
-// Depth of the back faces. Without kBackFaces it is never read, and another image is bound in its
-// place.
-layout(set = 0, binding = 5) uniform texture2D back_image;
-// The second depth layer. Without kSecondLayer it is never read, and another image is bound in its
-// place.
-layout(set = 0, binding = 6) uniform texture2D second_image;
-#ifdef SPECULAR
-layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
-const bool kLobe = true;
-#else
-const bool kLobe = false;
-#endif
-
-#include "gtao_surface.h"
-
-RawOcclusion no_lobe() { return RawOcclusion(0.0, 0.0); }
 
 // The contribution of a slice to the pixel's sums.
 struct SliceResult {
@@ -95,25 +44,8 @@ struct SliceResult {
 };
 
 SliceResult no_result() {
-  return SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), no_lobe());
+  return SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), RawOcclusion(0.0, 0.0));
 }
-
-// Sums over the two half-slices of a slice.
-struct SliceSum {
-  float visible;        // visible part, weighted by the cosine of the normal
-  float left_out;       // the part of `visible` and of the open slice that is unobserved
-  vec2 bent;            // sum of visible directions: along the slice's direction, along the view's
-  RawOcclusion lobe;    // visible part of the GGX lobe, and the whole lobe
-  float lobe_left_out;  // the part of the lobe that is unobserved
-  float lobe_width;     // GGX width of the surface: perceptual roughness squared
-};
-
-#include "gtao_search_line.h"
-
-#include "gtao_bitmask.h"
-#include "gtao_connected.h"
-#include "gtao_heuristic.h"
-#include "gtao_horizons.h"
 
 // Adds the visible part of a half-slice to the sums of its slice.
 void add_half_slice(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
@@ -123,9 +55,6 @@ void add_half_slice(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
       break;
     case kBitmask:
       add_bitmask(sum, half_slice, slice);
-      break;
-    case kHeuristic:
-      add_heuristic(sum, half_slice, slice);
       break;
     default:
       add_horizons(sum, half_slice, slice);
@@ -137,16 +66,14 @@ RawOcclusion leave_out(RawOcclusion sum, float part) {
   return RawOcclusion(max(sum.visible - part, 0.0), sum.open - part);
 }
 
-// Searches both half-slices of a slice, and integrates their visible parts.
+// Searches both half-slices of a slice, and integrates their visible parts: the inner integral of
+// [Jimenez 2016, section 4.1].
 SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   Slice slice = make_slice(surface.normal, direction, surface.view);
   SearchLine search_line = make_search_line(surface, direction);
   vec2 border = border_offsets(centre_of(surface), search_line);
-  vec2 open_arcs = kUniformWeight ? vec2(uniform_arc(tangent_light(slice, 1.0)),
-                                         uniform_arc(tangent_light(slice, -1.0)))
-                                  : tangent_arcs(slice);
-  SliceSum sum = SliceSum(0.0, 0.0, vec2(0.0), no_lobe(), 0.0,
-                          surface.lobe.roughness * surface.lobe.roughness);
+  vec2 open_arcs = tangent_arcs(slice);
+  SliceSum sum = no_sum(surface);
   uint i = 0u;
   [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
@@ -171,21 +98,8 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
         expected_residual(slice, direction, surface.view, surface.normal, open);
   }
   result.raw_occlusion = leave_out(RawOcclusion(sum.visible, open), sum.left_out);
-  result.lobe = no_lobe();
-  if (kLobe) result.lobe = leave_out(sum.lobe, sum.lobe_left_out);
+  result.lobe = kLobe ? leave_out(sum.lobe, sum.lobe_left_out) : RawOcclusion(0.0, 0.0);
   return result;
-}
-
-// Direction and offset of a tile's samples in this frame.
-SliceNoise noise_at(uvec2 tile) {
-  switch (kPattern) {
-    case 1:
-      return hilbert_pattern(tile, parameters.frame);
-    case 2:
-      return paper_pattern(tile, parameters.frame);
-    default:
-      return golden_pattern(tile, parameters.frame, kTileSize > 1);
-  }
 }
 
 // Packs the sums of a lobe, scaled so that sums of narrow and of wide lobes have about the same
@@ -224,7 +138,8 @@ SearchResult sky_result() {
                       uvec2(0u));
 }
 
-// The contribution of slice `i`, with the weight of its angle.
+// The contribution of slice `i`, with the weight of its angle. Slices contain the view direction,
+// and the noise rotates them (section 4.4).
 SliceResult weighted_slice(Surface surface, SliceNoise noise, uint i) {
   ViewBasis basis = make_view_basis(surface.view);
   WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
@@ -264,11 +179,15 @@ float depth_step_length(Surface surface) {
                       : max(constant + per_inverse_depth * surface.depth, 0.0);
 }
 
-// Searches all slices of a pixel that is not the sky.
+// Searches all slices of a pixel that is not the sky: the outer integral of section 4.1, a mean
+// over the angles of the slices.
 SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, inverse_depth);
   SliceResult sum = no_result();
-  if (kSliceCount == 1u) {
+  if (!kLobe && !reaches_samples(surface)) {
+    // Without occluders, the mean of a slice over all directions is 1.
+    sum.raw_occlusion = RawOcclusion(float(kSliceCount), float(kSliceCount));
+  } else if (kSliceCount == 1u) {
     sum = weighted_slice(surface, noise, 0u);
   } else {
     uint i = 0u;
@@ -294,8 +213,16 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
           : uvec2(0u));
 }
 
+// Groups run in the order of their numbers, x first. They advance by columns through strips of the
+// image that are gl_NumWorkGroups.x groups high, so that groups that run at the same time lie close
+// together and share what caches hold.
+ivec2 tile_of_invocation() {
+  uint row = gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  return ivec2(uvec2(gl_WorkGroupID.y, row) * 8u + gl_LocalInvocationID.xy);
+}
+
 void main() {
-  ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 tile = tile_of_invocation();
   if (any(greaterThanEqual(tile * kTileSize, size_px()))) {
     return;
   }
@@ -303,7 +230,8 @@ void main() {
   float inverse_depth = load_inverse_depth(pixel);
   SearchResult result = sky_result();
   if (inverse_depth != sky_inverse_depth(kPerspective)) {
-    result = search_pixel(pixel, inverse_depth, noise_at(uvec2(tile)));
+    result = search_pixel(pixel, inverse_depth,
+                          golden_pattern(uvec2(tile), parameters.frame, kTileSize > 1));
   }
   imageStore(raw_image, tile, result.raw_occlusion);
   if (kBentNormal) {

@@ -4,6 +4,10 @@
 #ifndef ALCOVE_GTAO_BITMASK_H
 #define ALCOVE_GTAO_BITMASK_H
 
+#include "gtao_search_line.h"
+#include "maths/lobe_slice.h"
+#include "maths/visibility_bitmask.h"
+
 // The occluder runs of a half-slice, from which hidden_occlusion_behind() is computed.
 struct RunSum {
   float count;            // number of runs
@@ -26,8 +30,8 @@ uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer
                        inout RunSum runs) {
   uint occluded = 0u;
   float last_px = 0.0;
-  uint k = 0u;
-  do {
+  uint k = is_empty(half_slice) ? kStepCount : 0u;
+  while (k < kStepCount) {
     SliceSample here = fetch_sample(half_slice, layer, sample_offset(half_slice, float(k)));
     float front = sector_position(per_diamond_angle, here.point.xy);
     bool known = kBackFaces && here.back.y < kNoBack;
@@ -38,8 +42,8 @@ uint occluded_by_layer(HalfSlice half_slice, float per_diamond_angle, uint layer
     if (layer == 0u) runs = add_run_sample(runs, hides, here.point.x - last_px, here.point.x);
     last_px = here.point.x;
     ++k;
-  } while (k < kStepCount);
-  return is_empty(half_slice) ? 0u : occluded;
+  }
+  return occluded;
 }
 
 // Adds the part of a half-slice that its occluded sectors leave visible.
@@ -48,13 +52,11 @@ void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   RunSum runs = RunSum(0.0, 0.0, 0.0, false);
   uint occluded = occluded_by_layer(half_slice, per_diamond_angle, 0u, runs);
   if (kSecondLayer) occluded |= occluded_by_layer(half_slice, per_diamond_angle, 1u, runs);
-  float way = nearest_offset(half_slice) + reach_of(half_slice) - runs.before_first_px;
+  float last = sample_offset(half_slice, float(kStepCount) - 1.0);
   float hidden_occlusion = hidden_occlusion_behind(
-      runs.width_px /
-          (max(runs.count, 1.0) * max(way, 1e-3 * half_slice.search_line.offset_per_px)),
-      parameters.hidden_exponent);
+      runs.width_px / max(runs.count, 1.0), runs.before_first_px, last, parameters.hidden_exponent);
   VisiblePart part = visible_part(slice, half_slice.side, per_diamond_angle, occluded,
-                                  hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
+                                  hidden_occlusion, kBentNormal);
   sum.visible += part.arc;
   sum.bent += part.bent;
   if (kLobe) {

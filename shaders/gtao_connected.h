@@ -7,6 +7,12 @@
 #ifndef ALCOVE_GTAO_CONNECTED_H
 #define ALCOVE_GTAO_CONNECTED_H
 
+#include "gtao_search_line.h"
+#include "maths/connected_samples.h"
+#include "maths/lobe_slice.h"
+#include "maths/unobserved.h"
+#include "maths/visibility_bitmask.h"
+
 // The state of the search after a sample.
 struct SegmentState {
   float rise;                        // change of y (times w) over the last sample interval
@@ -15,10 +21,11 @@ struct SegmentState {
   uint beyond;                       // sectors beyond the last sample
   bool inside;                       // whether the last sample lies within the radius
   uint occluded;                     // sectors that are occluded so far
-  uint runs;                         // one bit per sample: whether it is part of an occluder run
+  float begin;                       // offset at which the surface of the last sample begins
+  uvec2 runs;                        // the samples that are part of an occluder run
   float half_width;                  // half the width of all occluder runs together
-  uint unobserved;  // one bit per sample: whether it hides points within the radius behind it
-  bool known_back;  // whether a back face told where an occluder ends
+  uvec2 unobserved;                  // the samples that hide points within the radius behind them
+  bool known_back;                   // whether a back face told where an occluder ends
 };
 
 // The occluders that were found in a half-slice.
@@ -37,22 +44,33 @@ const float kDepthDiscontinuity = 4.0;
 // Converts an integer below 2^23 to a float. On GCN a conversion costs as much as four additions.
 float small_float(uint value) { return uintBitsToFloat(0x4B000000u + value) - 8388608.0; }
 
-// The number of bits that are set.
-float count_of(uint bits) { return small_float(uint(bitCount(bits))); }
+// Sets of samples are bit masks. The second word is 0 with at most 32 samples.
+void add_to_set(inout uvec2 samples, uint k, bool contained) {
+  uint bit = contained ? 1u << (k & 31u) : 0u;
+  if (kStepCount > 32u && k >= 32u) {
+    samples.y |= bit;
+  } else {
+    samples.x |= bit;
+  }
+}
+
+// The number of samples in a set.
+float count_of(uvec2 samples) {
+  return small_float(uint(bitCount(samples.x) + bitCount(samples.y)));
+}
 
 // The number of the lowest bit that is set, which must exist.
 float lowest_of(uint bits) { return small_float(uint(findLSB(bits))); }
 
-// The bit of sample `k` in a mask of samples. With more than 32 samples, several share a bit.
-uint sample_bit(uint k) { return 1u << (kStepCount <= 32u ? k : k * 32u / kStepCount); }
-
-// The number of the first sample in a mask of samples.
-float first_sample(uint bits) {
-  return lowest_of(bits) * (kStepCount <= 32u ? 1.0 : float(kStepCount) / 32.0);
+// The number of the first sample in a set, which must not be empty.
+float first_sample(uvec2 samples) {
+  return kStepCount <= 32u || samples.x != 0u ? lowest_of(samples.x) : lowest_of(samples.y) + 32.0;
 }
 
-// The number of runs of adjacent samples in a mask of samples.
-float run_count(uint bits) { return count_of(bits & ~(bits << 1u)); }
+// The number of runs of adjacent samples in a set.
+float run_count(uvec2 samples) {
+  return count_of(samples & ~(samples << 1u | uvec2(0u, samples.x >> 31u)));
+}
 
 // Whether the samples of a layer tell which directions are unobserved. Only the last layer's do.
 bool tells_unobserved(uint layer) {
@@ -61,17 +79,17 @@ bool tells_unobserved(uint layer) {
 
 // Adds a sample. `connected` tells whether it continues the surface of the last sample. If it does
 // not, its surface begins at an edge, `edge` before it.
-void add_sample(inout SegmentState state, float sectors, uint layer, uint bit, SliceSample here,
+void add_sample(inout SegmentState state, float sectors, uint layer, uint k, SliceSample here,
                 bool connected, float edge) {
   bool inside = within_radius(here);
   float x = connected ? here.point.x : here.point.x - edge;
+  state.begin = connected ? state.begin : x;
   float scale = 1.0 / (x + abs(here.point.y));
   float height = here.point.y * scale;
   uint front = biased_position(sectors, height);
   uint beyond = sectors_beyond(front);
-  // At its leading edge an occluder is at most as thick as its visible width.
-  float thickness = settings_thickness(here);
-  thickness = connected ? thickness : min(thickness, edge);
+  // An occluder is at most as thick as it is seen to be wide.
+  float thickness = min(settings_thickness(here), here.point.x - state.begin);
   uint back = biased_position(sectors, height_of_back(height, scale, thickness));
   if (kBackFaces && here.back.y < kNoBack) {
     back = biased_position(sectors, 1.0 - diamond_angle(here.back));
@@ -83,11 +101,9 @@ void add_sample(inout SegmentState state, float sectors, uint layer, uint bit, S
   // A sample is part of an occluder run if it stands above the tangent plane by more than a sector,
   // and lies within the radius or nearer to the eye than the shaded point.
   bool hides = front < kPositionBits + kEvenSectorCount && (inside || nearer);
-  state.runs |= hides ? bit : 0u;
+  add_to_set(state.runs, k, hides);
   state.half_width += hides ? state.half_interval : 0.0;
-  if (tells_unobserved(layer)) {
-    state.unobserved |= !inside && nearer ? bit : 0u;
-  }
+  if (tells_unobserved(layer)) add_to_set(state.unobserved, k, !inside && nearer);
   state.beyond = beyond;
   state.inside = inside;
 }
@@ -106,7 +122,7 @@ float edge_distance(SegmentState state) { return 2.0 * kEdgeShare * state.half_i
 // `here` is connected to the previous sample depends on the change of slope at `here`, for which
 // the following sample is needed.
 void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice half_slice,
-                 float sectors, uint layer, uint bit) {
+                 float sectors, uint layer, uint k) {
   float half_interval = state.half_interval + half_slice.growth;
   SliceSample next = fetch_sample(half_slice, layer, 2.0 * half_interval + here.point.x);
   float rise = next.point.y - here.point.y;
@@ -114,7 +130,7 @@ void pass_sample(inout SegmentState state, inout SliceSample here, HalfSlice hal
       discontinuity_between(state.rise, state.half_interval, rise, half_interval);
   bool connected = layer == 0u ? samples_are_connected(state.discontinuity, discontinuity)
                                : hidden_samples_are_connected(state.discontinuity, discontinuity);
-  add_sample(state, sectors, layer, bit, here, connected, edge_distance(state));
+  add_sample(state, sectors, layer, k, here, connected, edge_distance(state));
   state.rise = rise;
   state.half_interval = half_interval;
   state.discontinuity = discontinuity;
@@ -129,16 +145,17 @@ SegmentState first_state(HalfSlice half_slice, float sectors, uint layer, out Sl
   here = fetch_sample(half_slice, layer, 2.0 * half_interval + first_offset);
   SegmentState state;
   state.occluded = 0u;
-  state.runs = 0u;
+  state.begin = 0.0;
+  state.runs = uvec2(0u);
   state.half_width = 0.0;
-  state.unobserved = 0u;
+  state.unobserved = uvec2(0u);
   state.known_back = false;
   state.beyond = 0u;
   state.inside = false;
   state.half_interval = 0.5 * first_offset;
   // The first sample continues the surface itself if it lies on its tangent plane.
   bool connected = !stands_above_tangent(first.point.xy, half_slice.height);
-  add_sample(state, sectors, layer, 1u, first, connected, edge_distance(state));
+  add_sample(state, sectors, layer, 0u, first, connected, edge_distance(state));
   state.rise = here.point.y - first.point.y;
   state.discontinuity =
       discontinuity_between(first.point.y, state.half_interval, state.rise, half_interval);
@@ -155,7 +172,7 @@ uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sector
                           SliceSample last) {
   SearchLine search_line = half_slice.search_line;
   float interval = 2.0 * state.half_interval;
-  float between_texels = texel_distance(search_line, last.point.x - interval, last.point.x);
+  float between_texels = place_distance(half_slice, last.point.x - interval, last.point.x);
   float above_tangent = (state.rise - interval * search_line.tangent_rise) /
                         max(between_texels, 0.5 * search_line.offset_per_px);
   float slope = search_line.tangent_rise + above_tangent;
@@ -169,33 +186,28 @@ uint extrapolated_sectors(SegmentState state, HalfSlice half_slice, float sector
   return continues ? state.beyond ^ beyond : 0u;
 }
 
-// The fraction of the volume behind the occluders that counts as occluded.
-float hidden_occlusion_of(SegmentState state, HalfSlice half_slice) {
-  bool from_start = (state.runs & 1u) != 0u || state.runs == 0u;
+// The fraction of the volume behind the occluders that counts as occluded. `last` is the offset of
+// the last sample.
+float hidden_occlusion_of(SegmentState state, HalfSlice half_slice, float last) {
+  bool from_start = (state.runs.x & 1u) != 0u || state.runs == uvec2(0u);
   float before_first = from_start ? 0.0 : sample_offset(half_slice, first_sample(state.runs) - 1.0);
-  float searched = max(nearest_offset(half_slice) + reach_of(half_slice) - before_first,
-                       1e-3 * half_slice.search_line.offset_per_px);
-  float run_share = 2.0 * state.half_width / (max(run_count(state.runs), 1.0) * searched);
-  return hidden_occlusion_behind(run_share, parameters.hidden_exponent);
+  float run_width = 2.0 * state.half_width / max(run_count(state.runs), 1.0);
+  return hidden_occlusion_behind(run_width, before_first, last, parameters.hidden_exponent);
 }
 
-// The unobserved columns of a half-slice, from a mask of samples.
-Unobserved unobserved_columns(uint bits, HalfSlice half_slice) {
-  float first_k = first_sample(bits);
-  float count = count_of(bits) * max(float(kStepCount) / 32.0, 1.0);
+// The unobserved columns of a half-slice.
+Unobserved unobserved_columns(uvec2 samples, HalfSlice half_slice) {
+  bool none = samples == uvec2(0u);
+  float first_k = first_sample(samples);
+  float count = count_of(samples);
   Unobserved unobserved = nothing_unobserved();
-  unobserved.first = bits == 0u ? kNowhere : sample_offset(half_slice, first_k);
+  unobserved.first = none ? kNowhere : sample_offset(half_slice, first_k);
   // The width of the unobserved samples if all of them were adjacent to the first one.
   unobserved.width = max(
       half_slice.growth * count * (2.0 * (first_k + half_slice.step_offset) + count - 2.0), 0.0);
-  unobserved.rows = run_count(bits);
+  unobserved.rows = run_count(samples);
   return unobserved;
 }
-
-// Samples in one iteration of the loop over samples. An iteration costs as many instructions as
-// half a sample, but each of its samples holds registers, and several slices hold more registers
-// than one. passes/cost/gtao.cpp has the same numbers.
-const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
 
 // The occluders that the samples of one depth layer show.
 Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
@@ -203,24 +215,25 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   SegmentState state = first_state(half_slice, sectors, layer, here);
   const uint rest = (kStepCount - 2u) % kUnrolled;
   [[unroll]] for (uint i = 0u; i < rest; ++i) {
-    pass_sample(state, here, half_slice, sectors, layer, sample_bit(1u + i));
+    pass_sample(state, here, half_slice, sectors, layer, 1u + i);
   }
+  uint last = step_count(half_slice) - 1u;
   uint k = 1u + rest;
-  if (k < kStepCount - 1u) {
+  if (k < last) {
     do {
       [[unroll]] for (uint i = 0u; i < kUnrolled; ++i) {
-        pass_sample(state, here, half_slice, sectors, layer, sample_bit(k + i));
+        pass_sample(state, here, half_slice, sectors, layer, k + i);
       }
       k += kUnrolled;
-    } while (k < kStepCount - 1u);
+    } while (k < last);
   }
   // No sample follows the last one, so it is connected only if there is no discontinuity before it.
-  add_sample(state, sectors, layer, sample_bit(kStepCount - 1u), here,
-             !is_discontinuous(state.discontinuity), edge_distance(state));
+  add_sample(state, sectors, layer, last, here, !is_discontinuous(state.discontinuity),
+             edge_distance(state));
   uint extrapolated = kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, here) : 0u;
   Occluders found;
-  found.occluded = is_empty(half_slice) ? 0u : state.occluded | extrapolated;
-  found.hidden_occlusion = hidden_occlusion_of(state, half_slice);
+  found.occluded = state.occluded | extrapolated;
+  found.hidden_occlusion = hidden_occlusion_of(state, half_slice, here.point.x);
   found.known_back = state.known_back;
   found.unobserved = nothing_unobserved();
   if (tells_unobserved(layer)) {
@@ -232,7 +245,11 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
 
 // The occluders that all depth layers show.
 Occluders find_occluders(HalfSlice half_slice, float sectors) {
-  Occluders found = find_in_layer(half_slice, sectors, 0u);
+  Occluders found = Occluders(0u, 0.0, false, nothing_unobserved(), 0.0);
+  if (is_empty(half_slice)) {
+    return found;
+  }
+  found = find_in_layer(half_slice, sectors, 0u);
   if (kSecondLayer) {
     Occluders behind = find_in_layer(half_slice, sectors, 1u);
     found.occluded |= behind.occluded;
@@ -296,14 +313,13 @@ void add_connected_lobe(inout SliceSum sum, HalfSlice half_slice, Slice slice, S
 // Adds the visible part of a half-slice. A share of its unobserved directions is left out.
 void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   SearchedPart part = search_half_slice(half_slice, slice);
-  float arc = part.found.occluded == 0u
-                  ? half_slice.open_arc
-                  : part_arc(slice, half_slice.side, part.first_light, kUniformWeight);
+  float arc = part.found.occluded == 0u ? half_slice.open_arc
+                                        : light_arc(slice, half_slice.side, part.first_light);
   if (kBackFaces && part.found.known_back) {
     // Back faces show which directions behind an occluder are visible. They are integrated exactly.
     VisiblePart visible =
         visible_part(slice, half_slice.side, part.sectors, repeat_last_sector(part.found.occluded),
-                     part.found.hidden_occlusion, PartRequest(kUniformWeight, kBentNormal));
+                     part.found.hidden_occlusion, kBentNormal);
     sum.visible += visible.arc;
     sum.bent += visible.bent;
   } else {
@@ -317,8 +333,8 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
     }
   }
   if (kLeaveOutUnobserved) {
-    sum.left_out += part.unobserved.share *
-                    (arc - part_arc(slice, half_slice.side, part.unobserved.from, kUniformWeight));
+    sum.left_out +=
+        part.unobserved.share * (arc - light_arc(slice, half_slice.side, part.unobserved.from));
   }
   if (kLobe) add_connected_lobe(sum, half_slice, slice, part);
 }

@@ -3,6 +3,10 @@
 #ifndef ALCOVE_GTAO_HORIZONS_H
 #define ALCOVE_GTAO_HORIZONS_H
 
+#include "gtao_search_line.h"
+#include "maths/gtao.h"
+#include "maths/lobe_slice.h"
+
 // Stands for the cosine of the horizon of a half-slice without occluders. It is below every cosine.
 const float kNoHorizon = -2.0;
 
@@ -16,14 +20,13 @@ float sample_cosine(HalfSlice half_slice, vec3 point) {
     cosine = mix(half_slice.tangent_cosine, cosine,
                  radius_weight(squared * inverse, point.z, parameters.falloff));
   }
-  bool counts = squared <= point.z * point.z && !is_empty(half_slice);
-  return counts ? cosine : kNoHorizon;
+  return squared <= point.z * point.z ? cosine : kNoHorizon;
 }
 
 // Adds the part of a half-slice between the view direction and a horizon, given by its cosine.
 void add_up_to_horizon(inout SliceSum sum, HalfSlice half_slice, Slice slice, float horizon) {
   vec2 light = horizon_light(slice, half_slice.side, horizon);
-  sum.visible += part_arc(slice, half_slice.side, light, kUniformWeight);
+  sum.visible += light_arc(slice, half_slice.side, light);
   if (kBentNormal) sum.bent += bent_light_arc(slice, half_slice.side, light);
   if (kLobe) {
     HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.lobe_width);
@@ -35,13 +38,13 @@ void add_up_to_horizon(inout SliceSum sum, HalfSlice half_slice, Slice slice, fl
 // Adds the visible part of a half-slice.
 void add_horizons(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   float horizon = kNoHorizon;
-  uint k = 0u;
-  do {
+  uint k = is_empty(half_slice) ? kStepCount : 0u;
+  while (k < kStepCount) {
     float cosine = sample_cosine(
         half_slice, fetch_sample(half_slice, 0u, sample_offset(half_slice, float(k))).point);
     horizon = max(horizon, cosine);
     ++k;
-  } while (k < kStepCount);
+  }
   add_up_to_horizon(sum, half_slice, slice, horizon);
 }
 

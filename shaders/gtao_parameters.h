@@ -14,9 +14,8 @@ struct GtaoParameters {
   uint frame;                   // number of the frame, which rotates the directions of the slices
   float thickness;        // of occluders, scene units, or a fraction of the distance from the eye
   float hidden_exponent;  // of hidden_occlusion_behind()
-  float blend;    // heuristic: the fraction by which a lower sample lowers the horizon, [0,1]
-  float falloff;  // horizons, heuristic: the last fraction of the radius, over which occluders fade
-  float roughness;  // perceptual, [0,1], of every surface if there is no roughness texture
+  float falloff;          // horizons: the last fraction of the radius, over which occluders fade
+  float roughness;        // perceptual, [0,1], of every surface if there is no roughness texture
   // The two members of DepthStep. A struct would be aligned differently in a uniform block and in
   // C++.
   float depth_step;

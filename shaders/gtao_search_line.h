@@ -10,6 +10,28 @@
 #ifndef ALCOVE_GTAO_SEARCH_LINE_H
 #define ALCOVE_GTAO_SEARCH_LINE_H
 
+#include "gtao_bindings.h"
+#include "gtao_surface.h"
+#include "maths/connected_samples.h"
+#include "maths/sampling.h"
+#include "maths/slice.h"
+#include "maths/slice_line.h"
+
+// Sums over the two half-slices of a slice.
+struct SliceSum {
+  float visible;        // visible part, weighted by the cosine of the normal
+  float left_out;       // the part of `visible` and of the open slice that is unobserved
+  vec2 bent;            // sum of visible directions: along the slice's direction, along the view's
+  RawOcclusion lobe;    // visible part of the GGX lobe, and the whole lobe
+  float lobe_left_out;  // the part of the lobe that is unobserved
+  float lobe_width;     // GGX width of the surface: perceptual roughness squared
+};
+
+SliceSum no_sum(Surface surface) {
+  return SliceSum(0.0, 0.0, vec2(0.0), RawOcclusion(0.0, 0.0), 0.0,
+                  surface.lobe.roughness * surface.lobe.roughness);
+}
+
 // A float of this size has no fraction bits, so that adding it rounds to the nearest integer, which
 // then stands in the low bits. One addition replaces a rounding and a conversion, which costs as
 // much as four additions on GCN.
@@ -71,12 +93,24 @@ SearchLine opposite(SearchLine search_line) {
   return search_line;
 }
 
+// Returns false for surfaces so far away that the radius ends before the first sample in every
+// direction. Slices need no search then.
+bool reaches_samples(Surface surface) {
+  vec2 per_px = abs(parameters.slope.xy);
+  // The least length of a pixel on the surface. The factor allows for the part of the sphere that
+  // is nearer to the eye.
+  float length_per_px =
+      0.9 * min(per_px.x, per_px.y) * surface.view.z * (kPerspective ? surface.depth : 1.0);
+  return parameters.radius >= kNearestStep * length_per_px;
+}
+
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded
 // point.
 struct HalfSlice {
   SearchLine search_line;
   float side;            // +1 along the slice's direction, -1 against it
   float open_arc;        // the half-slice's part of the integral without occluders
+  uint steps;            // number of samples, at most kStepCount
   float growth;          // by this much, half the interval between samples grows per sample; zero
                          // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
@@ -105,9 +139,30 @@ float nearest_offset(HalfSlice half_slice) {
   return kNearestStep * half_slice.search_line.offset_per_px;
 }
 
+// Samples in one iteration of the loop over samples. An iteration costs as many instructions as
+// half a sample, but each of its samples holds registers, and several slices hold more registers
+// than one. passes/cost/gtao.cpp has the same numbers.
+const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
+
+// Up to this number, samples are not reduced to one per pixel.
+const uint kFewSteps = 16u;
+const bool kMayReduceSteps = kEstimator == kConnected && kStepCount > kFewSteps;
+
+// The number of samples of a half-slice that searches `reach_px` pixels: at most one per pixel,
+// because the steps between the texels of a tilted surface would otherwise look like
+// discontinuities. The number differs from kStepCount by whole iterations of the loop over samples.
+uint reduced_steps(float reach_px) {
+  uint wanted = uint(clamp(reach_px + 1.0, float(kFewSteps), float(kStepCount)));
+  return kStepCount - (kStepCount - wanted) / kUnrolled * kUnrolled;
+}
+
+// The number of samples of a half-slice.
+uint step_count(HalfSlice half_slice) { return kMayReduceSteps ? half_slice.steps : kStepCount; }
+
 // Offset of the last sample less that of the nearest.
 float reach_of(HalfSlice half_slice) {
-  return half_slice.growth * (float(kStepCount) * float(kStepCount));
+  float steps = float(step_count(half_slice));
+  return half_slice.growth * (steps * steps);
 }
 
 // Offset of the farthest point that can occlude. If the surface faces away from the half-slice,
@@ -147,10 +202,16 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.slice_cosine = slice.cosine;
   float distance = search_distance(half_slice);
   bool empty = min(distance, border.x) < nearest;
+  half_slice.steps = kStepCount;
+  if (kMayReduceSteps) {
+    half_slice.steps =
+        reduced_steps((min(distance, border.x) - nearest) / search_line.offset_per_px);
+  }
+  float steps = float(step_count(half_slice));
   // Samples stay apart if the radius spans few pixels, and inside the image in any case.
-  float apart = max(distance - nearest, 0.25 * float(kStepCount) * search_line.offset_per_px);
+  float apart = max(distance - nearest, 0.25 * steps * search_line.offset_per_px);
   float reach = max(min(apart, border.x - nearest), 1e-3 * search_line.offset_per_px);
-  half_slice.growth = empty ? 0.0 : reach * (1.0 / (float(kStepCount) * float(kStepCount)));
+  half_slice.growth = empty ? 0.0 : reach * (1.0 / (steps * steps));
   half_slice.border = border;
   half_slice.step_offset = step_offset;
   half_slice.texel_bias = surface.pixel - kRoundingBits;
@@ -158,16 +219,13 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   return half_slice;
 }
 
-// Whether there is nothing to search. Estimators must then ignore the samples.
+// Whether there is nothing to search: the radius or the image ends before the first sample.
 bool is_empty(HalfSlice half_slice) { return half_slice.growth == 0.0; }
 
-// Offset of sample `k`. It grows with the square of `k`. All samples of an empty half-slice are
-// taken at the shaded pixel, because its first step may lie outside the image.
+// Offset of sample `k`. It grows with the square of `k`.
 float sample_offset(HalfSlice half_slice, float k) {
   float steps = k + half_slice.step_offset;
-  float nearest = is_empty(half_slice) ? 0.01 * half_slice.search_line.offset_per_px
-                                       : nearest_offset(half_slice);
-  return steps * steps * half_slice.growth + nearest;
+  return steps * steps * half_slice.growth + nearest_offset(half_slice);
 }
 
 // Half the difference between the offsets of the samples 0 and 1. For each later pair of
@@ -197,31 +255,35 @@ float subtract_rounding_bias(float biased) {
   return rounded;
 }
 
-// The pixels between the shaded pixel and the texel at which a sample at an offset is taken.
-vec2 snapped_px(SearchLine search_line, float offset) {
-  vec2 biased = search_line.px_per_offset * offset + kRoundingBias;
-  return vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
+// The place at which a sample is taken.
+struct SamplePlace {
+  ivec2 texel;
+  vec2 px;  // the pixels between the shaded pixel and the place
+};
+
+SamplePlace place_of(HalfSlice half_slice, float offset) {
+  vec2 px = half_slice.search_line.px_per_offset * offset;
+  vec2 biased = px + kRoundingBias;
+  vec2 rounded = vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
+  return SamplePlace(floatBitsToInt(biased) + half_slice.texel_bias, kSnapToTexels ? rounded : px);
 }
 
-// The distance along the line between the texels at which samples at two offsets are taken.
-float texel_distance(SearchLine search_line, float from, float to) {
-  vec2 px = snapped_px(search_line, to) - snapped_px(search_line, from);
-  float per_px = search_line.offset_per_px;
-  return kSnapToTexels ? dot(px, search_line.px_per_offset) * (per_px * per_px) : to - from;
+// The distance along the line between the places of samples at two offsets.
+float place_distance(HalfSlice half_slice, float from, float to) {
+  vec2 px = place_of(half_slice, to).px - place_of(half_slice, from).px;
+  float per_px = half_slice.search_line.offset_per_px;
+  return dot(px, half_slice.search_line.px_per_offset) * (per_px * per_px);
 }
 
 // The sample at an offset, in a layer of depth: 0 is the depth buffer, 1 the layer that it hides.
 SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   SearchLine search_line = half_slice.search_line;
-  vec2 px = search_line.px_per_offset * offset;
-  vec2 biased = px + kRoundingBias;
-  ivec2 texel = floatBitsToInt(biased) + half_slice.texel_bias;
-  if (kSnapToTexels) {
-    px = vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
-  }
+  SamplePlace place = place_of(half_slice, offset);
+  vec2 px = place.px;
   SliceSample found;
-  found.inverse_depth = sample_inverse_depth(layer == 0u ? texelFetch(depth_image, texel, 0).r
-                                                         : texelFetch(second_image, texel, 0).r);
+  found.inverse_depth =
+      sample_inverse_depth(layer == 0u ? texelFetch(depth_image, place.texel, 0).r
+                                       : texelFetch(second_image, place.texel, 0).r);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
   float y_of_texel = offset * search_line.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;
@@ -232,7 +294,7 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   y = on_plane ? offset * search_line.tangent_rise + max(y, 0.0) : y_of_texel;
   found.point = vec3(offset, y, kPerspective ? found.inverse_depth : 1.0);
   if (kBackFaces) {
-    float back = inverse_depth_of(texelFetch(back_image, texel, 0).r);
+    float back = inverse_depth_of(texelFetch(back_image, place.texel, 0).r);
     // The back face may not lie in front of the front face.
     float end = farther_inverse_depth(found.inverse_depth, back, kPerspective);
     found.back = ends_occluder(found.inverse_depth, back, kPerspective)

@@ -2,6 +2,13 @@
 #ifndef ALCOVE_GTAO_SURFACE_H
 #define ALCOVE_GTAO_SURFACE_H
 
+#include "gtao_bindings.h"
+#include "maths/normal_encoding.h"
+#include "maths/quantised_normal.h"
+#include "maths/raw_occlusion.h"
+#include "maths/slice.h"
+#include "maths/slice_line.h"
+
 // The surface that a traced pixel shows.
 struct Surface {
   ivec2 pixel;
@@ -11,8 +18,6 @@ struct Surface {
   vec3 view;         // unit, view space, towards the eye
   LobeSurface lobe;  // with the normal as the texture has it
 };
-
-ivec2 size_px() { return textureSize(depth_image, 0); }
 
 float fetch_roughness(ivec2 pixel) {
 #ifdef SPECULAR

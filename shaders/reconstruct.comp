@@ -7,15 +7,16 @@
 // pass, because all three read the same neighbourhood with the same weights.
 //
 // One pixel of each tile of kTileSize x kTileSize pixels is traced in a frame, at a position that
-// moves through the tile from frame to frame (`interleave_offset`). A group of 8x8 invocations
-// first unpacks the traced pixels around its pixels into shared memory. Each invocation then
-// computes one pixel as a weighted average of the traced pixels around it. A pixel with a history
-// averages 2x2 of them. A pixel without one averages those up to kFilterRadius tiles away on each
-// side, except at the corners.
+// moves through the tile from frame to frame (`interleave_pixel`). A group of 8x8 invocations
+// reconstructs a column of kBlocks blocks of 8x8 texels. It first unpacks the traced pixels around
+// the column into shared memory. Each invocation then computes one texel of each block as a
+// weighted average of the traced pixels around it. A texel with a history averages 2x2 of them. A
+// texel without one averages those up to kFilterRadius tiles away on each side, except at the
+// corners.
 //
-// The weight of a traced pixel falls with three values. The first is its distance on the image. The
-// second is its distance from the pixel's tangent plane, so that a plane at any tilt is filtered as
-// a whole and nothing leaks across a depth edge. The third is the angle between the two normals, so
+// The weight of a traced pixel falls with its distance on the image and with its distance from the
+// pixel's tangent plane, so that a plane at any tilt is filtered as a whole and nothing leaks
+// across a depth edge. Without any history it also falls with the angle between the two normals, so
 // that little leaks across a crease. Weights for the GGX lobe also depend on the difference of the
 // roughnesses. Occluded and unoccluded parts are summed separately and divided last.
 //
@@ -67,7 +68,7 @@ const int kTexelSize = 1;
 #ifdef HALF
 const bool kByNormal = false;
 #else
-const bool kByNormal = true;
+const bool kByNormal = (kFresh || kStatic) && kFilterRadius > 0;
 #endif
 
 // Lower bound of the cosine between the normal and the view direction. Without it, the tangent
@@ -85,12 +86,47 @@ float load_inverse_depth(ivec2 pixel) {
 #include "depth_normal.h"
 #include "reconstruct_tiles.h"
 
+// The place of a texel, and values that depend on it alone. From block to block of a column each of
+// them changes by a constant.
+struct Place {
+  ivec2 texel;  // at which results are stored
+  vec2 centre;  // pixels
+  vec2 uv;      // of the upper left corner, on the depth buffer
+  TracedPixels around;
+  vec4 previous;  // of an inverse depth of 0, after ReconstructParameters::previous_from_pixel
+  float dither;   // for dither_of()
+};
+
+// Change of Place::dither from one pixel to the next [Jimenez 2014, interleaved gradient noise].
+const vec2 kDitherGradient = vec2(0.06711056, 0.00583715);
+
+Place first_place() {
+  Place place;
+  place.texel = ivec2(gl_WorkGroupID.xy) * ivec2(8, 8 * kBlocks) + ivec2(gl_LocalInvocationID.xy);
+  place.centre = (vec2(place.texel) + 0.5) * float(kTexelSize);
+  place.uv = vec2(place.texel * kTexelSize) * parameters.pixel_uv;
+  place.around = find_traced(place.texel * kTexelSize);
+  mat4 from_pixel = parameters.previous_from_pixel;
+  place.previous = from_pixel[0] * place.centre.x + from_pixel[1] * place.centre.y + from_pixel[2];
+  place.dither = dot(place.centre, kDitherGradient) + parameters.dither_offset;
+  return place;
+}
+
+void move_to_next_block(inout Place place) {
+  const float rows = float(kGroupPixels);
+  place.texel.y += 8;
+  place.centre.y += rows;
+  place.uv.y += rows * parameters.pixel_uv.y;
+  place.around.first_tile += kGroupPixels / kTileSize * kSpan;
+  place.previous += parameters.previous_from_pixel[1] * rows;
+  place.dither += rows * kDitherGradient.y;
+}
+
 // A pixel's surface, or that of a texel at half resolution.
 struct Surface {
+  Place place;
   bool sky;
-  ivec2 texel;          // at which its results are stored
   ivec2 pixel;          // at which its inputs are read
-  vec2 centre;          // of the texel, pixels
   float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
   float depth;          // 1/inverse_depth in perspective, 1 otherwise
   float n_dot_v;        // cosine between normal and view direction, on the camera's axis
@@ -100,13 +136,20 @@ struct Surface {
   vec3 stereographic;  // (x, y, 1 + z) of the unit normal in view space, for squared_angle()
   LobeSurface lobe;    // normal as it was given
   vec2 tilt;           // HalfTexel::tilt; only with HALF
-  TracedPixels around;
   // Coefficients of the distance of a neighbour from the tangent plane, in units of the tolerance:
   // its inverse depth times per_inverse_depth, minus plane.xy times its offset in pixels, minus
   // plane.z. They are set by set_plane().
   float per_inverse_depth;
   vec3 plane;
 };
+
+// Returns the cosine between normal and view direction, on the camera's axis, for a
+// HalfTexel::tilt.
+float n_dot_v_of(vec2 tilt, vec2 centre) {
+  vec2 ray = parameters.slope.zw + (kPerspective ? centre * parameters.slope.xy : vec2(0.0));
+  float z = 1.0 + dot(tilt, ray);
+  return inversesqrt(dot(tilt, tilt) + z * z);
+}
 
 void set_plane(inout Surface surface) {
   float per_distance = surface.n_dot_v * parameters.tolerance;
@@ -119,6 +162,9 @@ void set_plane(inout Surface surface) {
 // has no valid normal, returns the direction to the eye instead. It is exact enough for the
 // filter's weights. A NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
+  if (kNormalEncoding == kNoNormals) {
+    return depth_normal(pixel);
+  }
   vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
@@ -146,7 +192,7 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
 #else
 
 void reconstruct(Surface surface) {
-  Sums sums = sum_wide(surface, Window(parameters.inverse_squared_window, 1.0));
+  Sums sums = sum_wide(surface, Window(parameters.first_sharpness, 1.0));
   store_alone(surface, result_of(sums));
 }
 
@@ -154,12 +200,15 @@ void reconstruct(Surface surface) {
 
 void main() {
   load_tiles();
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   // At half resolution one texel beyond the border too, which upsampling reads.
-  if (any(greaterThan(texel * kTexelSize, size_px() + (2 * kTexelSize - 3)))) {
-    return;
+  ivec2 last = (size_px() + (2 * kTexelSize - 3)) / kTexelSize;
+  Place place = first_place();
+  [[dont_unroll]] for (int block = 0; block < kBlocks; ++block) {
+    if (place.texel.x <= last.x && place.texel.y <= last.y) {
+      Surface surface = fetch_surface(place);
+      set_plane(surface);
+      reconstruct(surface);
+    }
+    move_to_next_block(place);
   }
-  Surface surface = fetch_surface(texel);
-  set_plane(surface);
-  reconstruct(surface);
 }

@@ -21,25 +21,28 @@ HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2
   texels.distances =
       depths * (per_depth * sharpness) - gather_offsets(gradient, part, expected * sharpness);
   texels.occlusions = textureGather(history_image, uv, 0);
-  texels.codes = textureGather(history_image, uv, 1);
+  texels.weights = textureGather(history_image, uv, 1);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    texels.recents[i] = kMotion ? half_texel_recent(depths[i], texels.occlusions[i]) : 0.0;
+    texels.recents[i] = kMotion ? half_texel_recent_code(depths[i]) : 0.0;
   }
   return texels;
 }
 
+float recent_of_mean(float mean, float otherwise) { return half_recent_of_code(mean, otherwise); }
+
 float occlusion_of_mean(float mean) { return mean; }
 
-float weight_of_mean(float mean) { return mean * kHalfTexelWeightUnit; }
+// Returns the weight for the mean of HistoryTexels::weights.
+float mean_weight(float mean, float /*occlusion*/) { return mean * kHalfTexelWeightUnit; }
 
 History fetch_history(Surface surface) {
-  float depth = texelFetch(history_depth_image, surface.texel, 0).r;
-  vec4 stored = texelFetch(history_image, surface.texel, 0);
+  float depth = texelFetch(history_depth_image, surface.place.texel, 0).r;
+  vec4 stored = texelFetch(history_image, surface.place.texel, 0);
   float distance = abs(depth - surface.inverse_depth) *
                    (surface.depth * parameters.history_sharpness * surface.n_dot_v);
   History history = no_history();
   history.occlusion = stored.x;
-  history.recent = half_texel_recent(depth, stored.x);
+  history.recent = half_recent_of_code(half_texel_recent_code(depth), stored.x);
   history.weight =
       distance <= kSameTexel + history_slack(surface) ? stored.y * kHalfTexelWeightUnit : 0.0;
   return history;
@@ -47,7 +50,7 @@ History fetch_history(Surface surface) {
 
 void store_history(Surface surface, Result result, float weight, float recent) {
   store_half(surface, result, weight, recent);
-  store_kept(surface, result, dither_of(surface.centre));
+  store_kept(surface, result, dither_of(surface.place));
 }
 
 #endif

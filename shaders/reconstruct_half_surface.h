@@ -32,8 +32,8 @@ float gradient_of(float inner_change, float outer_change, float plausible) {
 }
 
 // Returns the pixel that represents the texel, as representative_depth() chooses it.
-TexelPixel representative(ivec2 texel) {
-  vec2 uv = vec2(texel * 2) * parameters.pixel_uv;
+TexelPixel representative(Place place) {
+  vec2 uv = place.uv;
   vec2 step = 2.0 * parameters.pixel_uv;
   // Blocks of 2x2 pixels around the corners of the texel: each has one of its pixels.
   vec4 upper_left = textureGather(depth_image, uv);
@@ -45,7 +45,7 @@ TexelPixel representative(ivec2 texel) {
   vec4 outer_x = vec4(lower_left.w, lower_right.z, upper_right.y, upper_left.x);
   vec4 outer_y = vec4(lower_left.y, lower_right.x, upper_right.w, upper_left.z);
   TexelPixel found;
-  found.depth_ndc = representative_depth(texel, inside, kReversed);
+  found.depth_ndc = representative_depth(place.texel, inside, kReversed);
   // At the border of the image a gather repeats the last pixels, which come first here.
   if (found.depth_ndc == inside.w) {
     found.way = vec2(1.0, 1.0);
@@ -67,17 +67,16 @@ TexelPixel representative(ivec2 texel) {
   return found;
 }
 
-Surface fetch_surface(ivec2 texel) {
-  TexelPixel found = representative(texel);
+Surface fetch_surface(Place place) {
+  TexelPixel found = representative(place);
   float inverse_depth = inverse_depth_of(found.depth_ndc);
   Surface surface;
-  surface.texel = texel;
-  surface.pixel = texel * 2 + ivec2(found.way.x < 0.0 ? 1 : 0, found.way.y < 0.0 ? 1 : 0);
-  surface.centre = vec2(texel * 2) + 1.0;
+  surface.place = place;
+  surface.pixel = place.texel * 2 + ivec2(found.way.x < 0.0 ? 1 : 0, found.way.y < 0.0 ? 1 : 0);
   surface.sky = is_sky(found.depth_ndc);
   float scale = kPerspective ? inverse_depth : 1.0;
   // The change of inverse depth per unit of raw depth.
-  float per_ndc = grows_with_inverse_depth(kPerspective, kReversed)
+  float per_ndc = is_counted_from_zero(kPerspective, kReversed)
                       ? parameters.inverse_depth_from_ndc.x
                       : -parameters.inverse_depth_from_ndc.x;
   vec2 to_inner = (found.inner - found.depth_ndc) * (found.way * per_ndc);
@@ -88,11 +87,7 @@ Surface fetch_surface(ivec2 texel) {
   float inverse_scale = 1.0 / scale;
   surface.tilt =
       gradient * parameters.pixels_per_slope * (kPerspective ? -inverse_scale : inverse_scale);
-  vec2 ray =
-      parameters.slope.zw + (kPerspective ? surface.centre * parameters.slope.xy : vec2(0.0));
-  float z = 1.0 + dot(surface.tilt, ray);
-  float per_length = inversesqrt(dot(surface.tilt, surface.tilt) + z * z);
-  surface.n_dot_v = max(per_length, kLeastNDotV);
+  surface.n_dot_v = max(n_dot_v_of(surface.tilt, place.centre), kLeastNDotV);
   // The plane at the texel's centre, bounded where it is seen edge-on.
   float moved = inverse_depth + 0.5 * dot(found.way, gradient);
   surface.inverse_depth =
@@ -102,7 +97,6 @@ Surface fetch_surface(ivec2 texel) {
   if (kLobe) {
     surface.lobe = fetch_lobe_surface(surface.pixel, fetch_normal(surface.pixel));
   }
-  surface.around = find_traced(texel * 2, 0.5);
   return surface;
 }
 

@@ -27,34 +27,29 @@ const float kSameTexel = 0.776;
 
 // The position of a surface in the image of the previous frame.
 struct Previous {
-  vec2 position;  // texels, clamped to the centres of the outermost ones
+  vec2 position;  // texels from the centre of the first one, clamped to that of the last one
   float depth;    // in perspective over the depth now, and positive; in orthographic views linear
   bool seen;      // it was on the image
   bool moves;     // the surface moved, not only the camera
 };
 
 Previous reproject(Surface surface) {
-  vec2 centre = surface.centre;
-  vec4 from = kPerspective ? vec4(centre, 1.0, surface.inverse_depth)
-                           : vec4(centre, surface.inverse_depth, 1.0);
-  vec4 to = from * parameters.previous_from_pixel;
+  vec4 to = surface.place.previous + surface.inverse_depth * parameters.previous_from_pixel[3];
   vec2 position = to.xy * (1.0 / max(to.z, 1e-20));
   Previous previous;
   previous.depth = kPerspective ? max(to.w, 1e-30) : to.w;
   previous.moves = false;
   if (kMotion) {
-    vec2 here = centre * parameters.previous_extent.zw;
-    vec2 motion =
-        texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy + parameters.motion.zw;
+    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy;
+    vec2 moved =
+        surface.place.centre * parameters.previous_extent.zw - parameters.motion.zw - motion;
     // More than the rounding of motion vectors, which is 2^-11 in half precision.
-    float apart = distance(here - motion, position);
-    previous.moves = apart > 0.1 + length(motion) * (1.0 / 512.0);
-    position = here - motion;
+    previous.moves = any(
+        greaterThan(abs(moved - position), abs(motion) * (1.0 / 512.0) + 0.1 / float(kTexelSize)));
     // A NaN would stay in the history.
-    position = position == position ? position : vec2(-1e6);
+    position = moved == moved ? moved : vec2(-1e6);
   }
-  position *= 1.0 / float(kTexelSize);
-  previous.position = clamp(position, vec2(0.5), parameters.previous_extent.xy);
+  previous.position = clamp(position, vec2(0.0), parameters.previous_extent.xy);
   vec2 outside = abs(position - previous.position);
   previous.seen = to.z > 0.0 && max(outside.x, outside.y) <= 0.5;
   return previous;
@@ -69,11 +64,9 @@ vec4 bilinear_weights(vec2 part) {
 // Returns `first` plus the change from the position to each of the four texels, in the order of
 // textureGather. `gradient` is the change per texel.
 vec4 gather_offsets(vec2 gradient, vec2 part, float first) {
-  float left = first - part.x * gradient.x;
-  float top = -part.y * gradient.y;
+  float left = first - part.x * gradient.x - part.y * gradient.y;
   float right = left + gradient.x;
-  float bottom = top + gradient.y;
-  return vec4(left + bottom, right + bottom, right + top, left + top);
+  return vec4(left + gradient.y, right + gradient.y, right, left);
 }
 
 float sum_of(vec4 v) { return v.x + v.y + v.z + v.w; }
@@ -99,8 +92,8 @@ struct HistoryTexels {
   // From the surface's tangent plane, in units at which a texel of another depth no longer counts.
   vec4 distances;
   vec4 occlusions;
-  vec4 codes;    // of the weights
-  vec4 recents;  // as History::recent; only with kMotion
+  vec4 weights;  // for mean_weight()
+  vec4 recents;  // for recent_of_mean(); only with kMotion
 };
 
 #ifdef HALF
@@ -113,9 +106,9 @@ struct HistoryTexels {
 // distance of its depth from the surface's tangent plane.
 History read_moving(Surface surface) {
   Previous previous = reproject(surface);
-  vec2 part = fract(previous.position - 0.5);
+  vec2 part = fract(previous.position);
   // The corner that the four texels share, so that no rounding can move the footprint.
-  vec2 uv = (previous.position + 0.5 - part) * parameters.history_texel;
+  vec2 uv = (previous.position + 1.0 - part) * parameters.history_texel;
   HistoryTexels texels = gather_history(surface, previous, part, uv);
   if (kMotion) {
     if (previous.moves) {
@@ -132,12 +125,12 @@ History read_moving(Surface surface) {
   float mean = sum_of(weighted) * scale;
   history.occlusion = occlusion_of_mean(mean);
   float variance = max(dot(weighted, texels.occlusions) * scale - mean * mean, 0.0);
-  float weight = weight_of_mean(dot(weights, texels.codes) * scale);
+  float weight = mean_weight(dot(weights, texels.weights) * scale, mean);
   weight = min(weight, parameters.largest_weight);
   history.weight = known ? weight_after_blur(weight, variance, 1.0 - total) : 0.0;
   history.between = dot(part, 1.0 - part);
   if (kMotion) {
-    history.recent = dot(weights, texels.recents) * scale;
+    history.recent = recent_of_mean(dot(weights, texels.recents) * scale, history.occlusion);
   }
   if (kBentNormal) {
     // The difference from 0 is weighted, so that the rounding of weights does not change a 0.
@@ -165,10 +158,11 @@ History read_static(Surface surface) {
   History history = fetch_history(surface);
   history.weight = min(history.weight, parameters.largest_weight);
   if (kBentNormal) {
-    history.residual = unpack_half_residual(texelFetch(bent_history_image, surface.texel, 0).xyz);
+    history.residual =
+        unpack_half_residual(texelFetch(bent_history_image, surface.place.texel, 0).xyz);
   }
 #ifdef SPECULAR
-  LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.texel, 0).r);
+  LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.place.texel, 0).r);
   history.lobe = lobe.open * vec2(lobe.occlusion, 1.0);
 #endif
   return history;
@@ -177,9 +171,6 @@ History read_static(Surface surface) {
 // The width of a tile in texels, at least 1.
 const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 
-// With tiles of 4 texels few samples are a texel's own even in time, so the window stays wider.
-const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
-
 // How fast the squared width of the filter window falls with the weight of the history: it is
 // divided by 1 + kNarrowing * weight. A pixel of a 2x2 tile is traced twice in eight frames. If its
 // window narrowed as fast as these frames come, it would show the noise of two traces. A smaller
@@ -187,15 +178,11 @@ const float kWidth = kTileTexels > 2 ? 2.5 : 1.0;
 // of 4x4 pixels by 0.0018. Fitted to the error after 4 to 32 frames (`alcove compare --frames`).
 const float kNarrowing = kTileTexels > 2 ? 3.0 : 0.5;
 
-// Returns 0.125 / w^2 for a filter window of w pixels. The window narrows as the weight of the
-// history grows, down to a smallest width. At the centre of a texel of the history, this smallest
-// width is `own` texels. Between centres it is larger, because the interpolation of the history
-// blurs there anyway.
-float window_of(History history) {
-  const float own = 0.58 * kWidth;
-  const float per_squared_texel = 1.0 / float(kTexelSize * kTexelSize);
-  return min(0.125 * per_squared_texel / (own * own + 2.6 * history.between),
-             parameters.inverse_squared_window * (kNarrowing * history.weight + 1.0));
+// Returns Window::sharpness. The window narrows as the weight of the history grows, down to a
+// smallest width, which is larger between the centres of texels of the history.
+float sharpness_of(History history) {
+  return min(1.0 / (parameters.smallest_window.x + parameters.smallest_window.y * history.between),
+             parameters.first_sharpness * (kNarrowing * history.weight + 1.0));
 }
 
 // Returns the factor, at least 1, by which a neighbour's distance from the tangent plane is
@@ -218,27 +205,23 @@ void follow_change(inout History history, float now, float open) {
 }
 
 void clamp_history(inout History history, Sums now) {
-  vec3 moments = now.moments / now.moments.x;
+  vec3 moments = now.moments / max(now.moments.x, 1e-30);
   float before = 1.0 - history.occlusion;
   float after =
       clamp_to_spread(before, spread_of_sums(moments.y, moments.z, 1.0), parameters.clamp_width);
-  if (history.weight > 0.0) {
+  if (history.weight > 0.0 && now.moments.x > 0.01) {
     history.occlusion = 1.0 - after;
     history.weight = weight_after_clamp(history.weight, before, after, 0.25);
   }
 }
 
-// Returns the sums over the traced pixels around the pixel in this frame. A pixel with hardly any
+// Returns the sums over the traced pixels around the texel in this frame. A texel with hardly any
 // history gets the wider neighbourhood of a first frame.
 Sums sum_neighbourhood(Surface surface, History history, Window window) {
-  if (kFresh) {
+  if (kFresh || (history.weight < 1.5 && !surface.sky)) {
     return sum_wide(surface, window);
   }
-  Sums sums = sum_near(surface, window);
-  if (kFilterRadius > kNearRadius && history.weight < 1.5) {
-    add_ring(sums, surface, window);
-  }
-  return sums;
+  return sum_near(surface, window);
 }
 
 void reconstruct(Surface surface) {
@@ -247,24 +230,26 @@ void reconstruct(Surface surface) {
     history = kStatic ? read_static(surface) : read_moving(surface);
   }
   float growth = plane_weight_growth(history.weight);
-  Window window = Window(window_of(history), growth * growth);
+  Window window = Window(sharpness_of(history), growth * growth);
   Sums now = sum_neighbourhood(surface, history, window);
   if (kClamp) {
     clamp_history(history, now);
   }
   if (kMotion) {
-    follow_change(history, now.occluded / max(now.open, 1e-37), now.open);
+    // If no traced pixel lies on the surface, nothing is known of a change.
+    const float unchanged = 0.01;
+    follow_change(history,
+                  (now.occluded + unchanged * history.recent) / max(now.open + unchanged, 1e-37),
+                  now.open * (kNearScale / kWideScale / parameters.wide_sharpness));
   }
   // The sums are not normalised: a frame that traced the pixel itself has more weight than a frame
-  // that traced its neighbours. They are scaled by the number of traced pixels per area of the
-  // window, so that the mean weight of a frame is about 1 for every window and tile size.
-  float scale = 1.3 * float(kTileSize * kTileSize) * window.inverse_squared_width;
-  float open = max(scale * now.open, 1e-37);
-  float total = history.weight + open;
+  // that traced its neighbours.
+  float scale = kNearScale * float(kTileSize * kTileSize) * window.sharpness;
+  float total = max(history.weight + scale * now.open, 1e-37);
   float inverse_total = 1.0 / total;
   Result result;
   result.occlusion =
-      saturate((history.weight * history.occlusion + scale * now.occluded) * inverse_total);
+      clamp((history.weight * history.occlusion + scale * now.occluded) * inverse_total, 0.0, 1.0);
   if (kBentNormal) {
     vec3 fresh =
         converged_residual(now.residual, now.expected_residual, 1.0 - result.occlusion) * scale;
@@ -272,7 +257,7 @@ void reconstruct(Surface surface) {
   }
   result.lobe =
       kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
-  store_history(surface, result, total, kMotion ? history.recent : result.occlusion);
+  store_history(surface, result, total, kMotion ? history.recent : kNoRecent);
 }
 
 #endif

@@ -28,22 +28,23 @@ HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2
   float sharpness = parameters.history_sharpness * surface.n_dot_v;
   float expected = log_depth * parameters.history_depth_scale.z + parameters.history_depth_scale.w;
   // The change of a stored depth per pixel, to first order; it hardly changes from frame to frame.
-  vec2 gradient = surface.slope * (stored_per_depth(parameters.history_depth_scale.z) *
-                                   parameters.history_sharpness);
+  vec2 gradient = surface.slope * parameters.history_slope;
   HistoryTexels texels;
   texels.distances = depths * sharpness - gather_offsets(gradient, part, expected * sharpness);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    float codes = texel_codes(values[i]);
-    texels.occlusions[i] = fract(codes);
-    texels.codes[i] = codes - texels.occlusions[i];
-    texels.recents[i] = kMotion ? texel_recent(depths[i]) : 0.0;
+    texels.weights[i] = texel_codes(values[i]);
+    texels.occlusions[i] = fract(texels.weights[i]);
+    texels.recents[i] = kMotion ? texel_recent_code(depths[i]) : 0.0;
   }
   return texels;
 }
 
+float recent_of_mean(float mean, float otherwise) { return recent_of_code(mean, otherwise); }
+
 float occlusion_of_mean(float mean) { return texel_occlusion(mean); }
 
-float weight_of_mean(float mean) { return weight_of_code(mean); }
+// Returns the weight for the mean of HistoryTexels::weights and the mean of the occlusions.
+float mean_weight(float mean, float occlusion) { return weight_of_code(mean - occlusion); }
 
 History fetch_history(Surface surface) {
   HistoryTexel texel = unpack_history_texel(texelFetch(history_image, surface.pixel, 0).xy);
@@ -57,11 +58,11 @@ History fetch_history(Surface surface) {
 }
 
 void store_history(Surface surface, Result result, float weight, float recent) {
-  float dither = dither_of(surface.centre);
+  float dither = dither_of(surface.place);
   float depth = history_depth(parameters.history_depth_scale.xy, log_inverse_depth(surface));
   HistoryTexel texel = HistoryTexel(depth, recent, result.occlusion, weight);
   vec2 stored = surface.sky ? vec2(0.0) : pack_history_texel(texel, dither);
-  imageStore(next_history_image, surface.texel, vec4(stored, 0.0, 0.0));
+  imageStore(next_history_image, surface.place.texel, vec4(stored, 0.0, 0.0));
   store_kept(surface, result, dither);
   store(surface, result);
 }

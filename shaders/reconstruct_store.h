@@ -27,10 +27,7 @@ Result result_of(Sums sums) {
 
 // Returns a number in [0,1) that is evenly distributed over neighbouring texels and over frames:
 // interleaved gradient noise [Jimenez 2014].
-float dither_of(vec2 centre) {
-  return fract(52.9829189 *
-               fract(dot(centre, vec2(0.06711056, 0.00583715)) + parameters.dither_offset));
-}
+float dither_of(Place place) { return fract(52.9829189 * fract(place.dither)); }
 
 #if defined(HISTORY) || defined(HALF)
 
@@ -38,14 +35,14 @@ float dither_of(vec2 centre) {
 void store_kept(Surface surface, Result result, float dither) {
   if (kBentNormal) {
     vec3 residual = surface.sky ? vec3(0.0) : result.residual;
-    imageStore(next_bent_history_image, surface.texel, pack_half_residual(residual, dither));
+    imageStore(next_bent_history_image, surface.place.texel, pack_half_residual(residual, dither));
   }
 #ifdef SPECULAR
   // The comparisons are false for NaN, which would stay in the history.
   bool valid = !surface.sky && result.lobe.x >= 0.0 && result.lobe.y < 1e30;
   LobeTexel lobe = LobeTexel(valid ? result.lobe.x / max(result.lobe.y, 1e-30) : 0.0,
                              valid ? result.lobe.y : 0.0);
-  imageStore(next_lobe_history_image, surface.texel, uvec4(pack_lobe_texel(lobe, dither)));
+  imageStore(next_lobe_history_image, surface.place.texel, uvec4(pack_lobe_texel(lobe, dither)));
 #endif
 }
 
@@ -56,10 +53,10 @@ void store_kept(Surface surface, Result result, float dither) {
 // frames, is stored only with kMotion.
 void store_half(Surface surface, Result result, float weight, float recent) {
   HalfTexel texel = HalfTexel(result.occlusion, weight, surface.tilt);
-  imageStore(half_image, surface.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));
+  imageStore(half_image, surface.place.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));
   float depth = surface.sky ? sky_inverse_depth(kPerspective)
                             : half_texel_depth(surface.inverse_depth, recent, kMotion);
-  imageStore(half_depth_image, surface.texel, vec4(depth));
+  imageStore(half_depth_image, surface.place.texel, vec4(depth));
 }
 
 #else
@@ -69,17 +66,17 @@ void store(Surface surface, Result result) {
   float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    store_visibility(surface.texel, kShaped ? shaped : visibility);
+    store_visibility(surface.place.texel, kShaped ? shaped : visibility);
   }
   if (kBentNormal) {
     vec3 residual = surface.sky ? vec3(0.0) : result.residual;
     vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
-    imageStore(bent_normal_image, surface.texel,
+    imageStore(bent_normal_image, surface.place.texel,
                vec4(mat3(parameters.normal_from_view) * bent, 0.0));
   }
 #ifdef SPECULAR
   float occlusion = surface.sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
-  imageStore(specular_image, surface.texel, vec4(1.0 - occlusion));
+  imageStore(specular_image, surface.place.texel, vec4(1.0 - occlusion));
 #endif
 }
 

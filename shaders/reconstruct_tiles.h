@@ -1,5 +1,5 @@
-// Unpacks the traced pixels around a group of invocations into shared memory, and finds those
-// around a pixel there. It is a part of reconstruct.comp.
+// The traced pixels around a texel. A group of invocations unpacks those around its texels into
+// shared memory. It is a part of reconstruct.comp.
 #ifndef ALCOVE_RECONSTRUCT_TILES_H
 #define ALCOVE_RECONSTRUCT_TILES_H
 
@@ -8,23 +8,44 @@
 const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
 // Base-2 logarithm of kTileSize.
 const int kShift = kTileSize == 8 ? 3 : kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
-// Width in pixels of the square that a group reconstructs.
+// Width of a block of 8x8 texels in pixels. It is a whole number of tiles.
 const int kGroupPixels = 8 * kTexelSize;
-// Number of tiles along x and along y whose traced pixels the pixels of a group average.
-const int kSpan = kGroupPixels / kTileSize + 2 * kFilterRadius;
+// Number of blocks, one below the other, that a group reconstructs. If every texel is traced, the
+// tiles of more than one block could exceed the shared memory of a GPU.
+const int kBlocks = kTileSize > kTexelSize ? 4 : 1;
+// Number of traced pixels on each side that are averaged for a texel with a history.
+const int kNearRadius = kFilterRadius == 0 ? 0 : 1;
+// Number of traced pixels on each side that are in shared memory.
+const int kSharedRadius = kFresh ? kFilterRadius : kNearRadius;
+// Number of tiles along x and along y whose traced pixels are in shared memory.
+const int kSpan = kGroupPixels / kTileSize + 2 * kSharedRadius;
+const int kTiles = kSpan * (kBlocks * kGroupPixels / kTileSize + 2 * kSharedRadius);
 
-// The unpacked raw occlusion of the tiles around the group. x: inverse depth. y: the occluded part
-// and z: RawOcclusion::open, neither of them normalised. w: x of the normal's stereographic
-// coordinates.
-shared vec4 traced[kSpan * kSpan];
-shared float traced_stereographic_y[kByNormal ? kSpan * kSpan : 1];
+// The unpacked raw occlusion of a traced pixel.
+struct Traced {
+  float inverse_depth;
+  float occluded;      // not normalised
+  float open;          // RawOcclusion::open
+  vec2 stereographic;  // coordinates of the normal; only with kByNormal
+  vec3 residual;       // this and the next only with kBentNormal
+  vec3 expected_residual;
+  vec2 lobe;  // occluded, open; this and the next only with kLobe
+  uint lobe_surface;
+};
+
+// The traced pixels around the group. x: inverse depth. y: occluded. z: open. w: x of the normal's
+// stereographic coordinates.
+shared vec4 shared_traced[kTiles];
 // The arrays of results that are not computed have one element, which nothing reads.
-const int kBentSpan = kBentNormal ? kSpan * kSpan : 1;
-shared vec4 traced_residual[kBentSpan];           // residual, expected residual x
-shared vec2 traced_expected_residual[kBentSpan];  // yz
-const int kLobeSpan = kLobe ? kSpan * kSpan : 1;
-shared vec2 traced_lobe[kLobeSpan];  // occluded, open
-shared uint traced_lobe_surface[kLobeSpan];
+shared float shared_stereographic_y[kByNormal ? kTiles : 1];
+const int kBentTiles = kBentNormal ? kTiles : 1;
+shared vec4 shared_residual[kBentTiles];           // residual, expected residual x
+shared vec2 shared_expected_residual[kBentTiles];  // yz
+const int kLobeTiles = kLobe ? kTiles : 1;
+shared vec2 shared_lobe[kLobeTiles];
+shared uint shared_lobe_surface[kLobeTiles];
+
+ivec2 last_tile() { return (size_px() + (kTileSize - 1)) / kTileSize - 1; }
 
 // Returns the upper left one of the 2x2 tiles whose traced pixels surround a pixel. If pixels take
 // the value of their tile, returns the pixel's own tile.
@@ -32,75 +53,112 @@ ivec2 cell_of(ivec2 pixel) {
   return kBetween ? (pixel - parameters.interleave_pixel) >> kShift : pixel >> kShift;
 }
 
-// Returns the tile to the upper left of all tiles that the group averages.
-ivec2 first_tile_of_group() {
-  return cell_of(ivec2(gl_WorkGroupID.xy) * kGroupPixels) -
-         (kBetween ? kFilterRadius - 1 : kFilterRadius);
+// Returns the tile to the upper left of all tiles in shared memory.
+ivec2 first_shared_tile() {
+  ivec2 first = ivec2(gl_WorkGroupID.xy) * ivec2(kGroupPixels, kBlocks * kGroupPixels);
+  return cell_of(first) - (kBetween ? kSharedRadius - 1 : kSharedRadius);
 }
 
-void load_tile(ivec2 tile, int i) {
+// Reads the traced pixel of a tile from the image.
+Traced fetch_traced(ivec2 tile) {
   uvec4 stored = imageLoad(raw_image, tile);
   RawOcclusion raw = unpack_raw_occlusion(stored.x);
-  vec2 stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
-  traced[i] = vec4(uintBitsToFloat(stored.y), raw.open - raw.visible, raw.open, stereographic.x);
+  Traced found;
+  found.inverse_depth = uintBitsToFloat(stored.y);
+  found.occluded = raw.open - raw.visible;
+  found.open = raw.open;
   if (kByNormal) {
-    traced_stereographic_y[i] = stereographic.y;
+    found.stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
   }
   if (kBentNormal) {
     uvec2 bent = imageLoad(bent_image, tile).xy;
-    vec3 expected = unpack_residual(bent.y);
-    traced_residual[i] = vec4(unpack_residual(bent.x), expected.x);
-    traced_expected_residual[i] = expected.yz;
+    found.residual = unpack_residual(bent.x);
+    found.expected_residual = unpack_residual(bent.y);
   }
   if (kLobe) {
     RawOcclusion lobe = unpack_lobe(stored.z);
-    traced_lobe[i] = vec2(lobe.open - lobe.visible, lobe.open);
-    traced_lobe_surface[i] = stored.w;
+    found.lobe = vec2(lobe.open - lobe.visible, lobe.open);
+    found.lobe_surface = stored.w;
   }
+  return found;
+}
+
+void store_shared(Traced found, int i) {
+  shared_traced[i] = vec4(found.inverse_depth, found.occluded, found.open, found.stereographic.x);
+  if (kByNormal) {
+    shared_stereographic_y[i] = found.stereographic.y;
+  }
+  if (kBentNormal) {
+    shared_residual[i] = vec4(found.residual, found.expected_residual.x);
+    shared_expected_residual[i] = found.expected_residual.yz;
+  }
+  if (kLobe) {
+    shared_lobe[i] = found.lobe;
+    shared_lobe_surface[i] = found.lobe_surface;
+  }
+}
+
+Traced load_shared(int i) {
+  vec4 stored = shared_traced[i];
+  Traced found;
+  found.inverse_depth = stored.x;
+  found.occluded = stored.y;
+  found.open = stored.z;
+  if (kByNormal) {
+    found.stereographic = vec2(stored.w, shared_stereographic_y[i]);
+  }
+  if (kBentNormal) {
+    vec4 residual = shared_residual[i];
+    found.residual = residual.xyz;
+    found.expected_residual = vec3(residual.w, shared_expected_residual[i]);
+  }
+  if (kLobe) {
+    found.lobe = shared_lobe[i];
+    found.lobe_surface = shared_lobe_surface[i];
+  }
+  return found;
 }
 
 // Unpacks the tiles around the group, each invocation every 64th.
 void load_tiles() {
   // i / kSpan is (i * kReciprocal) >> 16 for every index.
   const uint kReciprocal = (65536u + uint(kSpan) - 1u) / uint(kSpan);
-  ivec2 first = first_tile_of_group();
-  ivec2 last = (size_px() + (kTileSize - 1)) / kTileSize - 1;
-  [[unroll]] for (int begin = 0; begin < kSpan * kSpan; begin += 64) {
+  ivec2 first = first_shared_tile();
+  [[unroll]] for (int begin = 0; begin < kTiles; begin += 64) {
     int i = begin + int(gl_LocalInvocationIndex);
     int row = int((uint(i) * kReciprocal) >> 16u);
-    if (i < kSpan * kSpan) {
-      load_tile(clamp(first + ivec2(i - row * kSpan, row), ivec2(0), last), i);
+    if (i < kTiles) {
+      ivec2 tile = first + ivec2(i - row * kSpan, row);
+      Traced found = fetch_traced(clamp(tile, ivec2(0), last_tile()));
+      if (kBetween && !kFresh) {
+        // sum_near() assumes that the pixels are traced at regular distances. A pixel that would
+        // lie outside of the image gets a depth that lies on no plane.
+        ivec2 pixel = tile * kTileSize + parameters.interleave_pixel;
+        bool outside = any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size_px()));
+        found.inverse_depth = outside ? 1e30 : found.inverse_depth;
+      }
+      store_shared(found, i);
     }
   }
   barrier();
 }
 
-// The traced pixels around a pixel.
+// The traced pixels around a texel.
 struct TracedPixels {
-  int first_tile;  // index in `traced` of the tile to the upper left
-  vec2 offset;     // to the pixel that was traced there, pixels, before clamping to the image
-  vec4 range;      // smallest and largest offset of a traced pixel in the image
+  int first_tile;  // index in shared memory of the upper left one of cell_of()
+  vec2 offset;     // from the texel's centre to the pixel that was traced there, pixels, if the
+                   // image went on beyond its border
 };
 
-// Returns the traced pixels around `pixel`. Offsets to them are measured from the point that lies
-// `centre` pixels right of and below the pixel's centre, which is 0, or 0.5 for a texel of 2x2
-// pixels whose first pixel this is.
-TracedPixels find_traced(ivec2 pixel, float centre) {
-  ivec2 place = cell_of(pixel) - first_tile_of_group();
+// Returns the traced pixels around the texel whose first pixel this is.
+TracedPixels find_traced(ivec2 pixel) {
+  ivec2 place = cell_of(pixel) - first_shared_tile();
   TracedPixels found;
   found.first_tile = place.y * kSpan + place.x;
-  vec2 to_traced = kBetween ? -vec2((pixel - parameters.interleave_pixel) & (kTileSize - 1))
-                            : parameters.interleave_offset - vec2(pixel & (kTileSize - 1));
-  found.offset = to_traced - centre;
-  found.range = parameters.traced_range - (vec2(pixel) + centre).xyxy;
+  ivec2 to_traced = kBetween ? -((pixel - parameters.interleave_pixel) & (kTileSize - 1))
+                             : parameters.interleave_pixel - (pixel & (kTileSize - 1));
+  found.offset = vec2(to_traced) - 0.5 * float(kTexelSize - 1);
   return found;
-}
-
-// Returns the offset, in pixels, to the traced pixel that lies `i` tiles to the right of the first
-// one (axis 0) or below it (axis 1).
-float traced_offset(TracedPixels around, int axis, int i) {
-  return clamp(around.offset[axis] + float(i * kTileSize), around.range[axis],
-               around.range[axis + 2]);
 }
 
 #endif

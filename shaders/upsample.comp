@@ -122,11 +122,9 @@ Cell fetch_cell(ivec2 index) {
 // factor. Each is the bilinear weight / (1 + distance^2), where the distance of the pixel from the
 // texel's tangent plane is in units of the tolerance.
 vec4 weights_of(Cell cell, int j) {
-  float from_smallest = grows_with_inverse_depth(kPerspective, kReversed)
-                            ? cell.depths_ndc[j]
-                            : 1.0 - cell.depths_ndc[j];
-  float depth =
-      parameters.inverse_depth_from_ndc.x * from_smallest + parameters.inverse_depth_from_ndc.y;
+  float d =
+      is_counted_from_zero(kPerspective, kReversed) ? cell.depths_ndc[j] : 1.0 - cell.depths_ndc[j];
+  float depth = parameters.inverse_depth_from_ndc.x * d + parameters.inverse_depth_from_ndc.y;
   float scale = kPerspective ? 1.0 / depth : 1.0;
   vec4 levels;
   [[unroll]] for (int i = 0; i < 4; ++i) {

@@ -7,7 +7,7 @@ void CommandBuffers::destroy(const DeviceContext& device) {
 }
 
 VkResult CommandBuffers::next(const DeviceContext& device, QueueClass queue,
-                              VkCommandBufferLevel level, VkCommandBuffer& commands) {
+                              VkCommandBuffer& commands) {
   if (pool_ == VK_NULL_HANDLE) {
     VkCommandPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
@@ -20,7 +20,7 @@ VkResult CommandBuffers::next(const DeviceContext& device, QueueClass queue,
     VkCommandBufferAllocateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     info.commandPool = pool_;
-    info.level = level;
+    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     info.commandBufferCount = 1;
     VkCommandBuffer made = VK_NULL_HANDLE;
     const VkResult result = device.vk.vkAllocateCommandBuffers(device.handles.device, &info, &made);

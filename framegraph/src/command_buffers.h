@@ -8,14 +8,14 @@
 
 namespace alcove::framegraph {
 
-// The command buffers for one queue class, frame slot and recording thread. They are allocated on
+// The command buffers for one queue class and frame slot. They are allocated on
 // first use and reused in later frames.
 class CommandBuffers {
  public:
   void destroy(const DeviceContext& device);
   // Returns the next command buffer, which is not yet in the recording state.
   [[nodiscard]] VkResult next(const DeviceContext& device, QueueClass queue,
-                              VkCommandBufferLevel level, VkCommandBuffer& commands);
+                              VkCommandBuffer& commands);
   // Takes back all command buffers that were handed out. The device must have finished them.
   [[nodiscard]] VkResult take_back(const DeviceContext& device);
 

@@ -1,8 +1,8 @@
 // Culling: walks over the passes from the last to the first, and follows for each subresource
 // whether its contents are needed by an output or by a later pass that runs. One walk is enough,
-// because a pass can only read what earlier declared passes wrote. Histories are the exception: if
-// a pass that runs reads a history, the walk is repeated with the writers of that history marked as
-// needed.
+// because a pass can only read what earlier declared passes wrote. Histories are the exception:
+// they keep their contents for later frames. If a pass that runs uses a history, the walk is
+// repeated with the last contents of all its slots marked as needed.
 #include "workspace.h"
 
 namespace alcove::framegraph {
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kUnneeded = kNone;
 constexpr std::uint32_t kByOutput = kNone - 1;
-// This bit marks that a pass reads an older slot of a history. The bits below it hold the pass.
+// This bit marks that a pass uses a history. The bits below it hold the pass.
 constexpr std::uint32_t kHistoryBit = 0x4000'0000;
 
 class Culler {
@@ -19,7 +19,7 @@ class Culler {
       : graph_(graph), workspace_(workspace), plan_(plan) {}
 
   void run() {
-    workspace_.cull.history_reader.assign(graph_.resources.size(), kNone);
+    workspace_.cull.history_user.assign(graph_.resources.size(), kNone);
     do {
       found_history_ = false;
       walk();
@@ -46,8 +46,8 @@ class Culler {
           graph_.externals[resource.external].has_final_state)
         need_all(r, kByOutput);
       if (resource.flags & kPersistent) need_all(r, kByOutput);
-      const std::uint32_t reader = workspace_.cull.history_reader[r - resource.slot];
-      if (reader != kNone) need_all(r, reader | kHistoryBit);
+      const std::uint32_t user = workspace_.cull.history_user[r - resource.slot];
+      if (user != kNone) need_all(r, user | kHistoryBit);
     }
   }
 
@@ -93,7 +93,7 @@ class Culler {
       } else if (needed && reads_it) {
         begin_need(access, pass);
       }
-      if (needed && !(access.flags & kDiscard)) find_history(access, pass);
+      if (needed) find_history(access, pass);
     }
     return cull_reason;
   }
@@ -117,14 +117,13 @@ class Culler {
                  [&](std::uint32_t sub) { workspace_.cull.needed_by[sub] = pass; });
   }
 
-  // Marks the passes that write a history as needed, if the access of a live pass reads or updates
-  // an older slot of that history.
+  // Marks the contents of a history as needed, if the access of a live pass is to one of its slots.
   void find_history(const AccessRecord& access, std::uint32_t pass) {
     const ResourceRecord& resource = graph_.resources[access.resource];
-    if (resource.origin != Origin::history || resource.slot == 0) return;
-    std::uint32_t& reader = workspace_.cull.history_reader[access.resource - resource.slot];
-    if (reader != kNone) return;
-    reader = pass;
+    if (resource.origin != Origin::history) return;
+    std::uint32_t& user = workspace_.cull.history_user[access.resource - resource.slot];
+    if (user != kNone) return;
+    user = pass;
     found_history_ = true;
   }
 

@@ -6,7 +6,6 @@
 #include "alcove/framegraph/verify.h"
 #endif
 #include "plan_cache.h"
-#include "recording_threads.h"
 #include "submitter.h"
 #include "workspace.h"
 
@@ -31,7 +30,6 @@ struct Executor::Implementation {
   tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, Queues queues, bool& compiled);
   tl::expected<void, Errors> find_physical(const Graph& graph, CachedPlan& cached);
   VkResult find_external(const Graph& graph, CachedPlan& cached, std::uint32_t resource);
-  const Physical* find_persistent(const Graph& graph, std::uint32_t resource, State& state);
   tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
   Errors memory_error(VkResult result, std::string what) const;
@@ -57,7 +55,7 @@ struct Executor::Implementation {
   Compiler compiler;
   PlanCache plans[2];  // by Queues
   std::unique_ptr<Pool> pool;
-  std::unique_ptr<RecordingThreads> recording_threads;
+  std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<Timestamps>> timestamps;  // by slot and queue class; may be null
   std::vector<PassTiming> timings;                      // the last result of timings()
   std::vector<std::uint64_t> slot_frames;               // last frame recorded with each slot
@@ -101,15 +99,11 @@ tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
 #endif
   if (auto opened = open(made->device, device); !opened)
     return tl::unexpected(std::move(opened.error()));
-  made->device.limits.ordering = options.ordering;
   made->device.limits.alias = options.alias;
-  made->device.limits.placement_effort = options.placement_effort;
   for (PlanCache& plans : made->plans)
     plans.set_capacity(std::clamp(options.cached_plans, 1u, 4096u));
   made->pool = std::make_unique<Pool>(made->device);
-  made->recording_threads = std::make_unique<RecordingThreads>(
-      made->device, *made->pool, std::clamp(options.recording_threads, 1u, 64u),
-      made->options.frames_in_flight);
+  made->recorder = std::make_unique<Recorder>(made->device, *made->pool);
   made->slot_frames.resize(made->options.frames_in_flight);
   made->submitter = std::make_unique<Submitter>(made->device, made->options.frames_in_flight);
   made->create_timestamps();
@@ -287,11 +281,8 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   if (auto done = find_physical(graph, *cached); !done)
     return tl::unexpected(std::move(done.error()));
   cached->last_frame = frame;
-  const RecordedFrame recorded{
-      &graph,   &cached->plan, &cached->physical, options.check_uses, starts_anew(*cached),
-      info.slot};
-  if (const VkResult result = recording_threads->begin(recorded))
-    return tl::unexpected(vulkan_error(result, "command buffers cannot be used again"));
+  recorder->begin({&graph, &cached->plan, &cached->physical, options.check_uses,
+                   starts_anew(*cached), info.slot});
   report.plan = &cached->plan;
   for (const Heap& heap : cached->plan.heaps) {
     report.memory.aliased += heap.size;
@@ -336,13 +327,9 @@ tl::expected<FrameReport, Errors> Executor::Implementation::record(Graph& graph,
     if (result != VK_SUCCESS)
       return tl::unexpected(vulkan_error(result, "timestamps cannot be created"));
   }
-  if (starts_anew(*cached)) recording_threads->full_barrier(commands);
-  const VkResult result =
-      recording_threads->submission(cached->plan.submissions[0], commands, times);
-  if (result != VK_SUCCESS)
-    return tl::unexpected(vulkan_error(result, "the frame cannot be recorded"));
-  if (Errors errors = recording_threads->take_errors(); !errors.empty())
-    return tl::unexpected(std::move(errors));
+  if (starts_anew(*cached)) recorder->full_barrier(commands);
+  recorder->submission(0, commands, times);
+  if (!recorder->errors().empty()) return tl::unexpected(std::move(recorder->errors()));
   finish(graph, *cached);
   return report;
 }
@@ -377,8 +364,13 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   Timestamps* timestamps[kQueueClasses] = {};
   for (std::size_t q = 0; q < kQueueClasses; ++q) timestamps[q] = self.timestamps_of(info.slot, q);
   self.forget_timestamps(info.slot);
-  const VkResult result = self.submitter->submit(cached->plan, *self.recording_threads, info,
-                                                 timestamps, self.starts_anew(*cached));
+  // Everything is recorded before anything is submitted, so that an error while recording leaves
+  // the device untouched.
+  VkResult result = self.submitter->record(cached->plan, *self.recorder, info.slot, timestamps,
+                                           self.starts_anew(*cached));
+  if (result == VK_SUCCESS && !self.recorder->errors().empty())
+    return tl::unexpected(std::move(self.recorder->errors()));
+  if (result == VK_SUCCESS) result = self.submitter->submit(cached->plan, info);
   if (result != VK_SUCCESS) {
     // A frame that was submitted in part may have written to any history.
     attempt.runs = self.submitter->stopped_midway();
@@ -388,8 +380,6 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
   }
   attempt.runs = true;
   self.finish(graph, *cached);
-  if (Errors errors = self.recording_threads->take_errors(); !errors.empty())
-    return tl::unexpected(std::move(errors));
   return report;
 }
 
@@ -413,47 +403,11 @@ std::span<const PassTiming> Executor::timings(std::uint32_t slot) {
   return self.timings;
 }
 
-const Physical* Executor::Implementation::find_persistent(const Graph& graph,
-                                                          std::uint32_t resource, State& state) {
-  const GraphDescription& description = graph.description();
-  if (resource >= description.resources.size() ||
-      description.resources[resource].origin != Origin::history)
-    return nullptr;
-  const std::uint32_t index = graph.imports_[description.resources[resource].external].history;
-  const HistoryEntry& entry = graph.histories().entries()[index];
-  state = entry.slots[entry.physical(0)].state;
-  return pool->find_history(graph.histories(), index, entry.physical(0));
-}
-
-ImportedTexture Executor::exported(const Graph& graph, const TextureHistory& texture) const {
-  ImportedTexture import;
-  const Physical* found =
-      implementation_->find_persistent(graph, texture.current.index, import.initial_state);
-  if (!found || !found->image) return {};
-  const ResourceRecord& r = found->record;
-  import.image = found->image;
-  import.desc = {r.format, Extent::absolute(r.width, r.height, r.depth),  r.mips,
-                 r.layers, static_cast<VkSampleCountFlagBits>(r.samples), r.create_flags};
-  import.usage = found->usage;
-  import.final_state = import.initial_state;
-  return import;
-}
-
-ImportedBuffer Executor::exported(const Graph& graph, const BufferHistory& buffer) const {
-  ImportedBuffer import;
-  const Physical* found =
-      implementation_->find_persistent(graph, buffer.current.index, import.initial_state);
-  if (!found || !found->buffer) return {};
-  import.buffer = found->buffer;
-  import.desc.size = found->record.size;
-  import.usage = found->usage;
-  import.final_state = import.initial_state;
-  return import;
-}
-
 void Executor::forget(VkImage image) {
   implementation_->pool->forget(image, implementation_->frame);
 }
+
+void Executor::trim() { implementation_->pool->retire_transients(implementation_->frame); }
 
 const VulkanFunctions& Executor::functions() const { return implementation_->device.vk; }
 const Limits& Executor::limits() const { return implementation_->device.limits; }

@@ -42,56 +42,85 @@ void Synchroniser::apply_initial_states() {
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
     if (graph_.resources[r].external == kNone) continue;
     const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
+    UseState state;
+    record_external(state, external);
+    if (family(external.queue) != kNone) state.owner = external.queue;
     for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) {
-      s_.states[sub] = {};
-      record_external(s_.states[sub], external);
-      const auto queue = static_cast<std::size_t>(external.queue);
-      if (limits_.queue_families[queue] != kNone) s_.states[sub].queue = external.queue;
+      states_on(state.owner)[sub] = state;
+      tell_other_queues(sub, state);
     }
+  }
+  s_.written.assign(subs_, 0);
+  for (const PlannedPass& planned : plan_.passes) {
+    for_each_live(graph_, plan_, planned.pass, [&](const AccessRecord& access) {
+      if (!(access.flags & kWrite) || graph_.resources[access.resource].origin != Origin::history)
+        return;
+      for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) { s_.written[sub] = 1; });
+    });
   }
 }
 
 void Synchroniser::apply_final_states() {
   const auto end = static_cast<std::uint32_t>(plan_.passes.size());
-  if (workspace_.several_queues) earliest_ = batch_time(end) - 1;
+  if (several()) earliest_ = batch_time(end) - 1;
   for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
-    queue_ = QueueClass::graphics;
     const ResourceRecord& resource = graph_.resources[r];
     if (resource.external == kNone) continue;
     const ExternalRecord& external = graph_.externals[resource.external];
     const bool used = plan_.placements[r].first != kNone;
-    if (external.has_final_state && used) end_reads(r, external.final_state);
-    if (external.has_final_state && (used || resource.origin == Origin::imported))
+    set_queue(QueueClass::graphics);
+    const auto begin = states_ + workspace_.first_sub[r];
+    const auto end_of_subs = states_ + workspace_.first_sub[r + 1];
+    if (external.has_final_state) {
+      end_reads(r, external.final_state);
       use(end, use_outside_frame(r, external.final_state));
+    } else if (resource.origin == Origin::imported && several() &&
+               !queues_share(graph_, workspace_, r) &&
+               std::any_of(begin, end_of_subs, [this](const UseState& state) {
+                 return state.used && family(state.owner) != family(queue_);
+               })) {
+      // The next frame expects the import to belong to the graphics queue.
+      use(end, use_outside_frame(r, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                     VK_ACCESS_2_MEMORY_READ_BIT, begin->layout}));
+    }
     if (used && resource.origin == Origin::history) leave_history_slot(r);
   }
   if (batch_time_ == batch_time(end) && !plan_.batches.empty()) {
-    Submission& last = plan_.submissions.back();
+    Submission& last = plan_.submissions[workspace_.final_submission];
     last.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
     last.batch_count = 1;
   }
+  plan_.final_submission = workspace_.final_submission;
   if (!s_.releases.empty()) add_releases();
 }
 
-// Orders the frame's reads of an import before its final state. Work after the frame waits only for
-// the stages of the final state, so that a barrier from the reading stages to those stages is
-// added. It is not needed if the final state brings a layout change or a write, which wait for the
-// reads anyway.
+// Orders the reads of an import before its final state. Work after the frame waits only for the
+// stages of the final state, so that a barrier from the reading stages to those stages is added. It
+// is not needed if the final state brings a layout change or a write, which wait for the reads
+// anyway.
 void Synchroniser::end_reads(std::uint32_t resource, const State& final_state) {
   const bool texture = graph_.resources[resource].kind == ResourceKind::texture;
   if ((final_state.access & kWriteBits) != 0 || final_state.stages == 0 ||
       (final_state.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0)
     return;
   const std::uint32_t last = workspace_.first_sub[resource + 1];
+  Transition wanted;
+  wanted.dst_stages = final_state.stages;
   for (std::uint32_t sub = workspace_.first_sub[resource]; sub < last; ++sub) {
-    const UseState& state = s_.states[sub];
-    if (state.queue != queue_ || (texture && state.layout != final_state.layout)) continue;
-    Transition wanted;
-    wanted.src_stages = state.read_stages & ~final_state.stages;
-    wanted.dst_stages = final_state.stages;
-    if (wanted.src_stages != 0)
-      add_memory(state.read_time, static_cast<std::uint32_t>(plan_.passes.size()), wanted);
+    if (!texture || states_[sub].layout == final_state.layout)
+      wanted.src_stages |= states_[sub].read_stages & ~final_state.stages;
   }
+  if (wanted.src_stages == 0) return;
+  // Finds the last read in another stage, which may come before other reads.
+  const Placement& placement = plan_.placements[resource];
+  std::int32_t time = kBeforeFrame;
+  for (std::uint32_t p = placement.first; placement.first != kNone && p <= placement.last; ++p) {
+    for_each_live(graph_, plan_, plan_.passes[p].pass, [&](const AccessRecord& access) {
+      if (access.resource == resource && (access.stages & ~final_state.stages) != 0)
+        time = pass_time(p);
+    });
+  }
+  add_memory(time, static_cast<std::uint32_t>(plan_.passes.size()), wanted);
 }
 
 AccessRecord Synchroniser::use_outside_frame(std::uint32_t resource, const State& state) const {
@@ -114,18 +143,26 @@ void Synchroniser::leave_history_slot(std::uint32_t resource) {
   const std::uint32_t first = workspace_.first_sub[resource];
   const std::uint32_t last = workspace_.first_sub[resource + 1];
   FinalState final{resource, {}, QueueClass::graphics, Written::nothing};
+  if (several()) final.queue = workspace_.queues.last_queue[resource];
+  set_queue(final.queue);
   std::uint32_t written = 0;
-  bool one_layout = true;
+  bool alike = true;
   bool seen_alike = true;
-  const UseState& lead = s_.states[first];
+  const UseState& lead = states_[first];
   for (std::uint32_t sub = first; sub < last; ++sub) {
-    const UseState& state = s_.states[sub];
-    one_layout = one_layout && state.layout == lead.layout && state.queue == lead.queue;
+    const UseState& state = states_[sub];
+    alike = alike && state.layout == lead.layout &&
+            (state.owner == queue_ || queues_share(graph_, workspace_, resource));
     seen_alike = seen_alike && state.read_stages == lead.read_stages &&
                  state.seen_stages == lead.seen_stages && state.seen_access == lead.seen_access;
-    final.state.stages |= state.read_stages != 0 ? state.read_stages : state.write_stages;
+    // A change on another queue was waited for by all commands.
+    final.state.stages |= state.read_stages != 0    ? state.read_stages
+                          : state.write_stages != 0 ? state.write_stages
+                          : state.by_wait
+                              ? VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT}
+                              : 0;
     if (state.read_stages == 0) final.state.access |= state.write_access;
-    written += s_.last_uses[sub].write_stages != 0 ? 1 : 0;
+    written += s_.written[sub];
   }
   if (written != 0) final.written = written == last - first ? Written::whole : Written::part;
   // If the last write is visible to the same accesses in all subresources, these accesses become
@@ -133,14 +170,7 @@ void Synchroniser::leave_history_slot(std::uint32_t resource) {
   if (final.state.access == 0 && seen_alike && (lead.read_stages & ~lead.seen_stages) == 0)
     final.state.access = reads_in(lead.seen_access);
   final.state.layout = lead.layout;
-  if (workspace_.several_queues) {
-    // The state of a subresource does not record the uses before its last change of queue. The next
-    // frame therefore waits for all commands of the queue.
-    final.state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    final.state.access = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  }
-  final.queue = one_layout ? lead.queue : QueueClass::graphics;
-  if (!one_layout) {
+  if (!alike) {
     final.state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                    VK_IMAGE_LAYOUT_GENERAL};
     use(static_cast<std::uint32_t>(plan_.passes.size()), use_outside_frame(resource, final.state));

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
+#include <utility>
 
 #include "aspects.h"
 
@@ -20,16 +20,20 @@ std::uint64_t next_frame() {
   }
 }
 
+std::size_t hash_of(const ImportHandles& handles) {
+  // A Vulkan handle is a pointer or an integer, depending on the platform. This cast works for
+  // both.
+  std::uint64_t bits = (std::uint64_t)handles.image ^ (std::uint64_t)handles.buffer;
+  bits *= 0x9fb21c651e98df25u;
+  return static_cast<std::size_t>(bits >> 32);
+}
+
 // Returns the size relative to another size, or 0 if the result is not a valid size.
 std::uint32_t relative_size(std::uint32_t size, const Extent& extent) {
   if (extent.divisor == 0 || extent.multiplier == 0) return 0;
   const std::uint64_t multiplied = std::uint64_t{size} * extent.multiplier;
   const std::uint64_t divided = multiplied / extent.divisor + (multiplied % extent.divisor != 0);
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divided, 1, ~std::uint32_t{0}));
-}
-
-bool has_final_state(const State& state) {
-  return state.stages != 0 || state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
 }
 
 }  // namespace
@@ -41,20 +45,18 @@ Graph::~Graph() { destroy_callables(); }
 void Graph::reset() {
   destroy_callables();
   description_.passes.clear();
-  // The next record is from an earlier frame and may name resources that no longer exist.
-  description_.accesses.next() = {};
   description_.accesses.clear();
-  next_access_ = &description_.accesses.next();
   description_.resources.clear();
   description_.externals.clear();
   description_.outputs.clear();
-  description_.long_names.clear();
   imports_.clear();
+  std::fill(buckets_.begin(), buckets_.end(), kNone);
   histories_.begin_frame();
   block_ = 0;
   next_ = end_ = nullptr;
+  repeats_ = true;
   frame_ = next_frame();
-  repeating_tag_ = tag_ = static_cast<std::uint32_t>(frame_);
+  tag_ = static_cast<std::uint32_t>(frame_);
 }
 
 void Graph::destroy_callables() {
@@ -79,70 +81,47 @@ void* Graph::allocate_in_next_block(std::size_t size, std::size_t alignment) {
   }
 }
 
-void Graph::keep_long_name(std::string_view name, GraphDescription::Name& to) {
-  to.offset = static_cast<std::uint32_t>(description_.long_names.size());
-  description_.long_names.append(name);
-}
-
-// Appends a record. The place usually holds the same record from the frame before.
-template <typename Record>
-void Graph::add(Records<Record>& records, const Record& record) {
-  if (records.is_full()) records.grow();
-  Record& next = records.next();
-  records.repeat();
-  if (repeating_tag_ != 0 && std::memcmp(&next, &record, sizeof record) == 0) return;
-  next = record;
-  changed();
-}
-
-// Grows the arrays that run parallel to the records before the records themselves. If memory runs
-// out in between, no parallel array is then shorter than the records.
-void Graph::grow_resources() {
-  const std::size_t capacity = description_.resources.next_capacity();
-  description_.resource_names.resize(capacity);
-  versions_.resize(capacity);
-  description_.resources.grow();
+std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
+  const std::size_t index = description_.resources.size();
+  if (index >= versions_.size()) {
+    // There is room for as many resources as `versions_` has elements, also if memory runs out
+    // here.
+    description_.resource_names.resize(2 * index + 16);
+    description_.resources.reserve(2 * index + 16);
+    versions_.resize(2 * index + 16);
+  }
+  description_.resource_names[index] = keep_name(name);
+  versions_[index] = 0;
+  add(description_.resources, record);
+  return static_cast<std::uint32_t>(index);
 }
 
 void Graph::grow_passes() {
-  const std::size_t capacity = description_.passes.next_capacity();
-  description_.pass_names.resize(capacity);
-  callbacks_.resize(capacity);
-  description_.passes.grow();
+  const std::size_t size = 2 * description_.passes.size() + 16;
+  description_.pass_names.resize(size);
+  callbacks_.resize(size);
 }
 
 ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
-  ResourceRecord record;
-  fill_texture_record(record, desc);
-  const Texture& base = desc.extent.relative_to;
-  if (base.index == kNone) return record;
+  ResourceRecord record = absolute_record(desc);
+  const Extent& extent = desc.extent;
+  const Texture& base = extent.relative_to;
+  if (!base) return record;
   if (base.graph != tag_ || base.index >= description_.resources.size()) {
     record.flags |= kRelativeToNothing;
     return record;
   }
   const ResourceRecord& other = description_.resources[base.index];
-  record.width = relative_size(other.width, desc.extent);
-  record.height = relative_size(other.height, desc.extent);
-  record.depth = relative_size(other.depth, desc.extent);
+  if (extent.width == 0) record.width = relative_size(other.width, extent);
+  if (extent.height == 0) record.height = relative_size(other.height, extent);
+  if (extent.depth == 1) record.depth = relative_size(other.depth, extent);
   return record;
-}
-
-void Graph::add_resource(const ResourceRecord& record) {
-  if (description_.resources.is_full()) grow_resources();
-  versions_[description_.resources.size()] = 0;
-  add(description_.resources, record);
-}
-
-std::uint32_t Graph::add_resource(std::string_view name, const ResourceRecord& record) {
-  const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  add_resource(record);
-  keep_name(name, description_.resource_names[index]);
-  return index;
 }
 
 std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
                                     std::uint32_t tag, const Access& access, Range range,
                                     std::uint32_t flags) {
+  if (range == Range{}) flags |= kWhole;
   AccessRecord record{access.stages, access.access, access.layout, access.usage,
                       index,         flags,         range,         version};
   std::uint32_t left = kNone;
@@ -151,11 +130,10 @@ std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std
     record.flags |= index == kNone ? kNull : kForeign;
     record.resource = kNone;
   } else {
-    record.range = resolved_range(range, description_.resources[index]);
-    left = versions_[index] += (flags & kWrite) != 0;
+    record.range = resolved_range(record.range, description_.resources[index]);
+    left = versions_[index] += (record.flags & kWrite) != 0;
   }
   add(description_.accesses, record);
-  next_access_ = &description_.accesses.next();
   return left;
 }
 
@@ -181,57 +159,68 @@ Buffer Graph::create_buffer(std::string_view name, const BufferDesc& desc) {
 }
 
 // Returns the external that was imported with the same buffer, or with the same image and an
-// overlapping range of layers.
-std::uint32_t Graph::imported_before(VkImage image, VkBuffer buffer, std::uint32_t layer,
-                                     const ResourceRecord& record) const {
-  if (image == VK_NULL_HANDLE && buffer == VK_NULL_HANDLE) return kNone;
-  for (std::uint32_t i = 0; i < imports_.size(); ++i) {
+// overlapping range of layers, and adds this import to the table of hashes.
+std::uint32_t Graph::find_same(std::uint32_t import) {
+  if (imports_.size() > buckets_.size()) {
+    buckets_.assign(2 * imports_.size() + 16, kNone);
+    for (std::uint32_t i = 0; i < import; ++i) {
+      if (imports_[i].history != kNone) continue;
+      std::uint32_t& first = buckets_[hash_of(imports_[i]) % buckets_.size()];
+      imports_[i].next = std::exchange(first, i);
+    }
+  }
+  ImportHandles& own = imports_[import];
+  if (own.image == VK_NULL_HANDLE && own.buffer == VK_NULL_HANDLE) return kNone;
+  std::uint32_t& first = buckets_[hash_of(own) % buckets_.size()];
+  own.next = std::exchange(first, import);
+  for (std::uint32_t i = own.next; i != kNone; i = imports_[i].next) {
     const ImportHandles& other = imports_[i];
-    if (other.image != image || other.buffer != buffer) continue;
-    const std::uint64_t end = std::uint64_t{layer} + record.layers;
-    const std::uint64_t other_end = std::uint64_t{other.layer} + other.layers;
-    if (buffer != VK_NULL_HANDLE || (layer < other_end && other.layer < end)) return i;
+    const auto end = [](const ImportHandles& h) { return std::uint64_t{h.layer} + h.layers; };
+    if (other.image == own.image && other.buffer == own.buffer && own.layer < end(other) &&
+        other.layer < end(own))
+      return i;
   }
   return kNone;
 }
 
-Texture Graph::import_texture(std::string_view name, const ImportedTexture& import) {
-  ResourceRecord record = texture_record(import.desc);
+template <typename Import>
+std::uint32_t Graph::add_import(std::string_view name, const Import& import, ResourceRecord record,
+                                ImportHandles handles, bool has_contents) {
   record.origin = Origin::imported;
   record.external = static_cast<std::uint32_t>(description_.externals.size());
+  handles.layers = record.layers;
+  handles.initial_family = import.initial_family;
+  handles.final_family = import.final_family;
+  imports_.push_back(handles);
   ExternalRecord external;
   external.initial_state = import.initial_state;
   external.final_state = import.final_state;
   external.usage = import.usage;
-  external.has_contents = import.initial_state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
-  external.has_final_state = has_final_state(import.final_state);
-  external.has_handle = import.image != VK_NULL_HANDLE;
-  external.same_as = imported_before(import.image, VK_NULL_HANDLE, import.first_layer, record);
+  external.has_contents = has_contents;
+  external.has_final_state =
+      import.final_state.stages != 0 || import.final_state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
+  external.has_handle = handles.image != VK_NULL_HANDLE || handles.buffer != VK_NULL_HANDLE;
+  external.concurrent = import.concurrent;
+  external.same_as = find_same(record.external);
   add(description_.externals, external);
-  imports_.push_back(
-      {import.image, import.view, VK_NULL_HANDLE, kNone, import.first_layer, record.layers});
-  imports_.back().initial_family = import.initial_family;
-  imports_.back().final_family = import.final_family;
-  return {add_resource(name, record), 0, tag_};
+  return add_resource(name, record);
+}
+
+Texture Graph::import_texture(std::string_view name, const ImportedTexture& import) {
+  ImportHandles handles;
+  handles.image = import.image;
+  handles.view = import.view;
+  handles.layer = import.first_layer;
+  return {add_import(name, import, texture_record(import.desc), handles,
+                     import.initial_state.layout != VK_IMAGE_LAYOUT_UNDEFINED),
+          0, tag_};
 }
 
 Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import) {
-  ResourceRecord record = buffer_record(import.desc);
-  record.origin = Origin::imported;
-  record.external = static_cast<std::uint32_t>(description_.externals.size());
-  ExternalRecord external;
-  external.initial_state = import.initial_state;
-  external.final_state = import.final_state;
-  external.usage = import.usage;
-  external.has_contents = import.has_contents;
-  external.has_final_state = has_final_state(import.final_state);
-  external.has_handle = import.buffer != VK_NULL_HANDLE;
-  external.same_as = imported_before(VK_NULL_HANDLE, import.buffer, 0, record);
-  add(description_.externals, external);
-  imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, import.buffer, kNone});
-  imports_.back().initial_family = import.initial_family;
-  imports_.back().final_family = import.final_family;
-  return {add_resource(name, record), 0, tag_};
+  ImportHandles handles;
+  handles.buffer = import.buffer;
+  return {add_import(name, import, buffer_record(import.desc), handles, import.has_contents), 0,
+          tag_};
 }
 
 ExternalRecord Graph::external_of(const HistoryEntry& entry, std::uint32_t slot) {
@@ -248,20 +237,13 @@ ExternalRecord Graph::external_of(const HistoryEntry& entry, std::uint32_t slot)
 
 bool Graph::refresh_histories() {
   if (!histories_.have_moved()) return true;
-  bool changes = false;
   for (const ResourceRecord& record : description_.resources) {
     if (record.origin != Origin::history) continue;
     const HistoryEntry& entry = histories_.entry(imports_[record.external].history);
     if (entry.dropped) return false;
-    ExternalRecord& declared = description_.externals[record.external];
-    ExternalRecord now = external_of(entry, record.slot);
-    now.final_state = declared.final_state;
-    now.has_final_state = declared.has_final_state;
-    if (std::memcmp(&declared, &now, sizeof now) == 0) continue;
-    declared = now;
-    changes = true;
+    description_.externals[record.external] = external_of(entry, record.slot);
   }
-  if (changes) description_.edition = next_frame();
+  description_.edition = next_frame();
   histories_.clear_moved();
   return true;
 }
@@ -273,26 +255,27 @@ void Graph::add_stale_builder() {
   add(description_.outputs, {kNone, 0, kStaleBuilder});
 }
 
-std::uint32_t Graph::add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
-                                 HistoryValidity& validity, const State& final_state) {
+template <ResourceKind kKind>
+History<kKind> Graph::add_history(std::string_view name, ResourceRecord record,
+                                  std::uint32_t slots) {
+  History<kKind> made;
+  made.slots = std::clamp(slots, 1u, kMaxHistorySlots);
   record.origin = Origin::history;
-  record.slots = static_cast<std::uint8_t>(std::clamp(slots, 1u, kMaxHistorySlots));
-  const std::uint32_t history = histories_.declare(name, record);
-  const HistoryEntry& entry = histories_.entries()[history];
-  std::uint32_t first = kNone;
-  for (std::uint32_t slot = 0; slot < record.slots; ++slot) {
-    ExternalRecord external = external_of(entry, slot);
-    external.final_state = final_state;
-    external.has_final_state = has_final_state(final_state);
+  record.slots = static_cast<std::uint8_t>(made.slots);
+  ImportHandles handles;
+  handles.history = histories_.declare(name, record);
+  const HistoryEntry& entry = histories_.entries()[handles.history];
+  for (std::uint32_t slot = 0; slot < made.slots; ++slot) {
+    const ExternalRecord external = external_of(entry, slot);
     record.external = static_cast<std::uint32_t>(description_.externals.size());
     record.slot = static_cast<std::uint8_t>(slot);
+    imports_.push_back(handles);
     add(description_.externals, external);
-    imports_.push_back({VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE, history});
     const std::uint32_t index = add_resource(name, record);
-    if (slot == 0) first = index;
-    if (slot == 1 || record.slots == 1) validity = external.validity;
+    if (slot == 0) made.current = {index, 0, tag_};
+    if (slot == 1 || made.slots == 1) made.validity = external.validity;
   }
-  return first;
+  return made;
 }
 
 void Graph::leave_histories(std::span<const FinalState> finals) {
@@ -303,11 +286,11 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
     HistorySlot slot = entry.slots[entry.physical(record.slot)];
     slot.state = final.state;
     slot.queue = final.queue;
-    if (record.slot == 0 && final.written != Written::nothing) {
-      // A valid persistent resource stays valid if only a part of it is written.
+    if (final.written != Written::nothing) {
+      // A valid slot that is updated in place stays valid if only a part of it is written.
+      const bool keeps = record.slot != 0 || (record.flags & kPersistent) != 0;
       const bool whole =
-          final.written == Written::whole ||
-          ((record.flags & kPersistent) != 0 && slot.validity == HistoryValidity::valid);
+          final.written == Written::whole || (keeps && slot.validity == HistoryValidity::valid);
       slot.validity = whole ? HistoryValidity::valid : HistoryValidity::written_in_part;
     }
     histories_.leave(index, record.slot, slot);
@@ -319,47 +302,26 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
   }
 }
 
-template <typename History>
-History Graph::make_history(std::string_view name, const ResourceRecord& record,
-                            std::uint32_t slots, const State& final_state) {
-  History history;
-  history.current = {add_history(name, record, slots, history.validity, final_state), 0, tag_};
-  history.slots = std::clamp(slots, 1u, kMaxHistorySlots);
-  return history;
-}
-
 TextureHistory Graph::create_texture_history(std::string_view name, const TextureDesc& desc,
                                              std::uint32_t slots) {
-  return make_history<TextureHistory>(name, texture_record(desc), slots);
+  return add_history<ResourceKind::texture>(name, texture_record(desc), slots);
 }
 
 BufferHistory Graph::create_buffer_history(std::string_view name, const BufferDesc& desc,
                                            std::uint32_t slots) {
-  return make_history<BufferHistory>(name, buffer_record(desc), slots);
+  return add_history<ResourceKind::buffer>(name, buffer_record(desc), slots);
 }
 
-TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc,
-                                                const State& final_state) {
+TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc) {
   ResourceRecord record = texture_record(desc);
   record.flags |= kPersistent;
-  return make_history<TextureHistory>(name, record, 1, final_state);
+  return add_history<ResourceKind::texture>(name, record, 1);
 }
 
-BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc,
-                                              const State& final_state) {
+BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc) {
   ResourceRecord record = buffer_record(desc);
   record.flags |= kPersistent;
-  return make_history<BufferHistory>(name, record, 1, final_state);
-}
-
-Texture TextureHistory::previous(std::uint32_t age) const {
-  if (age == 0 || age >= slots) return {};
-  return {current.index + age, 0, current.graph};
-}
-
-Buffer BufferHistory::previous(std::uint32_t age) const {
-  if (age == 0 || age >= slots) return {};
-  return {current.index + age, 0, current.graph};
+  return add_history<ResourceKind::buffer>(name, record, 1);
 }
 
 void Graph::reset_history(std::string_view name) { histories_.invalidate(name); }
@@ -368,14 +330,11 @@ void Graph::reset_histories() { histories_.invalidate_all(); }
 
 void Graph::drop_history(std::string_view name) { histories_.drop(name); }
 
-void Graph::output(Texture texture) {
-  const bool known = texture.graph == tag_ && texture.index < description_.resources.size();
-  const OutputRecord record{known ? texture.index : kNone, texture.version,
-                            texture.index == kNone ? kNull : (known ? 0u : kForeign)};
-  add(description_.outputs, record);
+void Graph::add_output(std::uint32_t index, std::uint32_t version, std::uint32_t tag) {
+  const bool known = tag == tag_ && index < description_.resources.size();
+  add(description_.outputs,
+      {known ? index : kNone, version, index == kNone ? kNull : (known ? 0u : kForeign)});
 }
-
-void Graph::output(Buffer buffer) { output(Texture{buffer.index, buffer.version, buffer.graph}); }
 
 VkExtent3D Graph::extent(Texture texture) const {
   if (texture.graph != tag_ || texture.index >= description_.resources.size()) return {0, 0, 0};

@@ -12,7 +12,7 @@ namespace {
 // time as the resource's last use.
 void lengthen(const GraphDescription& graph, const Workspace& workspace, Plan& plan) {
   for (std::uint32_t position = 0; position < plan.passes.size(); ++position) {
-    const std::uint32_t until = taken_until(workspace, plan, position);
+    const std::uint32_t until = workspace.queues.taken_until[position];
     for_each_live(graph, plan, plan.passes[position].pass, [&](const AccessRecord& access) {
       Placement& placement = plan.placements[access.resource];
       placement.last = std::max(placement.last, until);

@@ -3,11 +3,8 @@
 // The cheapest method is tried first: first fit in order of first use. It reaches the lower bound
 // (the most bytes that are live at once) if sizes are alike. If it does not, first fit is tried in
 // other orders: by decreasing size, by decreasing product of size and lifetime, by decreasing
-// lifetime, and by increasing distance in time from the peak. Then a local search changes the best
-// of these orders at random, one change at a time: a resource whose bytes end at the peak is placed
-// earlier, or two resources swap their places. The search stops at the lower bound, or when its
-// budget of comparisons is used up. The budget does not depend on time, so that a frame always gets
-// the same plan.
+// lifetime, and by increasing distance in time from the peak. The last of these orders is then
+// changed a few times: the resource whose bytes end at the peak is placed first.
 #include <algorithm>
 #include <numeric>
 
@@ -27,6 +24,7 @@ class Placer {
 
   void run() {
     make_heaps();
+    s_.blocks.resize(std::max(s_.blocks.size(), plan_.passes.size() / kBlock + 1));
     for (std::uint32_t heap = 0; heap < plan_.heaps.size(); ++heap) {
       if (plan_.heaps.size() > 1) gather(heap);
       plan_.heaps[heap].lower_bound = lower_bound();
@@ -111,19 +109,23 @@ class Placer {
   void fill(VkDeviceSize bound) {
     best_ = fit_by_time();
     if (best_ <= bound) return;
-    const std::size_t count = s_.items.size();
-    budget_ = limits_.placement_effort;
-    random_ = 1;
-    if (static_cast<std::int64_t>(count * count) > budget_) return;
-    s_.order.resize(count);
-    try_falling([](const PlaceItem& item) { return item.size; });
     const auto span = [](const PlaceItem& item) {
       return VkDeviceSize{item.last - item.first + 1};
     };
+    try_falling([](const PlaceItem& item) { return item.size; });
     if (best_ > bound) try_falling([&](const PlaceItem& item) { return item.size * span(item); });
     if (best_ > bound) try_falling(span);
     if (best_ > bound) try_from_peak();
-    improve(bound);
+    const std::size_t rounds =
+        std::clamp<std::size_t>(40'000 / (s_.items.size() * s_.items.size()), 4, 64);
+    for (std::size_t round = 0; round < rounds && best_ > bound; ++round) {
+      // The resource whose bytes end at the peak was placed too late.
+      const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
+        return s_.offsets[i] + s_.items[i].size == peak_;
+      });
+      std::rotate(s_.order.begin(), high, high + 1);
+      try_order();
+    }
   }
 
   // Places by first fit in order of first use. `taken` holds the byte ranges in use, in order of
@@ -162,6 +164,8 @@ class Placer {
 
   template <typename Key>
   void try_falling(Key&& key) {
+    s_.order.resize(s_.items.size());
+    s_.offsets.resize(s_.items.size());
     std::iota(s_.order.begin(), s_.order.end(), 0u);
     std::sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
       const auto x = key(s_.items[a]);
@@ -188,6 +192,8 @@ class Placer {
       if (item.first > peak) return item.first - peak;
       return item.last < peak ? peak - item.last : 0u;
     };
+    s_.order.resize(s_.items.size());
+    s_.offsets.resize(s_.items.size());
     std::iota(s_.order.begin(), s_.order.end(), 0u);
     std::sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
       const PlaceItem& x = s_.items[a];
@@ -203,124 +209,61 @@ class Placer {
     try_order();
   }
 
-  // Places by first fit in s_.order. Keeps the result if its peak is lower than the best so far,
-  // and gives up when its peak exceeds `limit`. The resources before `from` in the order keep the
-  // offsets that they have in the accepted order (s_.accepted_order).
-  bool try_order(VkDeviceSize limit = ~VkDeviceSize{0}, std::size_t from = 0) {
-    VkDeviceSize peak = keep_before(from);
-    for (std::size_t i = from; i < s_.order.size(); ++i) {
-      peak = std::max(peak, fit(s_.order[i]));
-      if (peak > limit) {
-        last_ = peak;
-        return false;
-      }
-    }
-    last_ = peak;
-    if (peak >= best_) return false;
-    best_ = peak;
+  // Places by first fit in s_.order, and keeps the result if its peak is lower than the best so
+  // far.
+  void try_order() {
+    for (auto& block : s_.blocks) block.clear();
+    peak_ = 0;
+    for (const std::uint32_t index : s_.order) peak_ = std::max(peak_, fit(index));
+    if (peak_ >= best_) return;
+    best_ = peak_;
     for (std::size_t i = 0; i < s_.items.size(); ++i) s_.items[i].offset = s_.offsets[i];
-    accept_order();
-    return true;
   }
 
-  // Places the resources before `from` at their offsets in the accepted order, and returns their
-  // peak.
-  VkDeviceSize keep_before(std::size_t from) {
-    s_.live.clear();
-    s_.offsets.resize(s_.items.size());
-    if (from == 0) return 0;
-    VkDeviceSize peak = 0;
-    s_.kept.assign(s_.items.size(), 0);
-    for (std::size_t i = 0; i < from; ++i) {
-      const std::uint32_t index = s_.order[i];
-      s_.offsets[index] = s_.accepted_offsets[index];
-      s_.kept[index] = 1;
-      peak = std::max(peak, s_.accepted_offsets[index] + s_.items[index].size);
-    }
-    for (const PlaceItem& item : s_.accepted_items) {
-      if (s_.kept[item.resource]) s_.live.push_back(item);
-    }
-    return peak;
-  }
-
-  // Places one resource at the lowest offset at which it fits, and returns its end.
+  // Places one resource at the lowest offset at which it fits, and returns its end. The frame is
+  // divided into blocks of positions. A block has the placed resources that are live in it, in
+  // order of offset, so that the search does not visit resources of other blocks.
   VkDeviceSize fit(std::uint32_t index) {
-    const PlaceItem& item = s_.items[index];
-    VkDeviceSize offset = 0;
-    std::size_t scanned = 0;
-    for (; scanned < s_.live.size(); ++scanned) {
-      const PlaceItem& other = s_.live[scanned];
+    PlaceItem item = s_.items[index];
+    item.offset = 0;
+    const std::size_t begin = item.first / kBlock;
+    const std::size_t end = item.last / kBlock + 1;
+    // An offset that fits in one block may be taken in another one, which then raises it.
+    for (std::size_t block = begin, fits = 0; fits < end - begin; ++fits) {
+      if (raise(item, s_.blocks[block])) fits = 0;
+      block = block + 1 == end ? begin : block + 1;
+    }
+    s_.offsets[index] = item.offset;
+    for (std::size_t block = begin; block < end; ++block) {
+      auto& placed = s_.blocks[block];
+      const auto at = std::upper_bound(
+          placed.begin(), placed.end(), item.offset,
+          [](VkDeviceSize value, const PlaceItem& there) { return value < there.offset; });
+      placed.insert(at, item);
+    }
+    return item.offset + item.size;
+  }
+
+  // Raises the offset of a resource until it fits between those of a block. Returns whether it did.
+  static bool raise(PlaceItem& item, const std::vector<PlaceItem>& placed) {
+    const VkDeviceSize before = item.offset;
+    for (const PlaceItem& other : placed) {
       if (other.last < item.first || item.last < other.first) continue;
-      if (offset + item.size <= other.offset) break;
-      offset = std::max(offset, align_up(other.offset + other.size, item.alignment));
+      if (item.offset + item.size <= other.offset) break;
+      if (other.offset + other.size > item.offset)
+        item.offset = align_up(other.offset + other.size, item.alignment);
     }
-    budget_ -= static_cast<std::int64_t>(scanned);
-    s_.offsets[index] = offset;
-    const auto at = std::upper_bound(
-        s_.live.begin(), s_.live.end(), offset,
-        [](VkDeviceSize value, const PlaceItem& there) { return value < there.offset; });
-    const auto made = s_.live.insert(at, item);
-    made->offset = offset;
-    made->resource = index;  // index of its PlaceItem
-    return offset + item.size;
+    return item.offset != before;
   }
 
-  // Makes the order that was tried last the accepted one, from which the search continues.
-  void accept_order() {
-    s_.accepted_order = s_.order;
-    s_.accepted_offsets = s_.offsets;
-    s_.accepted_items = s_.live;
-    accepted_peak_ = last_;
-  }
-
-  void improve(VkDeviceSize bound) {
-    if (s_.accepted_order.size() != s_.items.size()) accept_order();
-    while (best_ > bound && budget_ > 0) {
-      budget_ -= 16;
-      const std::size_t from = change_order();
-      // An order that is slightly worse than the accepted one is accepted too, so that the search
-      // can leave local minima.
-      const VkDeviceSize limit = accepted_peak_ + bound / 256 * roll(3);
-      if (!try_order(limit, from) && last_ <= limit) accept_order();
-    }
-    s_.accepted_order.clear();
-  }
-
-  // Makes one change to the accepted order, and returns the first place that differs.
-  std::size_t change_order() {
-    s_.order = s_.accepted_order;
-    // A resource whose bytes end at the peak was placed too late: it is moved forward in the order.
-    const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
-      return s_.accepted_offsets[i] + s_.items[i].size == accepted_peak_;
-    });
-    if (high != s_.order.end() && roll(4) != 0) {
-      const std::size_t to = roll(static_cast<std::size_t>(high - s_.order.begin()) + 1);
-      std::rotate(s_.order.begin() + static_cast<std::ptrdiff_t>(to), high, high + 1);
-      return to;
-    }
-    const std::size_t one = roll(s_.order.size());
-    const std::size_t other = roll(s_.order.size());
-    std::swap(s_.order[one], s_.order[other]);
-    return std::min(one, other);
-  }
-
-  std::uint32_t roll(std::size_t sides) {
-    random_ ^= random_ << 13;
-    random_ ^= random_ >> 17;
-    random_ ^= random_ << 5;
-    return static_cast<std::uint32_t>(random_ % sides);
-  }
-
+  static constexpr std::uint32_t kBlock = 64;  // positions
   const GraphDescription& graph_;
   const Limits& limits_;
   Workspace& workspace_;
   Plan& plan_;
   Workspace::Place& s_;
   VkDeviceSize best_ = 0;
-  VkDeviceSize last_ = 0;           // peak of the last order tried
-  VkDeviceSize accepted_peak_ = 0;  // peak of the order that is being improved
-  std::int64_t budget_ = 0;         // comparisons left
-  std::uint32_t random_ = 1;
+  VkDeviceSize peak_ = 0;  // of the last order tried
 };
 
 }  // namespace

@@ -36,6 +36,9 @@ CachedPlan& PlanCache::room(std::uint64_t frame) {
 
 void PlanCache::keep(CachedPlan& plan, const GraphDescription& graph) {
   plan.declaration = graph;
+  // Names are valid until the graph is reset only.
+  plan.declaration.pass_names.clear();
+  plan.declaration.resource_names.clear();
   plan.key = hash(graph);
   last_ = &plan;
 }

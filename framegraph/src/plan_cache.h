@@ -12,7 +12,7 @@ namespace alcove::framegraph {
 
 struct CachedPlan {
   std::optional<std::uint64_t> key;  // hash of the declaration; empty until the plan is kept
-  GraphDescription declaration;      // names are those of the frame that made it
+  GraphDescription declaration;      // without names
   Plan plan;
   std::uint64_t last_frame = 0;
   // The images and buffers of the transients. They are valid for one generation of the pool.

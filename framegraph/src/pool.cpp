@@ -9,7 +9,8 @@
 namespace alcove::framegraph {
 namespace {
 
-// The number of frames after which an unused object is destroyed.
+// The number of frames after which an unused object is destroyed. Imports and heaps are checked
+// once in so many frames.
 constexpr std::uint64_t kPatience = 120;
 
 // Makes room for `more` values before they exist, so that no object is lost if memory runs out.
@@ -22,6 +23,11 @@ void make_room(std::vector<Value>& values, std::size_t more = 1) {
 bool is_of(const std::weak_ptr<const char>& life, const HistoryTable& table) {
   const auto own = table.life();
   return !life.owner_before(own) && !own.owner_before(life);
+}
+
+// A handle is a pointer or an integer, depending on the platform. This cast works for both.
+std::uint64_t key_of(VkImage image, VkBuffer buffer) {
+  return (std::uint64_t)image ^ (std::uint64_t)buffer;
 }
 
 bool has_address(const ResourceRecord& record, VkFlags usage) {
@@ -61,9 +67,9 @@ std::uint64_t Pool::first_generation() {
 }
 
 Pool::~Pool() {
-  for (auto& physical : transients_) destroy(*physical);
+  for (auto& [offset, physical] : transients_) destroy(*physical);
   for (auto& history : histories_) destroy(*history.physical);
-  for (auto& physical : imports_) destroy(*physical);
+  for (auto& [handle, physical] : imports_) destroy(*physical);
   for (auto& retired : retired_) {
     if (retired.physical) destroy(*retired.physical);
     memory_.free(retired.heap);
@@ -81,18 +87,17 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
       heaps_.push_back({wanted.memory_types});
       heap = heaps_.end() - 1;
     }
+    heap->needed = std::max(heap->needed, wanted.size);
     const bool has_addresses = heap->has_addresses || wants_addresses(graph, plan, h);
     if (heap->size >= wanted.size && heap->has_addresses == has_addresses) continue;
     const VkDeviceSize size = std::max(heap->size, wanted.size);
-    make_room(retired_, transients_.size() + 1);
     MemoryRange memory;
     if (const VkResult result =
             allocate({size, alignment_of(plan, h), wanted.memory_types}, has_addresses, memory))
       return result;
-    // All transients are moved to retired_, to be destroyed with the old memory once the device has
-    // finished. This includes transients of other heaps, because creating them again is cheap.
-    for (auto& physical : transients_) retired_.push_back({frame, std::move(physical)});
-    transients_.clear();
+    // This includes transients of other heaps, because creating them again is cheap.
+    retire_objects(transients_, frame);
+    make_room(retired_);
     if (heap->memory.memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});
     heap->memory = memory;
     heap->size = size;
@@ -102,20 +107,35 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
   return VK_SUCCESS;
 }
 
+void Pool::retire_objects(Objects& objects, std::uint64_t frame) {
+  make_room(retired_, objects.size());
+  for (auto& [key, physical] : objects) retired_.push_back({frame, std::move(physical)});
+  objects.clear();
+}
+
+void Pool::retire_transients(std::uint64_t frame) {
+  retire_objects(transients_, frame);
+  make_room(retired_, heaps_.size());
+  for (const HeapMemory& heap : heaps_)
+    retired_.push_back({frame, nullptr, heap.memory, heap.size});
+  heaps_.clear();
+  ++generation_;
+}
+
 VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const Placement& placement,
                          std::string_view name, Physical*& found) {
   const std::uint32_t types = plan.heaps[placement.heap].memory_types;
   const auto heap = std::find_if(heaps_.begin(), heaps_.end(),
                                  [types](const HeapMemory& h) { return h.memory_types == types; });
   const auto index = static_cast<std::uint32_t>(heap - heaps_.begin());
-  for (auto& physical : transients_) {
-    if (physical->heap == index && physical->offset == placement.offset &&
-        physical->usage == placement.usage && same(physical->record, record)) {
-      found = physical.get();
+  const auto [first, last] = transients_.equal_range(placement.offset);
+  for (auto at = first; at != last; ++at) {
+    Physical& there = *at->second;
+    if (there.heap == index && there.usage == placement.usage && same(there.record, record)) {
+      found = &there;
       return VK_SUCCESS;
     }
   }
-  make_room(transients_);
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = placement.usage;
@@ -126,27 +146,21 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
     destroy(*made);
     return result;
   }
-  transients_.push_back(std::move(made));
-  found = transients_.back().get();
+  found = transients_.emplace(placement.offset, std::move(made))->second.get();
   return VK_SUCCESS;
-}
-
-Physical* Pool::find_history(const HistoryTable& table, std::uint32_t entry,
-                             std::uint32_t position) const {
-  const std::uint32_t generation = table.entries()[entry].generation;
-  for (const HistoryImage& there : histories_) {
-    if (there.entry == entry && there.position == position && there.generation == generation &&
-        is_of(there.table, table))
-      return there.physical.get();
-  }
-  return nullptr;
 }
 
 VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
                        const ResourceRecord& record, VkFlags usage, std::string_view name,
                        Physical*& found) {
-  found = find_history(table, entry, position);
-  if (found) return VK_SUCCESS;
+  const std::uint32_t generation = table.entries()[entry].generation;
+  for (const HistoryImage& there : histories_) {
+    if (there.entry == entry && there.position == position && there.generation == generation &&
+        is_of(there.table, table)) {
+      found = there.physical.get();
+      return VK_SUCCESS;
+    }
+  }
   make_room(histories_);
   auto made = std::make_unique<Physical>();
   made->record = record;
@@ -156,8 +170,7 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
     destroy(*made);
     return result;
   }
-  histories_.push_back(
-      {table.life(), entry, table.entries()[entry].generation, position, std::move(made)});
+  histories_.push_back({table.life(), entry, generation, position, std::move(made)});
   ++generation_;
   found = histories_.back().physical.get();
   return VK_SUCCESS;
@@ -176,10 +189,13 @@ void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
 }
 
 Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handles) {
-  for (auto& physical : imports_) {
-    if (physical->image == handles.image && physical->buffer == handles.buffer &&
-        physical->layer == handles.layer && same(physical->record, record))
-      return *physical;
+  const std::uint64_t key = key_of(handles.image, handles.buffer);
+  const auto [first, last] = imports_.equal_range(key);
+  for (auto at = first; at != last; ++at) {
+    Physical& there = *at->second;
+    if (there.image == handles.image && there.buffer == handles.buffer &&
+        there.layer == handles.layer && same(there.record, record))
+      return there;
   }
   auto made = std::make_unique<Physical>();
   made->record = record;
@@ -187,18 +203,21 @@ Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handle
   made->buffer = handles.buffer;
   made->layer = handles.layer;
   made->owned = false;
-  imports_.push_back(std::move(made));
-  return *imports_.back();
+  return *imports_.emplace(key, std::move(made))->second;
 }
 
 void Pool::forget(VkImage image, std::uint64_t frame) {
   make_room(retired_, imports_.size());
-  std::erase_if(imports_, [&](std::unique_ptr<Physical>& physical) {
-    if (physical->image != image) return false;
-    retired_.push_back({frame, std::move(physical)});
-    ++generation_;
-    return true;
-  });
+  const auto [first, last] = imports_.equal_range(key_of(image, VK_NULL_HANDLE));
+  for (auto at = first; at != last;) {
+    if (at->second->image == image) {
+      retired_.push_back({frame, std::move(at->second)});
+      ++destroyed_views_;
+      at = imports_.erase(at);
+    } else {
+      ++at;
+    }
+  }
 }
 
 VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType type,
@@ -208,7 +227,6 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
            : range.layers > 1        ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
                                      : VK_IMAGE_VIEW_TYPE_2D;
   if (format == VK_FORMAT_UNDEFINED) format = physical.record.format;
-  const std::lock_guard lock(views_mutex_);
   for (const CachedView& cached : physical.views) {
     if (cached.range == range && cached.type == type && cached.format == format) return cached.view;
   }
@@ -237,13 +255,24 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
     memory_.free(retired.heap);
     return true;
   });
-  const auto unused = [&](std::unique_ptr<Physical>& physical) {
-    if (physical->last_frame + kPatience > frame || physical->last_frame > finished) return false;
-    destroy(*physical);
-    return true;
+  const auto destroy_unused = [&](Objects& objects) {
+    return std::erase_if(objects, [&](auto& object) {
+      Physical& physical = *object.second;
+      if (physical.last_frame + kPatience > frame || physical.last_frame > finished) return false;
+      if (!physical.owned && !physical.views.empty()) ++destroyed_views_;
+      destroy(physical);
+      return true;
+    });
   };
-  if (std::erase_if(transients_, unused) != 0) ++generation_;
-  if (std::erase_if(imports_, unused) != 0) ++generation_;
+  if (destroy_unused(transients_) != 0) ++generation_;
+  if (frame % kPatience != 0) return;
+  destroy_unused(imports_);
+  bool shrinks = false;
+  for (HeapMemory& heap : heaps_) {
+    shrinks |= heap.needed < heap.size / 2;
+    heap.needed = 0;
+  }
+  if (shrinks) retire_transients(frame - 1);
 }
 
 VkDeviceSize Pool::allocated() const {

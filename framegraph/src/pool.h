@@ -1,15 +1,15 @@
 // Device memory, images, buffers and views, kept from frame to frame and shared by all cached
 // plans.
 //
-// The transients of all plans lie in the same heaps, one for each set of memory types. Heaps only
-// grow. A transient is looked up by description, usage and offset, so that a cached plan finds its
-// own images again. Objects that no frame has used for a while are destroyed after the device has
-// finished with them.
+// The transients of all plans lie in the same heaps, one for each set of memory types. If no frame
+// of a while has needed half of a heap, the heaps are freed and allocated anew. A transient is
+// looked up by description, usage and offset, so that a cached plan finds its own images again.
+// Objects that no frame has used for a while are destroyed after the device has finished with them.
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
+#include <unordered_map>
 #include <vector>
 
 #include "alcove/framegraph/record_context.h"
@@ -58,9 +58,6 @@ class Pool {
   [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
                                  VkFlags usage, std::string_view name, Physical*& found);
-  // Returns the slot of a history, or null if it was not created yet.
-  Physical* find_history(const HistoryTable& table, std::uint32_t entry,
-                         std::uint32_t position) const;
   // Moves the slots of histories that no longer exist to the list of objects to be destroyed: those
   // that were dropped, those that got another description in an earlier frame, and those whose
   // graph is gone. Histories of other graphs stay.
@@ -68,15 +65,20 @@ class Pool {
   // Returns an object for an imported resource, whose views are cached by image and layer.
   Physical& import(const ResourceRecord& record, const ImportHandles& handles);
   void forget(VkImage image, std::uint64_t frame);
-  // Returns the view of a range, which is created on first use, or null if memory runs out. Several
-  // threads may call it at the same time.
+  // Returns the view of a range, which is created on first use, or null if memory runs out.
   VkImageView view(Physical& physical, const Range& range, VkImageViewType type, VkFormat format);
 
   // Destroys the objects on the retired list and those that were not used for a while, if the
   // device has finished the last frame that used them. `finished` is the last finished frame.
   void collect(std::uint64_t finished, std::uint64_t frame);
 
+  // Moves all heaps and transients to the list of objects to be destroyed.
+  void retire_transients(std::uint64_t frame);
+
+  // Returns a number that changes when transients or histories are created or destroyed.
   std::uint64_t generation() const { return generation_; }
+  // Returns a number that changes with `generation` and when views of imports are destroyed.
+  std::uint64_t resources_id() const { return generation_ + destroyed_views_; }
   // Returns the allocated device memory in bytes, including retired objects that are not yet freed.
   VkDeviceSize allocated() const;
   VkDeviceSize history_size() const;
@@ -85,10 +87,12 @@ class Pool {
   std::string take_shortage() { return memory_.take_reason(); }
 
  private:
+  using Objects = std::unordered_multimap<std::uint64_t, std::unique_ptr<Physical>>;
   struct HeapMemory {
     std::uint32_t memory_types = 0;
     MemoryRange memory;
     VkDeviceSize size = 0;
+    VkDeviceSize needed = 0;     // most bytes that a frame needed since the last check
     bool has_addresses = false;  // whether its buffers may have a device address
   };
   struct HistoryImage {
@@ -111,18 +115,19 @@ class Pool {
   VkResult create(Physical& physical, std::string_view name);
   VkResult allocate(const VkMemoryRequirements& requirements, bool has_addresses,
                     MemoryRange& memory);
+  void retire_objects(Objects& objects, std::uint64_t frame);
   void destroy(Physical& physical);
   void set_name(const Physical& physical, std::string_view name);
 
   const DeviceContext& device_;
   DeviceAllocator memory_;
   std::vector<HeapMemory> heaps_;
-  std::vector<std::unique_ptr<Physical>> transients_;
+  Objects transients_;  // by offset
   std::vector<HistoryImage> histories_;
-  std::vector<std::unique_ptr<Physical>> imports_;
+  Objects imports_;  // by Vulkan handle
   std::vector<Retired> retired_;
   std::uint64_t generation_ = first_generation();
-  std::mutex views_mutex_;  // guards the views
+  std::uint64_t destroyed_views_ = 0;
 };
 
 }  // namespace alcove::framegraph

@@ -51,8 +51,7 @@ class TextPrinter {
   void line(const std::string& text) { out_.append(text).append("\n"); }
   void summary() {
     line(std::to_string(plan_.passes.size()) + " of " + std::to_string(graph_.passes.size()) +
-         " passes" + (plan_.reordered ? ", reordered" : "") + ", " +
-         std::to_string(plan_.batches.size()) + " barrier commands with " +
+         " passes, " + std::to_string(plan_.batches.size()) + " barrier commands with " +
          std::to_string(plan_.transitions.size()) + " barriers, " +
          std::to_string(plan_.submissions.size()) + " submission(s)");
     for (const Heap& heap : plan_.heaps)

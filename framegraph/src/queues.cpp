@@ -5,10 +5,11 @@
 //
 // A submission begins with a pass that waits for another queue, and ends with a pass for which
 // another queue waits, so that no queue waits longer than it must. With one queue there is one
-// submission. Two passes on different queues depend on each other when they use one subresource,
-// even if both only read it, because its layout or its owning queue family may have to change
-// between them.
+// submission. A pass that changes a subresource (writes it, or moves it to another layout or queue
+// family) waits for the passes of other queues that have used it since the last change. A pass that
+// only reads it waits for the last change.
 #include <algorithm>
+#include <bit>
 
 #include "workspace.h"
 
@@ -32,6 +33,7 @@ class QueueAssigner {
     cut();
     regroup();
     close();
+    find_taken();
   }
 
  private:
@@ -41,31 +43,35 @@ class QueueAssigner {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
   }
 
-  // Assigns each pass to the queue of its class, or to the graphics queue if the device has no
+  // Assigns each live pass to the queue of its class, or to the graphics queue if the device has no
   // queue of that class.
   void choose_queues() {
-    plan_.passes.resize(workspace_.order.size());
+    plan_.passes.clear();
     workspace_.several_queues = false;
-    PlannedPass* planned = plan_.passes.data();
-    for (const std::uint32_t pass : workspace_.order) {
+    workspace_.final_submission = 0;
+    for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
+      if (!plan_.cull_reasons[pass].is_live()) continue;
       const QueueClass wanted = graph_.passes[pass].queue;
-      *planned = {};
-      planned->pass = pass;
-      planned->queue = family(wanted) != kNone ? wanted : QueueClass::graphics;
-      workspace_.several_queues |=
-          planned->queue != QueueClass::graphics || takes_from_others(pass);
-      ++planned;
+      const QueueClass queue = family(wanted) != kNone ? wanted : QueueClass::graphics;
+      plan_.passes.push_back({pass, queue, 0, 0, 0});
+      workspace_.several_queues |= queue != QueueClass::graphics;
     }
-  }
-
-  // Returns whether a pass uses a resource whose last use before the frame was on a queue other
-  // than graphics.
-  bool takes_from_others(std::uint32_t pass) const {
-    bool takes = false;
-    for_each_live(graph_, plan_, pass, [&](const AccessRecord& access) {
-      takes |= given_by(access.resource, QueueClass::graphics) != 0;
-    });
-    return takes;
+    workspace_.one_family = true;
+    for (const PlannedPass& planned : plan_.passes)
+      workspace_.one_family &= family(planned.queue) == family(QueueClass::graphics);
+    for (const ExternalRecord& external : graph_.externals)
+      workspace_.one_family &= family(initial_queue(external)) == family(QueueClass::graphics);
+    // A graphics pass may use a resource that was last used on another queue.
+    if (!workspace_.several_queues && !graph_.externals.empty()) {
+      for (const PlannedPass& planned : plan_.passes) {
+        for_each_live(graph_, plan_, planned.pass, [&](const AccessRecord& access) {
+          const std::uint32_t external = graph_.resources[access.resource].external;
+          workspace_.several_queues |=
+              external != kNone &&
+              initial_queue(graph_.externals[external]) != QueueClass::graphics;
+        });
+      }
+    }
   }
 
   // Finds, for each pass and each other queue, the last pass of that queue for which this pass must
@@ -74,7 +80,15 @@ class QueueAssigner {
     const std::size_t count = plan_.passes.size();
     s_.waits.assign(count * kQueueClasses, kNobody);
     s_.waited_for.assign(count, 0);
-    s_.last_user.assign(workspace_.first_sub.back(), kNobody);
+    s_.uses.assign(workspace_.first_sub.back(), {});
+    for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
+      if (graph_.resources[r].external == kNone) continue;
+      const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
+      Workspace::Queues::Uses before;
+      before.owner = initial_queue(external);
+      if (external.has_contents) before.layout = external.initial_state.layout;
+      for_each_sub_of(r, [&](std::uint32_t sub) { s_.uses[sub] = before; });
+    }
     s_.known_at.assign(count * kQueueClasses, -1);
     s_.opened.assign(count, 0);
     s_.opened_at.assign(count, 0);
@@ -86,18 +100,36 @@ class QueueAssigner {
   }
 
   void find_wait_of(std::uint32_t position) {
-    const auto own = static_cast<std::size_t>(plan_.passes[position].queue);
+    const QueueClass queue = plan_.passes[position].queue;
+    const auto own = static_cast<std::size_t>(queue);
     std::uint32_t* waits = &s_.waits[position * kQueueClasses];
-    for_each_live_sub(position, [&](std::uint32_t resource, std::uint32_t sub) {
-      const std::uint32_t user = s_.last_user[sub];
-      s_.last_user[sub] = position;
-      if (user == kNobody) s_.opened[position] |= given_by(resource, plan_.passes[position].queue);
-      if (user == kNobody || user == position ||
-          plan_.passes[user].queue == plan_.passes[position].queue)
-        return;
-      const auto other = static_cast<std::size_t>(plan_.passes[user].queue);
-      if (known_[own][other] >= static_cast<std::int32_t>(user)) return;
-      waits[other] = waits[other] == kNobody ? user : std::max(waits[other], user);
+    for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
+      const bool shares = queues_share(graph_, workspace_, access.resource);
+      for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+        Workspace::Queues::Uses& uses = s_.uses[sub];
+        const bool changes =
+            (access.flags & kWrite) != 0 ||
+            (access.kind() == ResourceKind::texture && uses.layout != access.layout) ||
+            (!shares && uses.owner != queue);
+        if (uses.changed == kNobody) s_.opened[position] |= opening_of(access, queue);
+        for (std::size_t other = 0; other < kQueueClasses; ++other) {
+          if (other == own) continue;
+          std::uint32_t user = uses.last[other];
+          if (!changes)
+            user = uses.changed != kNobody && uses.owner == static_cast<QueueClass>(other)
+                       ? uses.changed
+                       : kNobody;
+          if (user == kNobody || known_[own][other] >= static_cast<std::int32_t>(user)) continue;
+          waits[other] = waits[other] == kNobody ? user : std::max(waits[other], user);
+        }
+        if (changes) {
+          uses = {};
+          uses.changed = position;
+          uses.owner = queue;
+        }
+        uses.last[own] = position;
+        uses.layout = access.layout;
+      });
     });
     s_.opened[position] &= static_cast<std::uint8_t>(~known_open_[own]);
     drop_implied(waits);
@@ -140,23 +172,26 @@ class QueueAssigner {
       s_.known_at[position * kQueueClasses + other] = known_[own][other];
   }
 
-  // Returns the bit of the queue that used the resource before the frame, or 0 if that queue is
-  // `user`.
-  std::uint8_t given_by(std::uint32_t resource, QueueClass user) const {
-    const std::uint32_t external = graph_.resources[resource].external;
-    if (external == kNone) return 0;
-    const ExternalRecord& record = graph_.externals[external];
-    const QueueClass owner = initial_queue(record);
-    if (owner == user || (!record.has_contents && record.initial_state.stages == 0)) return 0;
+  // Returns the bit of the queue that used the resource before the frame, if the access must wait
+  // for that use, and 0 otherwise.
+  std::uint8_t opening_of(const AccessRecord& access, QueueClass queue) const {
+    const ResourceRecord& resource = graph_.resources[access.resource];
+    if (resource.external == kNone) return 0;
+    const ExternalRecord& external = graph_.externals[resource.external];
+    const QueueClass owner = initial_queue(external);
+    if (owner == queue) return 0;
+    const bool transfers = external.has_contents && !(access.flags & kDiscard) &&
+                           family(owner) != family(queue) && !external.concurrent;
+    // An initial state with stages means that earlier work on its queue must be done. Even if its
+    // writes are visible to reads, they are so on that queue only.
+    if (!transfers && external.initial_state.stages == 0) return 0;
     return static_cast<std::uint8_t>(1u << static_cast<unsigned>(owner));
   }
 
-  // Calls f(resource, subresource) for every subresource that a pass uses.
   template <typename Function>
-  void for_each_live_sub(std::uint32_t position, Function&& f) const {
-    for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
-      for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) { f(access.resource, sub); });
-    });
+  void for_each_sub_of(std::uint32_t resource, Function&& f) const {
+    const auto& first = workspace_.first_sub;
+    for (std::uint32_t sub = first[resource]; sub < first[resource + 1]; ++sub) f(sub);
   }
 
   // Assigns passes to submissions, which are numbered in order of their first passes.
@@ -243,42 +278,93 @@ class QueueAssigner {
       }
     }
     plan_.passes.swap(s_.moved);
-    for (std::uint32_t position = 0; position < plan_.passes.size(); ++position)
-      workspace_.order[position] = plan_.passes[position].pass;
   }
 
-  // Makes the graphics queue wait for the last uses of imports, because the next frame expects
-  // imports on that queue, and of histories with several subresources, which may be in different
-  // states.
+  // Chooses the queue on which the frame leaves each history, and the submission of the graphics
+  // queue that brings imports and histories into their final states. The graphics queue waits for
+  // the last uses of imports, because the next frame expects them on that queue, and of histories
+  // that several queues used.
   void close() {
-    if (graph_.externals.empty()) return;
     std::uint32_t last[kQueueClasses] = {kNobody, kNobody, kNobody};
-    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
-      const std::uint32_t external = graph_.resources[r].external;
-      if (external == kNone) continue;
-      const std::uint32_t subs = workspace_.first_sub[r + 1] - workspace_.first_sub[r];
-      if (graph_.resources[r].origin == Origin::history &&
-          !graph_.externals[external].has_final_state && subs == 1)
+    bool imports = false;
+    s_.last_queue.assign(graph_.resources.size(), QueueClass::graphics);
+    for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
+      const ResourceRecord& resource = graph_.resources[r];
+      if (resource.external == kNone) continue;
+      const ExternalRecord& external = graph_.externals[resource.external];
+      imports |= resource.origin == Origin::imported;
+      if (resource.origin == Origin::imported
+              ? !external.has_final_state && queues_share(graph_, workspace_, r)
+              : stays_on_one_queue(r))
         continue;
-      for (std::uint32_t sub = workspace_.first_sub[r]; sub < workspace_.first_sub[r + 1]; ++sub) {
-        const std::uint32_t user = s_.last_user[sub];
-        if (user == kNobody) continue;
-        std::uint32_t& there = last[static_cast<std::size_t>(s_.moved[user].queue)];
-        there = there == kNobody ? user : std::max(there, user);
-      }
+      for_each_sub_of(r, [&](std::uint32_t sub) {
+        for (std::size_t other = 1; other < kQueueClasses; ++other) {
+          const std::uint32_t user = s_.uses[sub].last[other];
+          if (user == kNobody || known_[0][other] >= static_cast<std::int32_t>(user)) continue;
+          last[other] = last[other] == kNobody ? user : std::max(last[other], user);
+        }
+      });
     }
-    for (std::size_t other = 1; other < kQueueClasses; ++other) {
-      if (last[other] != kNobody && known_[0][other] >= static_cast<std::int32_t>(last[other]))
-        last[other] = kNobody;
-    }
-    last[0] = kNobody;
     drop_implied(last);
+    const auto& submissions = plan_.submissions;
+    workspace_.final_submission = kNobody;
+    for (std::uint32_t s = 0; s < submissions.size(); ++s) {
+      if (submissions[s].queue == QueueClass::graphics) workspace_.final_submission = s;
+    }
+    const bool waits = last[1] != kNobody || last[2] != kNobody;
+    if (!waits && (workspace_.final_submission != kNobody || !imports)) return;
+    workspace_.final_submission = static_cast<std::uint32_t>(submissions.size());
     Submission submission;
     submission.first_pass = static_cast<std::uint32_t>(plan_.passes.size());
     submission.first_wait = static_cast<std::uint32_t>(plan_.waits.size());
     plan_.submissions.push_back(submission);
     for (std::size_t other = 1; other < kQueueClasses; ++other) {
       if (last[other] != kNobody) add_wait(s_.submission_of[last[other]]);
+    }
+  }
+
+  // Returns whether the frame can leave a history on one queue without final barriers, and sets
+  // that queue.
+  bool stays_on_one_queue(std::uint32_t resource) {
+    unsigned queues = 0;
+    for_each_sub_of(resource, [&](std::uint32_t sub) {
+      const auto& uses = s_.uses[sub];
+      for (std::size_t queue = 0; queue < kQueueClasses; ++queue)
+        queues |= uses.last[queue] != kNobody ? 1u << queue : 0u;
+      if (uses.layout != VK_IMAGE_LAYOUT_UNDEFINED)
+        queues |= 1u << static_cast<unsigned>(uses.owner);
+    });
+    const bool single = workspace_.first_sub[resource + 1] - workspace_.first_sub[resource] == 1;
+    if (queues != 1 && !(single && std::has_single_bit(queues))) return queues == 0;
+    s_.last_queue[resource] = static_cast<QueueClass>(std::countr_zero(queues));
+    return true;
+  }
+
+  // Finds, for each pass, the last position at which another queue may still run at the same time.
+  // That are the later passes of the other queue that do not know this pass to be done.
+  void find_taken() {
+    const auto count = static_cast<std::uint32_t>(plan_.passes.size());
+    s_.taken_until.resize(count);
+    for (std::uint32_t position = 0; position < count; ++position)
+      s_.taken_until[position] = position;
+    const auto queue_of = [this](std::uint32_t position) {
+      return static_cast<std::size_t>(plan_.passes[position].queue);
+    };
+    for (std::size_t own = 0; own < kQueueClasses; ++own) {
+      for (std::size_t other = 0; other < kQueueClasses; ++other) {
+        if (own == other) continue;
+        std::uint32_t next = 0;  // the first pass of the other queue that knows `position`
+        std::uint32_t last = 0;  // the last one before it
+        for (std::uint32_t position = 0; position < count; ++position) {
+          if (queue_of(position) != own) continue;
+          for (; next < count; ++next) {
+            if (queue_of(next) != other) continue;
+            if (s_.known[next * kQueueClasses + own] >= static_cast<std::int32_t>(position)) break;
+            last = next;
+          }
+          s_.taken_until[position] = std::max(s_.taken_until[position], last);
+        }
+      }
     }
   }
 
@@ -301,22 +387,10 @@ void assign_queues(const GraphDescription& graph, const Limits& limits, Workspac
   QueueAssigner(graph, limits, workspace, plan).run();
 }
 
-std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position) {
-  const auto own = static_cast<std::size_t>(plan.passes[position].queue);
-  std::uint32_t until = position;
-  for (std::size_t other = 0; other < kQueueClasses; ++other) {
-    if (other == own) continue;
-    // Later passes of the other queue may run at the same time, unless their queue knows this pass
-    // to be done.
-    for (std::uint32_t later = position + 1; later < plan.passes.size(); ++later) {
-      if (static_cast<std::size_t>(plan.passes[later].queue) != other) continue;
-      if (workspace.queues.known[later * kQueueClasses + own] >=
-          static_cast<std::int32_t>(position))
-        break;
-      until = std::max(until, later);
-    }
-  }
-  return until;
+bool queues_share(const GraphDescription& graph, const Workspace& workspace,
+                  std::uint32_t resource) {
+  const std::uint32_t external = graph.resources[resource].external;
+  return workspace.one_family || (external != kNone && graph.externals[external].concurrent);
 }
 
 }  // namespace alcove::framegraph

@@ -13,7 +13,7 @@ VkImageView RecordContext::view(Texture texture) const {
 VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType type,
                                 VkFormat format) const {
   if (!recorder_.declared(pass_, texture.index)) return VK_NULL_HANDLE;
-  Physical* physical = (*recorder_.physical_)[texture.index];
+  Physical* physical = (*recorder_.frame_.physical)[texture.index];
   if (physical == nullptr || physical->image == VK_NULL_HANDLE) return VK_NULL_HANDLE;
   const GraphDescription& graph = recorder_.graph_->description();
   const ResourceRecord& record = graph.resources[texture.index];
@@ -141,13 +141,13 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors,
 
 VkImage RecordContext::image(Texture texture) const {
   if (!recorder_.declared(pass_, texture.index)) return VK_NULL_HANDLE;
-  const Physical* physical = (*recorder_.physical_)[texture.index];
+  const Physical* physical = (*recorder_.frame_.physical)[texture.index];
   return physical ? physical->image : VK_NULL_HANDLE;
 }
 
 VkBuffer RecordContext::buffer(Buffer buffer) const {
   if (!recorder_.declared(pass_, buffer.index)) return VK_NULL_HANDLE;
-  const Physical* physical = (*recorder_.physical_)[buffer.index];
+  const Physical* physical = (*recorder_.frame_.physical)[buffer.index];
   return physical ? physical->buffer : VK_NULL_HANDLE;
 }
 
@@ -172,30 +172,29 @@ VkFormat RecordContext::format(Texture texture) const {
   return texture.index < resources.size() ? resources[texture.index].format : VK_FORMAT_UNDEFINED;
 }
 
-bool RecordContext::is_used(Texture texture) const {
+bool RecordContext::is_used(std::uint32_t resource, const Range& range) const {
   const GraphDescription& graph = recorder_.graph_->description();
   const auto accesses = graph.pass_accesses(pass_);
   const std::uint8_t* live =
       recorder_.plan_->live_accesses.data() + graph.passes[pass_].first_access;
+  const auto meet = [](std::uint32_t a, std::uint32_t a_count, std::uint32_t b,
+                       std::uint32_t b_count) { return a < b + b_count && b < a + a_count; };
   for (std::size_t i = 0; i < accesses.size(); ++i) {
-    if (accesses[i].resource == texture.index && live[i]) return true;
+    const Range& own = accesses[i].range;
+    if (live[i] && accesses[i].resource == resource &&
+        meet(own.base_mip, own.mips, range.base_mip, range.mips) &&
+        meet(own.base_layer, own.layers, range.base_layer, range.layers) &&
+        (own.aspects == 0 || range.aspects == 0 || (own.aspects & range.aspects) != 0))
+      return true;
   }
   return false;
 }
 
-bool RecordContext::is_used(Buffer buffer) const {
-  return is_used(Texture{buffer.index, buffer.version, buffer.graph});
-}
-
-HistoryValidity RecordContext::validity(Texture texture) const {
+HistoryValidity RecordContext::validity(std::uint32_t resource) const {
   const GraphDescription& graph = recorder_.graph_->description();
-  if (texture.index >= graph.resources.size()) return HistoryValidity::first_frame;
-  const std::uint32_t external = graph.resources[texture.index].external;
+  if (resource >= graph.resources.size()) return HistoryValidity::first_frame;
+  const std::uint32_t external = graph.resources[resource].external;
   return external == kNone ? HistoryValidity::valid : graph.externals[external].validity;
-}
-
-HistoryValidity RecordContext::validity(Buffer buffer) const {
-  return validity(Texture{buffer.index, buffer.version, buffer.graph});
 }
 
 void RecordContext::fail(std::string_view what, VkResult result) const {

@@ -19,22 +19,18 @@ VkMemoryBarrier2 execution(const Transition& t) {
 }  // namespace
 
 void Recorder::begin(const RecordedFrame& frame) {
+  frame_ = frame;
   graph_ = frame.graph;
   plan_ = frame.plan;
-  physical_ = frame.physical;
-  check_uses_ = frame.check_uses;
-  slot_ = frame.slot;
   errors_.clear();
   shares_with_buffers_ = false;
-  starts_anew_ = frame.starts_anew;
+  for (std::uint32_t r = 0; r < plan_->placements.size(); ++r) {
+    shares_with_buffers_ |= plan_->placements[r].heap != kNone &&
+                            graph_->description().resources[r].kind == ResourceKind::buffer;
+  }
   has_outside_families_ = false;
   for (const ImportHandles& import : graph_->imports_)
     has_outside_families_ |= import.initial_family != kNone || import.final_family != kNone;
-  const GraphDescription& description = graph_->description();
-  for (std::uint32_t r = 0; r < plan_->placements.size(); ++r) {
-    if (plan_->placements[r].heap != kNone && description.resources[r].kind == ResourceKind::buffer)
-      shares_with_buffers_ = true;
-  }
 }
 
 void Recorder::full_barrier(VkCommandBuffer commands) {
@@ -50,9 +46,14 @@ void Recorder::full_barrier(VkCommandBuffer commands) {
   device_.vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
-void Recorder::passes(const PassRun& run, VkCommandBuffer commands) {
-  for (std::uint32_t i = 0; i < run.count; ++i)
-    pass(plan_->passes[run.first + i], commands, run.timestamps, run.first_time + i);
+void Recorder::submission(std::uint32_t index, VkCommandBuffer commands, Timestamps* timestamps) {
+  const Submission& submission = plan_->submissions[index];
+  const std::uint32_t first_time = timestamps ? timestamps->add(submission.pass_count) : 0;
+  acquire_imports(index, commands);
+  for (std::uint32_t i = 0; i < submission.pass_count; ++i)
+    pass(plan_->passes[submission.first_pass + i], commands, timestamps, first_time + i);
+  batches(submission.first_batch, submission.batch_count, commands);
+  if (index == plan_->final_submission) release_imports(commands);
 }
 
 void Recorder::begin_label(std::string_view name, VkCommandBuffer commands) const {
@@ -74,8 +75,8 @@ void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timest
   if (label) begin_label(name, commands);
   if (timestamps) timestamps->begin_pass(commands, time, planned.pass, name);
   RecordContext context(commands, device_.vk, *this, planned.pass);
-  context.resources_id = pool_.generation();
-  context.frame_slot = slot_;
+  context.resources_id = pool_.resources_id();
+  context.frame_slot = frame_.slot;
   const Graph::Callback& callback = graph_->callbacks_[planned.pass];
   callback.call(callback.object, context);
   if (timestamps) timestamps->end_pass(commands, time);
@@ -103,13 +104,13 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
                                   t.src_access,
                                   t.dst_stages,
                                   t.dst_access};
-    if (t.resource != kNone && (*physical_)[t.resource]->image) {
+    if (t.resource != kNone && (*frame_.physical)[t.resource]->image) {
       images_.push_back(image_barrier(t));
       // An image barrier orders all commands of its stages, whichever resources they use. The
       // validation layers (1.3.239) assume that it orders only uses of its own image. They then
       // report a hazard between two other resources that this image barrier orders. A memory
       // barrier over the same stages avoids the false report. It makes nothing available or visible
-      // that the image barrier does not, so that it costs nothing.
+      // that the image barrier does not.
       const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_;
       add_memory(takes_over ? memory : execution(t));
     } else if (t.resource != kNone) {
@@ -141,22 +142,17 @@ void Recorder::add_memory(const VkMemoryBarrier2& barrier) {
 }
 
 VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
-  const Physical& physical = *(*physical_)[t.resource];
+  const Physical& physical = *(*frame_.physical)[t.resource];
   VkImageMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = t.src_stages;
   barrier.srcAccessMask = t.src_access;
-  // After full_barrier() there is nothing left to make available. The validation layers (1.3.239)
-  // see that this layout change follows full_barrier() only if the layout change has a source
-  // access. Otherwise they report a hazard with the last write of another plan. The additional
-  // access costs nothing.
-  if (starts_anew_ && t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED)
-    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
-  // The validation layers (1.3.239) forget the last write to an image if a buffer occupied its
-  // bytes before the next image did, unless the barrier names the access that read the buffer. A
-  // read has nothing to make available, so that naming it costs nothing.
+  // The validation layers (1.3.239) forget the last use of memory by a buffer, and uses before
+  // full_barrier(), unless the barrier names an access. There is nothing left to make available.
   if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
+  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && frame_.starts_anew)
+    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstStageMask = t.dst_stages;
   barrier.dstAccessMask = t.dst_access;
   barrier.oldLayout = t.old_layout;
@@ -179,7 +175,7 @@ VkBufferMemoryBarrier2 Recorder::buffer_barrier(const Transition& t) const {
           t.dst_access,
           family(t, t.src_queue),
           family(t, t.dst_queue),
-          (*physical_)[t.resource]->buffer,
+          (*frame_.physical)[t.resource]->buffer,
           0,
           VK_WHOLE_SIZE};
 }
@@ -197,7 +193,7 @@ const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resourc
   for (const AccessRecord& access : graph.pass_accesses(pass)) {
     if (access.resource == resource) return &access;
   }
-  if (check_uses_) {
+  if (frame_.check_uses) {
     Error error;
     error.code = ErrorCode::undeclared_use;
     error.pass = pass;
@@ -232,7 +228,7 @@ std::uint32_t Recorder::find_attachment(std::uint32_t pass, std::uint32_t resour
 
 std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t resource) const {
   if (!declared(pass, resource)) {
-    if (check_uses_) return kNone;
+    if (frame_.check_uses) return kNone;
   }
   const std::uint32_t found = find_attachment(pass, resource, 0);
   if (found != kNone) return found;
@@ -245,15 +241,16 @@ std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t reso
   return kNone;
 }
 
-void Recorder::acquire_imports(const Submission& submission, VkCommandBuffer commands) {
+void Recorder::acquire_imports(std::uint32_t index, VkCommandBuffer commands) {
+  const Submission& submission = plan_->submissions[index];
   const GraphDescription& graph = graph_->description();
   for (std::uint32_t r = 0; r < graph.resources.size() && has_outside_families_; ++r) {
     const std::uint32_t external = graph.resources[r].external;
     if (external == kNone || graph_->imports_[external].initial_family == kNone) continue;
     const std::uint32_t first = plan_->placements[r].first;
-    const bool here = first == kNone
-                          ? is_last(submission) && graph.externals[external].has_final_state
-                          : first - submission.first_pass < submission.pass_count;
+    const bool here = first == kNone ? index == plan_->final_submission &&
+                                           graph.externals[external].has_final_state
+                                     : first - submission.first_pass < submission.pass_count;
     const auto own = device_.limits.queue_families[static_cast<std::size_t>(submission.queue)];
     if (here)
       transfer_import(r, graph_->imports_[external].initial_family, own,
@@ -324,13 +321,16 @@ bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Rang
       range.base_layer + range.layers > record.layers)
     return fail(ErrorCode::bad_range, "but the texture has " + std::to_string(record.mips) +
                                           " mips and " + std::to_string(record.layers) + " layers");
-  if (!check_uses_) return true;
+  if (!frame_.check_uses) return true;
   const VkImageAspectFlags seen = range.aspects != 0 ? range.aspects : view_aspect(record.format);
+  const std::uint8_t* const live = plan_->live_accesses.data() + graph.passes[pass].first_access;
   const auto is_declared = [&](std::uint32_t mip, std::uint32_t layer) {
-    for (const AccessRecord& access : graph.pass_accesses(pass)) {
-      const Range& own = access.range;
-      if (access.resource == resource && (own.aspects == 0 || own.aspects == seen) &&
-          mip >= own.base_mip && mip < own.base_mip + own.mips && layer >= own.base_layer &&
+    const auto accesses = graph.pass_accesses(pass);
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      const Range& own = accesses[i].range;
+      if (live[i] && accesses[i].resource == resource &&
+          (own.aspects == 0 || own.aspects == seen) && mip >= own.base_mip &&
+          mip < own.base_mip + own.mips && layer >= own.base_layer &&
           layer < own.base_layer + own.layers)
         return true;
     }
@@ -339,9 +339,10 @@ bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Rang
   for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer) {
     for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip) {
       if (!is_declared(mip, layer))
-        return fail(ErrorCode::undeclared_use,
-                    "part of which it did not declare: add a read or a "
-                    "write of that range");
+        return fail(
+            ErrorCode::undeclared_use,
+            "part of which it did not declare, or declared as an optional write that nobody "
+            "reads: add a read or a write of that range, or check is_used");
     }
   }
   return true;

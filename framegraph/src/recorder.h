@@ -1,5 +1,4 @@
-// Records passes and barriers of a plan into a command buffer. A recorder is used by one thread at
-// a time. Several recorders may record parts of one plan at the same time.
+// Records the submissions of a plan into command buffers.
 #pragma once
 
 #include <vector>
@@ -19,16 +18,8 @@ struct RecordedFrame {
   const Plan* plan = nullptr;
   const std::vector<Physical*>* physical = nullptr;
   bool check_uses = false;
-  bool starts_anew = false;  // it follows a frame of another plan: begin with full_barrier()
+  bool starts_anew = false;  // it follows a frame of another plan: it begins with full_barrier()
   std::uint32_t slot = 0;
-};
-
-// Consecutive passes of a queue, at positions [first, first + count) of the plan.
-struct PassRun {
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-  Timestamps* timestamps = nullptr;
-  std::uint32_t first_time = 0;  // number of the first pass among the timestamps
 };
 
 class Recorder {
@@ -39,16 +30,8 @@ class Recorder {
   void begin(const RecordedFrame& frame);
   // Records a barrier that orders all later commands after all earlier commands of the queue.
   void full_barrier(VkCommandBuffer commands);
-  void passes(const PassRun& run, VkCommandBuffer commands);
-  void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
-  // Record the queue ownership transfers of imports between the graph's queue families and families
-  // outside the graph. Acquires come before the submission that uses the import first, releases
-  // after the last submission.
-  void acquire_imports(const Submission& submission, VkCommandBuffer commands);
-  void release_imports(VkCommandBuffer commands);
-  bool is_last(const Submission& submission) const {
-    return &submission == &plan_->submissions.back();
-  }
+  // Records a submission of the plan. `timestamps` may be null.
+  void submission(std::uint32_t index, VkCommandBuffer commands, Timestamps* timestamps);
   // Returns the errors that callbacks caused while recording: undeclared uses, and objects that
   // could not be created.
   Errors& errors() { return errors_; }
@@ -57,6 +40,12 @@ class Recorder {
   friend class RecordContext;
   void pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps,
             std::uint32_t time);
+  void batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands);
+  // Record the queue ownership transfers of imports between the graph's queue families and families
+  // outside the graph. Acquires come before the submission that uses the import first, releases
+  // after the final submission.
+  void acquire_imports(std::uint32_t index, VkCommandBuffer commands);
+  void release_imports(VkCommandBuffer commands);
   void begin_label(std::string_view name, VkCommandBuffer commands) const;
   VkDependencyInfo dependency(const Batch& batch);
   void add_memory(const VkMemoryBarrier2& barrier);
@@ -83,14 +72,11 @@ class Recorder {
 
   const DeviceContext& device_;
   Pool& pool_;
+  RecordedFrame frame_;
   const Graph* graph_ = nullptr;
   const Plan* plan_ = nullptr;
-  const std::vector<Physical*>* physical_ = nullptr;
-  bool check_uses_ = false;
-  bool shares_with_buffers_ = false;  // the plan has transient buffers
-  bool starts_anew_ = false;
+  bool shares_with_buffers_ = false;   // the plan has transient buffers
   bool has_outside_families_ = false;  // an import is transferred from or to another queue family
-  std::uint32_t slot_ = 0;
   std::vector<VkImageMemoryBarrier2> images_;
   std::vector<VkBufferMemoryBarrier2> buffers_;
   std::vector<VkMemoryBarrier2> memories_;

@@ -71,19 +71,12 @@ VkResult Submitter::prepare(std::uint32_t slot) {
   return VK_SUCCESS;
 }
 
-VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads,
-                           const FrameInfo& info, Timestamps* const* timestamps,
-                           bool full_barrier) {
-  submitted_ = 0;
-  if (const VkResult result = prepare(info.slot)) return result;
-  // Everything is recorded before anything is submitted, so that an error while recording leaves
-  // the device untouched.
-  if (const VkResult result = record(plan, recording_threads, info.slot, timestamps, full_barrier))
-    return result;
+VkResult Submitter::submit(const Plan& plan, const FrameInfo& info) {
   const bool several =
       std::any_of(plan.submissions.begin(), plan.submissions.end(),
                   [](const Submission& s) { return s.queue != QueueClass::graphics; });
   std::copy(std::begin(values_), std::end(values_), std::begin(before_));
+  std::copy(std::begin(values_), std::end(values_), std::begin(described_values_));
   described_.clear();
   semaphore_infos_.clear();
   bool begun[kQueueClasses] = {};
@@ -99,7 +92,7 @@ VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads
     described_.push_back({});
     described_.back().first_semaphore = static_cast<std::uint32_t>(semaphore_infos_.size());
     // If the previous frame had another plan, this frame begins after that frame is done.
-    const bool joins = full_barrier && !own && (several || several_before_);
+    const bool joins = full_barrier_ && !own && (several || several_before_);
     add_waits(plan, i, joins ? kEveryQueue : submission.frame_before);
     describe(plan, i, info);
     own = true;
@@ -112,8 +105,11 @@ VkResult Submitter::submit(const Plan& plan, RecordingThreads& recording_threads
   return result;
 }
 
-VkResult Submitter::record(const Plan& plan, RecordingThreads& recording_threads,
-                           std::uint32_t slot, Timestamps* const* timestamps, bool full_barrier) {
+VkResult Submitter::record(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+                           Timestamps* const* timestamps, bool full_barrier) {
+  submitted_ = 0;
+  full_barrier_ = full_barrier;
+  if (const VkResult result = prepare(slot)) return result;
   recorded_.assign(plan.submissions.size(), VK_NULL_HANDLE);
   bool begun[kQueueClasses] = {};
   for (std::uint32_t i = 0; i < plan.submissions.size(); ++i) {
@@ -121,9 +117,7 @@ VkResult Submitter::record(const Plan& plan, RecordingThreads& recording_threads
     const auto q = static_cast<std::size_t>(submission.queue);
     VkCommandBuffer& buffer = recorded_[i];
     CommandBuffers& buffers = slots_[slot].queues[q].buffers;
-    if (const VkResult result =
-            buffers.next(device_, submission.queue, VK_COMMAND_BUFFER_LEVEL_PRIMARY, buffer))
-      return result;
+    if (const VkResult result = buffers.next(device_, submission.queue, buffer)) return result;
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -132,9 +126,8 @@ VkResult Submitter::record(const Plan& plan, RecordingThreads& recording_threads
       const auto passes = static_cast<std::uint32_t>(plan.passes.size());
       if (const VkResult result = timestamps[q]->begin_frame(buffer, passes)) return result;
     }
-    if (!begun[q] && full_barrier) recording_threads.full_barrier(buffer);
-    if (const VkResult result = recording_threads.submission(submission, buffer, timestamps[q]))
-      return result;
+    if (!begun[q] && full_barrier) recorder.full_barrier(buffer);
+    recorder.submission(i, buffer, timestamps[q]);
     if (const VkResult result = device_.vk.vkEndCommandBuffer(buffer)) return result;
     begun[q] = true;
   }
@@ -173,11 +166,7 @@ void Submitter::describe(const Plan& plan, std::uint32_t index, const FrameInfo&
   described.waits = add_external(info.waits, true);
   // Earlier submissions of this queue that are described but not yet passed to vkQueueSubmit2 will
   // also raise the semaphore's value.
-  std::uint64_t last = values_[own];
-  for (std::uint32_t i = 0; i < index; ++i) {
-    if (described_[i].queue_class == submission.queue) last = std::max(last, described_[i].value);
-  }
-  described.value = last + 1;
+  described.value = ++described_values_[own];
   semaphore_infos_.push_back({VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, semaphores_[own],
                               described.value, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0});
   described.signals = add_external(info.signals, false) - described.waits;

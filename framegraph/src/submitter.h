@@ -6,7 +6,7 @@
 
 #include "command_buffers.h"
 #include "device_context.h"
-#include "recording_threads.h"
+#include "recorder.h"
 
 namespace alcove::framegraph {
 
@@ -19,13 +19,14 @@ class Submitter {
 
   // Waits until the device has finished the frame that was last submitted with this slot.
   [[nodiscard]] VkResult wait(std::uint32_t slot);
-  // Records and submits the plan with which `recording_threads` was begun. `timestamps` is an
-  // array, not null, with one element per queue class. An element is null if its queue has no
-  // timestamps. If `full_barrier` is true, the frame begins with a barrier over everything, because
-  // another plan used the memory before.
-  [[nodiscard]] VkResult submit(const Plan& plan, RecordingThreads& recording_threads,
-                                const FrameInfo& info, Timestamps* const* timestamps,
-                                bool full_barrier);
+  // Records the plan with which the recorder was begun. `timestamps` is an array, not null, with
+  // one element per queue class. An element is null if its queue has no timestamps. If
+  // `full_barrier` is true, the frame begins with a barrier over everything, because another plan
+  // used the memory before.
+  [[nodiscard]] VkResult record(const Plan& plan, Recorder& recorder, std::uint32_t slot,
+                                Timestamps* const* timestamps, bool full_barrier);
+  // Submits the frame that was recorded last.
+  [[nodiscard]] VkResult submit(const Plan& plan, const FrameInfo& info);
   // Returns whether submit() failed after it had submitted a part of the frame.
   bool stopped_midway() const { return submitted_ != 0; }
 
@@ -39,8 +40,6 @@ class Submitter {
   };
 
   VkResult prepare(std::uint32_t slot);
-  VkResult record(const Plan& plan, RecordingThreads& recording_threads, std::uint32_t slot,
-                  Timestamps* const* timestamps, bool full_barrier);
   // Adds the semaphore waits of a submission. `queues_before` has one bit per queue class: the
   // submission waits for the work of the previous frame on these queues.
   void add_waits(const Plan& plan, std::uint32_t index, std::uint8_t queues_before);
@@ -66,14 +65,16 @@ class Submitter {
   const DeviceContext& device_;
   std::vector<Slot> slots_;
   VkSemaphore semaphores_[kQueueClasses] = {};
-  std::uint64_t values_[kQueueClasses] = {};  // last value that will be signalled
-  std::uint64_t before_[kQueueClasses] = {};  // values_ at the end of the previous frame
-  std::vector<VkCommandBuffer> recorded_;     // by submission of this frame
-  std::uint32_t submitted_ = 0;               // submissions of this frame handed over
-  std::vector<Described> described_;          // by submission of this frame
+  std::uint64_t values_[kQueueClasses] = {};            // last value that will be signalled
+  std::uint64_t described_values_[kQueueClasses] = {};  // with the described submissions
+  std::uint64_t before_[kQueueClasses] = {};            // values_ at the end of the previous frame
+  std::vector<VkCommandBuffer> recorded_;               // by submission of this frame
+  std::uint32_t submitted_ = 0;                         // submissions of this frame handed over
+  std::vector<Described> described_;                    // by submission of this frame
   std::vector<VkSemaphoreSubmitInfo> semaphore_infos_;
   std::vector<VkSubmitInfo2> infos_;  // of one vkQueueSubmit2
   bool several_before_ = false;
+  bool full_barrier_ = false;
 };
 
 }  // namespace alcove::framegraph

@@ -39,12 +39,26 @@ bool continues_write(const UseState& state, const AccessRecord& access) {
          state.write_stages == access.stages && state.unordered_access == access.access;
 }
 
+// Adds the last uses of a resource that gives up its memory to the state of the one that takes it.
+void merge(UseState& merged, const UseState& state, bool before) {
+  merged.frame_before |= before ? state.frame_before : 0u;
+  merged.by_wait |= state.by_wait;
+  if (state.read_stages != 0) {
+    merged.read_stages |= state.read_stages;
+    merged.read_time = std::max(merged.read_time, state.read_time);
+  } else {
+    merged.write_stages |= state.write_stages;
+    merged.write_access |= state.write_access;
+    merged.write_time = std::max(merged.write_time, state.write_time);
+  }
+}
+
 }  // namespace
 
 void Synchroniser::run() {
   // Imports and histories get their states from before the frame. A transient gets its state when
   // it takes over memory from other resources.
-  s_.states.resize(workspace_.first_sub.back());
+  s_.states.resize(subs_ * (several() ? kQueueClasses : 1));
   apply_initial_states();
   find_last_uses();
   const auto count = static_cast<std::uint32_t>(plan_.passes.size());
@@ -56,9 +70,8 @@ void Synchroniser::run() {
   std::uint32_t start = next_start();
   for (std::uint32_t position = 0; position < count; ++position) {
     PlannedPass& planned = plan_.passes[position];
-    queue_ = planned.queue;
-    if (workspace_.several_queues)
-      earliest_ = batch_time(plan_.submissions[planned.submission].first_pass) - 1;
+    set_queue(planned.queue);
+    if (several()) earliest_ = batch_time(plan_.submissions[planned.submission].first_pass) - 1;
     for (; start == position; start = next_start()) take_over_memory(*starting++);
     for_each_live(graph_, plan_, planned.pass,
                   [&](const AccessRecord& access) { use(position, access); });
@@ -69,26 +82,24 @@ void Synchroniser::run() {
   apply_final_states();
 }
 
-// Finds the last use, in the previous frame, of each history and of each transient that is the last
-// one in a frame to occupy some byte. This frame's plan gives the answer, because the previous
-// frame had the same plan.
+// Finds the last use, in the previous frame, of each transient that is the last one in a frame to
+// occupy some byte. This frame's plan gives the answer, because the previous frame had the same
+// plan.
 void Synchroniser::find_last_uses() {
-  s_.last_uses.resize(workspace_.first_sub.back());
+  s_.last_uses.resize(s_.states.size());
   s_.is_last.assign(graph_.resources.size(), 0);
   auto from = static_cast<std::uint32_t>(plan_.passes.size());
-  const auto want = [&](std::uint32_t resource) {
-    s_.is_last[resource] = 1;
-    from = std::min(from, plan_.placements[resource].first);
-    const auto& first = workspace_.first_sub;
-    std::fill(s_.last_uses.begin() + first[resource], s_.last_uses.begin() + first[resource + 1],
-              UseState{});
-  };
   find_last_owners();
   for (const MemoryMap& map : s_.memory) {
-    for (const Segment& segment : map) want(segment.resource);
-  }
-  for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
-    if (graph_.resources[r].origin == Origin::history) want(r);
+    for (const Segment& segment : map) {
+      s_.is_last[segment.resource] = 1;
+      from = std::min(from, plan_.placements[segment.resource].first);
+      const auto& first = workspace_.first_sub;
+      for (std::size_t base = 0; base < s_.last_uses.size(); base += subs_) {
+        UseState* const last = s_.last_uses.data() + base;
+        std::fill(last + first[segment.resource], last + first[segment.resource + 1], UseState{});
+      }
+    }
   }
   std::fill(std::begin(last_position_), std::end(last_position_), kNone);
   for (std::uint32_t position = 0; position < plan_.passes.size(); ++position)
@@ -96,15 +107,21 @@ void Synchroniser::find_last_uses() {
   for (std::uint32_t position = from; position < plan_.passes.size(); ++position) {
     const QueueClass queue = plan_.passes[position].queue;
     const std::uint32_t frame_before = queues_that_wait(position);
+    UseState* const last_uses = last_uses_on(queue);
     for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
       if (!s_.is_last[access.resource]) return;
       for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-        UseState& last = s_.last_uses[sub];
-        // Uses on another queue come before this one, ordered by a semaphore.
-        if (last.queue != queue) last = {};
+        UseState& last = last_uses[sub];
+        const bool writes = (access.flags & kWrite) != 0;
         record_use(last, access, kBeforeFrame);
-        last.queue = queue;
-        last.frame_before = frame_before;
+        last.frame_before = writes ? frame_before : last.frame_before | frame_before;
+        // A write comes after the uses on other queues, ordered by a semaphore.
+        for_each_other(queue, [&](QueueClass other) {
+          UseState& there = last_uses_on(other)[sub];
+          if (writes) there = {};
+          there.by_wait = 1;
+          there.frame_before = last.frame_before;
+        });
       });
     });
   }
@@ -125,48 +142,38 @@ void Synchroniser::find_last_owners() {
   }
 }
 
-// Orders a transient's first use after the last uses of all resources that occupied its bytes
-// before.
+// Orders a transient's first use on each queue after the last uses of all resources that occupied
+// its bytes before.
 inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   const Placement& placed = plan_.placements[resource];
   const std::uint32_t* const subs = workspace_.first_sub.data();
-  UseState* const states = s_.states.data();
-  // The state is merged in place for the first subresource, and then copied to the others.
-  UseState& merged = states[subs[resource]];
-  merged = {};
-  const auto merge = [&](const Segment& segment) {
-    const UseState* const theirs = segment.before ? s_.last_uses.data() : states;
-    for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1]; ++sub) {
-      const UseState& state = theirs[sub];
-      merged.frame_before |= segment.before ? state.frame_before : 0u;
-      if (state.queue != queue_) {
-        merged.by_wait = 1;
-        continue;
-      }
-      merged.by_wait |= state.by_wait;
-      if (state.read_stages != 0) {
-        merged.read_stages |= state.read_stages;
-        merged.read_time = std::max(merged.read_time, state.read_time);
-      } else {
-        merged.write_stages |= state.write_stages;
-        merged.write_access |= state.write_access;
-        merged.write_time = std::max(merged.write_time, state.write_time);
-      }
-    }
-  };
+  // The states are merged in place for the first subresource, and then copied to the others.
+  const std::size_t copies = several() ? kQueueClasses : 1;
+  UseState* const merged = s_.states.data() + subs[resource];
+  for (std::size_t queue = 0; queue < copies; ++queue) {
+    merged[queue * subs_] = {};
+    merged[queue * subs_].reuses_memory = 1;
+    merged[queue * subs_].owner = queue_;
+  }
   take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, resource, false},
-            merge);
-  merged.reuses_memory = 1;
-  merged.queue = queue_;
-  if (merged.frame_before != 0)
-    wait_for_frame_before(plan_.placements[resource].first, merged.frame_before);
-  std::fill(states + subs[resource] + 1, states + subs[resource + 1], merged);
+            [&](const Segment& segment) {
+              const UseState* const all = segment.before ? s_.last_uses.data() : s_.states.data();
+              for (std::size_t queue = 0; queue < copies; ++queue) {
+                for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1];
+                     ++sub)
+                  merge(merged[queue * subs_], all[queue * subs_ + sub], segment.before);
+              }
+            });
+  for (std::size_t queue = 0; queue < copies; ++queue) {
+    UseState* const first = merged + queue * subs_;
+    std::fill(first + 1, first + (subs[resource + 1] - subs[resource]), *first);
+  }
 }
 
 // Returns UseState::frame_before for a use at this position in the previous frame. It has a bit for
 // each queue that, by the end of that frame, has not waited for the use.
 std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
-  if (!workspace_.several_queues) return 0;
+  if (!several()) return 0;
   const auto used_on = static_cast<std::size_t>(plan_.passes[position].queue);
   std::uint32_t bits = 0;
   for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
@@ -199,7 +206,7 @@ void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint32_t f
 void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
   const std::uint32_t* const subs = workspace_.first_sub.data() + access.resource;
   if (subs[1] == subs[0] + 1)
-    use_range(position, access, s_.states[subs[0]], access.range);
+    use_range(position, access, subs[0], access.range);
   else
     use_several(position, access);
 }
@@ -207,16 +214,21 @@ void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
 void Synchroniser::use_several(std::uint32_t position, const AccessRecord& access) {
   const ResourceRecord& resource = graph_.resources[access.resource];
   const std::uint32_t first = workspace_.first_sub[access.resource];
-  UseState* const states = s_.states.data() + first;
-  const std::size_t lead_layer =
-      std::size_t{first_plane(access.range)} * resource.layers + access.range.base_layer;
-  UseState* const lead = states + lead_layer * resource.mips + access.range.base_mip;
+  const std::uint32_t lead =
+      first + access.range.base_mip +
+      (first_plane(access.range) * resource.layers + access.range.base_layer) * resource.mips;
+  UseState* const states = s_.states.data();
   bool alike = true;
-  for_each_sub(graph_, workspace_, access,
-               [&](std::uint32_t sub) { alike = alike && s_.states[sub] == *lead; });
+  for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+    for (std::size_t base = 0; base < s_.states.size(); base += subs_)
+      alike = alike && states[base + sub] == states[base + lead];
+  });
   if (alike) {
-    use_range(position, access, *lead, access.range);
-    for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) { s_.states[sub] = *lead; });
+    use_range(position, access, lead, access.range);
+    for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+      for (std::size_t base = 0; base < s_.states.size(); base += subs_)
+        states[base + sub] = states[base + lead];
+    });
     return;
   }
   for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
@@ -226,20 +238,124 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
     if (resource.planes == 2)
       range.aspects = sub - first < resource.mips * resource.layers ? VK_IMAGE_ASPECT_DEPTH_BIT
                                                                     : VK_IMAGE_ASPECT_STENCIL_BIT;
-    use_range(position, access, s_.states[sub], range);
+    use_range(position, access, sub, range);
   });
 }
 
 inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access,
-                                    UseState& state, const Range& range) {
-  const bool texture = access.kind() == ResourceKind::texture;
-  if (state.queue != queue_ && change_queue(position, access, state, range)) return;
-  if (texture && state.layout != access.layout)
+                                    std::uint32_t sub, const Range& range) {
+  UseState& state = states_[sub];
+  const bool writes = (access.flags & kWrite) != 0;
+  if (several()) {
+    if (state.frame_before != 0) wait_for_frame_before(position, state.frame_before);
+    if (state.owner != queue_ && !queues_share(graph_, workspace_, access.resource) &&
+        transfer(position, access, sub, range))
+      return;
+  }
+  const bool changes = access.kind() == ResourceKind::texture && state.layout != access.layout;
+  if (changes)
     change_layout(position, access, state, range);
-  else if (access.flags & kWrite)
+  else if (writes)
     write_in_same_layout(position, access, state);
   else
     read_in_same_layout(position, access, state);
+  if (!several() || !(writes || changes)) return;
+  state.owner = queue_;
+  tell_other_queues(sub, state);
+}
+
+// Moves a subresource that another queue changed last to the current queue. A semaphore wait
+// between the two submissions orders the uses. If the queues are of different families and the
+// contents are kept, there is also an ownership release after the last pass of the first
+// submission, and an acquire before this pass, which also changes the layout. Returns true if so;
+// the access then needs no other barrier.
+bool Synchroniser::transfer(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
+                            const Range& range) {
+  UseState& state = states_[sub];
+  const bool texture = access.kind() == ResourceKind::texture;
+  const bool keeps = state.used && !(access.flags & kDiscard) &&
+                     (!texture || state.layout != VK_IMAGE_LAYOUT_UNDEFINED);
+  const bool changes_family = family(state.owner) != family(queue_);
+  if (!keeps || !changes_family) {
+    if (changes_family) state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    state.owner = queue_;
+    tell_other_queues(sub, state);
+    return false;
+  }
+  const UseState& theirs = states_on(state.owner)[sub];
+  Transition release;
+  release.src_stages = theirs.read_stages != 0 ? theirs.read_stages : theirs.write_stages;
+  release.src_access = theirs.read_stages != 0 ? 0 : theirs.write_access;
+  if (release.src_stages == 0) release.src_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  release.resource = access.resource;
+  release.range = range;
+  release.old_layout = texture ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+  release.new_layout = texture ? access.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+  release.src_queue = state.owner;
+  release.dst_queue = queue_;
+  s_.releases.push_back(
+      {releasing_submission(theirs), static_cast<std::uint32_t>(s_.releases.size()), release});
+  Transition& acquire = next_image(kBeforeFrame, position);
+  acquire = release;
+  acquire.src_stages = waited_stages(access);
+  acquire.src_access = 0;
+  acquire.dst_stages = access.stages;
+  acquire.dst_access = access.access;
+  merge_neighbours();
+  record_transition(position, access, state);
+  tell_other_queues(sub, state);
+  return true;
+}
+
+// Returns the submission that releases a subresource: the last one that uses it on its queue.
+std::uint32_t Synchroniser::releasing_submission(const UseState& state) const {
+  const std::int32_t time = std::max(state.read_time, state.write_time);
+  if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
+  const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.owner)];
+  if (opening != kNone) return opening;
+  // A subresource of the history that no pass of this frame used is transferred at the end of the
+  // frame. Any submission on its queue may release it.
+  const auto own = std::find_if(
+      plan_.submissions.begin(), plan_.submissions.end(),
+      [&state](const Submission& submission) { return submission.queue == state.owner; });
+  return static_cast<std::uint32_t>(own - plan_.submissions.begin());
+}
+
+// Sets the state of a subresource on the other queues after this queue has changed it. Their next
+// use waits for the change with a semaphore, which covers all commands, but not the host.
+void Synchroniser::tell_other_queues(std::uint32_t sub, const UseState& state) {
+  UseState told;
+  told.by_wait = 1;
+  told.owner = state.owner;
+  told.used = state.used;
+  told.layout = state.layout;
+  told.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
+  told.seen_access = kEveryAccess;
+  for_each_other(state.owner, [&](QueueClass other) { states_on(other)[sub] = told; });
+}
+
+// Adds the releases after the last passes of their submissions. The final barriers of the frame, if
+// there are any, are the last batch.
+void Synchroniser::add_releases() {
+  const std::uint32_t final = workspace_.final_submission;
+  std::sort(s_.releases.begin(), s_.releases.end(), [final](const auto& a, const auto& b) {
+    if (a.submission == b.submission) return a.number < b.number;
+    if (a.submission == final || b.submission == final) return a.submission == final;
+    return a.submission < b.submission;
+  });
+  std::uint32_t last = kNone;
+  for (const auto& release : s_.releases) {
+    Submission& submission = plan_.submissions[release.submission];
+    if (release.submission != last) {
+      last = release.submission;
+      if (submission.batch_count++ == 0)
+        submission.first_batch = static_cast<std::uint32_t>(plan_.batches.size());
+      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
+    }
+    plan_.transitions.push_back(release.transition);
+    ++plan_.batches.back().count;
+  }
+  s_.releases.clear();
 }
 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
@@ -305,12 +421,6 @@ void Synchroniser::write_in_same_layout(std::uint32_t position, const AccessReco
   }
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
-  if (state.read_stages != 0 && !state.reuses_memory) {
-    // An execution dependency on the reads is enough, unless this access reads something itself.
-    wanted.dst_access &= access.flags & kDiscard ? 0 : ~kWriteBits;
-    if ((wanted.dst_access & ~state.seen_access) == 0 && (access.stages & ~state.seen_stages) == 0)
-      wanted.dst_access = 0;
-  }
   if (wanted.src_stages != 0)
     add_memory(std::max(state.read_time, state.write_time), position, wanted);
   record_use(state, access, pass_time(position));
@@ -345,9 +455,8 @@ bool Synchroniser::extend(Transition& last, const Transition& next) {
 
 void Synchroniser::add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted) {
   Batch& batch = batch_after(time, position);
-  for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+  for (const std::uint32_t i : s_.batch_memories) {
     Transition& there = plan_.transitions[i];
-    if (there.resource != kNone) continue;
     if (there.src_stages != wanted.src_stages && there.dst_stages != wanted.dst_stages) continue;
     there.src_stages |= wanted.src_stages;
     there.src_access |= wanted.src_access;
@@ -355,6 +464,7 @@ void Synchroniser::add_memory(std::int32_t time, std::uint32_t position, const T
     there.dst_access |= wanted.dst_access;
     return;
   }
+  s_.batch_memories.push_back(static_cast<std::uint32_t>(plan_.transitions.size()));
   plan_.transitions.push_back(wanted);
   ++batch.count;
 }

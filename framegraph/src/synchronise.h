@@ -1,6 +1,6 @@
-// The Synchroniser is split into three source files. synchronise.cpp follows the passes,
-// externals.cpp handles the initial and final states of imports and histories, and
-// queue_transfer.cpp handles resources that move from one queue to another.
+// The Synchroniser is split into two source files. synchronise.cpp follows the passes and moves
+// resources between queues, and externals.cpp handles the initial and final states of imports and
+// histories.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,8 @@ class Synchroniser {
         limits_(limits),
         workspace_(workspace),
         plan_(plan),
-        s_(workspace.synchronise) {}
+        s_(workspace.synchronise),
+        subs_(workspace.first_sub.back()) {}
   void run();
 
  private:
@@ -52,13 +53,23 @@ class Synchroniser {
   void wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before);
   void use(std::uint32_t position, const AccessRecord& access);
   void use_several(std::uint32_t position, const AccessRecord& access);
-  void use_range(std::uint32_t position, const AccessRecord& access, UseState& state,
+  void use_range(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
                  const Range& range);
   void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
                      const Range& range);
   void record_transition(std::uint32_t position, const AccessRecord& access, UseState& state);
   void read_in_same_layout(std::uint32_t position, const AccessRecord& access, UseState& state);
   void write_in_same_layout(std::uint32_t position, const AccessRecord& access, UseState& state);
+
+  // Functions for frames that use several queues.
+  std::uint32_t family(QueueClass queue) const {
+    return limits_.queue_families[static_cast<std::size_t>(queue)];
+  }
+  bool transfer(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
+                const Range& range);
+  std::uint32_t releasing_submission(const UseState& state) const;
+  void tell_other_queues(std::uint32_t sub, const UseState& state);
+  void add_releases();
 
   // externals.cpp
   void apply_initial_states();
@@ -67,30 +78,43 @@ class Synchroniser {
   AccessRecord use_outside_frame(std::uint32_t resource, const State& state) const;
   void leave_history_slot(std::uint32_t resource);
 
-  // queue_transfer.cpp
-  bool change_queue(std::uint32_t position, const AccessRecord& access, UseState& state,
-                    const Range& range);
-  void acquire_without_release(std::uint32_t position, UseState& state, bool same_family);
-  std::uint32_t releasing_submission(const UseState& state) const;
-  Transition release_of(const AccessRecord& access, const UseState& state,
-                        const Range& range) const;
-  void add_releases();
-
   Batch& batch_after(std::int32_t time, std::uint32_t position);
   Transition& next_image(std::int32_t time, std::uint32_t position);
   void merge_neighbours();
   static bool extend(Transition& last, const Transition& next);
   void add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted);
 
+  // Returns the states of all subresources on a queue.
+  UseState* states_on(QueueClass queue) {
+    return s_.states.data() + (several() ? static_cast<std::size_t>(queue) * subs_ : 0);
+  }
+  UseState* last_uses_on(QueueClass queue) {
+    return s_.last_uses.data() + (several() ? static_cast<std::size_t>(queue) * subs_ : 0);
+  }
+  bool several() const { return workspace_.several_queues; }
+  // Calls f for each queue of the frame except `queue`.
+  template <typename Function>
+  void for_each_other(QueueClass queue, Function&& f) const {
+    for (std::size_t other = 0; other < kQueueClasses && several(); ++other) {
+      if (other != static_cast<std::size_t>(queue)) f(static_cast<QueueClass>(other));
+    }
+  }
+  void set_queue(QueueClass queue) {
+    queue_ = queue;
+    states_ = states_on(queue);
+  }
+
   const GraphDescription& graph_;
   const Limits& limits_;
   Workspace& workspace_;
   Plan& plan_;
   Workspace::Synchronise& s_;
+  std::size_t subs_;                  // number of subresources
   std::int32_t batch_time_ = kNever;  // time of the last batch
   // The start of the current pass's submission, before which no barrier can be placed.
   std::int32_t earliest_ = kBeforeFrame;
   QueueClass queue_ = QueueClass::graphics;  // of the current pass
+  UseState* states_ = nullptr;               // on that queue
   // For each queue: bits of the queues for whose work of the previous frame it has already waited.
   std::uint8_t frame_before_[kQueueClasses] = {};
   std::uint32_t last_position_[kQueueClasses] = {};  // for each queue: position of its last pass
@@ -103,6 +127,7 @@ inline Batch& Synchroniser::batch_after(std::int32_t time, std::uint32_t positio
   if (batch_time_ < time) {
     batch_time_ = batch_time(position);
     plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
+    s_.batch_memories.clear();
   }
   return plan_.batches.back();
 }
@@ -115,19 +140,25 @@ inline Transition& Synchroniser::next_image(std::int32_t time, std::uint32_t pos
 
 // Joins barriers of neighbouring mips and layers that change in the same way into one barrier.
 inline void Synchroniser::merge_neighbours() {
+  bool is_new = true;
   while (plan_.batches.back().count >= 2) {
     Transition* const last = &plan_.transitions.back();
-    const std::uint32_t resource = last->resource;
-    if (last[-1].resource != resource || !extend(last[-1], *last)) return;
+    if (last[-1].resource != last->resource) return;
+    AccessRecord moved;
+    moved.resource = last->resource;
+    moved.range = last->range;
+    if (!extend(last[-1], *last)) return;
     plan_.transitions.pop_back();
     --plan_.batches.back().count;
-    // The UseState of a subresource may still hold the index of the barrier that was removed. It
-    // now belongs to the barrier into which that one was merged.
+    // The states of the subresources hold the index of the barrier that was removed, unless it is
+    // the new one. They now belong to the barrier into which that one was merged.
     const auto gone = static_cast<std::uint32_t>(plan_.transitions.size());
-    const auto& first = workspace_.first_sub;
-    for (std::uint32_t sub = first[resource]; sub < first[resource + 1]; ++sub) {
-      if (s_.states[sub].transition == gone) --s_.states[sub].transition;
+    if (!is_new) {
+      for_each_sub(graph_, workspace_, moved, [&](std::uint32_t sub) {
+        if (states_[sub].transition == gone) --states_[sub].transition;
+      });
     }
+    is_new = false;
   }
 }
 
@@ -137,7 +168,7 @@ inline void Synchroniser::record_transition(std::uint32_t position, const Access
   state = {};
   state.write_stages = access.stages;
   state.layout = access.layout;
-  state.queue = queue_;
+  state.owner = queue_;
   state.used = 1;
   if (access.flags & kWrite) {
     state.write_access = access.access & kWriteBits;

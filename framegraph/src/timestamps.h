@@ -29,8 +29,7 @@ class Timestamps {
     count_ += passes;
     return count_ - passes;
   }
-  // Begins the timing of a pass. Several threads may call it at the same time for different passes.
-  // `pass` is the index of the pass in the graph.
+  // Begins the timing of a pass. `pass` is the index of the pass in the graph.
   void begin_pass(VkCommandBuffer commands, std::uint32_t number, std::uint32_t pass,
                   std::string_view name);
   void end_pass(VkCommandBuffer commands, std::uint32_t number);

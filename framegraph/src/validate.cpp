@@ -77,7 +77,7 @@ class Replay {
     touched.layout = access.layout;
   }
 
-  // Checks that the attachments of a rendering have one size and one number of samples. An
+  // Checks that the attachments of a pass have one size and one number of samples. An
   // attachment with one sample that is only written counts as a resolve target if the others are
   // multisampled.
   void check_attachment(std::uint32_t pass, const AccessRecord& access) {
@@ -85,9 +85,8 @@ class Replay {
     const auto side = [&access](std::uint32_t size) {
       return std::max(1u, size >> access.range.base_mip);
     };
-    if (attachment_ == kNone || access.flags / kRendering != rendering_) {
+    if (attachment_ == kNone) {
       attachment_ = access.resource;
-      rendering_ = access.flags / kRendering;
       width_ = side(r.width);
       height_ = side(r.height);
       samples_ = 0;
@@ -109,8 +108,8 @@ class Replay {
                 size(side(r.width), side(r.height), r.samples) + " and to " +
                 v_.resource_text(attachment_) + " of " +
                 size(width_, height_, v_.graph.resources[attachment_].samples) +
-                ": give the attachments of a rendering one size and one number of samples, or call "
-                "next_rendering() between them",
+                ": give the attachments of a pass one size and one number of samples, or draw to "
+                "them in two passes",
             pass, access.resource, access.version);
   }
 
@@ -224,7 +223,6 @@ class Replay {
   std::uint32_t attachment_ = kNone;  // the first attachment of this pass, and the size of its mip
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
-  std::uint32_t rendering_ = 0;
   std::uint32_t samples_ = 0;  // 0 until an attachment other than a resolve target was seen
 };
 

@@ -18,7 +18,8 @@ namespace alcove::framegraph {
 inline constexpr std::int32_t kBeforeFrame = -1;
 inline constexpr std::int32_t kNever = -2;
 
-// The last uses of a subresource, or of a range of bytes of memory.
+// The last uses of a subresource, or of a range of bytes of memory, on one queue. If another queue
+// changed it last, the state holds the uses since the wait for that change.
 struct UseState {
   VkPipelineStageFlags2 write_stages = 0;  // of the last write or layout change
   VkAccessFlags2 write_access = 0;         // 0 after a layout change, which is available by itself
@@ -39,7 +40,7 @@ struct UseState {
   std::uint8_t reuses_memory = 0;
   // Set if a semaphore wait over all stages orders the next use after work of another queue.
   std::uint8_t by_wait = 0;
-  QueueClass queue = QueueClass::graphics;  // of the last use
+  QueueClass owner = QueueClass::graphics;  // the queue that changed it last
   std::uint8_t used = 0;                    // it was used in this frame, or arrived with contents
   bool operator==(const UseState&) const = default;
 };
@@ -60,16 +61,18 @@ struct Workspace {
   // description has no subresources.
   std::vector<std::uint32_t> first_sub;
 
-  // The live passes in order of execution. The phases order and queues write it, and all later
-  // phases read it.
-  std::vector<std::uint32_t> order;
-
   // Whether the frame uses queues other than graphics, or resources that were last used on another
   // queue. The phase queues writes it, and all later phases read it.
   bool several_queues = false;
 
   // Written by lifetimes, read by place: the live transients in order of first use.
   std::vector<std::uint32_t> transients;
+
+  // Whether all queues of the frame are of one family, so that no resource changes its owner.
+  bool one_family = true;
+
+  // The submission of the graphics queue after which the final states are reached.
+  std::uint32_t final_submission = 0;
 
   // Working memory of the individual phases.
   std::vector<std::uint8_t> contents;  // by subresource
@@ -86,42 +89,29 @@ struct Workspace {
   } validate;
   struct Cull {
     std::vector<std::uint32_t> needed_by;  // by subresource
-    // For slot 0 of each history, indexed by resource: the pass that reads an older slot.
-    std::vector<std::uint32_t> history_reader;
+    // For slot 0 of each history, indexed by resource: a live pass that uses one of the slots.
+    std::vector<std::uint32_t> history_user;
   } cull;
-  struct Reorder {
-    // An element of a linked list of passes. There are two kinds of list: the passes that must come
-    // after a pass, and the passes that read a subresource.
-    struct Link {
-      std::uint32_t pass = kNone;
-      std::uint32_t next = kNone;  // link
-    };
-    std::vector<std::int64_t> bytes;          // by resource
-    std::vector<std::uint32_t> uses;          // by resource: passes, and one more for an output
-    std::vector<std::uint32_t> left;          // of them, at this point of a walk
-    std::vector<std::uint8_t> begun;          // by resource
-    std::vector<std::uint32_t> seen;          // by resource
-    std::vector<std::uint32_t> stamp;         // by resource
-    std::vector<std::uint32_t> writer;        // by subresource
-    std::vector<std::uint32_t> first_reader;  // by subresource, into readers
-    std::vector<Link> readers;
-    std::vector<Link> edges;
-    std::vector<std::uint32_t> first_edge;  // by pass, into edges
-    std::vector<std::uint32_t> waiting;     // by pass: edges that lead to it
-    std::vector<std::uint32_t> ready;
-    std::vector<std::uint32_t> order;     // another order that may have a lower peak
-    std::vector<std::uint32_t> declared;  // the live passes in order of declaration
-  } reorder;
   struct Queues {
+    // The uses of a subresource since it was last changed: written, or moved to another layout or
+    // queue family.
+    struct Uses {
+      std::uint32_t changed = kNone;  // position of the change, kNone if it was before the frame
+      std::uint32_t last[kQueueClasses] = {kNone, kNone, kNone};  // by queue, with the change
+      VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+      QueueClass owner = QueueClass::graphics;  // that changed it last
+    };
+    std::vector<Uses> uses;                // by subresource
     std::vector<std::uint32_t> waits;      // by position and queue: the pass waited for
     std::vector<std::uint8_t> waited_for;  // by position
-    std::vector<std::uint32_t> last_user;  // by subresource
     std::vector<std::uint8_t> opened;      // by position: bits of opening submissions waited for
     std::vector<std::uint8_t> opened_at;   // by position: of those known to be done
     std::vector<std::int32_t> known_at;    // by position and queue, before regrouping
     std::vector<std::int32_t> known;       // the last position of the queue known to be done
     std::vector<std::uint32_t> submission_of;
     std::vector<std::uint32_t> new_position;
+    std::vector<std::uint32_t> taken_until;  // by position
+    std::vector<QueueClass> last_queue;      // by resource: on which the frame leaves a history
     std::vector<PlannedPass> moved;
     std::uint32_t opening[kQueueClasses] = {kNone, kNone, kNone};  // submission before the passes
   } queues;
@@ -132,24 +122,22 @@ struct Workspace {
     std::uint32_t last = 0;
   };
   struct Place {
-    std::vector<PlaceItem> items;  // in order of first use
-    std::vector<PlaceItem> live;   // in order of offset
-    std::vector<Taken> taken;      // in order of offset
+    std::vector<PlaceItem> items;                // in order of first use
+    std::vector<std::vector<PlaceItem>> blocks;  // by block of positions, in order of offset
+    std::vector<Taken> taken;                    // in order of offset
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;
-    // The order that the search has accepted, from which it derives the next orders to try, with
-    // its offsets, and with its items in order of offset.
-    std::vector<std::uint32_t> accepted_order;
-    std::vector<VkDeviceSize> accepted_offsets;
-    std::vector<PlaceItem> accepted_items;
-    std::vector<std::uint8_t> kept;
   } place;
   struct Synchronise {
-    std::vector<UseState> states;       // by subresource
-    std::vector<UseState> last_uses;    // by subresource, at the end of a frame, where is_last
-    std::vector<std::uint8_t> is_last;  // by resource: had its memory last, or is a history
-    std::vector<MemoryMap> memory;      // by heap
+    // Both arrays have one entry for each subresource and, if the frame uses several queues, each
+    // queue: first all subresources on the graphics queue, then those on the next one.
+    std::vector<UseState> states;
+    std::vector<UseState> last_uses;            // at the end of a frame, where is_last
+    std::vector<std::uint8_t> is_last;          // by resource: had its memory last
+    std::vector<std::uint8_t> written;          // by subresource: a live pass writes it
+    std::vector<MemoryMap> memory;              // by heap
+    std::vector<std::uint32_t> batch_memories;  // memory barriers of the last batch
     struct Release {
       std::uint32_t submission = 0;
       std::uint32_t number = 0;  // in order of need
@@ -199,19 +187,12 @@ bool validate(const GraphDescription& graph, const Limits& limits, Workspace& wo
 // Finds the passes and accesses that are not culled, and writes plan.cull_reasons and
 // plan.live_accesses.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
-// Makes the order of declaration the order of execution of the live passes.
-void order_as_declared(Workspace& workspace, const Plan& plan);
-// Looks for an order of passes with a lower peak of transient memory. Resource sizes come from
-// `plan`, which holds the passes in order of declaration. If it returns true,
-// workspace.reorder.order holds an order whose estimated peak is lower, and
-// workspace.reorder.declared the order of declaration.
-bool find_lower_order(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-                      const Plan& plan);
 // Assigns passes to queues and submissions.
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
-// Returns the last position at which another queue may still run at the same time as this pass.
-std::uint32_t taken_until(const Workspace& workspace, const Plan& plan, std::uint32_t position);
+// Returns whether several queues may use a resource without ownership transfers.
+bool queues_share(const GraphDescription& graph, const Workspace& workspace,
+                  std::uint32_t resource);
 // Finds the first and last position of each resource, and its usage.
 void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // Finds for each access whether its range has contents and whether the contents it leaves are

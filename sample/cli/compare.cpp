@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <iostream>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -23,7 +24,18 @@ struct Errors {
   AngleSummary surface_normal;  // the surface normal as the bent normal
   OpenSurfaceSummary open;
   Weave weave;  // against scene truth
+  // With --orbit, of the same number of frames without motion at the last camera.
+  std::optional<Weave> static_weave;
 };
+
+// Renders the last camera of an orbit without motion.
+tl::expected<Weave, std::string> static_weave(Options options, const Truths& truths) {
+  options.view.orbit_start += options.view.orbit * static_cast<float>(options.view.frames - 1);
+  options.view.orbit = 0.0f;
+  return render(options).map([&](const Rendering& rendering) {
+    return weave_of(rendering.images.visibility, truths.scene.visibility, truths.surfaces);
+  });
+}
 
 Errors errors_of(const Rendering& rendering, const Truths& truths) {
   const FrameImages& images = rendering.images;
@@ -34,17 +46,22 @@ Errors errors_of(const Rendering& rendering, const Truths& truths) {
           compare_directions(images.bent_normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           compare_directions(images.normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           open_surfaces(images.visibility, scene, truths.surfaces),
-          weave_of(images.visibility, scene, truths.surfaces)};
+          weave_of(images.visibility, scene, truths.surfaces),
+          std::nullopt};
 }
 
 nlohmann::ordered_json errors_json(const Errors& errors) {
-  return {{"scene_truth", to_json(errors.scene)},
-          {"height_field_truth", to_json(errors.height_field)},
-          {"height_field_limit", to_json(errors.limit)},
-          {"bent_normal", to_json(errors.bent_normal)},
-          {"surface_normal", to_json(errors.surface_normal)},
-          {"open_surfaces", to_json(errors.open)},
-          {"weave", to_json(errors.weave)}};
+  nlohmann::ordered_json json{{"scene_truth", to_json(errors.scene)},
+                              {"height_field_truth", to_json(errors.height_field)},
+                              {"height_field_limit", to_json(errors.limit)},
+                              {"bent_normal", to_json(errors.bent_normal)},
+                              {"surface_normal", to_json(errors.surface_normal)},
+                              {"open_surfaces", to_json(errors.open)},
+                              {"weave", to_json(errors.weave)}};
+  if (errors.static_weave) {
+    json["static_weave"] = to_json(*errors.static_weave);
+  }
+  return json;
 }
 
 std::string error_table(const Errors& errors) {
@@ -60,7 +77,8 @@ std::string error_table(const Errors& errors) {
              errors.bent_normal.mean_degrees, errors.bent_normal.percentile_95_degrees,
              errors.surface_normal.mean_degrees, errors.surface_normal.percentile_95_degrees,
              errors.open.mean_visibility, 100.0 * errors.open.fraction_below_95) +
-         weave_line(errors.weave);
+         (errors.static_weave ? "Moving: " : "") + weave_line(errors.weave) +
+         (errors.static_weave ? "Static: " + weave_line(*errors.static_weave) : "");
 }
 
 tl::expected<void, std::string> write_truths(const Rendering& rendering, const Truths& truths,
@@ -100,7 +118,14 @@ tl::expected<void, std::string> run_compare(const Options& options) {
   if (!light) {
     return tl::unexpected(light.error());
   }
-  const Errors errors = errors_of(*rendering, *truths);
+  Errors errors = errors_of(*rendering, *truths);
+  if (options.view.orbit != 0.0f) {
+    auto standing = static_weave(options, *truths);
+    if (!standing) {
+      return tl::unexpected(standing.error());
+    }
+    errors.static_weave = std::move(*standing);
+  }
   const IndirectErrors indirect_errors = indirect_errors_of(*rendering, *truths, *light);
   nlohmann::ordered_json report = report_of(*rendering, options);
   report["spp"] = options.occlusion.spp;

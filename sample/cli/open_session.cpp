@@ -82,6 +82,7 @@ tl::expected<Rendering, std::string> render(const Options& options) {
                  options.view.height,
                  options.view.frames,
                  options.view.orbit,
+                 options.view.orbit_start,
                  options.occlusion.normals,
                  {options.occlusion.roughness, std::move(*environment), options.lit}});
 }

@@ -51,27 +51,6 @@ ALCOVE_INLINE vec2 tangent_arcs(Slice s) {
   return vec2(0.5f * (level + swell * s.along), 0.5f * (level - (kPi - swell) * s.along));
 }
 
-// Returns the visibility of one half-slice between the view direction and a direction above the
-// tangent plane, with uniform instead of cosine weights (the paper's appendix A). Both half-slices
-// of an unoccluded slice sum to 1 at any tilt.
-ALCOVE_INLINE float uniform_arc(vec2 light) { return 0.5f * (1.0f - light.y); }
-
-// Returns the sum of uniform_arc() of both half-slices up to their horizons, in [0,1]. Its mean
-// over slices is the visible fraction of the hemisphere's solid angle.
-ALCOVE_INLINE float uniform_slice_visibility(Slice s, float ahead, float behind) {
-  float ahead_cut = clamp(ahead, tangent_horizon(s, 1.0f), 1.0f);
-  float behind_cut = clamp(behind, tangent_horizon(s, -1.0f), 1.0f);
-  return 1.0f - 0.5f * (ahead_cut + behind_cut);
-}
-
-// Updates a horizon by the paper's heuristic for occluders of unknown thickness: a sample above the
-// horizon replaces the horizon, and a sample below it lowers the horizon by the fraction `blend`,
-// [0,1]. With a `blend` of 0, occluders are infinitely thick; 0.05 already makes the image visibly
-// brighter. `horizon`, `found` and the result are cosines.
-ALCOVE_INLINE float raise_horizon(float horizon, float found, float blend) {
-  return found > horizon ? found : mix(horizon, found, blend);
-}
-
 // Returns the weight of an occluder at a distance, [0,1]. It falls linearly from 1 to 0 over the
 // last fraction `falloff`, [0,1], of the radius, and is 0 beyond the radius. With a falloff of 0 it
 // is a step.

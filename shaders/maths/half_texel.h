@@ -42,12 +42,19 @@ ALCOVE_INLINE float half_texel_depth(float inverse_depth, float recent, bool kno
   return uintBitsToFloat(bits | code);
 }
 
-// Returns the mean occlusion of the last few frames that is stored in `depth`, or `otherwise` if
-// none is stored.
-ALCOVE_INLINE float half_texel_recent(float depth, float otherwise) {
-  uint code = floatBitsToUint(depth) & 255u;
-  float root = (float(code) - 1.0f) * (1.0f / 254.0f);
-  return code == 0u ? otherwise : root * root;
+// Returns 1 plus the code in `depth` of the mean occlusion of the last few frames, over 256. The
+// code becomes the mantissa of a float, because GPUs convert integers at a quarter of their usual
+// rate.
+ALCOVE_INLINE float half_texel_recent_code(float depth) {
+  return uintBitsToFloat(((floatBitsToUint(depth) << 15u) & 0x007f8000u) | 0x3f800000u);
+}
+
+// Returns the mean occlusion of the last few frames for a result of half_texel_recent_code(), or
+// for a weighted mean of such results. The result is `otherwise` if none is stored, which texels of
+// one frame have in common.
+ALCOVE_INLINE float half_recent_of_code(float code, float otherwise) {
+  float root = max(code * (256.0f / 254.0f) - 257.0f / 254.0f, 0.0f);
+  return code < 1.0f + 0.5f / 256.0f ? otherwise : root * root;
 }
 
 // Returns the value of a bent-normal residual (bent_normal.h) in A2B10G10R10_UNORM. A component of

@@ -98,8 +98,9 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
 // A texel of the history of pixels. It is stored in the two channels of R16G16_UNORM, which texture
 // units convert to floats, so that two gathers read what the next frame needs of four texels.
 struct HistoryTexel {
-  float depth;      // of history_depth(), [0,1], to 2^-14
-  float recent;     // occlusion of the last few frames, [0,1]; its root in 3 bits; 0 is exact
+  float depth;  // of history_depth(), [0,1], to 2^-14
+  // Occlusion of the last few frames, [0,1], or kNoRecent; its root in 7 steps; 0 is exact.
+  float recent;
   float occlusion;  // 1 - visibility, [0,1], in 11 bits; 0 is exact
   // The sum of the filter weights that the samples had for this pixel, [0,kMaxHistoryFrames], in
   // frames: on a plane, a frame adds 1 on average. It is used instead of a frame count. Its square
@@ -113,27 +114,38 @@ const float kLastWeightCode = 31.0f;
 // The largest code of an occlusion, in 11 bits. Code c stands for an occlusion of c/2047.
 const float kLastOcclusionCode = 2047.0f;
 
+// The recent occlusion of a frame that does not compute it.
+const float kNoRecent = -1.0f;
+
 // Packs a texel. `dither`, [0,1), replaces the 0.5 that is added to round to nearest. The lowest
-// three bits of the first component hold the recent occlusion, and the other bits the depth. The
+// three bits of the first component hold 1 plus the code of the recent occlusion, or 0 for
+// kNoRecent, and the other bits the depth. The
 // depth is rounded such that the whole component differs from it by at most 4.2/65535 and can be
 // used as the depth without unpacking. The highest five bits of the second component hold the code
 // of the weight, and the other bits that of the occlusion.
 ALCOVE_INLINE vec2 pack_history_texel(HistoryTexel texel, float dither) {
-  float recent = floor(sqrt(clamp(texel.recent, 0.0f, 1.0f)) * 7.0f + dither);
+  float recent =
+      texel.recent < 0.0f ? 0.0f : min(floor(sqrt(texel.recent) * 6.0f + (1.0f + dither)), 7.0f);
   float depth = floor(texel.depth * (65535.0f / 8.0f) - recent * (1.0f / 8.0f) + 0.5f);
-  float root = sqrt(max(texel.weight, 0.0f));
-  float code = floor(root * (kLastWeightCode * kInverseRootOfMaxHistoryFrames) + dither);
-  float occlusion = floor(clamp(texel.occlusion, 0.0f, 1.0f) * kLastOcclusionCode + dither);
+  float code =
+      floor(sqrt(texel.weight) * (kLastWeightCode * kInverseRootOfMaxHistoryFrames) + dither);
+  float occlusion = floor(texel.occlusion * kLastOcclusionCode + dither);
   return vec2(clamp(depth, 0.0f, 8191.0f) * 8.0f + recent,
               min(code, kLastWeightCode) * 2048.0f + occlusion) *
          (1.0f / 65535.0f);
 }
 
-// Returns the recent occlusion from the first component of a packed texel.
-ALCOVE_INLINE float texel_recent(float first) {
-  // The root's code as a number of eighths: the fraction of the component's code over eight.
-  float root = fract(first * (65535.0f / 8.0f) + 0.5f / 8.0f) - 0.5f / 8.0f;
-  return max(root, 0.0f) * root * (64.0f / 49.0f);
+// Returns the code of the recent occlusion from the first component of a packed texel, in eighths
+// and plus a sixteenth: the fraction of the component's code over eight.
+ALCOVE_INLINE float texel_recent_code(float first) {
+  return fract(first * (65535.0f / 8.0f) + 0.5f / 8.0f);
+}
+
+// Returns the recent occlusion for a result of texel_recent_code(), or for a weighted mean of such
+// results. The result is `otherwise` if none is stored, which texels of one frame have in common.
+ALCOVE_INLINE float recent_of_code(float code, float otherwise) {
+  float root = max(code * (8.0f / 6.0f) - 1.5f / 6.0f, 0.0f);
+  return code < 1.0f / 8.0f ? otherwise : root * root;
 }
 
 // Converts the second component of a packed texel to a number whose whole part is the code of the
@@ -157,9 +169,9 @@ ALCOVE_INLINE float weight_of_code(float code) {
 ALCOVE_INLINE HistoryTexel unpack_history_texel(vec2 stored) {
   HistoryTexel texel;
   texel.depth = stored.x;
-  texel.recent = texel_recent(stored.x);
   float codes = texel_codes(stored.y);
   texel.occlusion = max(texel_occlusion(fract(codes)), 0.0f);
+  texel.recent = recent_of_code(texel_recent_code(stored.x), texel.occlusion);
   texel.weight = weight_of_code(floor(codes));
   return texel;
 }
@@ -193,7 +205,7 @@ const float kRecentFrames = 4.0f;
 // belong to other surfaces and change the mean less.
 ALCOVE_INLINE float update_recent(float recent, float weight, float now, float open) {
   float known = clamp(1.6f * open, 1e-3f, 1.0f);
-  return mix(recent, now, 1.0f / min(max(weight, 0.0f) + 1.0f, kRecentFrames / known));
+  return mix(recent, now, max(1.0f / (max(weight, 0.0f) + 1.0f), known * (1.0f / kRecentFrames)));
 }
 
 // Returns how certain it is, [0,1], that the mean of the last few frames, `recent`, differs from

@@ -29,9 +29,10 @@ ALCOVE_INLINE float sky_inverse_depth(bool perspective) {
   return perspective ? 1.0f / kSkyDepth : kSkyDepth;
 }
 
-// Whether the value in the depth buffer grows with inverse depth.
-ALCOVE_INLINE bool grows_with_inverse_depth(bool perspective, bool reversed) {
-  return perspective == reversed;
+// Whether inverse depth is computed from the value in the depth buffer. If not, it is computed from
+// 1 minus that value, because most values of a perspective view are then close to 1.
+ALCOVE_INLINE bool is_counted_from_zero(bool perspective, bool reversed) {
+  return !perspective || reversed;
 }
 
 // Whether a value of the depth buffer is the sky's: the far plane, beyond it or NaN.
@@ -40,17 +41,16 @@ ALCOVE_INLINE bool is_sky_depth(float depth_ndc, bool reversed) {
 }
 
 // Converts a value of the depth buffer to inverse depth: from_ndc.x * d + from_ndc.y, where d is
-// the distance of `depth_ndc` from its value at the plane with the smallest inverse depth (the far
-// plane in perspective, the near plane in orthographic views). This distance is computed without
-// rounding, so that no digit of the depth buffer is lost. from_ndc.x must be positive, and in
-// perspective from_ndc.y at least 0. The far plane, everything beyond it and NaN give the sky.
-// Depths in front of the near plane give the inverse depth of the near plane.
+// `depth_ndc` or 1 minus that, whichever has the digits of the depth buffer without rounding
+// (is_counted_from_zero()). In perspective from_ndc must not be negative. The far plane, everything
+// beyond it and NaN give the sky. Depths in front of the near plane give the inverse depth of the
+// near plane.
 ALCOVE_INLINE float inverse_depth_of_ndc(vec2 from_ndc, float depth_ndc, bool perspective,
                                          bool reversed) {
-  bool grows = grows_with_inverse_depth(perspective, reversed);
-  float from_smallest = clamp(grows ? depth_ndc : 1.0f - depth_ndc, 0.0f, 1.0f);
+  float d =
+      clamp(is_counted_from_zero(perspective, reversed) ? depth_ndc : 1.0f - depth_ndc, 0.0f, 1.0f);
   return is_sky_depth(depth_ndc, reversed) ? sky_inverse_depth(perspective)
-                                           : from_ndc.x * from_smallest + from_ndc.y;
+                                           : from_ndc.x * d + from_ndc.y;
 }
 
 // Whether the back face at a pixel can be the end of the occluder whose front face is at that

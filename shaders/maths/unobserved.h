@@ -116,10 +116,9 @@ ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserve
   return arc;
 }
 
-// Returns the excluded part of a half-slice, weighted as part_arc() weights it.
-ALCOVE_INLINE float unobserved_part(UnobservedArc arc, Slice s, float side, bool uniform_weight) {
-  return arc.share *
-         (part_arc(s, side, arc.to, uniform_weight) - part_arc(s, side, arc.from, uniform_weight));
+// Returns the excluded part of a half-slice, weighted by the cosine.
+ALCOVE_INLINE float unobserved_part(UnobservedArc arc, Slice s, float side) {
+  return arc.share * (light_arc(s, side, arc.to) - light_arc(s, side, arc.from));
 }
 
 // Returns the excluded part of the GGX lobe in a half-slice. `lobe_to` is lobe_light_arc() of the

@@ -106,28 +106,16 @@ ALCOVE_INLINE float visible_share_beyond(uint occluded) {
   return sectors == 0u ? 0.0f : 1.0f - float(bitCount(sectors)) / beyond;
 }
 
-// Selects what visible_part() computes.
-struct PartRequest {
-  bool uniform_weight;  // weights all directions equally, not by the cosine to the normal
-  bool bent;            // also computes the sum of visible directions
-};
-
 // The visible part of a half-slice.
 struct VisiblePart {
-  float arc;  // integral of the weight over the visible directions, as part_arc() has it
-  vec2 bent;  // weighted sum of the visible directions, as bent_light_arc() has it; else zero
+  float arc;  // cosine-weighted integral over the visible directions, as light_arc() has it
+  vec2 bent;  // weighted sum of the visible directions, as bent_light_arc() has it, or zero
 };
 
-// The integral of the weight over the directions of a half-slice between the view direction and the
-// direction whose sine and cosine `light` holds. The weight is the cosine to the normal, or 1.
-ALCOVE_INLINE float part_arc(Slice s, float side, vec2 light, bool uniform_weight) {
-  return uniform_weight ? uniform_arc(light) : light_arc(s, side, light);
-}
-
 ALCOVE_INLINE VisiblePart add_part(VisiblePart sum, float weight, Slice s, float side, vec2 light,
-                                   PartRequest request) {
-  sum.arc += weight * part_arc(s, side, light, request.uniform_weight);
-  if (request.bent) sum.bent += bent_light_arc(s, side, light) * weight;
+                                   bool bent) {
+  sum.arc += weight * light_arc(s, side, light);
+  if (bent) sum.bent += bent_light_arc(s, side, light) * weight;
   return sum;
 }
 
@@ -137,26 +125,32 @@ const float kNoHiddenOcclusion = 1e3f;
 // The exponent with which hidden_occlusion_behind() has the mean `hidden_occlusion`, [0,1], over
 // all run shares.
 ALCOVE_INLINE float hidden_exponent(float hidden_occlusion) {
-  return hidden_occlusion > 0.0f ? max(1.0f / max(hidden_occlusion, 1e-3f) - 1.0f, 0.0f)
+  return hidden_occlusion > 0.0f ? max(0.5f / max(hidden_occlusion, 1e-3f) - 0.5f, 0.0f)
                                  : kNoHiddenOcclusion;
 }
 
 // The fraction of the volume hidden behind the occluders of a half-slice that counts as occluded,
-// [0,1]. `run_share`, [0,1], is the mean width of an occluder run on the image, relative to the
-// distance that was searched from the first run outwards. The volume behind a wall, whose run has a
-// share of 1, counts as solid. A blade of grass, or each slat of a blind, has a small share, and
-// little of the volume behind it counts as occluded. `exponent` is hidden_exponent().
-ALCOVE_INLINE float hidden_occlusion_behind(float run_share, float exponent) {
-  float part = pow(clamp(run_share, 1e-6f, 1.0f), exponent);
+// [0,1]. It is s^(2 `exponent`), `exponent` is hidden_exponent(), and s, [0,1], is the run share:
+// the mean width of an occluder run on the image, relative to the distance from the sample before
+// the first run (`before`; 0 if that is the first sample) to the `last` sample. That distance is
+// replaced by its geometric mean with `last`, which costs no more and lets a run that reaches the
+// last sample have the same share with any number of samples. The volume behind a wall, whose run
+// has a share of 1, counts as solid. A blade of grass, or each slat of a blind, has a small share,
+// and little of the volume behind it counts as occluded.
+ALCOVE_INLINE float hidden_occlusion_behind(float run_width, float before, float last,
+                                            float exponent) {
+  float squared_share = run_width * run_width / max((last - before) * last, 1e-30f);
+  float part = pow(clamp(squared_share, 1e-12f, 1.0f), exponent);
   return exponent < kNoHiddenOcclusion ? part : 0.0f;
 }
 
 // Integrates the visible sectors of a half-slice exactly. Visible sectors behind the first occluder
 // count by the factor 1 - `hidden_occlusion`, [0,1], because the depth buffer does not show what is
 // there. `per_diamond_angle` is the number of sectors per unit of diamond angle. Without occluded
-// sectors the result is the open arc, and with all sectors occluded it is 0.
+// sectors the result is the open arc, and with all sectors occluded it is 0. VisiblePart::bent is
+// computed if `bent` is true.
 ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_angle, uint occluded,
-                                       float hidden_occlusion, PartRequest request) {
+                                       float hidden_occlusion, bool bent) {
   float keep = 1.0f - hidden_occlusion;
   VisiblePart sum;
   sum.arc = 0.0f;
@@ -164,13 +158,13 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_an
   // The weights are those of the antiderivative at the boundaries of runs. The arc up to the first
   // occluder has the weight 1, visible arcs behind it have the weight `keep`.
   float weight = occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep);
-  sum = add_part(sum, weight, s, side, tangent_light(s, side), request);
+  sum = add_part(sum, weight, s, side, tangent_light(s, side), bent);
   uint ends = occluded ^ (occluded << 1u);
   weight = 1.0f;
   if (ends != 0u) {
     do {
       vec2 light = diamond_angle_light(float(findLSB(ends)) / per_diamond_angle);
-      sum = add_part(sum, weight, s, side, light, request);
+      sum = add_part(sum, weight, s, side, light, bent);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;
     } while (ends != 0u);

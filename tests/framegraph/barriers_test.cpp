@@ -236,7 +236,9 @@ TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands)
   expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
 }
 
-TEST(Barriers, WriteAfterReadsNeedsOnlyAnExecutionDependency) {
+// The earlier write is available by the barrier before the read. It must become visible to the
+// write, because the reads may have been of another part.
+TEST(Barriers, WriteAfterReadsNeedsNothingMadeAvailable) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
   PassBuilder writer = graph.add_pass("writer");
@@ -251,7 +253,38 @@ TEST(Barriers, WriteAfterReadsNeedsOnlyAnExecutionDependency) {
   ASSERT_TRUE(plan);
   ASSERT_EQ(plan->transitions.size(), 3u);
   EXPECT_EQ(plan->transitions[2].src_access, VK_ACCESS_2_NONE);
-  EXPECT_EQ(plan->transitions[2].dst_access, VK_ACCESS_2_NONE);
+  EXPECT_EQ(plan->transitions[2].dst_access, access::storage_read_write_compute.access);
+}
+
+// A final state that writes follows a read of the frame; and the reads of an import that no pass
+// uses are ordered before a final state of fewer stages.
+TEST_F(InitialStates, FinalStateThatWritesOrHasFewerStagesIsVerified) {
+  const State read = state_of(access::sampled_fragment);
+  State written = read;
+  written.access |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  const Texture texture = import(read, written);
+  PassBuilder reader = graph_.add_pass("reader");
+  reader.read(texture, access::sampled_fragment);
+  reader.side_effect();
+  (void)compiled();
+  graph_.reset();
+  import({VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, read.layout}, read);
+  (void)compiled();
+}
+
+// 2,048 layers with 12 mips each, which all change their layouts.
+TEST(Barriers, ManySubresourcesWithDifferentStatesShareFewBarriers) {
+  Graph graph;
+  Texture texture =
+      graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(2048, 2048), 12, 2048});
+  texture = graph.add_pass("even").write(texture, access::storage_write_compute);
+  texture = graph.add_pass("odd").write(texture, access::clear, Range::mip(1));
+  PassBuilder reader = graph.add_pass("reader");
+  reader.read(texture, access::sampled_compute);
+  reader.side_effect();
+  const auto plan = compile(graph);
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  EXPECT_LE(plan->transitions.size(), 2u + 3u * 2048u);
 }
 
 }  // namespace

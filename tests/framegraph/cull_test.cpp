@@ -204,5 +204,19 @@ TEST_F(CullReadModifyWrite, VerifierRefusesAPlanThatLacksTheWriterOfAReadModifyW
       std::string::npos);
 }
 
+// A history keeps its contents for the next frame. They are needed if a pass that runs writes any
+// part of them, even if no pass of this frame reads them.
+TEST_F(Cull, AllWritersOfAHistoryAreKeptIfOneOfThemRuns) {
+  const TextureHistory history = graph_.create_texture_history("history", kDesc);
+  const Texture filled = write("fill", history.current, Contents::discard);
+  PassBuilder update = graph_.add_pass("update");
+  const Texture updated = update.write(filled, access::storage_write_compute);
+  update.side_effect();
+  (void)write("finish", updated);
+  const Plan result = plan();
+  EXPECT_EQ(result.passes.size(), 3u);
+  EXPECT_TRUE(verify(graph_.description(), {}, result));
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

@@ -43,6 +43,163 @@ void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
   }
 }
 
+// A callback that fails makes submit() return an error before anything is submitted: the history
+// keeps its contents, and the copy to the host does not run.
+TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
+  Executor executor = make({.check_uses = true});
+  const HostBuffer host = gpu_.make_host_buffer(4);
+  Graph graph;
+  const auto run = [&](std::uint32_t value, int mistake) {
+    graph.reset();
+    const TextureHistory history =
+        graph.create_texture_history("history", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
+    const Texture other =
+        graph.create_texture("other", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
+    PassBuilder clear = graph.add_pass("clear");
+    const Texture cleared = clear.write(history.current, access::clear);
+    clear.record([=](RecordContext& c) {
+      clear_image(c, c.image(cleared), value);
+      if (mistake == 1) c.fail("table", VK_ERROR_OUT_OF_HOST_MEMORY);
+      if (mistake == 2) (void)c.image(other);
+    });
+    PassBuilder copy = graph.add_pass("copy");
+    copy.read(cleared, access::transfer_source);
+    Buffer out = graph.import_buffer("out", Gpu::imported(host));
+    out = copy.write(out, buffer_access::transfer_destination);
+    copy.record([=](RecordContext& c) { copy_image(c, c.image(cleared), c.buffer(out)); });
+    const auto report = executor.submit(graph);
+    EXPECT_EQ(report.has_value(), mistake == 0);
+    EXPECT_TRUE(executor.wait());
+    return history.validity;
+  };
+  EXPECT_EQ(run(7, 1), HistoryValidity::first_frame);
+  EXPECT_EQ(run(7, 2), HistoryValidity::first_frame);
+  EXPECT_EQ(*static_cast<const std::uint32_t*>(host.mapped), 0u);
+  EXPECT_EQ(run(8, 0), HistoryValidity::first_frame);
+  EXPECT_EQ(run(9, 1), HistoryValidity::valid);
+  EXPECT_EQ(run(9, 2), HistoryValidity::valid);
+  EXPECT_EQ(*static_cast<const std::uint32_t*>(host.mapped), 8u);
+}
+
+// The pass always reads mip 0. Nobody reads mip 1, which it could write.
+TEST_F(ExecutorTest, CulledWriteOfAMipIsNotUsedThoughThePassReadsAnotherMip) {
+  Executor executor = make({.check_uses = true});
+  Graph graph;
+  Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4), 2});
+  PassBuilder clear = graph.add_pass("clear");
+  texture = clear.write(texture, access::clear, Range::mip(0));
+  clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 1); });
+  PassBuilder reduce = graph.add_pass("reduce");
+  reduce.read(texture, access::sampled_general_compute, Range::mip(0));
+  texture = reduce.write_optional(texture, access::storage_write_compute, Range::mip(1));
+  reduce.side_effect();
+  int calls = 0;
+  reduce.record([&calls, texture](RecordContext& c) {
+    ++calls;
+    EXPECT_TRUE(c.is_used(texture, Range::mip(0)));
+    EXPECT_FALSE(c.is_used(texture, Range::mip(1)));
+    EXPECT_TRUE(c.is_used(texture));
+  });
+  const auto report = gpu_.run(executor, graph);
+  ASSERT_TRUE(report) << to_string(report.error());
+  EXPECT_EQ(calls, 1);
+}
+
+// A fill of a whole buffer, a copy from its first half, and a copy to its second half, which
+// nothing has read since the fill.
+TEST_F(ExecutorTest, WriteOfAPartOfABufferFollowsTheFillOfTheWholeAndTheReadOfAnotherPart) {
+  Executor executor = make();
+  const HostBuffer host = gpu_.make_host_buffer(64);
+  Graph graph;
+  Buffer out = graph.import_buffer("out", Gpu::imported(host));
+  Buffer data = graph.create_buffer("data", {64});
+  PassBuilder fill = graph.add_pass("fill");
+  data = fill.write(data, buffer_access::fill, Contents::discard);
+  fill.record(
+      [=](RecordContext& c) { vkCmdFillBuffer(c.commands, c.buffer(data), 0, VK_WHOLE_SIZE, 5); });
+  const auto copy = [&](Buffer from, Buffer& to, VkBufferCopy region) {
+    PassBuilder pass = graph.add_pass("copy");
+    pass.read(from, buffer_access::transfer_source);
+    to = pass.write(to, buffer_access::transfer_destination);
+    pass.side_effect();
+    pass.record([from, to = to, region](RecordContext& c) {
+      vkCmdCopyBuffer(c.commands, c.buffer(from), c.buffer(to), 1, &region);
+    });
+  };
+  copy(data, out, {0, 0, 32});
+  copy(out, data, {0, 32, 16});
+  copy(data, out, {32, 32, 32});
+  const auto report = gpu_.run(executor, graph);
+  ASSERT_TRUE(report) << to_string(report.error());
+  for (int i = 0; i < 16; ++i) EXPECT_EQ(static_cast<const std::uint32_t*>(host.mapped)[i], 5u);
+}
+
+// Counts, over the last 100 of 300 frames, the frames in which the executor recorded a barrier over
+// everything, and the changes of RecordContext::resources_id. Each frame imports a buffer and an
+// image that no frame before has used.
+TEST_F(ExecutorTest, ImportsThatAreNewInEveryFrameCostNoFullBarrierAndKeepTheResourcesId) {
+  DeviceHandles handles = gpu_.handles();
+  handles.get_instance_proc_addr = failing::get_instance_proc_addr;
+  auto executor = Executor::create(handles);
+  ASSERT_TRUE(executor) << to_string(executor.error());
+  const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(1, 1)};
+  Graph graph;
+  std::uint64_t id = 0;
+  int changes = 0;
+  int full = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    if (frame == 200) {
+      changes = 0;
+      full = failing::full_barriers();
+    }
+    graph.reset();
+    Buffer buffer = graph.import_buffer("buffer", Gpu::imported(gpu_.make_host_buffer(4)));
+    Texture texture = graph.import_texture(
+        "texture", {.image = gpu_.make_image(
+                        desc, VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_STORAGE_BIT),
+                    .desc = desc,
+                    .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_STORAGE_BIT});
+    PassBuilder pass = graph.add_pass("fill");
+    buffer = pass.write(buffer, buffer_access::fill, Contents::discard);
+    texture = pass.write(texture, access::clear, {}, Contents::discard);
+    pass.record([&, buffer, texture](RecordContext& c) {
+      (void)c.view(texture);
+      changes += id != c.resources_id;
+      id = c.resources_id;
+      vkCmdFillBuffer(c.commands, c.buffer(buffer), 0, VK_WHOLE_SIZE, 5);
+    });
+    const auto report = gpu_.run(*executor, graph);
+    ASSERT_TRUE(report) << to_string(report.error());
+  }
+  EXPECT_EQ(failing::full_barriers(), full);
+  EXPECT_LE(changes, 1);
+}
+
+// A large frame is followed by small ones. The memory of the large one is freed after a while, or
+// immediately by trim().
+TEST_F(ExecutorTest, MemoryThatSmallerFramesDoNotNeedIsFreed) {
+  Executor executor = make();
+  Graph graph;
+  const auto allocated = [&](std::uint32_t side) {
+    graph.reset();
+    Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(side, side)});
+    PassBuilder pass = graph.add_pass("clear");
+    texture = pass.write(texture, access::clear);
+    pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), side); });
+    graph.output(texture);
+    const auto report = gpu_.run(executor, graph);
+    EXPECT_TRUE(report) << to_string(report.error());
+    return report->memory.allocated;
+  };
+  const VkDeviceSize large = allocated(1024);
+  for (int frame = 0; frame < 300; ++frame) (void)allocated(16);
+  EXPECT_LT(allocated(16), large / 16);
+  (void)allocated(1024);
+  executor.trim();
+  for (int frame = 0; frame < 3; ++frame) (void)allocated(16);
+  EXPECT_LT(allocated(16), large / 16);
+}
+
 // Several graphs run in turn on one executor. If the cache has room for the plans of all of them,
 // each graph is compiled once; otherwise each is compiled every time.
 TEST_F(ExecutorTest, GraphsThatRunInTurnAreCompiledOnceIfThePlanCacheHasRoomForAllOfThem) {
@@ -375,22 +532,18 @@ class FailingDeviceTest : public ExecutorTest {
     graph.output(texture);
   }
 
-  void expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads);
-
   HostBuffer host_;
   DeviceHandles handles_;
 };
 
 // Makes each call that creates an object fail in turn. The frame must then return an error, the
 // next frame must run, and nothing may leak.
-void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t threads) {
-  ExecutorOptions options;
-  options.recording_threads = threads;
+TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyVulkanCallIsAnErrorAndLeaksNothing) {
   int failed = 0;
   int last = 0;
   for (const bool submits : {false, true}) {
     for (int call = 1; call == 1 || last >= call - 1; ++call) {
-      auto executor = Executor::create(handles_, options);
+      auto executor = Executor::create(handles_);
       ASSERT_TRUE(executor) << to_string(executor.error());
       Graph graph;
       failing::fail_at(call);
@@ -414,13 +567,6 @@ void FailingDeviceTest::expect_out_of_memory_anywhere_is_an_error(std::uint32_t 
     EXPECT_EQ(failing::alive(), 0);
   }
   EXPECT_GE(failed, 20);
-}
-
-TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyVulkanCallIsAnErrorAndLeaksNothing) {
-  expect_out_of_memory_anywhere_is_an_error(1);
-}
-TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyRecordingThreadIsAnErrorAndLeaksNothing) {
-  expect_out_of_memory_anywhere_is_an_error(2);
 }
 
 // Loses the device at each submission in turn. Every later call must return an error, and nothing

@@ -15,6 +15,7 @@ int submit_count = 0;
 int update_count = 0;
 int wait_count = 0;
 int outside_count = 0;
+int full_count = 0;
 int submissions_left = -1;  // until the device is lost; negative: it is not lost
 
 // Wraps a creating and a destroying function of the device.
@@ -100,6 +101,11 @@ VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, const VkDependencyI
     outside_count += image.srcQueueFamilyIndex == VK_QUEUE_FAMILY_EXTERNAL ||
                      image.dstQueueFamilyIndex == VK_QUEUE_FAMILY_EXTERNAL;
   }
+  for (std::uint32_t i = 0; i < info->memoryBarrierCount; ++i) {
+    const VkMemoryBarrier2& memory = info->pMemoryBarriers[i];
+    full_count += memory.srcStageMask == VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT &&
+                  memory.dstStageMask == VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  }
   vkCmdPipelineBarrier2(commands, info);
 }
 
@@ -167,6 +173,7 @@ int descriptor_updates() { return update_count; }
 int submits() { return submit_count; }
 int semaphore_waits() { return wait_count; }
 int outside_transfers() { return outside_count; }
+int full_barriers() { return full_count; }
 
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {
   if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)

@@ -26,6 +26,8 @@ int semaphore_waits();
 // Returns the number of recorded image barriers with VK_QUEUE_FAMILY_EXTERNAL as one of their queue
 // families.
 int outside_transfers();
+// Returns the number of recorded memory barriers over all commands.
+int full_barriers();
 // The function to give to the executor instead of vkGetInstanceProcAddr.
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name);
 

@@ -75,6 +75,19 @@ RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphForThreeQueuesPassesTheVerifierOnADevice
   expect_verified(on_all_queues(), with_families(0, kNone, kNone));
 }
 
+// The options of these graphs give imports any initial and final states.
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphWithAnyFinalStatesPassesTheVerifier, ()) {
+  expect_verified({.any_states = true}, {});
+}
+
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphWithAnyFinalStatesOverTwoQueuesPassesTheVerifier, ()) {
+  expect_verified({.queues = true, .any_states = true}, with_families(0, 0, kNone));
+}
+
+RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphWithAnyFinalStatesOverFamiliesPassesTheVerifier, ()) {
+  expect_verified({.queues = true, .any_states = true}, with_families(0, 1, 2));
+}
+
 RC_GTEST_PROP(Fuzz, PlanOfAnyRandomGraphPassesTheVerifierIfBufferImageGranularityIsCoarse, ()) {
   Limits limits;
   limits.buffer_image_granularity = 4096;

@@ -25,6 +25,7 @@ class Mutator {
       collide(i);
     }
     for (std::uint32_t i = 0; i < plan_.submissions.size(); ++i) drop_waits(i);
+    for (std::uint32_t i = 0; i < plan_.finals.size(); ++i) misstate_history(i);
   }
 
  private:
@@ -131,6 +132,20 @@ class Mutator {
     Plan mutant = plan_;
     mutant.placements[resource].offset = mutant.heaps[placement.heap].size;
     visit_("shift an offset out of the heap", mutant);
+  }
+
+  // Makes mutants that say something else about what the frame has written to a history, or
+  // nothing.
+  void misstate_history(std::uint32_t index) {
+    for (const Written written : {Written::nothing, Written::part, Written::whole}) {
+      if (plan_.finals[index].written == written) continue;
+      Plan mutant = plan_;
+      mutant.finals[index].written = written;
+      visit_("misstate a history", mutant);
+    }
+    Plan mutant = plan_;
+    mutant.finals.erase(mutant.finals.begin() + index);
+    visit_("omit the final state of a history", mutant);
   }
 
   void drop_waits(std::uint32_t index) {

@@ -168,5 +168,86 @@ TEST_F(Queues, GraphicsQueueWaitsBeforeReusingMemoryThatComputeReadInThePrevious
   EXPECT_FALSE(verify(graph_.description(), limits_, plan));
 }
 
+// Occlusion is computed on the compute queue and read by the lighting on the graphics queue. The
+// history that it is written to must be valid in the next frame.
+TEST_F(Queues, HistoryWrittenOnOneQueueAndReadOnAnotherIsValidInTheNextFrame) {
+  for (const std::uint32_t family : {0u, 1u}) {
+    limits_.queue_families[1] = family;
+    for (const bool persistent : {false, true}) {
+      const char* const name = persistent ? "persistent" : "history";
+      HistoryValidity validity = HistoryValidity::first_frame;
+      for (int frame = 0; frame < 2; ++frame) {
+        graph_.reset();
+        graph_.reset_history(frame == 0 ? name : "");
+        const TextureHistory history = persistent ? graph_.create_persistent_texture(name, kDesc)
+                                                  : graph_.create_texture_history(name, kDesc);
+        validity = history.validity;
+        PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
+        const Texture written = occlusion.write(history.current, access::storage_write_compute);
+        PassBuilder lighting = graph_.add_pass("lighting");
+        lighting.read(written, access::sampled_fragment);
+        lighting.side_effect();
+        Plan plan = compiled();
+        graph_.leave_histories(plan.finals);
+        ASSERT_FALSE(plan.finals.empty());
+        plan.finals[0].written = Written::nothing;
+        EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+        plan.finals.clear();
+        EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+      }
+      EXPECT_EQ(validity, HistoryValidity::valid) << name << " in family " << family;
+    }
+  }
+}
+
+// A texture that never changes is read on both queues:
+//
+//   static --> occlusion (compute) --> lighting (graphics)
+//      +------------- depth (graphics) ----^
+TEST_F(Queues, ReadingAnImportThatNoQueueWritesNeedsNoSubmissionsWithoutPasses) {
+  const State state{0, 0, VK_IMAGE_LAYOUT_GENERAL};
+  const State final_state{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+                          VK_IMAGE_LAYOUT_GENERAL};
+  for (const bool has_final_state : {false, true}) {
+    graph_.reset();
+    limits_.queue_families[1] = 0;
+    const Texture fixed =
+        graph_.import_texture("static", {.image = fake_handle<VkImage>(),
+                                         .desc = kDesc,
+                                         .usage = VK_IMAGE_USAGE_STORAGE_BIT,
+                                         .initial_state = state,
+                                         .final_state = has_final_state ? final_state : State{}});
+    PassBuilder depth = graph_.add_pass("depth");
+    depth.read(fixed, access::storage_read_fragment);
+    const Texture drawn = depth.write(make("depth"), access::color_attachment);
+    PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
+    occlusion.read(fixed, access::storage_read_compute);
+    const Texture occluded = occlusion.write(make("occlusion"), access::storage_write_compute);
+    PassBuilder lighting = graph_.add_pass("lighting");
+    lighting.read(drawn, access::sampled_fragment);
+    lighting.read(occluded, access::sampled_fragment);
+    lighting.side_effect();
+    const Plan plan = compiled();
+    EXPECT_EQ(plan.submissions.size(), 3u);
+    EXPECT_EQ(plan.waits.size(), 1u) << "only the lighting has to wait";
+  }
+}
+
+// Two queues read one texture, each after the pass that writes it and not after each other.
+TEST_F(Queues, QueuesThatOnlyReadATextureDoNotWaitForEachOther) {
+  limits_.queue_families[1] = 0;
+  PassBuilder writer = graph_.add_pass("writer");
+  const Texture shared = writer.write(make("shared"), access::storage_write_compute);
+  for (const QueueClass queue :
+       {QueueClass::graphics, QueueClass::compute, QueueClass::graphics, QueueClass::compute}) {
+    PassBuilder reader = graph_.add_pass("reader", queue);
+    reader.read(shared, access::storage_read_compute);
+    reader.side_effect();
+  }
+  const Plan plan = compiled();
+  EXPECT_EQ(plan.submissions.size(), 3u);
+  EXPECT_EQ(plan.waits.size(), 1u);
+}
+
 }  // namespace
 }  // namespace alcove::framegraph

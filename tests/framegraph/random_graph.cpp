@@ -112,6 +112,32 @@ class Declarer {
     keep(std::move(known), false);
   }
 
+  // Returns a state that reads or writes in some stages, in the layout of a texture or for a
+  // buffer.
+  State any_state(bool texture) {
+    constexpr VkPipelineStageFlags2 kStages[] = {
+        VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+        VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COPY_BIT};
+    const VkPipelineStageFlags2 stages = kStages[dice_.roll(5)];
+    const bool copies = stages == VK_PIPELINE_STAGE_2_COPY_BIT;
+    const bool all = stages == VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    const VkAccessFlags2 reads = copies                     ? VK_ACCESS_2_TRANSFER_READ_BIT
+                                 : all && dice_.chance(128) ? VK_ACCESS_2_MEMORY_READ_BIT
+                                                            : VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+    const VkAccessFlags2 writes =
+        copies ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    const std::uint32_t kind = dice_.roll(4);
+    constexpr VkImageLayout kLayouts[] = {VK_IMAGE_LAYOUT_GENERAL,
+                                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+    return {stages,
+            kind == 0   ? writes
+            : kind == 1 ? reads | writes
+                        : reads,
+            texture ? kLayouts[dice_.roll(3)] : VK_IMAGE_LAYOUT_UNDEFINED};
+  }
+
   void add_import() {
     const bool full = dice_.chance(128);
     const bool departs = dice_.chance(140);
@@ -136,6 +162,11 @@ class Declarer {
         import.final_state = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                               VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      if (options_.any_states) {
+        if (full) import.initial_state = any_state(true);
+        if (departs) import.final_state = any_state(true);
+        import.concurrent = dice_.chance(60);
+      }
       known.handle = graph_.import_texture(numbered('i', known_.size()), import);
     } else {
       ImportedBuffer import;
@@ -149,6 +180,11 @@ class Declarer {
             dice_.chance(128) ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_TRANSFER_READ_BIT,
             VK_IMAGE_LAYOUT_UNDEFINED};
       if (departs) import.final_state = buffer_access::host_read;
+      if (options_.any_states) {
+        if (full) import.initial_state = any_state(false);
+        if (departs) import.final_state = any_state(false);
+        import.concurrent = dice_.chance(60);
+      }
       known.buffer = graph_.import_buffer(numbered('i', known_.size()), import);
     }
     keep(std::move(known), full);

@@ -52,6 +52,7 @@ struct RandomOptions {
   bool transient_buffers = true;
   bool queues = false;              // with passes on compute and transfer queues
   std::uint32_t side_effects = 20;  // probability in 1/256 that a pass has side effects
+  bool any_states = false;          // with imports in any initial and final state
   bool mistakes = false;            // with stale and foreign handles, wrong ranges and sizes
 };
 

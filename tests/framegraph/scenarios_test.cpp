@@ -243,42 +243,6 @@ TEST_F(Scenario, PersistentBufferKeepsItsContentsFromFrameToFrame) {
   EXPECT_EQ(word(0), 77u);
 }
 
-// The first graph draws to a persistent texture and leaves it in a final state. The second graph
-// imports it, copies it to host memory and writes another value, which the first graph then reads.
-TEST_F(Scenario, PersistentTextureOfOneGraphCanBeImportedByAnotherGraph) {
-  const State between{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
-  const auto add_clear = [](Graph& graph, Texture& texture, std::uint32_t value) {
-    PassBuilder pass = graph.add_pass("clear");
-    texture = pass.write(texture, access::clear, {}, Contents::discard);
-    pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), value); });
-  };
-  Graph owner;
-  for (std::uint32_t frame = 0; frame < 3; ++frame) {
-    owner.reset();
-    TextureHistory shared = owner.create_persistent_texture(
-        "shared", {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)}, between);
-    if (frame == 0) {
-      EXPECT_EQ(executor().exported(owner, shared).image, VkImage{VK_NULL_HANDLE});
-      add_clear(owner, shared.current, 100);
-    } else {
-      PassBuilder reader = owner.add_pass("reader");
-      reader.read(shared.current, access::sampled_fragment);
-      reader.side_effect();
-      reader.record([](RecordContext&) {});
-    }
-    ASSERT_TRUE(executor().submit(owner));
-    begin();
-    const ImportedTexture import = executor().exported(owner, shared);
-    EXPECT_EQ(import.initial_state.layout, between.layout);
-    Texture taken = graph_.import_texture("taken over", import);
-    copy_out(taken);
-    add_clear(graph_, taken, 101 + frame);
-    run({1});
-    EXPECT_EQ(word(0), 100 + frame);
-  }
-}
-
 // A separate pass draws each face. The cube is then read through a cube view.
 TEST_F(Scenario, CubeShadowMapCanBeDrawnFaceByFaceAndReadThroughACubeView) {
   begin();

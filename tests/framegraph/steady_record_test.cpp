@@ -37,13 +37,12 @@ void declare(Graph& graph, const HostBuffer& host) {
 enum class Path { record, submit, submit_to_three };
 
 // Returns the number of allocations of this thread in 20 frames, after some frames of warm-up.
-std::size_t allocations_of_steady_frames(Path path, std::uint32_t threads = 1) {
+std::size_t allocations_of_steady_frames(Path path) {
   Gpu gpu(false);
   EXPECT_EQ(gpu.problem(), "");
   DeviceHandles handles = gpu.handles();
   if (path == Path::submit_to_three) handles.queues[1] = handles.queues[2] = handles.queues[0];
   ExecutorOptions options;
-  options.recording_threads = threads;
   options.check_uses = false;
   auto executor = Executor::create(handles, options);
   EXPECT_TRUE(executor);
@@ -73,9 +72,6 @@ TEST(SteadyFrameRecording, SubmittingAnUnchangedFrameAgainAllocatesNoHostMemory)
 }
 TEST(SteadyFrameRecording, SubmittingAnUnchangedFrameToThreeQueuesAgainAllocatesNoHostMemory) {
   EXPECT_EQ(allocations_of_steady_frames(Path::submit_to_three), 0u);
-}
-TEST(SteadyFrameRecording, RecordingAnUnchangedFrameAgainWithTwoThreadsAllocatesNoHostMemory) {
-  EXPECT_EQ(allocations_of_steady_frames(Path::record, 2), 0u);
 }
 
 }  // namespace

@@ -58,23 +58,6 @@ TEST_F(Validate, AttachmentsAndDiscardingWritesOfUnwrittenTexturesAreAllowed) {
   EXPECT_TRUE(compile(graph_));
 }
 
-TEST_F(Validate, AttachmentsOfOnePassMayDifferInSizeOnlyInDifferentRenderings) {
-  for (const bool separate : {true, false}) {
-    graph_.reset();
-    const Texture large = graph_.create_texture("large", kDesc);
-    const Texture small =
-        graph_.create_texture("small", {kDesc.format, Extent::relative(large, 2)});
-    PassBuilder both = pass("both");
-    (void)both.write(large, access::color_attachment);
-    if (separate) both.next_rendering();
-    (void)both.write(small, access::color_attachment);
-    if (separate)
-      EXPECT_TRUE(compile(graph_));
-    else
-      expect(ErrorCode::attachment_mismatch, "next_rendering()");
-  }
-}
-
 TEST_F(Validate, SingleSampledResolveTargetIsAllowedBesideAMultisampledAttachment) {
   TextureDesc multisampled = kDesc;
   multisampled.samples = VK_SAMPLE_COUNT_4_BIT;
@@ -101,6 +84,18 @@ TEST_F(Validate, RelativeExtentIsTheBaseExtentTimesMultiplierOverDivisorRoundedU
   EXPECT_EQ(size(1, 2), (std::pair{200u, 14u}));
   EXPECT_EQ(size(1000, 1), (std::pair{1u, 1u}));
   EXPECT_EQ(size(2, 0), (std::pair{0u, 0u}));
+}
+
+TEST_F(Validate, SidesOfARelativeExtentThatAreGivenAreNotRelative) {
+  const Texture base = graph_.create_texture("base", {kDesc.format, Extent::absolute(100, 8)});
+  Extent extent = Extent::relative(base, 2);
+  extent.depth = 16;
+  const VkExtent3D volume = graph_.extent(graph_.create_texture("t", {kDesc.format, extent}));
+  EXPECT_EQ(volume.width, 50u);
+  EXPECT_EQ(volume.height, 4u);
+  EXPECT_EQ(volume.depth, 16u);
+  extent.height = 3;
+  EXPECT_EQ(graph_.extent(graph_.create_texture("u", {kDesc.format, extent})).height, 3u);
 }
 
 // Tests a depth attachment with and without a later reader, on a device with lazily allocated

@@ -20,9 +20,7 @@ void fail(const char* what, const Errors& errors) {
 
 Limits limits_of(std::uint8_t choice) {
   Limits limits;
-  limits.placement_effort = 1 << 12;
   limits.alias = (choice & 1) == 0;
-  limits.ordering = choice & 2 ? Ordering::program : Ordering::lower_peak;
   if (choice & 4) limits.buffer_image_granularity = 1024;
   if (choice & 8) limits.queue_families[1] = choice & 16 ? 1 : 0;
   if (choice & 32) limits.queue_families[2] = 2;

@@ -234,24 +234,6 @@ TEST(Gtao, VisibilityIsBetweenZeroAndOneForAnyHorizons) {
   }
 }
 
-TEST(Gtao, UniformlyWeightedVisibilityIsTheSolidAngleAboveHorizonsAndTangentPlane) {
-  for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25) {
-    const Slice s = slice_of(0.7, gamma);
-    for (double h1 = 0.0; h1 <= kPi; h1 += 0.1) {
-      for (double h2 = 0.0; h2 <= kPi; h2 += 0.1) {
-        const auto f = [](double t) { return std::sin(t); };
-        const double ahead = std::min(h1, gamma + kPi / 2);
-        const double behind = std::min(h2, kPi / 2 - gamma);
-        const double expected = 0.5 * (integrate(f, 0.0, ahead) + integrate(f, 0.0, behind));
-        EXPECT_NEAR(maths::uniform_slice_visibility(s, float(std::cos(h1)), float(std::cos(h2))),
-                    expected, 1e-6);
-      }
-    }
-    EXPECT_EQ(maths::uniform_slice_visibility(s, -1.0f, -1.0f), 1.0f);
-    EXPECT_EQ(maths::uniform_slice_visibility(s, 1.0f, 1.0f), 0.0f);
-  }
-}
-
 TEST(Gtao, WeightOfAnOccluderFallsFromOneAtTheFalloffStartToZeroAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(1.0f, 2.0f, 0.5f), 1.0f);
   EXPECT_FLOAT_EQ(maths::radius_weight(1.5f, 2.0f, 0.5f), 0.5f);
@@ -260,25 +242,6 @@ TEST(Gtao, WeightOfAnOccluderFallsFromOneAtTheFalloffStartToZeroAtTheRadius) {
   EXPECT_EQ(maths::radius_weight(1.9f, 2.0f, 0.0f), 1.0f);
   EXPECT_EQ(maths::radius_weight(2.1f, 2.0f, 0.0f), 0.0f);
   EXPECT_EQ(maths::radius_weight(0.0f, 2.0f, 1.0f), 1.0f);
-}
-
-TEST(Gtao, ThicknessHeuristicRaisesTheHorizonToAHigherSampleAndLowersItByTheBlendFraction) {
-  EXPECT_EQ(maths::raise_horizon(0.2f, 0.5f, 0.05f), 0.5f);
-  EXPECT_FLOAT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.05f), 0.48f);
-  EXPECT_EQ(maths::raise_horizon(0.5f, 0.1f, 0.0f), 0.5f);
-}
-
-TEST(Gtao, UnoccludedVisibilitiesOfBothHalfSlicesSumToThatOfTheSlice) {
-  RandomInput random;
-  for (int i = 0; i < 2000; ++i) {
-    const maths::Slice s = slice_of(random.uniform(0.01f, 1.0f), random.uniform(-1.57f, 1.57f));
-    const glm::vec2 arcs = maths::tangent_arcs(s);
-    for (const float side : {-1.0f, 1.0f}) {
-      const float expected = maths::light_arc(s, side, {s.cosine, -side * s.sine});
-      EXPECT_NEAR(side > 0.0f ? arcs.x : arcs.y, expected, 5e-5f);
-    }
-    EXPECT_NEAR(arcs.x + arcs.y, maths::open_slice(s), 1e-4f);
-  }
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
       vec3 direction = slice_direction(make_view_basis(view), a.z * kPi);
       vec3 bent = slice_bent_normal(s, direction, view, ahead, behind);
       vec3 residual = residual_of(bent, slice_visibility(s, ahead, behind), view);
-      return vec4(residual.x, residual.y, residual.z, uniform_slice_visibility(s, ahead, behind));
+      return vec4(residual.x, residual.y, residual.z, 0.0f);
     }
     case 3u: {
       vec2 point = vec2(b.z, ahead);
@@ -79,8 +79,8 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
                   height_of_back(ahead, b.z, b.w));
     }
     case 4u:
-      return vec4(arc_cosine(ahead), arc_cosine(behind), raise_horizon(ahead, behind, b.z),
-                  update_recent(b.x, floor(b.y * 40.0f), b.z, b.w));
+      return vec4(arc_cosine(ahead), arc_cosine(behind),
+                  update_recent(b.x, floor(b.y * 40.0f), b.z, b.w), 0.0f);
   }
   return vec4(0.0f);
 }
@@ -180,26 +180,24 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
   uint frame = uint(a.z * 1000.0f);
   switch (which) {
     case 17u:
-      return vec4(paper_pattern(pixel, frame).direction, paper_pattern(pixel, frame).offset,
-                  hilbert_pattern(pixel, frame).direction, hilbert_pattern(pixel, frame).offset);
-    case 22u:
       return vec4(golden_pattern(pixel, frame, true).direction,
-                  golden_pattern(pixel, frame, false).offset, float(hilbert_index(pixel)), 0.0f);
+                  golden_pattern(pixel, frame, true).offset,
+                  golden_pattern(pixel, frame, false).direction,
+                  golden_pattern(pixel, frame, false).offset);
+    case 22u:
+      return vec4(hidden_occlusion_behind(b.x, b.y * b.z, b.z, hidden_exponent(b.w)),
+                  hidden_exponent(b.w), 0.0f, 0.0f);
     case 18u:
       return vec4(
           float(bitCount(sectors_between(floor(b.x * 32.0f) + 0.2f, floor(b.y * 32.0f) + 0.2f))),
           0.0f, 0.0f, 0.0f);
     case 19u:
-      return vec4(slice_angle(1u, 3u, b.w), r2_sequence(frame).direction, r2_sequence(frame).offset,
-                  0.0f);
+      return vec4(slice_angle(1u, 3u, b.w), 0.0f, 0.0f, 0.0f);
     case 20u: {
       Slice s = parity_slice(a);
-      PartRequest request;
-      request.uniform_weight = a.w < 0.5f;
-      request.bent = true;
       VisiblePart part =
           visible_part(s, -1.0f, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.x),
-                       hidden_occlusion_behind(b.y, hidden_exponent(b.x)), request);
+                       hidden_occlusion_behind(b.y, 0.0f, 1.0f, hidden_exponent(b.x)), true);
       return vec4(part.arc, part.bent.x, part.bent.y, radius_weight(b.y, 0.8f, b.z));
     }
     case 21u: {
@@ -222,8 +220,8 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       // No sector is occluded in this case, because rounding could otherwise move an end of the arc
       // by a whole sector.
       UnobservedArc arc = make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
-      return vec4(unobserved_part(arc, s, 1.0f, false), unobserved_part(arc, s, 1.0f, true),
-                  unobserved_lobe(arc, lobe, lobe_light_arc(lobe, arc.to)), arc.share);
+      return vec4(unobserved_part(arc, s, 1.0f),
+                  unobserved_lobe(arc, lobe, lobe_light_arc(lobe, arc.to)), arc.share, 0.0f);
     }
   }
   return vec4(0.0f);

@@ -157,7 +157,8 @@ TEST(SliceLine, InverseDepthOfAnyRawDepthIsBetweenTheNearPlaneAndTheSky) {
         EXPECT_GE(found, 0.0f) << ndc << ' ' << reversed;
         EXPECT_LE(found, 10.0f) << ndc << ' ' << reversed;
       }
-      const float found = maths::inverse_depth_of_ndc({20.0f, -10.0f}, ndc, false, reversed);
+      const float found = maths::inverse_depth_of_ndc(
+          reversed ? maths::vec2(-20.0f, 10.0f) : maths::vec2(20.0f, -10.0f), ndc, false, reversed);
       EXPECT_EQ(found == maths::sky_inverse_depth(false), sky) << ndc << ' ' << reversed;
       EXPECT_GE(found, -10.0f) << ndc << ' ' << reversed;
       EXPECT_TRUE(sky || found <= 10.0f) << ndc << ' ' << reversed;

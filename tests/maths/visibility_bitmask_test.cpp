@@ -42,10 +42,9 @@ double boundary_angle(float per_diamond_angle, int boundary) {
   return std::atan2(1.0 - std::abs(y), y);
 }
 
-VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float hidden_occlusion,
-                    bool uniform_weight = false) {
+VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float hidden_occlusion) {
   return maths::visible_part(s, side, maths::sectors_per_diamond_angle(s, side), occluded,
-                             hidden_occlusion, {.uniform_weight = uniform_weight, .bent = true});
+                             hidden_occlusion, true);
 }
 
 TEST(VisibilityBitmask, DiamondAngleIncreasesWithTheAngleAndConvertsBackToTheDirection) {
@@ -166,24 +165,6 @@ TEST(VisibilityBitmask, VisibilityAndBentNormalOfAMaskEqualTheIntegralOverItsVis
   EXPECT_LT(worst_bent, 1e-5);
 }
 
-TEST(VisibilityBitmask, UniformlyWeightedVisibilityOfAMaskEqualsTheSolidAngleOfItsVisibleSectors) {
-  RandomInput random;
-  for (int i = 0; i < 1500; ++i) {
-    const Slice s = random_slice(random);
-    const float side = random_side(random);
-    const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
-    const std::uint32_t occluded = random_runs(random);
-    double expected = 0.0;
-    for (int k = 0; k < 32; ++k) {
-      if ((occluded >> k & 1u) == 0) {
-        expected += 0.5 * (std::cos(boundary_angle(per_diamond_angle, k)) -
-                           std::cos(boundary_angle(per_diamond_angle, k + 1)));
-      }
-    }
-    EXPECT_NEAR(part_of(s, side, occluded, 0.0f, true).arc, expected, 2e-6);
-  }
-}
-
 TEST(VisibilityBitmask, MaskWithoutOccludedSectorsIsFullyVisibleAndFullyOccludedMaskIsNotVisible) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.1) {
     const Slice s = slice_of(0.7, gamma);
@@ -219,21 +200,24 @@ TEST(VisibilityBitmask,
     double sum = 0.0;
     float last = 0.0f;
     for (int i = 0; i < kSteps; ++i) {
-      const float part = maths::hidden_occlusion_behind((float(i) + 0.5f) / kSteps, exponent);
+      const float part =
+          maths::hidden_occlusion_behind((float(i) + 0.5f) / kSteps, 0.0f, 1.0f, exponent);
       EXPECT_GE(part, last);
       sum += part;
       last = part;
     }
     // The tolerance is the error of the mid-point rule where the integrand rises steeply from 0.
     EXPECT_NEAR(sum / kSteps, hidden_occlusion, 2e-3) << hidden_occlusion;
-    EXPECT_EQ(maths::hidden_occlusion_behind(1.0f, exponent), 1.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(1.0f, 0.0f, 1.0f, exponent), 1.0f);
   }
 }
 
 TEST(VisibilityBitmask, HiddenOcclusionSettingZeroOccludesNothingAndOneEverythingBehindOccluders) {
   for (const float front : {0.0f, 1e-4f, 0.5f, 1.0f, 1.0001f}) {
-    EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(0.0f)), 0.0f);
-    EXPECT_EQ(maths::hidden_occlusion_behind(front, maths::hidden_exponent(1.0f)), 1.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(front, 0.0f, 1.0f, maths::hidden_exponent(0.0f)),
+              0.0f);
+    EXPECT_EQ(maths::hidden_occlusion_behind(front, 0.0f, 1.0f, maths::hidden_exponent(1.0f)),
+              1.0f);
   }
 }
 

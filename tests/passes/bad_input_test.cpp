@@ -80,7 +80,6 @@ TEST_F(BadInput, SettingsOutOfRangeAreReportedByName) {
       {"'thickness' is", [](View&, OcclusionSettings& s) { s.thickness = kNaN; }},
       {"'thickness' is", [](View&, OcclusionSettings& s) { s.thickness = kInfinity; }},
       {"'hidden_occlusion' is", [](View&, OcclusionSettings& s) { s.hidden_occlusion = 1.5f; }},
-      {"'blend' is", [](View&, OcclusionSettings& s) { s.advanced.blend = kNaN; }},
       {"'falloff' is", [](View&, OcclusionSettings& s) { s.advanced.falloff = -0.5f; }},
       {"with the estimator connected",
        [](View&, OcclusionSettings& s) { s.advanced.falloff = 0.5f; }},
@@ -285,7 +284,11 @@ TEST_F(BadInput, InputImagesOfDifferentSizesAreReported) {
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
     const framegraph::Texture depth = upload(graph, drawing.depth_ndc);
-    const auto normals = add_occlusion(frame, {depth, upload(graph, small.normal_vs), true}, {});
+    const auto normals = add_occlusion(frame,
+                                       {.depth_ndc = depth,
+                                        .normals = upload(graph, small.normal_vs),
+                                        .normals_in_view_space = true},
+                                       {});
     ASSERT_FALSE(normals);
     EXPECT_THAT(normals.error().message, HasSubstr("normals of 16x11"));
     const auto motion =

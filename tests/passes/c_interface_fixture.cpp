@@ -155,6 +155,7 @@ AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings)
                   .previous_width = given.previous_size.width,
                   .previous_height = given.previous_size.height,
                   .depth = input(given.depth_ndc),
+                  .depth_format = given.depth_format,
                   .normals = input(given.normals),
                   .motion = input(given.motion),
                   .roughness = input(given.roughness),
@@ -248,6 +249,7 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
     settings.visibility = settings.visibility || given.multi_bounce;
     const auto outputs = add_occlusion(frame,
                                        {.depth_ndc = upload_of(given.depth_ndc),
+                                        .depth_format = given.depth_format,
                                         .normals = upload_of(given.normals),
                                         .normals_in_view_space = given.normals_in_view_space,
                                         .motion = upload_of(given.motion),

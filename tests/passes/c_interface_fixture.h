@@ -26,6 +26,7 @@ struct GivenView {
   VkExtent2D largest_size{};
   VkExtent2D previous_size{};
   HostImage depth_ndc;
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;
   HostImage normals;
   bool normals_in_view_space = true;
   HostImage motion;

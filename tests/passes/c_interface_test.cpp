@@ -64,11 +64,6 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
          g.settings.advanced.estimator = Estimator::horizons;
          g.settings.advanced.falloff = 0.5f;
        }},
-      {"heuristic",
-       [](GivenView& g) {
-         g.settings.advanced.estimator = Estimator::heuristic;
-         g.settings.advanced.blend = 0.3f;
-       }},
       {"bitmask",
        [](GivenView& g) {
          g.settings.advanced.estimator = Estimator::bitmask;
@@ -79,10 +74,8 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
        [](GivenView& g) { g.settings.advanced.thickness_unit = ThicknessUnit::distance; }},
       {"thickness by back faces",
        [](GivenView& g) { g.settings.advanced.thickness_unit = ThicknessUnit::back_faces; }},
+      {"depth copied from 16 bits", [](GivenView& g) { g.depth_format = VK_FORMAT_D16_UNORM; }},
       {"two layers", [](GivenView& g) { g.settings.depth_layers = 2; }},
-      {"solid angle", [](GivenView& g) { g.settings.advanced.weighting = Weighting::uniform; }},
-      {"hilbert", [](GivenView& g) { g.settings.advanced.pattern = Pattern::hilbert; }},
-      {"paper", [](GivenView& g) { g.settings.advanced.pattern = Pattern::paper; }},
       {"slices and steps",
        [](GivenView& g) {
          g.settings.slices = 3;

@@ -143,13 +143,11 @@ void CResize::TearDown() {
 
 Kind CResize::any_kind() {
   OcclusionSettings settings = quality_settings(static_cast<Quality>(below(3)), 0.5f);
-  settings.advanced.estimator = static_cast<Estimator>(below(4));
-  settings.advanced.weighting = static_cast<Weighting>(below(2));
+  settings.advanced.estimator = static_cast<Estimator>(below(3));
   settings.advanced.thickness_unit = static_cast<ThicknessUnit>(below(3));
   settings.depth_layers = 1 + below(2);
   const bool fades = !has_thickness(settings.advanced.estimator);
   settings.advanced.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
-  settings.advanced.pattern = static_cast<Pattern>(below(3));
   settings.advanced.filter_radius = below(4);
   settings.advanced.clamp_width = chance(2) ? 0.0f : 1.5f;
   settings.specular = static_cast<Specular>(1 + below(3));

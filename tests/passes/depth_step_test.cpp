@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "alcove/passes/reconstruct.h"
+#include "alcove/passes/occlusion.h"
 #include "drawing.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -28,23 +29,14 @@ class DepthPrecision : public PassTest {
           graph.reset_histories();
         }
         const Frame frame{graph, gpu().kernels(), view.view, index};
-        const framegraph::Texture depth = upload(graph, drawing.depth_ndc);
-        const framegraph::Texture normals = upload(graph, drawing.normal_vs);
-        const auto raw = add_gtao(frame,
-                                  {.depth_ndc = depth,
-                                   .normals = normals,
-                                   .normals_in_view_space = true,
-                                   .depth_format = format},
-                                  settings);
-        ASSERT_TRUE(raw) << raw.error().message;
-        OcclusionSettings filter = settings;
-        filter.precision = Precision::float32;
-        const auto result = add_reconstruct(frame,
-                                            {.raw_occlusion = *raw,
-                                             .depth_ndc = depth,
-                                             .normals = normals,
-                                             .normals_in_view_space = true},
-                                            filter);
+        OcclusionSettings written = settings;
+        written.precision = Precision::float32;
+        const auto result = add_occlusion(frame,
+                                          {.depth_ndc = upload(graph, drawing.depth_ndc),
+                                           .depth_format = format,
+                                           .normals = upload(graph, drawing.normal_vs),
+                                           .normals_in_view_space = true},
+                                          written);
         ASSERT_TRUE(result) << result.error().message;
         read_back(graph, result->visibility);
       });
@@ -95,12 +87,16 @@ TEST_F(DepthPrecision, FloorFiftyUnitsAwayIsUnoccludedWith16BitDepth) {
 }
 
 TEST_F(DepthPrecision, FloorIsUnoccludedInADeepOrthographicViewWithReversedDepth) {
-  TestView view = orthographic_view("", 6.0, 4.0, 0.1, 1e6);
-  view.view.clip_from_view[10] = -view.view.clip_from_view[10];
-  view.view.clip_from_view[14] = 1.0f - view.view.clip_from_view[14];
-  const Drawing drawing = draw(view, kWidth, kHeight, {plane({0.0, 0.0, -20.0}, {0.0, 0.7, 0.7})});
-  for (const float radius : {0.5f, 2.0f}) {
-    expect_open(view, drawing, VK_FORMAT_D32_SFLOAT, radius);
+  for (const auto& [near, far] : {std::pair(0.1, 1e6), {-1e6, 100.0}, {-1e7, 100.0}}) {
+    SCOPED_TRACE(near);
+    TestView view = orthographic_view("", 6.0, 4.0, near, far);
+    view.view.clip_from_view[10] = -view.view.clip_from_view[10];
+    view.view.clip_from_view[14] = static_cast<float>(far / (far - near));
+    const Drawing drawing =
+        draw(view, kWidth, kHeight, {plane({0.0, 0.0, -20.0}, {0.0, 0.7, 0.7})});
+    for (const float radius : {0.5f, 2.0f}) {
+      expect_open(view, drawing, VK_FORMAT_D32_SFLOAT, radius);
+    }
   }
 }
 

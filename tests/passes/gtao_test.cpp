@@ -42,9 +42,11 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
           run([&](Graph& graph) {
             if (index == 0) graph.reset_histories();
             const Frame frame{graph, gpu().kernels(), view.view, index};
-            const auto outputs = add_occlusion(
-                frame, {upload(graph, plane.depth_ndc), upload(graph, plane.normal_vs), true},
-                precise(preset.quality));
+            const auto outputs = add_occlusion(frame,
+                                               {.depth_ndc = upload(graph, plane.depth_ndc),
+                                                .normals = upload(graph, plane.normal_vs),
+                                                .normals_in_view_space = true},
+                                               precise(preset.quality));
             ASSERT_TRUE(outputs) << outputs.error().message;
             read_back(graph, outputs->visibility);
           });

@@ -147,32 +147,6 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
   }
 }
 
-// The unoccluded sky above a platform's edge is a spherical lune. Its fraction of the hemisphere is
-// its angle divided by pi.
-TEST_F(GtaoTruth, UniformWeightingGivesTheVisibleSolidAngleAsVisibility) {
-  const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
-  const double height = 0.5, half_angle = std::numbers::pi / 4.0;
-  const Drawing platform = draw(view, 128, 128, step(0.0, height));
-  const Drawing walls = draw(view, 128, 128, groove(half_angle, 9.0));
-  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
-    SCOPED_TRACE(name_of(estimator));
-    OcclusionSettings settings = exact(estimator, 8.0f);
-    settings.advanced.weighting = Weighting::uniform;
-    const auto floor =
-        run_occlusion({view.view, platform.depth_ndc, &platform.normal_vs}, settings).visibility;
-    for (std::uint32_t x = 44; x < 62; ++x) {
-      const double distance = (64 - x - 0.5) * 8.0 / 128;
-      const double expected = 1.0 - std::atan2(height, distance) / std::numbers::pi;
-      EXPECT_NEAR(floor.at(x, 64), expected, 0.025) << distance << " units away";
-    }
-    const auto wall =
-        run_occlusion({view.view, walls.depth_ndc, &walls.normal_vs}, settings).visibility;
-    for (const std::uint32_t x : {61u, 62u, 65u, 66u}) {
-      EXPECT_NEAR(wall.at(x, 64), 2.0 * half_angle / std::numbers::pi, 0.03);
-    }
-  }
-}
-
 // Returns the mean visibility of a drawing.
 double mean_of(const HostImage& image) {
   double sum = 0.0;
@@ -198,26 +172,6 @@ TEST_F(GtaoTruth, LargerFalloffFadesOccludersTowardsTheRadiusAndKeepsNearOnes) {
     before = mean;
     EXPECT_LT(faded.at(30, 20), 0.85f) << "near occluders must still occlude";
   }
-}
-
-TEST_F(GtaoTruth, EstimatorHeuristicWithBlendZeroEqualsEstimatorHorizons) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
-  const auto run_with = [&](Estimator estimator, float blend) {
-    OcclusionSettings settings = exact(estimator, 1.2f);
-    settings.advanced.blend = blend;
-    return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
-  };
-  const HostImage horizons = run_with(Estimator::horizons, 0.05f);
-  const HostImage same = run_with(Estimator::heuristic, 0.0f);
-  const HostImage thinner = run_with(Estimator::heuristic, 0.05f);
-  for (std::uint32_t y = 0; y < horizons.height; ++y) {
-    for (std::uint32_t x = 0; x < horizons.width; ++x) {
-      EXPECT_EQ(same.at(x, y), horizons.at(x, y));
-      EXPECT_GE(thinner.at(x, y), horizons.at(x, y) - 1e-6f);
-    }
-  }
-  EXPECT_GT(mean_of(thinner), mean_of(horizons));
 }
 
 TEST_F(GtaoTruth, EstimatorBitmaskWithThickOccludersEqualsEstimatorHorizons) {
@@ -284,21 +238,22 @@ TEST_F(GtaoTruth, LargerFractionOfTheVolumeBehindAWideOccluderIsSolidThanBehindA
     const double slat = filled(0.12, 0.12, 1);
     const double board = filled(1.0, 1.0, 1);
     EXPECT_LT(slat, 0.5 * board);
-    // The board is as wide as the radius.
-    EXPECT_GT(board, 0.8);
+    // The board reaches the last sample, but begins some way from the shaded point.
+    EXPECT_GT(board, 0.55);
     // Compare one slat with three slats of the same total width.
     const double half = filled(0.3, 0.3, 1);
     const double slats = filled(0.1, 0.2, 3);
-    EXPECT_LT(slats, 0.5 * half);
+    EXPECT_LT(slats, 0.65 * half);
   }
 }
 
-// A strip as wide as one sample is at most as thick as it is wide, whatever the setting. A board as
-// wide as many samples has the thickness of the setting.
-TEST_F(GtaoTruth, LargerThicknessSettingHardlyDarkensSurfacesBesideAnOccluderOneSampleWide) {
+// An occluder is no thicker than it is seen to be wide, whatever the setting: neither a strip as
+// wide as one sample nor a board as wide as many.
+TEST_F(GtaoTruth, ThicknessSettingLargerThanTheVisibleWidthDarkensNothing) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
-    const auto darkened_by_thickness = [&](double width) {
+    for (const double width : {0.12, 1.0}) {
+      SCOPED_TRACE(width);
       Surface front = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
       const auto beside = [&](float thickness) {
@@ -308,10 +263,10 @@ TEST_F(GtaoTruth, LargerThicknessSettingHardlyDarkensSurfacesBesideAnOccluderOne
         settings.thickness = thickness;
         return visibility_beside(view, front, settings);
       };
-      return beside(0.05f) - beside(3.0f);
-    };
-    EXPECT_LT(darkened_by_thickness(0.12) / darkened_by_thickness(1.0), 0.102);
-    EXPECT_GT(darkened_by_thickness(1.0), 0.03);
+      const double limited = beside(1.0f);
+      EXPECT_NEAR(limited, beside(100.0f), 1e-3);
+      EXPECT_LT(limited, beside(0.0f));
+    }
   }
 }
 

@@ -36,15 +36,20 @@ TEST(HalfTexelPacking, PackedTexelsOfHalfResolutionFitTheRangeMinusOneToOne) {
   EXPECT_EQ(packed.w, -1.0f);
 }
 
+// Returns the recent occlusion of a stored depth, or 0.25 if none is stored.
+float recent_of(float stored) {
+  return maths::half_recent_of_code(maths::half_texel_recent_code(stored), 0.25f);
+}
+
 TEST(HalfTexelPacking, PackingKeepsInverseDepthAndRecentOcclusionApproximately) {
   for (const float inverse_depth : {1e-12f, 0.013f, 0.7f, 20.0f, 1e12f}) {
     const float unknown = maths::half_texel_depth(inverse_depth, 0.5f, false);
     EXPECT_NEAR(unknown / inverse_depth, 1.0, 3.1e-5);
-    EXPECT_EQ(maths::half_texel_recent(unknown, 0.25f), 0.25f);
+    EXPECT_EQ(recent_of(unknown), 0.25f);
     for (const float recent : {0.0f, 0.01f, 0.37f, 1.0f}) {
       const float known = maths::half_texel_depth(inverse_depth, recent, true);
       EXPECT_NEAR(known / inverse_depth, 1.0, 3.1e-5);
-      EXPECT_NEAR(maths::half_texel_recent(known, 0.25f), recent, 0.004);
+      EXPECT_NEAR(recent_of(known), recent, 0.004);
     }
   }
 }

@@ -102,14 +102,11 @@ TEST_F(OcclusionPlan, FrameThatOnlyComputesVisibilityHasTwoPassesAndTwoTextures)
   EXPECT_EQ(gpu().kernels().pipeline_count(), 2u);
 }
 
-TEST_F(OcclusionPlan, PassThatComputesNormalsFromDepthRunsOnlyIfNoNormalsAreGiven) {
-  EXPECT_THAT(kept(least()).passes, Not(Contains("normals")));
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
-  const Kept made = kept(least(), {}, {.normals = false});
-  EXPECT_THAT(made.passes, Contains("normals"));
-  EXPECT_THAT(made.transients, Contains("normals from depth"));
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 2)
-      << "the pipelines of normals and linear depth";
+TEST_F(OcclusionPlan, FrameWithoutGivenNormalsHasNoFurtherPassesAndTextures) {
+  const Kept given = kept(least());
+  const Kept without = kept(least(), {}, {.normals = false});
+  EXPECT_EQ(without.passes, given.passes);
+  EXPECT_EQ(without.transients, given.transients);
 }
 
 TEST_F(OcclusionPlan, BentNormalsAndHistoryAddTexturesOnlyWhenTheyAreOn) {

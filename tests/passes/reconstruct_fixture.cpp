@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <vector>
 
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
@@ -43,6 +45,17 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
   return packed;
 }
 
+// Returns the texels of R16_UNORM, two in the bits of each float.
+HostImage with_16_bits(const HostImage& depth) {
+  std::vector<std::uint16_t> values;
+  for (const float texel : depth.texels) {
+    values.push_back(static_cast<std::uint16_t>(std::lround(texel * 65535.0f)));
+  }
+  HostImage packed{depth.width, depth.height, std::vector<float>((values.size() + 1) / 2), 1};
+  std::memcpy(packed.texels.data(), values.data(), values.size() * sizeof(values[0]));
+  return packed;
+}
+
 }  // namespace
 
 HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& settings) {
@@ -62,7 +75,9 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                               VK_FORMAT_R32G32_UINT),
                           .tile_size = input.tile_size,
                           .slices = input.slices},
-        .depth_ndc = upload(graph, input.drawing.depth_ndc),
+        .depth_ndc = input.coarse_depth
+                         ? upload(graph, with_16_bits(input.drawing.depth_ndc), VK_FORMAT_R16_UNORM)
+                         : upload(graph, input.drawing.depth_ndc),
         .normals = upload(graph, input.drawing.normal_vs),
         .normals_in_view_space = true};
     if (input.motion != nullptr) {

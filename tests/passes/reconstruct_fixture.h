@@ -26,6 +26,7 @@ class Reconstruct : public PassTest {
     std::uint32_t index = 0;
     bool reset = false;
     std::uint32_t static_frames = 0;
+    bool coarse_depth = false;   // the depth buffer has 16 bits instead of floats
     VkExtent2D previous_size{};  // Frame::previous_size
     VkExtent2D largest_size{};   // Frame::largest_size
   };

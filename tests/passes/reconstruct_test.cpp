@@ -244,6 +244,56 @@ TEST_F(Reconstruct, NeighboursWithOtherNormalsGetSmallerFilterWeights) {
   EXPECT_GT(leak(60.0), 0.05 * leak(0.0)) << "neighbours with other normals must keep some weight";
 }
 
+// Whether the last frame of a moving camera depends on the normals of a plane, away from the border
+// of the image.
+TEST_F(Reconstruct, NormalsOfAPlaneAreReadOnlyIfTheDepthBufferIsTooCoarseForItsTangentPlane) {
+  for (TestView view : test_views()) {
+    // Small pixels, so that a step of 16 bits is large in comparison.
+    const float zoom = 100.0f;
+    view.view.clip_from_view[0] *= zoom;
+    view.view.clip_from_view[5] *= zoom;
+    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(20.0, 4.0)});
+    const Drawing turned = with_turned_normals(drawing, 60.0, 0);
+    const HostImage raw_occlusion =
+        raw_occlusion_of(kWidth / 4, kHeight / 4, [](std::uint32_t x, std::uint32_t y) {
+          return 0.3f + 0.1f * static_cast<float>((3 * x + y) % 5);
+        });
+    View before = view.view;
+    before.view_from_world[12] += 1e-6f;
+    const auto last_frame = [&](const Drawing& last, bool coarse) {
+      HostImage found;
+      for (std::uint32_t frame = 0; frame < 8; ++frame) {
+        found = reconstruct({.view = view.view,
+                             .drawing = frame == 7 ? last : drawing,
+                             .raw_occlusion = raw_occlusion,
+                             .tile_size = 4,
+                             .previous_view = before,
+                             .index = frame,
+                             .reset = frame == 0,
+                             .coarse_depth = coarse},
+                            precise(2, 16));
+      }
+      return found;
+    };
+    for (const bool coarse : {false, true}) {
+      const HostImage plain = last_frame(drawing, coarse);
+      const HostImage other = last_frame(turned, coarse);
+      double largest = 0.0;
+      for (std::uint32_t y = 1; y + 1 < kHeight; ++y) {
+        for (std::uint32_t x = 1; x + 1 < kWidth; ++x) {
+          largest = std::max<double>(largest, std::abs(plain.at(x, y) - other.at(x, y)));
+        }
+      }
+      SCOPED_TRACE(testing::Message() << view.name << ", coarse " << coarse);
+      if (coarse) {
+        EXPECT_GT(largest, 0.003);
+      } else {
+        EXPECT_EQ(largest, 0.0);
+      }
+    }
+  }
+}
+
 TEST_F(Reconstruct, VisibilityDoesNotLeakAcrossADepthEdge) {
   for (const TestView& view : test_views()) {
     const Drawing drawing = draw(view, kWidth, kHeight, step(0.3, 1.0));

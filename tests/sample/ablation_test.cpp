@@ -15,6 +15,7 @@
 #include "reference/surface_points.h"
 #include "reference/truth.h"
 #include "scene/builtin_scene.h"
+#include "scene/shapes.h"
 
 namespace alcove::sample {
 namespace {
@@ -32,8 +33,8 @@ TEST(AblationVariants, EachVariantDiffersFromTheBaseSettingsAndHasAUniqueName) {
       EXPECT_EQ(variant.settings.radius, base.radius) << variant.name;
       parts.insert(variant.part);
     }
-    for (const char* part : {"estimator", "occluders", "resolution", "work", "pattern",
-                             "snap_to_texels", "border", "filter", "history"}) {
+    for (const char* part : {"estimator", "occluders", "resolution", "work", "snap_to_texels",
+                             "border", "filter", "history"}) {
       EXPECT_TRUE(parts.contains(part)) << part;
     }
     EXPECT_GT(names.size(), 15u);
@@ -45,32 +46,86 @@ TEST(AblationVariants, OnlyVariantsWithHorizonEstimatorsHaveAFalloff) {
   base.advanced.estimator = passes::Estimator::horizons;
   base.advanced.falloff = 0.5f;
   for (const Variant& variant : variants_of(base)) {
-    const bool has_falloff = variant.settings.advanced.estimator == passes::Estimator::horizons ||
-                             variant.settings.advanced.estimator == passes::Estimator::heuristic;
+    const bool has_falloff = variant.settings.advanced.estimator == passes::Estimator::horizons;
     EXPECT_EQ(variant.settings.advanced.falloff, has_falloff ? 0.5f : 0.0f) << variant.name;
+  }
+}
+
+// A floor with three rows of thin pickets and a wall behind them.
+Scene fence_scene() {
+  SceneBuilder b;
+  b.use(b.add_material("wood", {0.6f, 0.5f, 0.4f}, 0.8f));
+  b.box({-3.0f, -0.1f, -3.0f}, {3.0f, 0.0f, 3.0f});
+  b.box({-3.0f, 0.0f, -1.6f}, {3.0f, 2.0f, -1.5f});
+  for (int row = 0; row < 3; ++row) {
+    const float z = -1.2f + 0.5f * static_cast<float>(row);
+    for (int i = -20; i <= 20; ++i) {
+      const float x = 0.12f * static_cast<float>(i);
+      b.box({x, 0.0f, z}, {x + 0.03f, 0.8f, z + 0.015f});
+    }
+  }
+  Scene scene = b.finish("fence");
+  scene.suggested_radius = 0.4f;
+  scene.cameras = {
+      {.name = "fence", .eye_ws = {-1.5f, 1.1f, 2.2f}, .target_ws = {0.1f, 0.3f, -0.6f}}};
+  return scene;
+}
+
+// Ray-traced visibility of the surfaces that images of a frame show, and the mask of these
+// surfaces.
+struct Truth {
+  Image<float> visibility;
+  Mask surfaces;
+};
+
+Truth truth_of(const Scene& scene, const Camera& camera, float radius, const FrameImages& images) {
+  const Image<float> depth = linear_depth(camera, images.depth_ndc);
+  Truth truth{{}, Mask(depth.width, depth.height)};
+  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+    truth.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
+  }
+  const auto rays = RayScene::create(scene);
+  EXPECT_TRUE(rays);
+  truth.visibility = occlusion_truth(*rays, surface_points(*rays, camera, images.normal_ws, depth),
+                                     {.radius = radius, .spp = 64}, nullptr)
+                         .visibility;
+  return truth;
+}
+
+TEST(StepLadder, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
+  for (const Scene& scene : {builtin_scene(), fence_scene()}) {
+    SCOPED_TRACE(scene.name);
+    const StaticSetup setup{scene.cameras.front(), 240, 135, 1, NormalSource::kGeometric};
+    OcclusionSettings base = passes::quality_settings(Quality::medium, scene.suggested_radius);
+    base.tile_size = 1;
+    base.slices = 8;
+    base.steps = 16;
+    base.history_frames = 0;
+    base.advanced.filter_radius = 0;
+    const auto gpu = open_validated();
+    ASSERT_TRUE(gpu);
+    auto runner = VariantRunner::create(*gpu, scene, setup, base);
+    ASSERT_TRUE(runner) << runner.error();
+    const Truth truth = truth_of(scene, setup.camera, base.radius, runner->base());
+    const double sixteen =
+        compare_images(runner->base().visibility, truth.visibility, truth.surfaces).rmse;
+    Variant more{"work", "64 steps", base};
+    more.settings.steps = 64;
+    const auto other = open_validated();
+    ASSERT_TRUE(other);
+    const auto result = runner->run(*other, more);
+    ASSERT_TRUE(result) << result.error();
+    EXPECT_GT(sixteen, 0.01);
+    // A change of 1 % is within the noise of one frame at this size.
+    EXPECT_LE(compare_images(result->visibility, truth.visibility, truth.surfaces).rmse,
+              1.01 * sixteen);
   }
 }
 
 class AblationTest : public testing::Test {
  protected:
-  // Ray-traced visibility of the surfaces that `images` show, and the mask of these surfaces.
-  struct Truth {
-    Image<float> visibility;
-    Mask surfaces;
-  };
   Truth truth_of(const FrameImages& images) const {
-    const Image<float> depth = linear_depth(setup_.camera, images.depth_ndc);
-    Truth truth{{}, Mask(depth.width, depth.height)};
-    for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-      truth.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
-    }
-    const auto rays = RayScene::create(scene_);
-    EXPECT_TRUE(rays);
-    truth.visibility =
-        occlusion_truth(*rays, surface_points(*rays, setup_.camera, images.normal_ws, depth),
-                        {.radius = base_.radius, .spp = 64}, nullptr)
-            .visibility;
-    return truth;
+    return alcove::sample::truth_of(scene_, setup_.camera, base_.radius, images);
   }
 
   const Scene scene_ = builtin_scene();

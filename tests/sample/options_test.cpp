@@ -227,7 +227,7 @@ TEST(Options, UnknownSettingsAndValuesOutOfRangeAreRefusedByTheParser) {
                {"slices=-1", "a whole number, 1 to 64"},
                {"slices=65", "a whole number, 1 to 64"},
                {"hidden_occlusion=much", "a number"},
-               {"estimator=guess", "give horizons, heuristic, bitmask or connected"}};
+               {"estimator=guess", "give horizons, bitmask or connected"}};
   for (const auto& [given, wanted] : wrong) {
     const auto options = parse({"render", "--set", given});
     ASSERT_FALSE(options) << given;
@@ -260,7 +260,7 @@ TEST(Options, HelpOfEveryCommandThatTakesSettingsListsTheSettings) {
     const std::string help = parse({command, "--help"}).error().text;
     EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
     EXPECT_THAT(help, HasSubstr("Radius of the spatial filter in tiles")) << command;
-    EXPECT_THAT(help, HasSubstr("horizons, heuristic, bitmask or connected")) << command;
+    EXPECT_THAT(help, HasSubstr("horizons, bitmask or connected")) << command;
   }
   EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
 }

@@ -85,15 +85,12 @@ TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   settings.radius = 0.1f;
   settings.slices = 3;
   settings.steps = 7;
-  settings.advanced.estimator = passes::Estimator::heuristic;
-  settings.advanced.weighting = passes::Weighting::uniform;
+  settings.advanced.estimator = passes::Estimator::horizons;
   settings.thickness = 1.0f / 7.0f;
   settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   settings.hidden_occlusion = 0.123456789f;
-  settings.advanced.blend = 1e-6f;
   settings.advanced.falloff = 0.25f;
   settings.tile_size = 4;
-  settings.advanced.pattern = passes::Pattern::paper;
   settings.advanced.snap_to_texels = false;
   settings.advanced.extrapolation = false;
   settings.advanced.unobserved = false;

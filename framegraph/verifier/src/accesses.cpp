@@ -1,4 +1,6 @@
 // The verifier's checks of single accesses, and of how a frame ends.
+#include <algorithm>
+
 #include "replay.h"
 
 namespace alcove::framegraph::verifier {
@@ -64,14 +66,11 @@ void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub
     if (!order_.is_ordered(read, queue, access.stages))
       fail("the write of " + name(access.resource) + " overtakes a read");
   }
-  // A write that follows a write needs that write to be visible. A write that follows reads must be
-  // ordered after those reads, and needs the earlier write to be visible only if it also reads.
-  const Accesses seen = before.reads.empty()      ? access.access
-                        : access.flags & kDiscard ? Accesses{0}
-                                                  : reads_of(access.access);
+  // The earlier write must be visible even if the reads of it are ordered before this write: they
+  // may have read only a part of what the two write.
   for (const Operation& write : before.writes) {
     if (!order_.is_available(write, queue, access.stages) ||
-        !order_.is_visible(write, queue, access.stages, seen))
+        !order_.is_visible(write, queue, access.stages, access.access))
       fail("the write of " + name(access.resource) + " overtakes a write, or cannot see it");
   }
   if (access.flags & kDiscard) {
@@ -105,6 +104,7 @@ void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
   const Accesses accesses = expand_accesses(access.access);
   Operation operation{Operation::Kind::access,      queue, order_.now(),
                       expand_stages(access.stages), 0,     0};
+  resources_[access.resource].used = true;
   if (access.flags & kWrite) operation.writes = accesses & ~reads_of(accesses);
   for_each_sub(access.resource, access.range, [&](Sub& sub) {
     sub.fresh = false;
@@ -113,7 +113,8 @@ void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
       return;
     }
     sub.content = access_index;
-    sub.family = family(queue);
+    sub.written = true;
+    sub.family = owner(access.resource, queue);
     if (continues(sub, access, queue)) {
       sub.last.writes.push_back(operation);
       sub.series = access_index;
@@ -130,10 +131,14 @@ void Replay::end_frame() {
   where_ = "at the end of the frame";
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    // A history that the frame does not use stays in its state.
-    if (record.external != kNone && graph_.externals[record.external].has_final_state &&
-        (record.origin == Origin::imported || plan_.placements[r].first != kNone))
-      check_final_state(r);
+    if (record.origin != Origin::imported) continue;
+    const ExternalRecord& external = graph_.externals[record.external];
+    if (external.has_final_state) check_final_state(r);
+    for (const Sub& sub : resources_[r].subs) {
+      if (external.has_contents &&
+          (sub.released || (sub.family != kNone && sub.family != family(0))))
+        fail(name(r) + " is left with another queue family than it came with");
+    }
   }
   for (const OutputRecord& output : graph_.outputs) {
     const auto& subs = resources_[output.resource].subs;
@@ -145,6 +150,7 @@ void Replay::end_frame() {
     }
   }
   for (const FinalState& final : plan_.finals) check_final(final);
+  check_histories();
   for (std::uint8_t queue = 0; queue < queue_count_; ++queue)
     order_.signal(queue, end_signal(queue));
 }
@@ -161,14 +167,13 @@ void Replay::check_final_state(std::uint32_t resource) {
            ", its final_state is " + std::to_string(final_state.layout));
     if (expected != kGarbage && (sub.content != expected || sub.spoiled))
       fail(name(resource) + " does not leave with what was written for it");
-    if (sub.released || (sub.family != kNone && sub.family != family(queue)))
-      fail(name(resource) + " is left with another queue family than it came with");
     for (const Operation& read : sub.last.reads) {
-      // Work after the frame waits only for the stages of the final state. Each read must therefore
-      // be in these stages, or be ordered before them.
-      const bool waited_for = !is_write(final_state.access) && read.queue == queue &&
-                              (read.stages & ~expand_stages(final_state.stages)) == 0;
-      if (!waited_for && !order_.is_ordered(read, queue, final_state.stages))
+      // Work after the frame waits only for the stages of the final state. Reads in other stages
+      // must therefore be ordered before them.
+      Operation rest = read;
+      if (!is_write(final_state.access) && read.queue == queue)
+        rest.stages &= ~expand_stages(final_state.stages);
+      if (rest.stages != 0 && !order_.is_ordered(rest, queue, final_state.stages))
         fail(name(resource) + " leaves before its last read is done");
     }
     for (const Operation& write : sub.last.writes) {
@@ -176,6 +181,35 @@ void Replay::check_final_state(std::uint32_t resource) {
           !order_.is_visible(write, queue, final_state.stages, final_state.access))
         fail(name(resource) + " leaves before its last write can be seen");
     }
+  }
+}
+
+// Checks that the plan names the final state of each history slot that the frame uses, and no
+// other, whether the frame wrote it, and that it holds what the declaration has written to it: the
+// next frame may read it.
+void Replay::check_histories() {
+  std::vector<std::uint32_t> finals(resources_.size(), 0);
+  for (const FinalState& final : plan_.finals) {
+    if (final.resource >= resources_.size()) return;
+    ++finals[final.resource];
+    const auto& subs = resources_[final.resource].subs;
+    const auto written = static_cast<std::size_t>(
+        std::count_if(subs.begin(), subs.end(), [](const Sub& sub) { return sub.written; }));
+    const Written state = written == 0             ? Written::nothing
+                          : written == subs.size() ? Written::whole
+                                                   : Written::part;
+    if (final.written != state)
+      fail(name(final.resource) + " is said to be written in another part than it is");
+    for (std::size_t i = 0; i < subs.size(); ++i) {
+      const std::uint32_t expected = last_[final.resource][i];
+      if (expected != kGarbage && (subs[i].content != expected || subs[i].spoiled))
+        fail(name(final.resource) + " does not hold what was written for the next frame");
+    }
+  }
+  for (std::uint32_t r = 0; r < resources_.size(); ++r) {
+    const bool used = graph_.resources[r].origin == Origin::history && resources_[r].used;
+    if (finals[r] != (used ? 1u : 0u))
+      fail(name(r) + " has " + std::to_string(finals[r]) + " final states");
   }
 }
 
@@ -192,7 +226,8 @@ void Replay::check_final(const FinalState& final) {
         sub.layout != final.state.layout)
       fail(name(final.resource) + " is said to be left in another layout than it is");
     for (const Operation& read : sub.last.reads) {
-      if (read.stages & ~stages) fail(name(final.resource) + " is read by a stage not told of");
+      if (read.queue == static_cast<std::uint8_t>(final.queue) && (read.stages & ~stages) != 0)
+        fail(name(final.resource) + " is read by a stage not told of");
       check_final_order(final, read);
     }
     for (const Operation& write : sub.last.writes) check_final_order(final, write);
@@ -217,7 +252,7 @@ void Replay::check_final_writes(const FinalState& final, const Sub& sub) {
   const auto queue = static_cast<std::uint8_t>(final.queue);
   for (const Operation& write : sub.last.writes) {
     if (is_write(accesses)) {
-      const bool told = write.kind != Operation::Kind::access ||
+      const bool told = write.kind != Operation::Kind::access || write.queue != queue ||
                         ((write.stages & ~stages) == 0 && (write.writes & ~accesses) == 0);
       if (sub.last.reads.empty() && !told)
         fail(name(final.resource) + " is written in a way not told of");

@@ -92,9 +92,10 @@ void Replay::begin_frame(bool first) {
   order_.next();
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
+    resources_[r].used = false;
     for (Sub& sub : resources_[r].subs) {
       sub.content = kGarbage;
-      sub.spoiled = sub.released = false;
+      sub.spoiled = sub.released = sub.written = false;
       sub.family = sub.series = kNone;
       if (record.external == kNone) continue;
       const ExternalRecord& external = graph_.externals[record.external];
@@ -104,7 +105,7 @@ void Replay::begin_frame(bool first) {
       sub.layout = external.initial_state.layout;
       if (!external.has_contents) continue;
       sub.content = kInitial;
-      sub.family = family(queue);
+      sub.family = owner(r, queue);
     }
   }
 }
@@ -239,7 +240,7 @@ void Replay::change(const Transition& t, QueueClass on) {
     sub.last.writes.push_back(
         {Kind::change, barrier.queue, time, barrier.dst, 0, barrier.dst_access});
     sub.released = false;
-    sub.family = family(barrier.queue);
+    sub.family = owner(t.resource, barrier.queue);
     if (graph_.resources[t.resource].kind != ResourceKind::texture) return;
     if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED) sub.content = kGarbage;
     sub.layout = t.new_layout;

@@ -32,6 +32,7 @@ struct Sub {
   std::uint32_t content = kGarbage;
   bool spoiled = false;          // a partial write was made over wrong contents
   bool fresh = false;            // it was not used after the resource took its memory
+  bool written = false;          // a pass of this frame wrote it
   std::uint32_t family = kNone;  // the owning queue family; kNone if any family may take it
   bool released = false;         // it was released to `released_to` and not yet acquired
   std::uint32_t released_to = kNone;
@@ -56,6 +57,7 @@ class Replay {
     // The subresource of a mip, layer and plane is at (plane * layers + layer) * mips + mip.
     std::vector<Sub> subs;
     bool has_memory = false;
+    bool used = false;  // by a pass of this frame
     std::vector<Former> former;
   };
   // A range of bytes of a heap, keyed by its end: its owner and its first byte.
@@ -97,6 +99,7 @@ class Replay {
   void apply_access(std::uint32_t position, std::uint32_t access_index);
   void end_frame();
   void check_final_state(std::uint32_t resource);
+  void check_histories();
   void check_final(const FinalState& final);
   void check_final_order(const FinalState& final, const Operation& operation);
   void check_final_writes(const FinalState& final, const Sub& sub);
@@ -117,6 +120,12 @@ class Replay {
           f(subs[(plane * record.layers + i) * record.mips + range.base_mip + mip]);
       }
     }
+  }
+  // Returns the owner of a subresource after a queue has written it: kNone if any family may use
+  // it.
+  std::uint32_t owner(std::uint32_t resource, std::uint8_t queue) const {
+    const std::uint32_t external = graph_.resources[resource].external;
+    return external != kNone && graph_.externals[external].concurrent ? kNone : family(queue);
   }
   void fail(const std::string& what);
   std::string name(std::uint32_t resource) const;

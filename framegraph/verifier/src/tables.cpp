@@ -94,6 +94,10 @@ class Tables {
       }
     }
     if (next != plan_.passes.size()) fail("a pass is in no submission");
+    const std::uint32_t final = plan_.final_submission;
+    if (final != kNone && (final >= plan_.submissions.size() ||
+                           plan_.submissions[final].queue != QueueClass::graphics))
+      fail("the final submission is not one of the graphics queue");
   }
 
   void check_batches() {

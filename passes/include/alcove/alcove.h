@@ -209,6 +209,9 @@ typedef struct AlcoveView {
   // holds no detail of that size. If distant occlusion is missing, reverse the depth or move the
   // near plane away from the eye.
   AlcoveImage depth;
+  // The format in which the depths were first stored, if `depth` is a copy in another format.
+  // UNDEFINED means the format of `depth`. [VK_FORMAT_UNDEFINED]
+  VkFormat depth_format;
   // The unit normals of the surfaces, encoded as normal_encoding says. Without an image, normals
   // are computed from depth, and bent normals are in view space.
   //

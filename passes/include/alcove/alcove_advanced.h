@@ -16,26 +16,14 @@ extern "C" {
 typedef enum AlcoveEstimator {
   // Occluders are infinitely thick. The horizon search of [Jimenez 2016].
   ALCOVE_ESTIMATOR_HORIZONS = 0,
-  // Occluders are infinitely thick, but each sample below the horizon lowers the horizon by the
-  // fraction `blend`: the thickness heuristic of [Jimenez 2016].
-  ALCOVE_ESTIMATOR_HEURISTIC = 1,
   // A visibility bitmask. Each sample is a separate occluder with the thickness
   // AlcoveSettings::thickness.
-  ALCOVE_ESTIMATOR_BITMASK = 2,
+  ALCOVE_ESTIMATOR_BITMASK = 1,
   // A visibility bitmask in which consecutive samples of one surface are connected, so that no
   // light passes between them. It is the default, and suits both thin objects and walls.
-  ALCOVE_ESTIMATOR_CONNECTED = 3,
+  ALCOVE_ESTIMATOR_CONNECTED = 2,
   ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
 } AlcoveEstimator;
-
-// How visibility weights the directions of the hemisphere. Bent normals always use COSINE.
-typedef enum AlcoveWeighting {
-  // By the cosine of the angle to the normal, as diffuse lighting needs it.
-  ALCOVE_WEIGHTING_COSINE = 0,
-  // All alike: visibility is the visible fraction of the hemisphere's solid angle.
-  ALCOVE_WEIGHTING_UNIFORM = 1,
-  ALCOVE_WEIGHTING_MAX_ENUM = 0x7fffffff
-} AlcoveWeighting;
 
 // The unit of AlcoveSettings::thickness.
 typedef enum AlcoveThicknessUnit {
@@ -49,33 +37,16 @@ typedef enum AlcoveThicknessUnit {
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
 } AlcoveThicknessUnit;
 
-// How the directions of slices differ between neighbouring pixels and successive frames.
-typedef enum AlcovePattern {
-  // Lattices in blocks of 4x4 traced pixels, with a random shift of each block; the next frame adds
-  // the golden ratio.
-  ALCOVE_PATTERN_GOLDEN = 0,
-  // The R2 sequence, in which pixels are numbered along a Hilbert curve.
-  ALCOVE_PATTERN_HILBERT = 1,
-  // The pattern of [Jimenez 2016], which repeats after 4x4 pixels and after six frames.
-  ALCOVE_PATTERN_PAPER = 2,
-  ALCOVE_PATTERN_MAX_ENUM = 0x7fffffff
-} AlcovePattern;
-
 // Advanced settings. Values in square brackets are the defaults of all qualities except REFERENCE.
 // A field that the chosen estimator does not use has no effect, but must still be in range.
 typedef struct AlcoveAdvancedSettings {
   uint32_t struct_size;                // sizeof(AlcoveAdvancedSettings)
   AlcoveEstimator estimator;           // [CONNECTED]
-  AlcoveWeighting weighting;           // [COSINE]
   AlcoveThicknessUnit thickness_unit;  // read by BITMASK and CONNECTED [RADIUS]
-  // How much a sample that lies below the horizon lowers it: 0 does not lower the horizon, 1 lowers
-  // it to the sample. Read by HEURISTIC. [0.05]
-  float blend;
   // The outermost part of the radius, as a fraction of it from 0 to 1, over which occluders fade
-  // out. Read by HORIZONS and HEURISTIC. It must be 0 with BITMASK and CONNECTED, whose sectors are
+  // out. Read by HORIZONS. It must be 0 with BITMASK and CONNECTED, whose sectors are
   // either occluded or not. [0]
   float falloff;
-  AlcovePattern pattern;  // [GOLDEN]
   // Radius of the spatial filter in tiles, 0 to 3, for pixels with fewer than two frames of
   // history. Pixels with more history use a radius of 1. 0 turns the filter off for all pixels. [2]
   uint32_t filter_radius;

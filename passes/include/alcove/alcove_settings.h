@@ -95,12 +95,12 @@ typedef struct AlcoveSettings {
   // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders.
   uint32_t steps;
   // The thickness of occluders as a fraction of the radius, or in another unit with
-  // AlcoveAdvancedSettings::thickness_unit; at least 0. At its leading edge an occluder is at most
-  // as thick as its visible width. [0.15]
+  // AlcoveAdvancedSettings::thickness_unit; at least 0. It is an upper limit: an occluder is no
+  // thicker than it is seen to be wide. [0.3]
   float thickness;
   // The average fraction of the volume hidden behind occluders that is treated as solid, 0 to 1.
   // The actual fraction grows with the occluder's width in the image: it is larger behind a wall
-  // than behind a twig. [0.33]
+  // than behind a twig. [0.286]
   float hidden_occlusion;
   uint32_t depth_layers;  // the depth layers that are searched: 1, or 2 with second_depth [1]
   // The largest number of frames that the history averages, 0 to 127. Raising it reduces noise, and

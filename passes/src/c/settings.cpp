@@ -24,17 +24,11 @@ static_assert(same(Quality::console, ALCOVE_QUALITY_CONSOLE) &&
               same(Quality::high, ALCOVE_QUALITY_HIGH) &&
               same(Quality::reference, ALCOVE_QUALITY_REFERENCE));
 static_assert(same(Estimator::horizons, ALCOVE_ESTIMATOR_HORIZONS) &&
-              same(Estimator::heuristic, ALCOVE_ESTIMATOR_HEURISTIC) &&
               same(Estimator::bitmask, ALCOVE_ESTIMATOR_BITMASK) &&
               same(Estimator::connected, ALCOVE_ESTIMATOR_CONNECTED));
-static_assert(same(Weighting::cosine, ALCOVE_WEIGHTING_COSINE) &&
-              same(Weighting::uniform, ALCOVE_WEIGHTING_UNIFORM));
 static_assert(same(ThicknessUnit::radius, ALCOVE_THICKNESS_UNIT_RADIUS) &&
               same(ThicknessUnit::distance, ALCOVE_THICKNESS_UNIT_DISTANCE) &&
               same(ThicknessUnit::back_faces, ALCOVE_THICKNESS_UNIT_BACK_FACES));
-static_assert(same(Pattern::golden, ALCOVE_PATTERN_GOLDEN) &&
-              same(Pattern::hilbert, ALCOVE_PATTERN_HILBERT) &&
-              same(Pattern::paper, ALCOVE_PATTERN_PAPER));
 static_assert(same(Specular::slices, ALCOVE_SPECULAR_SLICES) &&
               same(Specular::table, ALCOVE_SPECULAR_TABLE) &&
               same(Specular::cone, ALCOVE_SPECULAR_CONE));
@@ -65,11 +59,8 @@ void for_each_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
 template <typename Theirs, typename Ours, typename Visit>
 void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.estimator, ours.estimator);
-  visit(theirs.weighting, ours.weighting);
   visit(theirs.thickness_unit, ours.thickness_unit);
-  visit(theirs.blend, ours.blend);
   visit(theirs.falloff, ours.falloff);
-  visit(theirs.pattern, ours.pattern);
   visit(theirs.filter_radius, ours.filter_radius);
   visit(theirs.filter_tolerance_px, ours.filter_tolerance_px);
   visit(theirs.clamp_width, ours.clamp_width);

@@ -135,6 +135,7 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
   const ImageRole bent_normal{"bent normals", Kind::signed_colour, 3, true, false, half_size};
   const ImageRole specular{"specular occlusion", Kind::colour, 1, true, false, half_size};
   ViewInputs inputs;
+  inputs.occlusion.depth_format = view.depth_format;
   inputs.occlusion.normals_in_view_space = view.normals_in_view_space != VK_FALSE;
   inputs.occlusion.normal_encoding = *encoding;
   inputs.occlusion.normals_forward_z = view.normals_forward_z != VK_FALSE;

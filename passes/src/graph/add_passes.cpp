@@ -177,10 +177,23 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                                     const OcclusionInputs& inputs,
                                                     const OcclusionSettings& settings,
                                                     std::string_view history_name) {
-  return add_with_history(frame, inputs, settings, history_name,
-                          [&](WorkList& list, const WorkFrame& of, const auto& listed) {
-                            return describe_occlusion(list, of, listed, settings);
-                          });
+  auto outputs = add_with_history(frame, inputs, settings, history_name,
+                                  [&](WorkList& list, const WorkFrame& of, const auto& listed) {
+                                    return describe_occlusion(list, of, listed, settings);
+                                  });
+  if (!outputs || outputs->normals) {
+    return outputs;
+  }
+  // For the caller. The graph culls these passes if nothing reads them.
+  auto depth = outputs->linear_depth ? tl::expected<Texture, Error>(outputs->linear_depth)
+                                     : add_linear_depth(frame, inputs.depth_ndc);
+  auto normals = depth.and_then([&](Texture linear) { return add_normals(frame, linear); });
+  if (!normals) {
+    return tl::unexpected(std::move(normals.error()));
+  }
+  outputs->linear_depth = *depth;
+  outputs->normals = *normals;
+  return outputs;
 }
 
 tl::expected<OcclusionOutputs, Error> add_view(const Frame& frame, const ViewInputs& inputs,

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "alcove/passes/work.h"
+#include "maths/normal_encoding.h"
 
 namespace alcove::passes {
 
@@ -28,6 +29,12 @@ namespace alcove::passes {
                                                         const char* name, VkFormat format,
                                                         VkExtent2D size) {
   return given ? given : list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, format, size);
+}
+
+// Returns the value of the specialisation constant kNormalEncoding for normals that may be null.
+[[nodiscard]] inline std::uint32_t encoding_of(framegraph::Texture normals,
+                                               NormalEncoding encoding) {
+  return normals ? static_cast<std::uint32_t>(encoding) : maths::kNoNormals;
 }
 
 }  // namespace alcove::passes

@@ -31,7 +31,7 @@ tl::expected<void, Error> check_textures(const WorkList& list, const Reconstruct
   const auto or_depth = [&](Texture texture) { return texture ? texture : inputs.depth_ndc; };
   return check_inputs(list, "reconstruct",
                       {{"depth", inputs.depth_ndc},
-                       {"normals", inputs.normals},
+                       {"normals", or_depth(inputs.normals)},
                        {"motion vectors", or_depth(inputs.motion)},
                        {"roughness", or_depth(inputs.roughness)}});
 }

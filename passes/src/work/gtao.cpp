@@ -42,7 +42,7 @@ bool of_distance(const OcclusionSettings& settings) {
          settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
-std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
+std::array<NamedConstant, 18> constants_of(const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   const AdvancedSettings& advanced = settings.advanced;
@@ -51,11 +51,9 @@ std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
            {"kBentNormal", flag(needs_bent_normal(settings))},
            {"kEstimator", static_cast<std::uint32_t>(advanced.estimator)},
            {"kTileSize", settings.tile_size},
-           {"kPattern", static_cast<std::uint32_t>(advanced.pattern)},
            {"kPerspective", flag(is_perspective(projection))},
            {"kRoughnessTexture", flag(reads.roughness)},
            {"kRoughnessChannel", channel_if(reads.roughness, settings.roughness_channel)},
-           {"kUniformWeight", flag(advanced.weighting == Weighting::uniform)},
            {"kFalloff", flag(advanced.falloff > 0.0f)},
            {"kThicknessOfDistance", flag(of_distance(settings))},
            {"kBackFaces", flag(reads.back_faces)},
@@ -63,9 +61,19 @@ std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
            {"kSecondLayer", flag(reads.second_layer)},
            {"kExtrapolation", flag(advanced.extrapolation)},
            {"kUnobserved", flag(advanced.unobserved)},
-           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
            {"kReversed", flag(is_reversed(projection))},
            {"kInfiniteFar", flag(has_infinite_far(projection))}}};
+}
+
+// Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
+// groups, and groups are numbered column by column in each strip (tile_of_invocation() in
+// gtao.comp).
+VkExtent3D in_strips(VkExtent2D tiles) {
+  constexpr std::uint32_t kGroup = 8;
+  const std::uint32_t rows = (tiles.height + kGroup - 1) / kGroup;
+  const std::uint32_t strips = std::max(rows / 16, 1u);
+  return {(rows + strips - 1) / strips * kGroup, tiles.width, strips};
 }
 
 maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame,
@@ -77,7 +85,8 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
                                                            ? inputs.depth_format
                                                            : list.format(inputs.depth_ndc));
   return {
-      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z),
+      view_from_normal(frame.view, inputs.normals_in_view_space || !inputs.normals,
+                       inputs.normals && inputs.normals_forward_z),
       maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                   projection.uv_to_slope.w),
       inverse_depth_from_ndc(projection),
@@ -86,7 +95,6 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
       frame.index,
       settings.thickness * (of_distance(settings) ? 1.0f : radius),
       maths::hidden_exponent(settings.hidden_occlusion),
-      settings.advanced.blend,
       settings.advanced.falloff,
       settings.roughness,
       step.constant,
@@ -102,13 +110,14 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
   const auto optional = [](bool read, Texture texture, Texture instead) {
     return read ? texture : instead;
   };
-  const Texture roughness = optional(reads.roughness, inputs.roughness, inputs.normals);
+  const Texture normals = or_else(inputs.normals, inputs.depth_ndc);
+  const Texture roughness = optional(reads.roughness, inputs.roughness, inputs.depth_ndc);
   const Texture back = optional(reads.back_faces, inputs.back_depth_ndc, inputs.depth_ndc);
   const Texture second = optional(reads.second_layer, inputs.second_depth_ndc, inputs.depth_ndc);
   auto good = validate(settings).and_then([&] {
     return check_inputs(list, "gtao",
                         {{"depth", inputs.depth_ndc},
-                         {"normals", inputs.normals},
+                         {"normals", normals},
                          {"roughness", roughness},
                          {"back-face depth", back},
                          {"second depth", second}});
@@ -132,7 +141,7 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
         list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, "bent-normal residual", kBentRawFormat, size);
   }
   const NamedTexture images[] = {{"depth_image", inputs.depth_ndc},
-                                 {"normal_image", inputs.normals},
+                                 {"normal_image", normals},
                                  {"raw_image", result.raw_occlusion},
                                  {"bent_image", or_else(result.bent, result.raw_occlusion)},
                                  {"back_image", back},
@@ -144,7 +153,7 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
                  .constants = constants_of(inputs, settings, reads, *projection),
                  .images = images,
                  .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection)),
-                 .size = {size.width, size.height, 1}})
+                 .size = in_strips(size)})
       .map([&] { return result; });
 }
 

@@ -1,5 +1,6 @@
 #include "alcove/passes/work.h"
 #include "normals_parameters.h"
+#include "work/bindings.h"
 #include "work/check_inputs.h"
 #include "work/view_parameters.h"
 
@@ -20,10 +21,13 @@ tl::expected<Texture, Error> describe_normals(WorkList& list, const WorkFrame& f
   const Texture normals = list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, "normals from depth",
                                    VK_FORMAT_R16G16B16A16_SFLOAT, size);
   const NamedTexture images[] = {{"depth_image", depth}, {"normal_image", normals}};
-  const maths::NormalsParameters parameters{*projection};
+  const NamedConstant constants[] = {{"kPerspective", flag(is_perspective(*projection))}};
+  const maths::NormalsParameters parameters{maths::vec4(
+      maths::ray_per_px(*projection), projection->uv_to_slope.z, projection->uv_to_slope.w)};
   return list
       .dispatch({.label = "normals",
                  .shader = Shader::normals,
+                 .constants = constants,
                  .images = images,
                  .parameters = bytes_of(parameters),
                  .size = {size.width, size.height, 1}})

@@ -8,12 +8,11 @@
 namespace alcove::passes {
 namespace {
 
-// Adds linear depth if an output, specular occlusion or normals from depth need it.
+// Adds linear depth if an output or specular occlusion needs it.
 tl::expected<framegraph::Texture, Error> describe_linear(WorkList& list, const WorkFrame& frame,
                                                          const OcclusionInputs& inputs,
                                                          const OcclusionSettings& settings) {
-  const bool read =
-      settings.linear_depth || specular_reads_bent_normal(settings) || !inputs.normals;
+  const bool read = settings.linear_depth || specular_reads_bent_normal(settings);
   return read ? describe_linear_depth(list, frame, inputs.depth_ndc)
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
@@ -63,10 +62,7 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
   }
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
-  // Normals from depth are signed vectors in view space with the camera looking along -Z.
-  const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
-  const bool forward_z = normals && inputs.normals_forward_z;
-  if (!normals) {
+  if (!normals && specular_reads_bent_normal(settings)) {
     auto made = describe_normals(list, frame, *depth);
     if (!made) {
       return tl::unexpected(std::move(made.error()));
@@ -75,13 +71,14 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
   }
   const auto raw_occlusion = describe_gtao(list, frame,
                                            {.depth_ndc = inputs.depth_ndc,
-                                            .normals = normals,
+                                            .normals = inputs.normals,
                                             .normals_in_view_space = in_view_space,
                                             .roughness = inputs.roughness,
                                             .back_depth_ndc = inputs.back_depth_ndc,
                                             .second_depth_ndc = inputs.second_depth_ndc,
-                                            .normal_encoding = encoding,
-                                            .normals_forward_z = forward_z},
+                                            .depth_format = inputs.depth_format,
+                                            .normal_encoding = inputs.normal_encoding,
+                                            .normals_forward_z = inputs.normals_forward_z},
                                            settings);
   if (!raw_occlusion) {
     return tl::unexpected(raw_occlusion.error());
@@ -89,13 +86,13 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
   const auto filtered = describe_reconstruct(list, frame,
                                              {.raw_occlusion = *raw_occlusion,
                                               .depth_ndc = inputs.depth_ndc,
-                                              .normals = normals,
+                                              .normals = inputs.normals,
                                               .normals_in_view_space = in_view_space,
                                               .motion = inputs.motion,
                                               .roughness = inputs.roughness,
                                               .into = inputs.into,
-                                              .normal_encoding = encoding,
-                                              .normals_forward_z = forward_z,
+                                              .normal_encoding = inputs.normal_encoding,
+                                              .normals_forward_z = inputs.normals_forward_z,
                                               .motion_convention = inputs.motion_convention,
                                               .visibility_channel = inputs.visibility_channel,
                                               .half_size_results = inputs.half_size_outputs},

@@ -68,7 +68,7 @@ std::array<NamedConstant, 16> constants_of(const ReconstructInputs& inputs,
            {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},
            {"kFresh", flag(past == Past::none)},
            {"kVisibility", flag(needs_visibility(settings))},
-           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
            {"kShaped", flag(!settings.half_resolution && shaped)},
            {"kReversed", flag(is_reversed(projection))},
            {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
@@ -140,13 +140,14 @@ std::array<NamedTexture, 19> images_of(const ReconstructInputs& in, const Textur
   // need normals.
   const Occlusion out = half ? Occlusion{} : textures.result;
   const Texture written = or_else(or_else(out.visibility, out.bent_normal), out.specular);
-  const Texture sampled = half ? in.depth_ndc : in.normals;
+  const Texture normals = half && !in.raw_occlusion.lobe ? Texture{} : in.normals;
+  const Texture sampled = in.depth_ndc;
   const bool keeps = in.visibility_channel != VisibilityChannel::all;
   const Texture raw = in.raw_occlusion.raw_occlusion;
   return {{{"raw_image", raw},
            {"bent_image", or_else(in.raw_occlusion.bent, raw)},
            {"depth_image", in.depth_ndc},
-           {"normal_image", in.raw_occlusion.lobe ? in.normals : sampled},
+           {"normal_image", or_else(normals, sampled)},
            {"half_image", textures.texels.current},
            {"half_depth_image", textures.depth.current},
            {"visibility_image", or_else(out.visibility, written)},
@@ -187,6 +188,10 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   if (!inputs.raw_occlusion.lobe) {
     inputs.roughness = {};
   }
+  if (!inputs.normals) {  // those from depth are in view space
+    inputs.normals_in_view_space = true;
+    inputs.normals_forward_z = false;
+  }
   if (!inputs.into.visibility || !needs_visibility(settings)) {
     inputs.visibility_channel = VisibilityChannel::all;
   }
@@ -214,8 +219,8 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                                 " Where there was none, reset the history (reset_history)."});
   }
   const Past past = past_of(frame, *sizes, textures.valid, bool(inputs.motion));
-  maths::ReconstructParameters parameters =
-      reconstruct_parameters(frame, *projection, *previous, inputs, settings);
+  maths::ReconstructParameters parameters = reconstruct_parameters(
+      frame, *projection, *previous, inputs, settings, list.format(inputs.depth_ndc));
   // In a static view all frames get the same weight in the history.
   if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
@@ -229,12 +234,14 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   const VkExtent2D covered = half ? VkExtent2D{std::min(half_size.width + 1, stored.width),
                                                std::min(half_size.height + 1, stored.height)}
                                   : sizes->now;
+  // The number of texels that an invocation reconstructs, kBlocks of the shader.
+  const std::uint32_t blocks = inputs.raw_occlusion.tile_size > (half ? 2u : 1u) ? 4 : 1;
   auto added = list.dispatch({.label = "reconstruct",
                               .shader = shader_of(history, inputs.raw_occlusion.lobe, half),
                               .constants = constants_of(inputs, settings, *projection, past),
                               .images = images_of(inputs, textures, half),
                               .parameters = bytes_of(parameters),
-                              .size = {covered.width, covered.height, 1}});
+                              .size = {covered.width, (covered.height + blocks - 1) / blocks, 1}});
   if (!added) {
     return tl::unexpected(std::move(added.error()));
   }

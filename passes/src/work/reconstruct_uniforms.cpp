@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "maths/slice_line.h"
 #include "work/interleave_offset.h"
@@ -105,6 +106,38 @@ maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& vie
   return maths::mat4(maths::transpose(plane_from_view * maths::mat3(view_from_normal)));
 }
 
+// Whether each pixel averages the traced pixels around it, as kBetween of the shader.
+bool is_between(const ReconstructInputs& inputs, const OcclusionSettings& settings) {
+  return inputs.raw_occlusion.tile_size > 1 && settings.advanced.filter_radius > 0;
+}
+
+// Returns 1 / ReconstructParameters::wide_sharpness. The four traced pixels around a pixel are
+// needed less the more slices each of them has. A static image averages ever more frames, which
+// make the samples of neighbours dispensable. Fitted to error and grain of `alcove compare --frames
+// 8`, 24 and 32, with and without --orbit.
+float near_sharpness(const WorkFrame& frame, const ReconstructInputs& inputs, float texel) {
+  const bool is_static = frame.view == frame.previous_view && !inputs.motion;
+  if (!is_static) {
+    const float one_slice = texel > 1.0f ? 1.0f : 1.3f;
+    return inputs.raw_occlusion.slices > 1 ? 1.7f : one_slice;
+  }
+  const auto frames = static_cast<float>(frame.static_frames);
+  return std::lerp(0.8f, 2.2f, std::clamp((frames - 8.0f) / 16.0f, 0.0f, 1.0f));
+}
+
+// Returns the filter's smallest window in units of 8 squared pixels: x at the centre of a texel of
+// the history, and y what the distance from centres adds, because the interpolation of the history
+// blurs there anyway. With tiles of 4 texels few samples are a texel's own even in time, so the
+// window stays wider. With one slice, whose noise is large, it then widens more between centres: a
+// surface that moves over the image meets other directions in each frame than the pattern has
+// prepared for one pixel. Fitted to error and grain (`alcove compare --orbit 0.4`).
+maths::vec2 smallest_window(const RawOcclusionTextures& raw_occlusion, float texel) {
+  const bool wide = static_cast<float>(raw_occlusion.tile_size) > 2.0f * texel;
+  const float own = wide ? 1.45f : 0.58f;
+  const float between = wide && raw_occlusion.slices == 1 ? 10.4f : 2.6f;
+  return 8.0f * texel * texel * maths::vec2(own * own, between);
+}
+
 // Returns the width of the filter's window in pixels for a frame without history: wide if there are
 // few slices, and with many slices hardly wider than a tile. Fitted to the error of first frames
 // (`alcove compare --frames 1`).
@@ -112,6 +145,10 @@ float window_px(const RawOcclusionTextures& raw_occlusion) {
   const float few = 1.1f / std::sqrt(static_cast<float>(raw_occlusion.slices));
   return static_cast<float>(raw_occlusion.tile_size) * std::max(few, 0.55f);
 }
+
+// The second difference of depth, in units of the tolerance, up to which a tangent plane is
+// computed from depth instead of the normal. Fitted to the errors of `alcove compare`.
+constexpr float kLargestBend = 0.05f;
 
 // Returns ReconstructParameters::traced_range: the positions of the first and the last traced
 // pixel. The tiles at the right and lower border trace their last pixel within the image if the
@@ -124,11 +161,9 @@ maths::vec4 traced_range(maths::vec2 size_px, maths::vec2 offset, float tile_siz
 
 }  // namespace
 
-maths::ReconstructParameters reconstruct_parameters(const WorkFrame& frame,
-                                                    const maths::Projection& projection,
-                                                    const maths::Projection& previous,
-                                                    const ReconstructInputs& inputs,
-                                                    const OcclusionSettings& settings) {
+maths::ReconstructParameters reconstruct_parameters(
+    const WorkFrame& frame, const maths::Projection& projection, const maths::Projection& previous,
+    const ReconstructInputs& inputs, const OcclusionSettings& settings, VkFormat depth_format) {
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // This matrix is computed in double, because the translations nearly cancel if the camera is far
   // from the origin.
@@ -139,9 +174,15 @@ maths::ReconstructParameters reconstruct_parameters(const WorkFrame& frame,
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
       maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
-  // x, y, w and depth.
-  parameters.previous_from_pixel = maths::mat4(previous_from_pixel[0], previous_from_pixel[1],
-                                               previous_from_pixel[3], previous_from_pixel[2]);
+  const float texel = settings.half_resolution ? 2.0f : 1.0f;
+  // From pixels to texels, from the centre of the first one.
+  const maths::vec4 x = previous_from_pixel[0] / texel - 0.5f * previous_from_pixel[3];
+  const maths::vec4 y = previous_from_pixel[1] / texel - 0.5f * previous_from_pixel[3];
+  parameters.previous_from_pixel =
+      maths::transpose(maths::mat4(x, y, previous_from_pixel[3], previous_from_pixel[2]));
+  if (!is_perspective(projection)) {
+    std::swap(parameters.previous_from_pixel[2], parameters.previous_from_pixel[3]);
+  }
   parameters.normal_from_view = maths::transpose(to_view);
   parameters.plane_from_normal = plane_from_normal(projection, to_view);
   parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
@@ -151,9 +192,8 @@ maths::ReconstructParameters reconstruct_parameters(const WorkFrame& frame,
       1.0f / (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   parameters.clamp_width = settings.advanced.clamp_width;
-  const float texel = settings.half_resolution ? 2.0f : 1.0f;
-  parameters.previous_extent = maths::vec4(maths::ceil(previous.size_px / texel) - 0.5f,
-                                           previous.size_px / projection.size_px);
+  parameters.previous_extent = maths::vec4(maths::ceil(previous.size_px / texel) - 1.0f,
+                                           previous.size_px / projection.size_px / texel);
   parameters.pixel_uv = 1.0f / projection.size_px;
   parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
   parameters.pixels_per_slope = 1.0f / maths::ray_per_px(projection);
@@ -173,25 +213,38 @@ maths::ReconstructParameters reconstruct_parameters(const WorkFrame& frame,
     parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
     parameters.history_slack = kHistorySlack * parameters.history_sharpness;
   }
+  parameters.history_slope = parameters.history_depth_scale.z * parameters.history_sharpness *
+                             (is_perspective(projection) ? 1.442695f : 1.0f);
   // The dither offsets of the frames are multiples of the golden ratio modulo 1, which are spread
   // evenly over any number of successive frames.
   parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
-  parameters.motion =
-      maths::vec4(maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px,
-                  maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px);
+  parameters.motion = maths::vec4(
+      maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px / texel,
+      maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px / texel + 0.5f);
   parameters.roughness = settings.roughness;
   const float window = window_px(inputs.raw_occlusion);
-  parameters.inverse_squared_window = 0.125f / (window * window);
+  const float sharpness =
+      is_between(inputs, settings) ? near_sharpness(frame, inputs, texel) : 1.0f;
+  parameters.wide_sharpness = 1.0f / sharpness;
+  parameters.first_sharpness = sharpness * 0.125f / (window * window);
+  parameters.smallest_window = smallest_window(inputs.raw_occlusion, texel) / sharpness;
   // More slices narrow the window. They also reduce the distance from the tangent plane that is
   // tolerated.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
   const auto [offset_x, offset_y] =
       interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
   parameters.interleave_pixel = {offset_x, offset_y};
-  parameters.interleave_offset = maths::vec2(parameters.interleave_pixel);
-  parameters.traced_range = traced_range(projection.size_px, parameters.interleave_offset,
-                                         static_cast<float>(inputs.raw_occlusion.tile_size));
+  parameters.traced_range =
+      traced_range(projection.size_px, maths::vec2(parameters.interleave_pixel),
+                   static_cast<float>(inputs.raw_occlusion.tile_size));
+  const float scale = parameters.inverse_depth_from_ndc.x;
+  const float per_ndc = std::abs(scale);
+  const bool from_zero =
+      maths::is_counted_from_zero(is_perspective(projection), is_reversed(projection));
+  parameters.half_inverse_depth_per_ndc = from_zero ? 0.5f * scale : -0.5f * scale;
+  parameters.depth_step = std::max(depth_step(projection, depth_format).constant, 0.0f) / per_ndc;
+  parameters.largest_bend = kLargestBend / (per_ndc * parameters.tolerance);
   parameters.power = settings.power;
   parameters.intensity = settings.intensity;
   return parameters;

@@ -9,9 +9,9 @@ namespace alcove::passes {
 
 // Returns all parameters except the size of the history's texture. `previous` is the previous
 // frame's projection. ReconstructParameters::largest_weight is set to its value for a view that is
-// not static.
+// not static. `depth_format` is the format of the depth buffer.
 [[nodiscard]] maths::ReconstructParameters reconstruct_parameters(
     const WorkFrame& frame, const maths::Projection& projection, const maths::Projection& previous,
-    const ReconstructInputs& inputs, const OcclusionSettings& settings);
+    const ReconstructInputs& inputs, const OcclusionSettings& settings, VkFormat depth_format);
 
 }  // namespace alcove::passes

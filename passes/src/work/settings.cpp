@@ -119,7 +119,7 @@ tl::expected<void, Error> validate(const OcclusionSettings& settings) {
         Error{"The setting 'falloff' is " + number_text(advanced.falloff) + " with the estimator " +
               std::string(name_of(advanced.estimator)) +
               ", whose sectors are either occluded or open; set it to 0, or choose the estimator "
-              "horizons or heuristic."});
+              "horizons."});
   }
   return {};
 }

@@ -29,7 +29,7 @@ std::array<NamedConstant, 8> constants_of(const UpsampleInputs& inputs, const Oc
                                           const OcclusionSettings& settings,
                                           const maths::Projection& projection) {
   const std::uint32_t encoding =
-      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u;
+      result.bent_normal ? encoding_of(inputs.normals, inputs.normal_encoding) : 0u;
   return {{{"kPerspective", flag(is_perspective(projection))},
            {"kVisibility", flag(bool(result.visibility))},
            {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
@@ -79,7 +79,7 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
       {"half_image", inputs.half},
       {"half_depth_image", inputs.half_size_results ? inputs.half : inputs.half_depth},
       {"depth_image", inputs.depth_ndc},
-      {"normal_image", bent ? inputs.normals : inputs.depth_ndc},
+      {"normal_image", or_else(bent ? inputs.normals : Texture{}, inputs.depth_ndc)},
       {"residual_image", bent ? inputs.residuals : inputs.half},
       {"visibility_image", or_else(result.visibility, written)},
       {"bent_normal_image", or_else(result.bent_normal, written)},

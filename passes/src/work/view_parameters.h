@@ -68,11 +68,12 @@ namespace alcove::passes {
   const bool perspective = is_perspective(projection);
   const maths::dvec2 linear = perspective ? maths::dvec2(unproject.z, unproject.w) / unproject.y
                                           : maths::dvec2(unproject.x, unproject.y) / unproject.w;
-  const bool grows = maths::grows_with_inverse_depth(perspective, is_reversed(projection));
-  const double offset = grows ? linear.y : linear.x + linear.y;
+  if (!perspective) {
+    return {static_cast<float>(linear.x), static_cast<float>(linear.y)};
+  }
+  const double far = is_reversed(projection) ? linear.y : linear.x + linear.y;
   // If the matrix has rounding errors, its inverse depth at the far plane can be slightly negative.
-  return {static_cast<float>(std::abs(linear.x)),
-          static_cast<float>(perspective ? std::max(offset, 0.0) : offset)};
+  return {static_cast<float>(std::abs(linear.x)), static_cast<float>(std::max(far, 0.0))};
 }
 
 // Returns whether the far plane of a perspective projection is infinitely far away, so that its
@@ -85,7 +86,7 @@ namespace alcove::passes {
 [[nodiscard]] inline maths::DepthStep depth_step(const maths::Projection& projection,
                                                  VkFormat format) {
   const maths::vec2 from_ndc = inverse_depth_from_ndc(projection);
-  const double scale = from_ndc.x;
+  const double scale = std::abs(from_ndc.x);
   // The result is 1.5 times the step of the format, because rasterisers do not always round to the
   // nearest value.
   const auto fixed = [&](double levels) {
@@ -101,14 +102,16 @@ namespace alcove::passes {
       return fixed(16777215.0);
     default: {
       // Float formats have steps of at most 2^-23 of the stored depth, and of 2^-24 from 0.5 to 1.
-      // The stored depth is (inverse_depth - offset) / scale if it grows with the inverse depth,
-      // otherwise 1 minus that.
+      // The stored depth grows with the inverse depth in perspective if it is reversed, and in
+      // orthographic views if it is not.
       const double step = std::ldexp(1.0, -23);
-      return maths::grows_with_inverse_depth(is_perspective(projection), is_reversed(projection))
-                 ? maths::DepthStep{static_cast<float>(-step * from_ndc.y),
-                                    static_cast<float>(step)}
-                 : maths::DepthStep{static_cast<float>(step * (scale + from_ndc.y)),
-                                    static_cast<float>(-step)};
+      const bool perspective = is_perspective(projection);
+      const bool reversed = is_reversed(projection);
+      // The inverse depth at which the stored depth is 0.
+      const double zero = from_ndc.y + (perspective && !reversed ? scale : 0.0);
+      const double sign = perspective == reversed ? 1.0 : -1.0;
+      return maths::DepthStep{static_cast<float>(-sign * step * zero),
+                              static_cast<float>(sign * step)};
     }
   }
 }

@@ -9,7 +9,6 @@ namespace {
 
 using passes::Estimator;
 using passes::OcclusionSettings;
-using passes::Pattern;
 
 class VariantList {
  public:
@@ -30,7 +29,7 @@ class VariantList {
   std::vector<Variant> variants_;
 };
 
-// Selects an estimator, without the falloff that only horizons and the heuristic have.
+// Selects an estimator, without the falloff that only horizons have.
 void use(OcclusionSettings& settings, Estimator estimator) {
   settings.advanced.estimator = estimator;
   if (passes::has_thickness(estimator)) {
@@ -42,8 +41,6 @@ void add_estimators(VariantList& list) {
   const char* part = "estimator";
   list.add(part, "horizons, infinitely thick",
            [](OcclusionSettings& s) { use(s, Estimator::horizons); });
-  list.add(part, "the paper's thickness heuristic",
-           [](OcclusionSettings& s) { use(s, Estimator::heuristic); });
   list.add(part, "plain bitmask", [](OcclusionSettings& s) {
     use(s, Estimator::bitmask);
     s.hidden_occlusion = 0.0f;
@@ -86,12 +83,6 @@ void add_sampling(VariantList& list) {
            [](OcclusionSettings& s) { s.steps = std::min(s.steps * 2, 64u); });
   list.add(part, "twice the slices",
            [](OcclusionSettings& s) { s.slices = std::min(s.slices * 2, 64u); });
-  part = "pattern";
-  list.add(part, "golden", [](OcclusionSettings& s) { s.advanced.pattern = Pattern::golden; });
-  list.add(part, "Hilbert and R2",
-           [](OcclusionSettings& s) { s.advanced.pattern = Pattern::hilbert; });
-  list.add(part, "the paper's, six rotations",
-           [](OcclusionSettings& s) { s.advanced.pattern = Pattern::paper; });
   part = "snap_to_texels";
   list.add(part, "samples at texel centres",
            [](OcclusionSettings& s) { s.advanced.snap_to_texels = true; });

@@ -17,7 +17,9 @@ constexpr std::uint32_t kWindow = 32;
 constexpr std::uint32_t kStep = kWindow / 2;  // between windows
 constexpr std::size_t kBins = std::size_t{kWindow} * kWindow;
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLongestPeriod = 9.0;  // pixels
+constexpr double kLongestPeriod = 9.0;  // pixels; of the weave
+constexpr double kShortestGrain = 3.0;  // periods, pixels
+constexpr double kLongestGrain = 24.0;
 // Number of next lower and of next higher frequencies with which a frequency is compared.
 constexpr std::size_t kSimilar = 60;
 // The truth of a window is smooth if the means of its 4x4 blocks, less a plane fitted to them, have
@@ -241,6 +243,16 @@ double Weave::visible_fraction() const {
   return windows > 0 ? static_cast<double>(visible_windows) / static_cast<double>(windows) : 0.0;
 }
 
+double Weave::grain() const {
+  double variance = 0.0;
+  for (std::size_t bin = 0; bin < powers.size(); ++bin) {
+    const double cycles = cycles_of(bin);
+    const bool in_band = cycles * kShortestGrain <= 1.0 && cycles * kLongestGrain >= 1.0;
+    variance += in_band ? powers[bin] / static_cast<double>(windows) : 0.0;
+  }
+  return std::sqrt(variance);
+}
+
 Weave& Weave::operator+=(const Weave& more) {
   windows += more.windows;
   visible_windows += more.visible_windows;
@@ -278,16 +290,17 @@ std::string weave_line(const Weave& weave) {
   return fmt::format(
       "Weave (regular patterns with periods of 2 to {:.0f} pixels): RMS {:.4f}, strongest period "
       "{:.1f} pixels, over {} windows in which the truth is smooth; {:.1f} % of them exceed "
-      "{:.3f}\n",
+      "{:.3f}. Grain (periods of {:.0f} to {:.0f} pixels): RMS {:.4f}\n",
       kLongestPeriod, weave.rms(), weave.period(), weave.windows, 100.0 * weave.visible_fraction(),
-      Weave::kVisible);
+      Weave::kVisible, kShortestGrain, kLongestGrain, weave.grain());
 }
 
 nlohmann::ordered_json to_json(const Weave& weave) {
   return {{"windows", weave.windows},
           {"rms", weave.rms()},
           {"period_px", weave.period()},
-          {"visible_fraction", weave.visible_fraction()}};
+          {"visible_fraction", weave.visible_fraction()},
+          {"grain_rms", weave.grain()}};
 }
 
 }  // namespace alcove::sample

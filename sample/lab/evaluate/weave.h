@@ -33,6 +33,9 @@ struct Weave {
   // pattern.
   double period() const;
   double visible_fraction() const;
+  // The grain: RMS of the error with periods of 3 to 24 pixels, noise and patterns alike, over all
+  // windows; 0 if there are none.
+  double grain() const;
   Weave& operator+=(const Weave& more);
 };
 
@@ -41,7 +44,7 @@ struct Weave {
 [[nodiscard]] Weave weave_of(const Image<float>& result, const Image<float>& truth,
                              const Mask& surfaces);
 
-// One line of a table, with its line break.
+// One line of a table, with its line break: weave and grain.
 [[nodiscard]] std::string weave_line(const Weave& weave);
 // The weave in the form of report.json.
 [[nodiscard]] nlohmann::ordered_json to_json(const Weave& weave);

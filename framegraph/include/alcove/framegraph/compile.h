@@ -1,5 +1,5 @@
 // Compiles a declared frame to a plan. It is a pure function that needs no device. Its phases are:
-// validate, cull, order, assign queues, lifetimes, place, synchronise. Each phase has a source file
+// validate, cull, assign queues, lifetimes, place, synchronise. Each phase has a source file
 // of its own.
 #pragma once
 
@@ -55,13 +55,6 @@ struct ImageOracle {
   const void* context = nullptr;
 };
 
-enum class Ordering : std::uint8_t {
-  program,  // in the order of declaration
-  // The passes run in another order than declared, because fewer bytes of transients are then live
-  // at once. Passes with side effects keep their order relative to each other.
-  lower_peak,
-};
-
 // Limits of the device and options of the caller. The defaults suit any desktop device.
 struct Limits {
   std::uint32_t max_extent_2d = 16384;
@@ -84,19 +77,7 @@ struct Limits {
   MemoryOracle memory;
   FormatOracle formats;
   ImageOracle images;  // if it has no query, every texture within the fields above is allowed
-  Ordering ordering = Ordering::lower_peak;
-  // The largest number of live passes for which another order is searched. Graphs with more live
-  // passes keep the order of declaration, because the search takes time that grows faster than the
-  // graph.
-  std::uint32_t reorder_passes = 48;
-  // How long placement searches for a lower memory peak, in comparisons of two resources, at least
-  // 0. The search runs only if the first placement exceeds the lower bound; 0 always keeps the
-  // first placement. A larger value takes more time in frames whose declaration changes. Examples
-  // for 200 passes with textures of differing sizes (framegraph_benchmark): 0 takes .05 ms and has
-  // a median peak of 1.16 times the lower bound, 2^18 takes .6 ms and has 1.002 times the bound,
-  // and 2^24 takes up to 30 ms and lowers the worst peaks by a few hundredths of the bound.
-  std::int64_t placement_effort = 1 << 18;
-  bool alias = true;  // whether transients may share memory
+  bool alias = true;   // whether transients may share memory
 };
 
 // Compiles graphs and keeps its working memory from call to call, so that it allocates nothing

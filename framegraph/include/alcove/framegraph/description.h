@@ -5,8 +5,8 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "alcove/framegraph/records.h"
@@ -14,7 +14,6 @@
 
 namespace alcove::framegraph {
 
-enum class ResourceKind : std::uint8_t { texture, buffer };
 enum class Origin : std::uint8_t { transient, imported, history };
 
 struct ResourceRecord {
@@ -34,6 +33,7 @@ struct ResourceRecord {
   std::uint32_t flags = 0;   // ResourceFlags
   VkFlags create_flags = 0;  // of a texture, TextureDesc::flags; of a buffer, BufferDesc::usage
   std::uint32_t planes = 1;  // aspects with separate states: 2 if the format has depth and stencil
+  bool operator==(const ResourceRecord&) const = default;
 };
 static_assert(std::has_unique_object_representations_v<ResourceRecord>);
 
@@ -48,10 +48,6 @@ constexpr std::uint32_t first_plane(const Range& range) {
 }
 constexpr std::uint32_t plane_count(const ResourceRecord& record, const Range& range) {
   return range.aspects != 0 ? 1 : record.planes;
-}
-
-inline bool has_one_subresource(const ResourceRecord& record) {
-  return record.mips == 1 && record.layers == 1 && record.planes == 1;
 }
 
 enum ResourceFlags : std::uint32_t {
@@ -72,7 +68,9 @@ struct ExternalRecord {
   std::uint8_t has_handle = 0;                        // 0 or 1: the caller gave a Vulkan handle
   HistoryValidity validity = HistoryValidity::valid;  // of a history slot
   QueueClass queue = QueueClass::graphics;            // the queue that used it last
-  std::uint8_t reserved[3] = {};
+  std::uint8_t concurrent = 0;                        // 0 or 1: queues need no ownership transfers
+  std::uint8_t reserved[2] = {};
+  bool operator==(const ExternalRecord&) const = default;
 };
 static_assert(std::has_unique_object_representations_v<ExternalRecord>);
 
@@ -83,14 +81,12 @@ enum AccessFlags : std::uint32_t {
   kForeign = 8,     // the handle belongs to another graph or an earlier frame
   kNull = 16,       // the handle is default-constructed
   kClosed = 32,     // declared on a pass after the next pass was added
+  kWhole = 64,      // declared without a range
   kOnBuffer = 128,  // the handle is a Buffer
   // Contents::accumulate: the order of this write relative to others with the same access is free.
   kUnordered = 256,
   // Marks an OutputRecord that reports the use of a PassBuilder after Graph::reset().
   kStaleBuilder = 1u << 16,
-  // Bits 24 to 31 of the flags hold the number of the rendering within the pass to which the access
-  // belongs (see PassBuilder::next_rendering()).
-  kRendering = 1u << 24,
 };
 
 // The bits of VkAccessFlags2 that write, of Vulkan and its extensions except video.
@@ -124,6 +120,7 @@ struct AccessRecord {
   ResourceKind kind() const {
     return flags & kOnBuffer ? ResourceKind::buffer : ResourceKind::texture;
   }
+  bool operator==(const AccessRecord&) const = default;
 };
 static_assert(std::has_unique_object_representations_v<AccessRecord>);
 
@@ -134,6 +131,7 @@ struct PassRecord {
   QueueClass queue = QueueClass::graphics;
   std::uint8_t flags = 0;
   std::uint16_t reserved = 0;
+  bool operator==(const PassRecord&) const = default;
 };
 static_assert(std::has_unique_object_representations_v<PassRecord>);
 
@@ -142,9 +140,12 @@ struct OutputRecord {
   std::uint32_t resource = kNone;
   std::uint32_t version = 0;
   std::uint32_t flags = 0;  // kForeign, kNull, kStaleBuilder
+  bool operator==(const OutputRecord&) const = default;
 };
 static_assert(std::has_unique_object_representations_v<OutputRecord>);
 
+// Names appear in messages only and are not part of the comparison of declarations. They lie in the
+// memory of the graph and are valid until its reset().
 struct GraphDescription {
   Records<PassRecord> passes;
   Records<AccessRecord> accesses;  // in order of passes
@@ -155,16 +156,8 @@ struct GraphDescription {
   // declared. Two descriptions with the same edition have the same records, because frame numbers
   // are unique among all graphs.
   std::uint64_t edition = 0;
-
-  // A name, which appears in messages only. Names are not part of the comparison of declarations.
-  struct Name {
-    std::uint32_t size = 0;
-    std::uint32_t offset = 0;  // into long_names, if the name does not fit into `place`
-    char place[24] = {};
-  };
-  std::string long_names;
-  std::vector<Name> pass_names;  // it may be longer than `passes`, as may resource_names
-  std::vector<Name> resource_names;
+  std::vector<std::string_view> pass_names;  // it may be longer than `passes`
+  std::vector<std::string_view> resource_names;
 
   std::span<const AccessRecord> pass_accesses(std::uint32_t pass) const {
     const std::uint32_t first = passes[pass].first_access;
@@ -173,14 +166,8 @@ struct GraphDescription {
                                    : static_cast<std::uint32_t>(accesses.size());
     return {accesses.data() + first, last - first};
   }
-  std::string_view pass_name(std::uint32_t pass) const { return text(pass_names[pass]); }
-  std::string_view resource_name(std::uint32_t resource) const {
-    return text(resource_names[resource]);
-  }
-  std::string_view text(const Name& name) const {
-    const bool here = name.size <= sizeof name.place;
-    return {here ? name.place : long_names.data() + name.offset, name.size};
-  }
+  std::string_view pass_name(std::uint32_t pass) const { return pass_names[pass]; }
+  std::string_view resource_name(std::uint32_t resource) const { return resource_names[resource]; }
 };
 
 // Returns whether two declarations are equal apart from their names.

@@ -52,22 +52,12 @@ using PlanCheck = tl::expected<void, Errors>(const GraphDescription&, const Limi
 struct ExecutorOptions {
   std::uint32_t frames_in_flight = 2;  // frame slots, 1 to 8
   bool timestamps = true;              // GPU time of each pass, on queues that have timestamps
-  Ordering ordering = Ordering::lower_peak;
   bool alias = true;
-  // How long placement searches for a lower memory peak when a frame's declaration changes, in
-  // comparisons of two resources. Limits::placement_effort has examples.
-  std::int64_t placement_effort = Limits{}.placement_effort;
   // The number of compiled plans that are cached, 1 to 4096. record() and submit() have a cache of
   // this size each. A frame whose declaration has a cached plan is not compiled again. When a cache
   // is full, the plan that was unused for longest is replaced. A plan takes a few hundred bytes per
   // pass and per resource.
   std::uint32_t cached_plans = 64;
-  // Number of threads that record passes, 1 to 64, including the caller's. Fewer are used if the
-  // system cannot create so many. With more than one thread, callbacks of different passes run at
-  // the same time, into secondary command buffers. The command buffer that record() is given must
-  // then have no active query. If a callback throws, the exception reaches the caller of record(),
-  // whichever thread the callback ran in.
-  std::uint32_t recording_threads = 1;
   // A function that checks each new plan when it is compiled, or null. Pass framegraph::verify()
   // from verify.h (library alcove::framegraph_verifier). Debug builds of this library use that
   // function if `verify` is null.
@@ -150,7 +140,8 @@ class Executor {
 
   // Records the frame and submits it to the queues of the device. The work of a queue is collected
   // into one vkQueueSubmit2 until another queue has to wait for it. Before recording, submit()
-  // waits for the frame that was last submitted with this slot. If you use both record() and
+  // waits for the frame that was last submitted with this slot. If a callback fails, nothing is
+  // submitted. If you use both record() and
   // submit() on one executor, you must synchronise their frames yourself. After the device is lost,
   // submit() and wait() return an error with VK_ERROR_DEVICE_LOST every time; the executor can then
   // only be destroyed, which does not wait and leaks nothing.
@@ -164,17 +155,14 @@ class Executor {
   // exists or timestamps are off. It is valid until the next call of timings().
   [[nodiscard]] std::span<const PassTiming> timings(std::uint32_t slot = 0);
 
-  // Returns the import with which another graph can use a persistent texture or buffer of this
-  // graph, in the state in which the frames recorded so far leave it. The initial state and the
-  // final state of the import are the same. Submit the other graph's frame between two frames of
-  // this graph. The Vulkan handles are null until a frame has used the resource.
-  [[nodiscard]] ImportedTexture exported(const Graph& graph, const TextureHistory& texture) const;
-  [[nodiscard]] ImportedBuffer exported(const Graph& graph, const BufferHistory& buffer) const;
-
   // Drops the cached views of an imported image. Call it before you destroy the image, unless
   // passes only ever used the view that was imported with it: a new image may get the same handle
   // as the old one.
   void forget(VkImage image);
+  // Frees the memory of all transients as soon as the device has finished with it; the next frame
+  // allocates what it needs. Without this call, memory is freed if no frame of a while has needed
+  // half of it.
+  void trim();
 
   const VulkanFunctions& functions() const;
   // Returns the limits that plans are compiled with.

@@ -59,19 +59,14 @@ class PassBuilder {
     return write(buffer, access, Contents::keep, Need::optional);
   }
 
-  // Begins another rendering (vkCmdBeginRendering) within the pass: attachments that are declared
-  // after this call belong to it. The attachments of one rendering must have one size and, except
-  // for resolve targets, one number of samples. A pass may call it at most 255 times.
-  void next_rendering() { rendering_ += kRendering; }
-
   // Marks the pass as one with effects outside the graph. It is never culled.
   void side_effect();
 
   // Sets the callback that records the pass's commands. It is called with a RecordContext& once in
   // each frame in which the pass is not culled. The callable is moved into the graph's own memory
   // and lives until reset(). It must not throw if the library is built without exceptions.
-  // Otherwise an exception propagates out of Executor::record or submit after all recording threads
-  // have finished, and the frame counts as failed.
+  // Otherwise an exception propagates out of Executor::record or submit, and the frame counts as
+  // failed.
   template <typename Callable>
   void record(Callable&& callable);
 
@@ -87,27 +82,26 @@ class PassBuilder {
 
   Graph& graph_;
   std::uint32_t pass_;
-  std::uint32_t tag_;            // Graph::tag_ of the frame
-  std::uint32_t rendering_ = 0;  // a multiple of kRendering
+  std::uint32_t tag_;  // Graph::tag_ of the frame
 };
 
 // A resource that keeps contents from frame to frame. `current` is written in this frame.
 // previous(k) is what was `current` k frames ago; frames in which no pass wrote `current` do not
 // count. A frame that changes only a part of the contents may write previous() with Contents::keep
 // instead of `current`, which updates the older slot in place.
-struct TextureHistory {
-  Texture current;
+template <ResourceKind kKind>
+struct History {
+  Handle<kKind> current;
   std::uint32_t slots = 0;
   HistoryValidity validity = HistoryValidity::first_frame;  // of previous(1)
   // Returns the slot of that age. The graph reports an error if age is 0 or not below `slots`.
-  Texture previous(std::uint32_t age = 1) const;
+  Handle<kKind> previous(std::uint32_t age = 1) const {
+    if (age == 0 || age >= slots) return {};
+    return {current.index + age, 0, current.graph};
+  }
 };
-struct BufferHistory {
-  Buffer current;
-  std::uint32_t slots = 0;
-  HistoryValidity validity = HistoryValidity::first_frame;
-  Buffer previous(std::uint32_t age = 1) const;
-};
+using TextureHistory = History<ResourceKind::texture>;
+using BufferHistory = History<ResourceKind::buffer>;
 
 // The caller's Vulkan handles for one frame. They are not part of the plan.
 struct ImportHandles {
@@ -119,6 +113,7 @@ struct ImportHandles {
   std::uint32_t layers = 1;       // number of layers of the texture
   std::uint32_t initial_family = kNone;
   std::uint32_t final_family = kNone;
+  std::uint32_t next = kNone;  // the next import with a handle of the same hash
 };
 
 class Graph {
@@ -144,12 +139,9 @@ class Graph {
   // Create persistent resources: histories with one slot. `current` keeps its contents from frame
   // to frame, and a write with Contents::keep updates it in place. `validity` tells whether
   // `current` has contents; if it does, passes can read it before the frame writes it. Passes that
-  // write it are never culled. If a final state is given, each frame that uses the resource leaves
-  // it in that state, and another graph can then import the result of Executor::exported().
-  TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc,
-                                           const State& final_state = {});
-  BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc,
-                                         const State& final_state = {});
+  // write it are never culled.
+  TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc);
+  BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc);
   // Discards the contents of the named history, or of all histories, when they are next declared.
   void reset_history(std::string_view name);
   void reset_histories();
@@ -162,8 +154,10 @@ class Graph {
   // Marks this version as an output of the frame, so that the passes that produce it are not
   // culled. The contents of a transient can be read after the frame, until the next frame reuses
   // its memory.
-  void output(Texture texture);
-  void output(Buffer buffer);
+  template <ResourceKind kKind>
+  void output(Handle<kKind> handle) {
+    add_output(handle.index, handle.version, handle.graph);
+  }
 
   // Forgets the declared frame. Keeps allocated memory and histories.
   void reset();
@@ -205,35 +199,36 @@ class Graph {
     std::size_t size = 0;
   };
 
-  void keep_name(std::string_view name, GraphDescription::Name& to);
-  void keep_long_name(std::string_view name, GraphDescription::Name& to);
-  // Notes that a record of the declaration differs from the record at the same place in the
-  // previous frame. The frame is then no longer treated as a repetition of the previous one.
-  void changed();
+  // Appends a record of the declaration. If it differs from the record at the same place in the
+  // previous frame, the frame is no repetition of that frame.
   template <typename Record>
-  void add(Records<Record>& records, const Record& record);
-  void grow_resources();
+  void add(Records<Record>& records, const Record& record) {
+    if (records.add(record)) change();
+  }
+  void change() {
+    description_.edition = frame_;
+    repeats_ = false;
+  }
+  std::string_view keep_name(std::string_view name);
   void grow_passes();
-  void add_resource(const ResourceRecord& record);
   std::uint32_t add_resource(std::string_view name, const ResourceRecord& record);
+  static ResourceRecord absolute_record(const TextureDesc& desc);
   ResourceRecord texture_record(const TextureDesc& desc) const;
-  static void fill_texture_record(ResourceRecord& record, const TextureDesc& desc);
-  static bool is_texture_record(const ResourceRecord& record, const TextureDesc& desc);
-  std::uint32_t add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
-                            HistoryValidity& validity, const State& final_state);
-  template <typename History>
-  History make_history(std::string_view name, const ResourceRecord& record, std::uint32_t slots,
-                       const State& final_state = {});
   static ResourceRecord buffer_record(const BufferDesc& desc);
+  template <ResourceKind kKind>
+  History<kKind> add_history(std::string_view name, ResourceRecord record, std::uint32_t slots);
+  template <typename Import>
+  std::uint32_t add_import(std::string_view name, const Import& import, ResourceRecord record,
+                           ImportHandles handles, bool has_contents);
+  std::uint32_t find_same(std::uint32_t import);
   static Range resolved_range(Range range, const ResourceRecord& resource);
-  template <typename Handle>
-  std::uint32_t add_access(std::uint32_t pass, const Handle& handle, const Access& access,
+  template <ResourceKind kKind>
+  std::uint32_t add_access(std::uint32_t pass, const Handle<kKind>& handle, const Access& access,
                            Range range, std::uint32_t flags);
   std::uint32_t add_any_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
                                std::uint32_t tag, const Access& access, Range range,
                                std::uint32_t flags);
-  std::uint32_t imported_before(VkImage image, VkBuffer buffer, std::uint32_t layer,
-                                const ResourceRecord& record) const;
+  void add_output(std::uint32_t index, std::uint32_t version, std::uint32_t tag);
   void* allocate(std::size_t size, std::size_t alignment);
   void* allocate_in_next_block(std::size_t size, std::size_t alignment);
   void destroy_callables();
@@ -241,18 +236,19 @@ class Graph {
   void add_stale_builder();
 
   GraphDescription description_;
-  AccessRecord* next_access_ = nullptr;  // description_.accesses.next()
-  std::vector<std::uint32_t> versions_;  // of resources, at this point; room as for these
-  std::vector<ImportHandles> imports_;   // parallel to description_.externals
-  std::vector<Callback> callbacks_;      // room as for description_.passes
+  // Arrays that run parallel to others may be longer than these, but never shorter.
+  std::vector<std::uint32_t> versions_;  // of resources, at this point
+  std::vector<Callback> callbacks_;      // of passes
+  std::vector<ImportHandles> imports_;   // of externals
+  std::vector<std::uint32_t> buckets_;   // first import of each hash of a handle
   std::vector<Cleanup> cleanups_;
   std::vector<Block> blocks_;
   std::size_t block_ = 0;      // index of the next block
   std::byte* next_ = nullptr;  // the free bytes of the current block: [next_, end_)
   std::byte* end_ = nullptr;
-  std::uint64_t frame_ = 0;          // number of the frame, unique among all graphs
-  std::uint32_t tag_ = 0;            // lower half of frame_; handles of this frame carry it
-  std::uint32_t repeating_tag_ = 0;  // equals tag_ until changed(), then 0
+  std::uint64_t frame_ = 0;  // number of the frame, unique among all graphs
+  bool repeats_ = true;      // all records so far equal those of the previous frame
+  std::uint32_t tag_ = 0;    // lower half of frame_; handles of this frame carry it
   HistoryTable histories_;
   std::weak_ptr<const char> executor_;  // Tells which executor the graph was last recorded by.
 };

@@ -1,5 +1,4 @@
-// The functions of Graph and PassBuilder that run for every pass of every frame. They are inline,
-// so that declaring an unchanged frame costs little more than writing its records. graph.h includes
+// The functions of Graph and PassBuilder that run for every pass of every frame. graph.h includes
 // this file.
 #pragma once
 
@@ -44,48 +43,16 @@ inline void* Graph::allocate(std::size_t size, std::size_t alignment) {
   return start;
 }
 
-inline void Graph::keep_name(std::string_view name, GraphDescription::Name& to) {
-  const std::size_t size = name.size();
-  to.size = static_cast<std::uint32_t>(size);
-  // Two overlapping copies of a fixed size are cheaper than one of a size that is not known.
-  const auto copy = [&](std::size_t half) {
-    std::memcpy(to.place, name.data(), half);
-    std::memcpy(to.place + size - half, name.data() + size - half, half);
-  };
-  if (size > sizeof to.place) {
-    keep_long_name(name, to);
-  } else if (size >= 16) {
-    copy(16);
-  } else if (size >= 8) {
-    copy(8);
-  } else if (size >= 4) {
-    copy(4);
-  } else {
-    for (std::size_t i = 0; i < size; ++i) to.place[i] = name[i];
-  }
+inline std::string_view Graph::keep_name(std::string_view name) {
+  if (name.empty()) return {};
+  void* const place = allocate(name.size(), 1);
+  std::memcpy(place, name.data(), name.size());
+  return {static_cast<const char*>(place), name.size()};
 }
 
-inline void Graph::changed() {
-  description_.edition = frame_;
-  repeating_tag_ = 0;
-}
-
-inline bool Graph::is_texture_record(const ResourceRecord& record, const TextureDesc& desc) {
-  // These fields are neighbours in both structs, so that the compiler compares two at a time.
-  const auto pair = [](std::uint32_t low, std::uint32_t high) {
-    return low | static_cast<std::uint64_t>(high) << 32;
-  };
-  return pair(record.format, record.width) == pair(desc.format, desc.extent.width) &&
-         pair(record.height, record.depth) == pair(desc.extent.height, desc.extent.depth) &&
-         pair(record.mips, record.layers) == pair(desc.mips, desc.layers) &&
-         record.samples == desc.samples && record.size == 0 && record.external == kNone &&
-         record.kind == ResourceKind::texture && record.origin == Origin::transient &&
-         record.slot == 0 && record.slots == 1 && record.flags == 0 &&
-         record.create_flags == desc.flags;
-}
-
-inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc& desc) {
-  record.size = 0;
+// Returns the record of a texture whose extent is absolute.
+inline ResourceRecord Graph::absolute_record(const TextureDesc& desc) {
+  ResourceRecord record;
   record.format = desc.format;
   record.width = desc.extent.width;
   record.height = desc.extent.height;
@@ -93,45 +60,31 @@ inline void Graph::fill_texture_record(ResourceRecord& record, const TextureDesc
   record.mips = desc.mips;
   record.layers = desc.layers;
   record.samples = desc.samples;
-  record.external = kNone;
-  record.kind = ResourceKind::texture;
-  record.origin = Origin::transient;
-  record.slot = 0;
-  record.slots = 1;
-  record.flags = 0;
   record.create_flags = desc.flags;
   record.planes = has_depth_and_stencil(desc.format) ? 2 : 1;
+  return record;
 }
 
+// The usual frame repeats the previous one. Its records are only compared, which costs less than
+// writing them.
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
   const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  if (description_.resources.is_full() || desc.extent.relative_to.index != kNone) [[unlikely]] {
-    add_resource(texture_record(desc));
-  } else {
-    ResourceRecord& next = description_.resources.next();
-    if (!is_texture_record(next, desc)) [[unlikely]] {
-      fill_texture_record(next, desc);
-      changed();
-    }
-    description_.resources.repeat();
-    versions_[index] = 0;
-  }
-  keep_name(name, description_.resource_names[index]);
+  if (desc.extent.relative_to || index >= versions_.size() ||
+      !(description_.resources.next() == absolute_record(desc))) [[unlikely]]
+    return {add_resource(name, texture_record(desc)), 0, tag_};
+  description_.resources.repeat();
+  description_.resource_names[index] = keep_name(name);
+  versions_[index] = 0;
   return {index, 0, tag_};
 }
 
 inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
-  const auto index = static_cast<std::uint32_t>(description_.passes.size());
-  if (description_.passes.is_full()) [[unlikely]]
+  const std::size_t index = description_.passes.size();
+  if (index == callbacks_.size()) [[unlikely]]
     grow_passes();
-  PassRecord& record = description_.passes.next();
-  record.first_access = static_cast<std::uint32_t>(description_.accesses.size());
-  record.queue = queue;
-  record.flags = 0;
-  record.reserved = 0;
-  description_.passes.repeat();
-  keep_name(name, description_.pass_names[index]);
-  return {*this, index, tag_};
+  description_.pass_names[index] = keep_name(name);
+  description_.passes.add({static_cast<std::uint32_t>(description_.accesses.size()), queue, 0, 0});
+  return {*this, static_cast<std::uint32_t>(index), tag_};
 }
 
 inline bool PassBuilder::is_current() {
@@ -142,45 +95,45 @@ inline bool PassBuilder::is_current() {
 }
 
 // Adds an access and returns the version after it.
-template <typename Handle>
-inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle& handle,
+template <ResourceKind kKind>
+inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle<kKind>& handle,
                                        const Access& access, Range range, std::uint32_t flags) {
-  constexpr ResourceKind kKind =
-      std::is_same_v<Handle, Texture> ? ResourceKind::texture : ResourceKind::buffer;
-  const bool writes = (flags & kWrite) != 0;
   if (kKind == ResourceKind::buffer) flags |= kOnBuffer;
-  // The access is nearly always a constant, so that the compiler knows everything but the handle.
-  const auto is_of_whole = [&](std::uint32_t tag) {
-    return range == Range{} && handle.graph == tag &&
-           handle.index < description_.resources.size() &&
-           has_one_subresource(description_.resources[handle.index]) &&
-           pass + 1 == description_.passes.size();
-  };
-  AccessRecord& next = *next_access_;
-  if (!(is_of_whole(repeating_tag_) && next.stages == access.stages &&
-        next.access == access.access && next.layout == access.layout &&
-        next.usage == access.usage && next.resource == handle.index &&
-        next.version == handle.version && next.range == Range{0, 1, 0, 1} && next.flags == flags))
+  if (!(range == Range{} && handle.graph == tag_ && handle.index < description_.resources.size() &&
+        pass + 1 == description_.passes.size() && !description_.accesses.is_full())) [[unlikely]]
+    return add_any_access(pass, handle.index, handle.version, handle.graph, access, range, flags);
+  flags |= kWhole;
+  AccessRecord& next = description_.accesses.next();
+  // The range need not be compared, because a frame that repeats the one before has the same
+  // resources.
+  if (!(repeats_ && next.stages == access.stages && next.access == access.access &&
+        next.layout == access.layout && next.usage == access.usage &&
+        next.resource == handle.index && next.flags == flags && next.version == handle.version))
       [[unlikely]] {
-    if (!is_of_whole(tag_) || description_.accesses.is_full()) [[unlikely]]
-      return add_any_access(pass, handle.index, handle.version, handle.graph, access, range, flags);
+    const ResourceRecord& resource = description_.resources[handle.index];
     next.stages = access.stages;
     next.access = access.access;
     next.layout = access.layout;
     next.usage = access.usage;
     next.resource = handle.index;
     next.flags = flags;
-    next.range = {0, 1, 0, 1};
+    next.range = {0, static_cast<std::uint16_t>(resource.mips), 0,
+                  static_cast<std::uint16_t>(resource.layers)};
     next.version = handle.version;
-    changed();
+    change();
   }
-  ++next_access_;
   description_.accesses.repeat();
-  return writes ? ++versions_[handle.index] : handle.version;
+  return (flags & kWrite) != 0 ? ++versions_[handle.index] : handle.version;
+}
+
+constexpr std::uint32_t write_flags(Contents contents, Need need) {
+  return kWrite | (contents == Contents::discard ? kDiscard : 0u) |
+         (contents == Contents::accumulate ? kUnordered : 0u) |
+         (need == Need::optional ? kOptional : 0u);
 }
 
 inline void PassBuilder::read(Texture texture, const Access& access, Range range) {
-  if (is_current()) graph_.add_access(pass_, texture, access, range, rendering_);
+  if (is_current()) graph_.add_access(pass_, texture, access, range, 0);
 }
 
 inline void PassBuilder::read(Buffer buffer, const Access& access) {
@@ -189,19 +142,15 @@ inline void PassBuilder::read(Buffer buffer, const Access& access) {
 
 inline Texture PassBuilder::write(Texture texture, const Access& access, Range range,
                                   Contents contents, Need need) {
-  const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
-                              (contents == Contents::accumulate ? kUnordered : 0u) |
-                              (need == Need::optional ? kOptional : 0u) | rendering_;
-  if (is_current()) texture.version = graph_.add_access(pass_, texture, access, range, flags);
+  if (is_current())
+    texture.version = graph_.add_access(pass_, texture, access, range, write_flags(contents, need));
   return texture;
 }
 
 inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents contents,
                                  Need need) {
-  const std::uint32_t flags = kWrite | (contents == Contents::discard ? kDiscard : 0u) |
-                              (contents == Contents::accumulate ? kUnordered : 0u) |
-                              (need == Need::optional ? kOptional : 0u);
-  if (is_current()) buffer.version = graph_.add_access(pass_, buffer, access, {}, flags);
+  if (is_current())
+    buffer.version = graph_.add_access(pass_, buffer, access, {}, write_flags(contents, need));
   return buffer;
 }
 

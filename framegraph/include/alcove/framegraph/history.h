@@ -3,7 +3,9 @@
 // A history has N slots. In each frame, slot 0 ("current") may be written, and slot k holds what
 // was current k frames ago. Slots rotate at the end of a frame in which a live pass wrote slot 0. A
 // frame in which that pass is culled leaves all contents where they are. A frame that instead
-// writes an older slot and keeps its contents updates that slot in place. A changed description or
+// writes an older slot and keeps its contents updates that slot in place. If a pass that runs uses
+// a slot, all passes that write the history run, because a later frame may read it. A changed
+// description or
 // a reset makes every slot invalid and keeps the reason. A slot becomes valid again when it is
 // written. A frame that does not declare the history leaves it unchanged.
 #pragma once

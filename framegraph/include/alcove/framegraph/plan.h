@@ -134,7 +134,9 @@ struct Plan {
   std::vector<std::uint8_t> live_accesses;   // by declared access: 0 or 1
   std::vector<std::uint8_t> contents;        // by declared access: ContentFlags
   std::vector<FinalState> finals;
-  bool reordered = false;  // whether the order differs from the declaration's
+  // The submission of the graphics queue after which imports are in their final states. kNone if
+  // the frame has no imports and no pass on the graphics queue.
+  std::uint32_t final_submission = 0;
 };
 
 }  // namespace alcove::framegraph

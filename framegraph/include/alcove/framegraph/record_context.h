@@ -71,13 +71,18 @@ class RecordContext {
   VkExtent3D extent(Texture texture, std::uint32_t mip = 0) const;
   VkDeviceSize size(Buffer buffer) const;
   VkFormat format(Texture texture) const;
-  // Returns whether an access of this pass to the texture or buffer takes place. Returns false for
-  // an optional write that was culled.
-  bool is_used(Texture texture) const;
-  bool is_used(Buffer buffer) const;
+  // Returns whether an access of this pass to the texture or buffer takes place. With `range`, only
+  // accesses to mips, layers or aspects of that range count. Returns false for an optional write
+  // that was culled.
+  template <ResourceKind kKind>
+  bool is_used(Handle<kKind> handle, const Range& range = {}) const {
+    return is_used(handle.index, range);
+  }
   // Returns whether a slot of a history resource has contents, and if not, why.
-  HistoryValidity validity(Texture texture) const;
-  HistoryValidity validity(Buffer buffer) const;
+  template <ResourceKind kKind>
+  HistoryValidity validity(Handle<kKind> handle) const {
+    return validity(handle.index);
+  }
   std::string_view pass_name() const;
   // Tells the executor that an object which the pass needs could not be created: record() then
   // returns an error whose sentence contains `what`, and the frame must not be submitted.
@@ -86,6 +91,8 @@ class RecordContext {
  private:
   friend class Recorder;
   VkRenderingAttachmentInfo attachment(const Attachment& attachment, std::uint32_t access) const;
+  bool is_used(std::uint32_t resource, const Range& range) const;
+  HistoryValidity validity(std::uint32_t resource) const;
   RecordContext(VkCommandBuffer command_buffer, const VulkanFunctions& functions,
                 const class Recorder& recorder, std::uint32_t pass)
       : commands(command_buffer), vk(functions), recorder_(recorder), pass_(pass) {}

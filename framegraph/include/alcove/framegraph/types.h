@@ -13,27 +13,24 @@ inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 // Value of Range::mips and Range::layers: all mips or layers from the base on.
 inline constexpr std::uint16_t kAll = 0xffff;
 
-// One version of a texture, in one frame of one graph. A write returns the next version, and the
-// graph then refuses the old one. Graph::reset() makes all handles invalid.
-struct Texture {
-  std::uint32_t index = kNone;
-  std::uint32_t version = 0;
-  std::uint32_t graph = 0;
-  explicit operator bool() const { return index != kNone; }
-  bool operator==(const Texture&) const = default;
-};
+enum class ResourceKind : std::uint8_t { texture, buffer };
 
-// One version of a buffer, with the same rules as Texture.
-struct Buffer {
+// One version of a texture or buffer, in one frame of one graph. A write returns the next version,
+// and the graph then refuses the old one. Graph::reset() makes all handles invalid.
+template <ResourceKind kKind>
+struct Handle {
   std::uint32_t index = kNone;
   std::uint32_t version = 0;
   std::uint32_t graph = 0;
   explicit operator bool() const { return index != kNone; }
-  bool operator==(const Buffer&) const = default;
+  bool operator==(const Handle&) const = default;
 };
+using Texture = Handle<ResourceKind::texture>;
+using Buffer = Handle<ResourceKind::buffer>;
 
 // A size in texels, or a size relative to that of another texture. A relative size multiplies and
-// then divides each dimension, rounds it up, and is at least 1.
+// then divides each dimension, rounds it up, and is at least 1. With `relative_to`, a width or
+// height other than 0 and a depth other than 1 are not relative.
 struct Extent {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -108,12 +105,15 @@ struct Range {
 // and accesses outside the graph and, for a texture, the layout. An initial_state with
 // VK_IMAGE_LAYOUT_UNDEFINED (for a buffer: without accesses) means that the resource has no
 // contents. Earlier writes are assumed to be visible to the read accesses of an initial_state
-// already; the graph makes them visible to other stages and accesses.
+// already; the graph makes them visible to other stages and accesses. A pass on another queue than
+// graphics waits for the graphics queue's earlier work if an initial_state has stages. Leave it
+// without stages if no wait is needed, for example for a texture that never changes.
 struct State {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t reserved = 0;
+  bool operator==(const State&) const = default;
 };
 
 // An image that the caller owns. If `view` is null, the executor creates the views that passes ask
@@ -142,6 +142,9 @@ struct ImportedTexture {
   // stages of final_state. Without a final_state (undefined layout and no stages), a write that
   // nobody reads is culled.
   State final_state;
+  // Whether the image was created with VK_SHARING_MODE_CONCURRENT for the families of all queues
+  // that use it. The queues then need no ownership transfers and may read it at the same time.
+  bool concurrent = false;
 };
 
 struct ImportedBuffer {
@@ -155,6 +158,7 @@ struct ImportedBuffer {
   State final_state;
   std::uint32_t initial_family = kNone;  // as in ImportedTexture
   std::uint32_t final_family = kNone;
+  bool concurrent = false;
 };
 
 // The effect of a write on the earlier contents of its range.

@@ -30,7 +30,6 @@ namespace alcove::framegraph {
   X(vkCmdBindPipeline)                        \
   X(vkCmdCopyImageToBuffer)                   \
   X(vkCmdDispatch)                            \
-  X(vkCmdExecuteCommands)                     \
   X(vkCmdPipelineBarrier2)                    \
   X(vkCmdResetQueryPool)                      \
   X(vkCmdUpdateBuffer)                        \

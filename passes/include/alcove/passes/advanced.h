@@ -11,9 +11,6 @@ namespace alcove::passes {
 enum class Estimator : std::uint8_t {
   // Occluders are infinitely thick: the horizons of [Jimenez 2016].
   horizons,
-  // Occluders are infinitely thick, but each sample that is farther out and lower than the horizon
-  // lowers it by the fraction AdvancedSettings::blend: the thickness heuristic of [Jimenez 2016].
-  heuristic,
   // Every sample is a separate occluder whose thickness is OcclusionSettings::thickness: the
   // visibility bitmask of Therrien et al. 2023, with exact cosine weights.
   bitmask,
@@ -42,35 +39,15 @@ enum class ThicknessUnit : std::uint8_t {
   back_faces,
 };
 
-// Weight of a visible direction in visibility. Bent normals are always weighted by the cosine.
-enum class Weighting : std::uint8_t {
-  cosine,   // The cosine of its angle to the normal, as diffuse reflection needs it.
-  uniform,  // 1: visibility is a fraction of the hemisphere's solid angle (the paper's appendix A).
-};
-
-// How slice directions and step offsets vary over pixels and frames (shaders/maths/sampling.h).
-enum class Pattern : std::uint8_t {
-  // Lattices in blocks of 4x4 traced pixels, with a random shift of each block, rotated by the
-  // golden ratio each frame.
-  golden,
-  hilbert,  // The R2 sequence along a Hilbert curve.
-  paper,    // 16 directions in tiles of 4x4 pixels, rotated over six frames [Jimenez 2016].
-};
-
 // The type of OcclusionSettings::advanced. A setting that the selected estimator or history does
 // not use has no effect, but it must still be in range. setting_table.h has the ranges.
 struct AdvancedSettings {
   Estimator estimator = Estimator::connected;
-  Weighting weighting = Weighting::cosine;
   ThicknessUnit thickness_unit = ThicknessUnit::radius;
-  // How far a sample that lies below the horizon lowers the horizon, [0,1]: 0 does not lower it, 1
-  // lowers it to the sample. Only the estimator `heuristic` reads it.
-  float blend = 0.05f;
   // The outermost part of the radius, as a fraction of it, [0,1], over which occluders fade out. 0
   // turns fading off. It must be 0 with the estimators `bitmask` and `connected`, whose sectors are
   // either occluded or not.
   float falloff = 0.0f;
-  Pattern pattern = Pattern::golden;
   // Filter radius in tiles for pixels with fewer than two frames of history, 0 to 3. Pixels with
   // more history use 1. 0 turns the spatial filter off.
   std::uint32_t filter_radius = 2;

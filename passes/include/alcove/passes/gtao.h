@@ -19,7 +19,7 @@ struct GtaoInputs {
   framegraph::Texture depth_ndc;
   // Unit vectors in xyz, in world space unless `normals_in_view_space`. AlcoveView::normals
   // (alcove.h) documents what happens to normals that face away from the eye, are zero or are not
-  // numbers.
+  // numbers. If null, the pass computes normals from depth at the traced pixels.
   framegraph::Texture normals;
   bool normals_in_view_space = false;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness

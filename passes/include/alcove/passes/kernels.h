@@ -77,8 +77,8 @@ struct NamedView {
 // Owns the pipelines, descriptor sets and parameter buffers of the passes on one device. A pipeline
 // is created when a shader is first used with a set of constants, and is kept (Frame::prepare
 // creates all that a view can need). A frame that needs no new pipeline allocates nothing. Several
-// recording threads may call dispatch() at the same time (ExecutorOptions::recording_threads); only
-// one thread at a time may call any other function.
+// threads may call dispatch() at the same time; only one thread at a time may call any other
+// function.
 class Kernels {
  public:
   static constexpr std::uint32_t kMaxDispatches = 80;        // in a frame

@@ -1,4 +1,5 @@
-// Normals from depth, for engines without a normal buffer.
+// Normals from depth, for engines without a normal buffer. The occlusion passes compute those that
+// they need themselves; this pass serves other passes of an engine.
 #pragma once
 
 #include "alcove/passes/frame.h"

@@ -12,11 +12,12 @@
 namespace alcove::passes {
 
 struct OcclusionInputs {
-  framegraph::Texture depth_ndc;       // the depth buffer that the view's projection wrote
-  framegraph::Texture normals;         // unit vectors; null: they are made from depth
-  bool normals_in_view_space = false;  // else in world space
-  framegraph::Texture motion;          // as ReconstructInputs::motion; null: only the camera moves
-  framegraph::Texture roughness;       // perceptual, [0,1]; null: OcclusionSettings::roughness
+  framegraph::Texture depth_ndc;                // the depth buffer that the view's projection wrote
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;  // see GtaoInputs::depth_format
+  framegraph::Texture normals;                  // unit vectors; null: they are made from depth
+  bool normals_in_view_space = false;           // else in world space
+  framegraph::Texture motion;     // as ReconstructInputs::motion; null: only the camera moves
+  framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
   // The depth of back faces, for ThicknessUnit::back_faces. It is ignored unless
   // needs_back_depth(). Draw the scene a second time with front faces culled, with the same
   // projection, size, clear value and depth test, so that the nearest back face is kept: there the

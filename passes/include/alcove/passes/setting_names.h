@@ -20,16 +20,11 @@ template <>
 inline constexpr auto kNames<Quality> = std::to_array<std::string_view>({"console", "low", "medium",
                                                                          "high", "reference"});
 template <>
-inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons", "heuristic",
-                                                                           "bitmask", "connected"});
-template <>
-inline constexpr auto kNames<Weighting> = std::to_array<std::string_view>({"cosine", "uniform"});
+inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons", "bitmask",
+                                                                           "connected"});
 template <>
 inline constexpr auto kNames<ThicknessUnit> = std::to_array<std::string_view>({"radius", "distance",
                                                                                "back_faces"});
-template <>
-inline constexpr auto kNames<Pattern> = std::to_array<std::string_view>({"golden", "hilbert",
-                                                                         "paper"});
 template <>
 inline constexpr auto kNames<Specular> = std::to_array<std::string_view>({"none", "slices", "table",
                                                                           "cone"});
@@ -43,7 +38,7 @@ constexpr std::string_view name_of(Choice value) {
   return kNames<Choice>[static_cast<std::size_t>(value)];
 }
 
-// Returns all names of an enum in one text, for example "golden, hilbert or paper".
+// Returns all names of an enum in one text, for example "horizons, bitmask or connected".
 template <typename Choice>
 std::string names_text() {
   const auto& names = kNames<Choice>;

@@ -76,7 +76,7 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                     .range = {.minimum = 2, .maximum = 64}},
         settings.steps);
   visit(SettingInfo{.name = "thickness",
-                    .help = "Assumed thickness of occluders, in the unit that thickness_unit "
+                    .help = "Largest thickness of occluders, in the unit that thickness_unit "
                             "selects: by default a fraction of the radius. Larger values darken.",
                     .slider = {.maximum = 1.0f},
                     .matters = has_thickness},
@@ -150,17 +150,11 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(
       SettingInfo{
           .name = "estimator",
-          .help = "Assumption about the thickness of occluders: infinite (horizons), infinite but "
-                  "lower samples farther out pull the horizon down (heuristic), finite for each "
-                  "sample (bitmask), or finite and without gaps between the samples of one surface "
-                  "(connected).",
+          .help = "Assumption about the thickness of occluders: infinite (horizons), finite for "
+                  "each sample (bitmask), or finite and without gaps between the samples of one "
+                  "surface (connected).",
           .group = advanced},
       settings.advanced.estimator);
-  visit(SettingInfo{.name = "weighting",
-                    .help = "Weight of each direction in visibility: the cosine of its angle to "
-                            "the normal, or 1 for all (uniform).",
-                    .group = advanced},
-        settings.advanced.weighting);
   visit(
       SettingInfo{
           .name = "thickness_unit",
@@ -171,29 +165,13 @@ void for_each_setting(Settings& settings, const Visit& visit) {
           .group = advanced,
           .matters = has_thickness},
       settings.advanced.thickness_unit);
-  visit(SettingInfo{.name = "blend",
-                    .help = "For the estimator heuristic: how far a sample that lies below the "
-                            "horizon lowers the horizon. 0: not at all. 1: down to the sample.",
-                    .group = advanced,
-                    .range = {.maximum = 1.0f},
-                    .matters = [](S s) { return s.advanced.estimator == Estimator::heuristic; }},
-        settings.advanced.blend);
   visit(SettingInfo{.name = "falloff",
-                    .help = "For the estimators horizons and heuristic: fraction of the radius, "
-                            "at its outer end, over which occluders fade out. 0 turns fading off.",
+                    .help = "For the estimator horizons: fraction of the radius, at its outer end, "
+                            "over which occluders fade out. 0 turns fading off.",
                     .group = advanced,
                     .range = {.maximum = 1.0f},
                     .matters = [](S s) { return !passes::has_thickness(s.advanced.estimator); }},
         settings.advanced.falloff);
-  visit(
-      SettingInfo{
-          .name = "pattern",
-          .help = "How slice directions and step offsets vary over pixels and frames: lattices in "
-                  "blocks with a random shift (golden), the R2 sequence along a Hilbert curve "
-                  "(hilbert), or tiles of 4x4 pixels whose directions repeat every six frames, as "
-                  "in Jimenez et al. 2016 (paper).",
-          .group = advanced},
-      settings.advanced.pattern);
   visit(SettingInfo{.name = "filter_radius",
                     .help = "Radius of the spatial filter in tiles for pixels with fewer than two "
                             "frames of history; other pixels use 1. 0 turns the filter off.",

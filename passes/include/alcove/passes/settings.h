@@ -48,14 +48,14 @@ struct OcclusionSettings {
   // find thinner occluders. A traced pixel costs 2 * slices * steps depth fetches.
   std::uint32_t steps = 12;
   // Thickness of occluders as a fraction of the radius (or in AdvancedSettings::thickness_unit), at
-  // least 0. At its leading edge an occluder is at most as thick as its visible width, so that
+  // least 0. It is an upper limit: an occluder is no thicker than it is seen to be wide, so that
   // blades, bars and leaves are thin.
-  float thickness = 0.15f;
+  float thickness = 0.3f;
   // Average fraction of the volume hidden behind occluders that is treated as solid, [0,1]. The
   // actual fraction is larger behind occluders that are wide on the image
   // (hidden_occlusion_behind() in shaders/maths/visibility_bitmask.h). Raising it darkens corners
   // behind foregrounds.
-  float hidden_occlusion = 0.33f;
+  float hidden_occlusion = 0.286f;
   // Number of depth buffers that are searched for occluders: 1, or 2. With 2,
   // OcclusionInputs::second_depth_ndc is searched too.
   std::uint32_t depth_layers = 1;

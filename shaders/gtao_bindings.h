@@ -1,0 +1,52 @@
+// Part of gtao.comp: its constants, inputs and outputs.
+#ifndef ALCOVE_GTAO_BINDINGS_H
+#define ALCOVE_GTAO_BINDINGS_H
+
+#include "gtao_parameters.h"
+
+layout(constant_id = 0) const uint kSliceCount = 1;
+layout(constant_id = 1) const uint kStepCount = 12;  // depth samples of a half-slice
+layout(constant_id = 2) const bool kBentNormal = false;
+layout(constant_id = 3) const uint kEstimator = 0;  // a value of the C++ enum Estimator
+layout(constant_id = 4) const int kTileSize = 1;    // one pixel is traced in a tile of this width
+layout(constant_id = 5) const bool kPerspective = true;
+layout(constant_id = 6) const bool kRoughnessTexture = false;
+layout(constant_id = 7) const int kRoughnessChannel = 0;
+layout(constant_id = 8) const bool kFalloff = false;  // occluders fade towards the radius
+layout(constant_id = 9) const bool kThicknessOfDistance = false;  // else a part of the radius
+layout(constant_id = 10) const bool kBackFaces = false;           // back_image tells the thickness
+layout(constant_id = 11) const bool kSnapToTexels = true;   // samples lie at centres of texels
+layout(constant_id = 12) const bool kSecondLayer = false;   // second_image occludes too
+layout(constant_id = 13) const bool kExtrapolation = true;  // surfaces continue beyond the image
+layout(constant_id = 14) const bool kUnobserved = true;     // excludes unobserved directions
+layout(constant_id = 15) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
+layout(constant_id = 16) const bool kReversed = false;      // raw depth is 1 at the near plane
+layout(constant_id = 17) const bool kInfiniteFar = false;   // the far plane is infinitely far away
+
+const uint kBitmask = 1;
+const uint kConnected = 2;
+const bool kLeaveOutUnobserved = kEstimator == kConnected && kUnobserved;
+
+layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
+layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it
+layout(set = 0, binding = 2) uniform texture2D normal_image;  // view_from_normal rotates it
+// Packed RawOcclusion and inverse depth; with SPECULAR also those of the GGX lobe and its surface.
+layout(set = 0, binding = 3) uniform writeonly uimage2D raw_image;
+// Without kBentNormal it is never written, and the raw occlusion is bound in its place.
+layout(set = 0, binding = 4) uniform writeonly uimage2D bent_image;
+// Depth of the back faces. Without kBackFaces it is never read, and another image is bound in its
+// place.
+layout(set = 0, binding = 5) uniform texture2D back_image;
+// The second depth layer. Without kSecondLayer it is never read, and another image is bound in its
+// place.
+layout(set = 0, binding = 6) uniform texture2D second_image;
+#ifdef SPECULAR
+layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
+const bool kLobe = true;
+#else
+const bool kLobe = false;
+#endif
+
+ivec2 size_px() { return textureSize(depth_image, 0); }
+
+#endif
