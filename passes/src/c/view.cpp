@@ -246,10 +246,9 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (!added) {
     return tl::unexpected(failure_of(added.error(), view_name(view)));
   }
-  const OcclusionInputs& inputs = settled->inputs.occlusion;
   return observer == nullptr
              ? tl::expected<void, Failure>()
-             : observer->add(frame, view, inputs.depth_ndc, inputs.normals, described.slot);
+             : observer->add(frame, view, settled->inputs.occlusion, described.slot);
 }
 
 }  // namespace alcove::passes
