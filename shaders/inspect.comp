@@ -4,10 +4,10 @@
 
 // Copies samples of a view's inputs, which the CPU then checks for mistakes (alcoveDiagnose).
 //
-// The samples are on a grid over the image. Each sample takes two texels, one above the other. The
-// first has the depths of the pixel and of its left, right and upper neighbours. The second has the
-// depth of the lower neighbour and the normal as it is stored. The last row begins with the sizes
-// of the two images.
+// The samples are on a grid over the image. Each sample takes three texels, one above the other.
+// The first has the depths of the pixel and of its left, right and upper neighbours. The second has
+// the depth of the lower neighbour and the normal as it is stored, and the third the motion vector
+// as it is stored. The last row begins with the sizes of the images of depth and normals.
 
 #include "inspect_parameters.h"
 
@@ -16,7 +16,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform Parameters { InspectParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D depth_image;  // raw depth
 layout(set = 0, binding = 2) uniform texture2D normal_image;
-layout(set = 0, binding = 3) uniform writeonly image2D sample_image;
+layout(set = 0, binding = 3) uniform texture2D motion_image;
+layout(set = 0, binding = 4) uniform writeonly image2D sample_image;
 
 float fetch_depth(ivec2 pixel) {
   // An image that is smaller than the view says is not read beyond its edge.
@@ -27,7 +28,7 @@ float fetch_depth(ivec2 pixel) {
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (cell == ivec2(0, kInspectRows)) {
-    imageStore(sample_image, ivec2(0, 2 * int(kInspectRows)),
+    imageStore(sample_image, ivec2(0, 3 * int(kInspectRows)),
                vec4(textureSize(depth_image, 0), textureSize(normal_image, 0)));
   }
   if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) {
@@ -39,9 +40,14 @@ void main() {
   if (parameters.has_normals != 0u) {
     normal = texelFetch(normal_image, min(pixel, textureSize(normal_image, 0) - 1), 0).xyz;
   }
-  imageStore(sample_image, ivec2(cell.x, 2 * cell.y),
+  vec2 motion = vec2(0.0);
+  if (parameters.has_motion != 0u) {
+    motion = texelFetch(motion_image, min(pixel, textureSize(motion_image, 0) - 1), 0).xy;
+  }
+  imageStore(sample_image, ivec2(cell.x, 3 * cell.y),
              vec4(fetch_depth(pixel), fetch_depth(pixel - ivec2(1, 0)),
                   fetch_depth(pixel + ivec2(1, 0)), fetch_depth(pixel - ivec2(0, 1))));
-  imageStore(sample_image, ivec2(cell.x, 2 * cell.y + 1),
+  imageStore(sample_image, ivec2(cell.x, 3 * cell.y + 1),
              vec4(fetch_depth(pixel + ivec2(0, 1)), normal));
+  imageStore(sample_image, ivec2(cell.x, 3 * cell.y + 2), vec4(motion, 0.0, 0.0));
 }

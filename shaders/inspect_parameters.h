@@ -6,15 +6,15 @@
 
 ALCOVE_MATHS_BEGIN
 
-// Width and height of the grid of sampled pixels. The image that inspect.comp writes has two texels
-// for each sampled pixel, and one more row for the whole image.
+// Width and height of the grid of sampled pixels. The image that inspect.comp writes has three
+// texels for each sampled pixel, and one more row for the whole image.
 const uint kInspectColumns = 64;
 const uint kInspectRows = 48;
 
 struct InspectParameters {
   uvec2 size_px;  // size of the part of the image that is in use
   uint has_normals;
-  uint unused;
+  uint has_motion;
 };
 
 ALCOVE_MATHS_END

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "cli/option_value.h"
-#include "scene/depth_range.h"
 #include "scene/framing.h"
 
 namespace alcove::sample {

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -10,6 +13,7 @@
 #include "evaluate/engine_run.h"
 #include "evaluate/mistakes.h"
 #include "gpu/vulkan_device.h"
+#include "support/image_io.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -49,14 +53,24 @@ std::string in_one_line(std::string text) {
   return text.empty() ? "nothing" : text;
 }
 
-tl::expected<std::unique_ptr<EngineRun>, std::string> create_run(const Options& options,
-                                                                 const Session& session) {
-  return EngineRun::create(*session.gpu, session.scene, {options.view.width, options.view.height});
+EngineCourse course_of(const Options& options, const Session& session) {
+  return {.size = {options.view.width, options.view.height}, .radius = session.settings.radius};
+}
+
+// The root mean square difference of visibility.
+double rmse_of(const Image<float>& a, const Image<float>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) {
+    const double difference = double{a.pixels[i]} - double{b.pixels[i]};
+    sum += difference * difference;
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(a.pixels.size(), 1)));
 }
 
 // Prints a table of planted mistakes. An error names those that alcoveDiagnose should have named.
 tl::expected<void, std::string> print_mistakes(const Options& options, const Session& session) {
-  auto run = create_run(options, session);
+  auto run =
+      MistakeRun::create(*session.gpu, session.scene, session.camera, course_of(options, session));
   if (!run) {
     return Failure(std::move(run.error()));
   }
@@ -68,22 +82,41 @@ tl::expected<void, std::string> print_mistakes(const Options& options, const Ses
     }
     folder.emplace(std::move(*made));
   }
-  const auto report =
-      draw_mistakes(**run, session.camera, session.settings.radius, options.pictures);
-  if (!report) {
-    return Failure(report.error());
-  }
-  std::cout << fmt::format("{:<52} {:>5}  {}\n", "mistake", "RMSE", "alcoveDiagnose says");
-  std::cout << fmt::format("{:<52} {:>5}  {}\n", "none", "",
-                           in_one_line(report->said_of_right_frames));
-  std::string failed = report->said_of_right_frames.empty() ? "" : "frames without a mistake";
-  for (const MistakeResult& result : report->results) {
-    const bool promised = *result.mistake->sentence != '\0';
-    std::cout << fmt::format("{:<52} {:>5.3f}  {}\n", result.mistake->name, result.rmse,
-                             in_one_line(result.said));
-    if (promised != result.named) {
-      failed += (failed.empty() ? "" : "; ") + std::string(result.mistake->name);
+  const auto write = [&](const std::string& name, const Image<float>& picture) {
+    return folder && !name.empty()
+               ? write_png(std::filesystem::path(options.pictures) / (name + ".png"), picture)
+               : tl::expected<void, std::string>();
+  };
+  std::cout << fmt::format("{:<52} {:>5}  {}\n", "mistake", "RMSE", "the library says");
+  std::string failed;
+  std::array<EngineResult, 2> right;
+  for (const bool reversed : {false, true}) {
+    auto drawn = run->draw_right(reversed);
+    if (!drawn) {
+      return Failure(std::move(drawn.error()));
     }
+    std::cout << fmt::format("{:<52} {:>5}  {}\n", reversed ? "none, reversed depth" : "none", "",
+                             in_one_line(drawn->said));
+    failed = drawn->said.empty() ? failed : "frames without a mistake";
+    right.at(reversed ? 1 : 0) = std::move(*drawn);
+  }
+  auto written = write("right", right[0].visibility);
+  for (const PlantedMistake& mistake : planted_mistakes()) {
+    auto drawn = run->draw(mistake, 0);
+    if (!drawn) {
+      return Failure(std::string(mistake.name) + ": " + drawn.error());
+    }
+    const bool refused = drawn->visibility.empty();
+    written = written && !refused ? write(mistake.picture, drawn->visibility) : written;
+    const double rmse = rmse_of(drawn->visibility, right.at(mistake.reversed ? 1 : 0).visibility);
+    std::cout << fmt::format("{:<52} {:>5}  {}\n", mistake.name,
+                             refused ? "" : fmt::format("{:.3f}", rmse), in_one_line(drawn->said));
+    if (!names(drawn->said, mistake)) {
+      failed += (failed.empty() ? "" : "; ") + std::string(mistake.name);
+    }
+  }
+  if (!written) {
+    return written;
   }
   if (!failed.empty()) {
     return Failure("alcoveDiagnose does not say what it promises of: " + failed + ".");
@@ -93,10 +126,6 @@ tl::expected<void, std::string> print_mistakes(const Options& options, const Ses
 
 // Prints the output of alcoveDiagnose for frames of a scene without mistakes. It should be empty.
 tl::expected<void, std::string> check_scene(const Options& options, const Session& session) {
-  auto run = create_run(options, session);
-  if (!run) {
-    return Failure(std::move(run.error()));
-  }
   std::vector<std::string> names{options.view.camera};
   if (options.view.camera.empty() && !options.view.eye && !options.view.target) {
     names.clear();
@@ -107,14 +136,6 @@ tl::expected<void, std::string> check_scene(const Options& options, const Sessio
       names.emplace_back();  // the default view
     }
   }
-  struct Course {
-    const char* name;
-    EngineCourse course;
-  };
-  const Course courses[] = {{"still", {}},
-                            {"jittered", {.jitter = true}},
-                            {"orbiting", {.orbit = 0.01f, .jitter = true}},
-                            {"geometric normals", {.orbit = 0.01f, .geometric = true}}};
   bool reported = false;
   for (const std::string& name : names) {
     ViewOptions view = options.view;
@@ -123,14 +144,16 @@ tl::expected<void, std::string> check_scene(const Options& options, const Sessio
     if (!camera) {
       return Failure(camera.error());
     }
-    for (const Course& course : courses) {
-      const auto drawn = (*run)->draw(*camera, session.settings.radius, course.course);
-      if (!drawn) {
-        return Failure(drawn.error());
+    EngineCourse course = course_of(options, session);
+    course.quick = true;
+    for (const RightCourse& right : right_courses(course)) {
+      auto run = EngineRun::create(*session.gpu, session.scene, *camera, right.course);
+      const auto said = run ? said_of_right_frames(**run) : Failure(run.error());
+      if (!said) {
+        return Failure(said.error());
       }
-      std::cout << fmt::format("camera \"{}\", {}: {}\n", name, course.name,
-                               in_one_line(drawn->said));
-      reported = reported || !drawn->said.empty();
+      std::cout << fmt::format("camera \"{}\", {}: {}\n", name, right.name, in_one_line(*said));
+      reported = reported || !said->empty();
     }
   }
   return reported ? tl::expected<void, std::string>(

@@ -1,7 +1,6 @@
 // The program `alcove`.
 
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -10,7 +9,6 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "support/printable.h"
-#include "support/standard_streams.h"
 
 namespace {
 
@@ -73,11 +71,6 @@ int stop(const Stop& stop) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  alcove::sample::reserve_closed_streams();
-#ifdef SIGXFSZ
-  // Writing past the limit on file sizes fails, as on a full disk, and does not kill the process.
-  std::signal(SIGXFSZ, SIG_IGN);
-#endif
   try {
     const auto options = alcove::sample::parse_options(argc, argv);
     if (!options) {

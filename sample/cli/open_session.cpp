@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "cli/camera_of.h"
+#include "cli/option_value.h"
 #include "cli/settings.h"
+#include "scene/framing.h"
 #include "scene/load_scene.h"
 #include "support/progress.h"
 
@@ -45,7 +47,13 @@ tl::expected<Session, std::string> load_session(const Options& options) {
     return Failure(camera.error());
   }
   session.camera = *camera;
-  const auto settings = occlusion_settings(options.occlusion, session.scene);
+  RadiusChoice radius{0.0f, "--radius"};
+  if (!options.occlusion.radius) {
+    const double aspect = static_cast<double>(options.view.width) / options.view.height;
+    radius = radius_for_view(session.scene, session.camera, aspect);
+  }
+  session.radius_reason = radius.reason;
+  const auto settings = occlusion_settings(options.occlusion, radius.radius);
   if (!settings) {
     return Failure(settings.error());
   }
@@ -77,6 +85,8 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   if (!environment) {
     return Failure(std::move(environment.error()));
   }
+  std::cout << "Radius " << shown(session->settings.radius) << ": " << session->radius_reason
+            << "\n";
   return render(std::move(*session),
                 {options.view.width,
                  options.view.height,

@@ -99,6 +99,14 @@ void check_view(const ViewOptions& view) {
   }
 }
 
+void add_radius(const Group& group, OcclusionOptions& occlusion) {
+  group.add(
+      "--radius", "LENGTH",
+      "distance up to which occluders count, scene units. Default: a twentieth of the diagonal of "
+      "the scene, without sky domes, ground planes and stray triangles far away",
+      [&](const OptionValue& given) { occlusion.radius = given.length(); });
+}
+
 }  // namespace
 
 void add_scene(CLI::App& app, std::string& scene) {
@@ -212,11 +220,7 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
               occlusion.quality =
                   static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
             });
-  group.add(
-      "--radius", "LENGTH",
-      "distance up to which occluders count, scene units. Default: a twentieth of the diagonal of "
-      "the scene, without sky domes, ground planes and stray triangles far away",
-      [&](const OptionValue& given) { occlusion.radius = given.length(); });
+  add_radius(group, occlusion);
   group.add_repeatable(
       "--set", "NAME=VALUE",
       "changes one setting of the preset; the settings are listed below. May be repeated",
@@ -351,6 +355,7 @@ void add_doctor(CLI::App& app, Options& options) {
               options.pictures = given.text;
               options.mistakes = true;
             });
+  add_radius(group, options.occlusion);
 }
 
 void add_light(CLI::App& app, Options& options) {

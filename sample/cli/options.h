@@ -59,7 +59,7 @@ struct ViewOptions {
 struct OcclusionOptions {
   passes::Quality quality = passes::Quality::medium;
   bool quality_given = false;   // --quality was given
-  std::optional<float> radius;  // scene units; none: default_radius(scene)
+  std::optional<float> radius;  // scene units; none: radius_for_view()
   NormalSource normals = NormalSource::kShading;
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
   std::vector<float> roughness;                          // overrides the materials; perceptual

@@ -122,9 +122,9 @@ std::string settings_help() {
 }
 
 tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionOptions& options,
-                                                                const Scene& scene) {
+                                                                float default_radius) {
   OcclusionSettings settings =
-      passes::quality_settings(options.quality, options.radius.value_or(default_radius(scene)));
+      passes::quality_settings(options.quality, options.radius.value_or(default_radius));
   for (const auto& [name, value] : options.set) {
     if (const auto wanted = set(settings, name, value)) {
       return Failure("--set " + name + "=" + value + ": give " + *wanted);

@@ -6,14 +6,13 @@
 
 #include "alcove/passes/occlusion.h"
 #include "cli/options.h"
-#include "scene/scene.h"
 
 namespace alcove::sample {
 
-// Returns the occlusion settings of the options: a quality, a radius (by default the scene's own),
-// and the changes by --set. Errors name the setting and its allowed values.
+// Returns the occlusion settings of the options: a quality, a radius in scene units (by default
+// `default_radius`), and the changes by --set. Errors name the setting and its allowed values.
 [[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
-    const OcclusionOptions& options, const Scene& scene);
+    const OcclusionOptions& options, float default_radius);
 
 // Checks NAME and VALUE of an option --set. Returns the allowed names if the name is unknown, the
 // allowed values if the value is out of range, and nothing if both are valid. Settings that depend

@@ -26,6 +26,7 @@ struct Session {
   Scene scene;
   Camera camera;
   passes::OcclusionSettings settings;
+  std::string radius_reason;  // Where the radius comes from.
   double load_seconds = 0.0;  // Of the scene.
   DeviceRequest device;
   std::unique_ptr<Gpu> gpu;

@@ -15,7 +15,8 @@ namespace {
 
 using Loaded = tl::expected<EnvironmentImage, std::string>;
 
-constexpr uint32_t kLargestSide = 2048;  // pixels, of an environment in memory
+constexpr float kLargestHalf = 65504.0f;  // of the 16-bit floats in which the device stores light
+constexpr uint32_t kLargestSide = 2048;   // pixels, of an environment in memory
 
 glm::vec3 direction_of(double u, double v) {
   const double angle = u * 2.0 * glm::pi<double>(), fall = v * glm::pi<double>();
@@ -59,7 +60,7 @@ class EnvironmentRows {
 
   void add(std::span<const float> row) {
     std::ranges::transform(row, light_.begin(), [](float value) {
-      return value > 0.0f && !std::isinf(value) ? value : 0.0f;
+      return value > 0.0f && !std::isinf(value) ? std::min(value, kLargestHalf) : 0.0f;
     });
     mean_->add_row(light_, [this](size_t, double value) {
       image_.pixels[written_ / 3][static_cast<int>(written_ % 3)] = static_cast<float>(value);

@@ -20,8 +20,8 @@ using EnvironmentImage = Image<glm::vec3>;
 
 // Reads a .hdr (Radiance) or .exr file of at most 16384 pixels a side, and reduces it by a whole
 // factor to at most 2048. An empty name gives the procedural sky. Radiance that is negative or not
-// finite becomes 0. The error is a sentence with the file's name: unreadable, damaged, or another
-// format.
+// finite becomes 0, and radiance above the largest 16-bit float, 65504, becomes that. The error is
+// a sentence with the file's name: unreadable, damaged, or another format.
 [[nodiscard]] tl::expected<EnvironmentImage, std::string> load_environment(
     const std::filesystem::path& file);
 

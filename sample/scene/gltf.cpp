@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "scene/gltf_camera.h"
-#include "scene/gltf_extensions.h"
 #include "scene/gltf_files.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_nodes.h"
-#include "scene/scene_core.h"
+#include "scene/subject.h"
 #include "support/printable.h"
 
 namespace alcove::sample {
@@ -55,11 +54,10 @@ void tidy(std::vector<std::string>& warnings) {
   warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
 }
 
-void add_core(Scene& scene) {
-  const SceneCore core = scene_core(scene.meshes);
-  scene.core_bounds_ws = core.bounds_ws;
-  if (core.triangles_outside == 0) return;
-  scene.warnings.push_back(std::to_string(core.triangles_outside) + " of " +
+void add_subject(Scene& scene) {
+  scene.subject = find_subject(scene);
+  if (scene.subject.triangles_outside == 0) return;
+  scene.warnings.push_back(std::to_string(scene.subject.triangles_outside) + " of " +
                            std::to_string(triangle_count(scene)) +
                            " triangles surround the others or lie far from them: the default view, "
                            "radius and near plane are chosen without them.");
@@ -71,7 +69,7 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
   const tinygltf::Model& model = read.model;
   Scene scene;
   scene.warnings = std::move(read.warnings);
-  if (auto added = add_materials(model, limits.images, scene); !added) {
+  if (auto added = add_materials(model, read.files, limits.images, scene); !added) {
     return Failure(added.error());
   }
   MeshBudget budget{limits.primitives, limits.vertices, limits.indices,
@@ -87,21 +85,14 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
   }
   if (!model.animations.empty()) {
     scene.warnings.push_back(
-        "Animations are left out: nodes and joints stand as the file places them.");
-  }
-  for (const auto* extensions : {&model.extensionsUsed, &model.extensionsRequired}) {
-    for (const std::string& extension : *extensions) {
-      if (!is_extension_read(extension)) {
-        scene.warnings.push_back("The extension " + extension + " is left out.");
-      }
-    }
+        "Animations are left out: nodes, joints and morph targets stand as the file places them.");
   }
   // The vertices have been copied, so that the file's bytes can be freed.
   read.model.buffers.clear();
   scene.bounds_ws = bounds_of(scene.meshes);
-  add_core(scene);
+  add_subject(scene);
   for (const PlacedCamera& camera : cameras) {
-    scene.cameras.push_back(aimed(camera, scene.core_bounds_ws));
+    scene.cameras.push_back(aimed(camera, scene.subject.bounds_ws));
     scene.cameras.back().origin = scene.origin;
   }
   tidy(scene.warnings);

@@ -15,18 +15,20 @@ namespace alcove::sample {
 // Reads a glTF 2 file, .gltf or .glb (by its content, not its name), into a scene.
 //
 // It reads node transforms (matrix or TRS, any hierarchy; mirroring ones reverse the winding),
-// skins in the pose of the file's nodes, instances (a mesh of several nodes,
-// EXT_mesh_gpu_instancing), triangle lists, strips and fans with and without indices, every
-// accessor type (normalised, interleaved, sparse), embedded, binary and external buffers and
-// images, metallic-roughness materials and KHR_materials_pbrSpecularGlossiness with normal maps and
-// tangents, vertex colours, doubleSided, samplers, two sets of texture coordinates,
-// KHR_texture_transform, alpha masks, cameras, and KHR_node_visibility. Triangles without normals
-// get their geometric normals.
+// morph targets at the file's weights, skins in the pose of the file's nodes, instances (a mesh of
+// several nodes, EXT_mesh_gpu_instancing), triangle lists, strips and fans with and without
+// indices, every accessor type (normalised, interleaved, sparse), embedded, binary and external
+// buffers and images, metallic-roughness materials and KHR_materials_pbrSpecularGlossiness with
+// normal maps and tangents, vertex colours, doubleSided, samplers, two sets of texture coordinates,
+// KHR_texture_transform, alpha masks, cameras, EXT_meshopt_compression and KHR_node_visibility.
+// Triangles without normals get their geometric normals. A mesh has the vertices that its indices
+// use.
 //
-// It leaves out, with a warning in the scene, points and lines, morph targets, animation, further
-// sets of texture coordinates and other extensions. It refuses a file that requires an extension
-// that changes shapes. It leaves out baked occlusion without a warning, because Alcove computes
-// occlusion. Alpha-blended materials are opaque; with an alpha of 0 they are not drawn.
+// It leaves out, with a warning in the scene, points and lines, animation, further sets of texture
+// coordinates and other extensions. It refuses a file that requires an extension that is known to
+// hold or place geometry, such as Draco compression. It leaves out baked occlusion without a
+// warning, because Alcove computes occlusion. Alpha-blended materials are opaque; with an alpha of
+// 0 they are not drawn.
 //
 // The file may be hostile. Every index, offset, stride and count is checked before it is used,
 // GltfLimits limits memory and time, and external files must be in the scene's folder. Errors are

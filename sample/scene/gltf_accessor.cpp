@@ -19,36 +19,14 @@ struct Elements {
 };
 
 uint64_t component_size(int type) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
-  }
+  const int size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(type));
+  return size > 0 ? static_cast<uint64_t>(size) : 0;
 }
 
+// Matrices of 2 or 3 columns are not read, because no property that is read has them.
 int component_count(int type) {
-  switch (type) {
-    case TINYGLTF_TYPE_SCALAR:
-      return 1;
-    case TINYGLTF_TYPE_VEC2:
-      return 2;
-    case TINYGLTF_TYPE_VEC3:
-      return 3;
-    case TINYGLTF_TYPE_VEC4:
-      return 4;
-    case TINYGLTF_TYPE_MAT4:  // columns of bytes and shorts would be padded; floats are not
-      return 16;
-    default:
-      return 0;
-  }
+  if (type == TINYGLTF_TYPE_MAT2 || type == TINYGLTF_TYPE_MAT3) return 0;
+  return std::max(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)), 0);
 }
 
 template <class T>
@@ -110,8 +88,7 @@ tl::expected<const uint8_t*, std::string> elements_of(const tinygltf::Model& mod
   return bytes->data() + std::min(offset, length);
 }
 
-tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_t index,
-                                            uint64_t most) {
+tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_t index) {
   const auto refuse = [&](const std::string& why) {
     return Failure("accessor " + std::to_string(index) + " " + why);
   };
@@ -129,7 +106,6 @@ tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_
       out.components == 16 && accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT;
   if (component == 0 || out.components == 0 || padded)
     return refuse("has a type that is not read here");
-  if (out.count > most) return refuse("has too many elements: " + std::to_string(out.count));
   const uint64_t size = component * static_cast<uint64_t>(out.components);
   out.stride = size;
   if (accessor.bufferView < 0) return out;
@@ -187,50 +163,74 @@ tl::expected<void, std::string> for_each_sparse(const tinygltf::Model& model, in
 }  // namespace
 
 tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::Model& model,
-                                                               int64_t view) {
-  const auto refuse = [&](const std::string& why) {
-    return Failure("buffer view " + std::to_string(view) + " " + why);
-  };
-  if (view < 0 || static_cast<uint64_t>(view) >= model.bufferViews.size()) {
-    return refuse("does not exist");
-  }
-  const tinygltf::BufferView& v = model.bufferViews[static_cast<size_t>(view)];
+                                                               const tinygltf::BufferView& v) {
   if (v.buffer < 0 || static_cast<size_t>(v.buffer) >= model.buffers.size()) {
-    return refuse("has no buffer " + std::to_string(v.buffer));
+    return Failure("has no buffer " + std::to_string(v.buffer));
   }
   const auto& data = model.buffers[static_cast<size_t>(v.buffer)].data;
   if (data.empty() && v.byteLength > 0) {
-    return refuse("lies in buffer " + std::to_string(v.buffer) + ", which has no data");
+    return Failure("lies in buffer " + std::to_string(v.buffer) + ", which has no data");
   }
   if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset) {
-    return refuse("reaches past the end of its buffer");
+    return Failure("reaches past the end of its buffer");
   }
   return std::span<const uint8_t>(data.data() + v.byteOffset, v.byteLength);
 }
 
+tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::Model& model,
+                                                               int64_t view) {
+  const std::string name = "buffer view " + std::to_string(view) + " ";
+  if (view < 0 || static_cast<uint64_t>(view) >= model.bufferViews.size()) {
+    return Failure(name + "does not exist");
+  }
+  return view_bytes(model, model.bufferViews[static_cast<size_t>(view)])
+      .map_error([&](const std::string& why) { return name + why; });
+}
+
+int attribute(const std::map<std::string, int>& attributes, const std::string& name) {
+  const auto found = attributes.find(name);
+  return found == attributes.end() ? -1 : found->second;
+}
+
 tl::expected<std::vector<float>, std::string> read_floats(const tinygltf::Model& model,
                                                           int64_t accessor, int components,
-                                                          uint64_t most) {
-  const auto elements = resolve(model, accessor, most);
+                                                          uint64_t most,
+                                                          const std::vector<uint32_t>* only) {
+  const auto elements = resolve(model, accessor);
   if (!elements) return Failure(elements.error());
+  const std::string name = "accessor " + std::to_string(accessor) + " has ";
   if (elements->components != components) {
-    return Failure("accessor " + std::to_string(accessor) + " has " +
-                   std::to_string(elements->components) + " components where " +
+    return Failure(name + std::to_string(elements->components) + " components where " +
                    std::to_string(components) + " belong");
+  }
+  if (!only && elements->count > most) {
+    return Failure(name + "too many elements: " + std::to_string(elements->count));
+  }
+  if (only && !only->empty() && only->back() >= elements->count) {
+    return Failure(name + std::to_string(elements->count) + " elements, and element " +
+                   std::to_string(only->back()) + " is used");
   }
   const auto width = static_cast<size_t>(components);
   const uint64_t step = component_size(elements->component_type);
-  std::vector<float> values(elements->count * width, 0.0f);
-  const auto put = [&](uint64_t target, const uint8_t* at) {
+  const uint64_t count = only ? only->size() : elements->count;
+  std::vector<float> values(count * width, 0.0f);
+  const auto put = [&](uint64_t i, const uint8_t* at) {
     for (size_t c = 0; c < width; ++c) {
-      values[target * width + c] =
+      values[i * width + c] =
           float_component(at + c * step, elements->component_type, elements->normalized);
     }
   };
-  if (elements->first) {
-    for (uint64_t i = 0; i < elements->count; ++i) put(i, elements->first + i * elements->stride);
+  for (uint64_t i = 0; elements->first && i < count; ++i) {
+    put(i, elements->first + (only ? (*only)[i] : i) * elements->stride);
   }
-  if (auto sparse = for_each_sparse(model, accessor, *elements, put); !sparse) {
+  const auto put_sparse = [&](uint64_t target, const uint8_t* at) {
+    if (!only) return put(target, at);
+    const auto found = std::ranges::lower_bound(*only, target);
+    if (found != only->end() && *found == target) {
+      put(static_cast<uint64_t>(found - only->begin()), at);
+    }
+  };
+  if (auto sparse = for_each_sparse(model, accessor, *elements, put_sparse); !sparse) {
     return Failure(sparse.error());
   }
   return values;
@@ -239,9 +239,12 @@ tl::expected<std::vector<float>, std::string> read_floats(const tinygltf::Model&
 tl::expected<std::vector<uint32_t>, std::string> read_indices(const tinygltf::Model& model,
                                                               int64_t accessor, uint64_t bound,
                                                               uint64_t most) {
-  const auto elements = resolve(model, accessor, most);
+  const auto elements = resolve(model, accessor);
   if (!elements) return Failure(elements.error());
   const std::string name = "accessor " + std::to_string(accessor) + " ";
+  if (elements->count > most) {
+    return Failure(name + "has too many elements: " + std::to_string(elements->count));
+  }
   if (elements->components != 1 || !is_unsigned(elements->component_type)) {
     return Failure(name + "is used for indices and does not hold unsigned integers");
   }

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
@@ -14,16 +15,23 @@ namespace alcove::sample {
 // every index, offset, stride and count is checked against the size of the data. Error texts are
 // the end of a sentence that starts with the file's name.
 
-// Returns the bytes of a buffer view.
+// Returns the bytes of a buffer view, which is given or is one of the model.
+[[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
+    const tinygltf::Model& model, const tinygltf::BufferView& view);
 [[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
     const tinygltf::Model& model, int64_t view);
 
-// Reads all elements of an accessor as floats. Each element has `components` components: 1 to 4, or
-// 16 for a matrix. Normalised integers are mapped to [0,1] or [-1,1]; other integers keep their
-// value. Sparse values replace those of the buffer view. An accessor with another number of
-// components, or with more than `most` elements, is an error.
+// Returns the accessor of an attribute of a primitive or of a morph target, or -1 without it.
+[[nodiscard]] int attribute(const std::map<std::string, int>& attributes, const std::string& name);
+
+// Reads elements of an accessor as floats: all if `only` is null, otherwise those of its ascending
+// indices. Each element has `components` components: 1 to 4, or 16 for a matrix. Normalised
+// integers are mapped to [0,1] or [-1,1]; other integers keep their value. Sparse values replace
+// those of the buffer view. An accessor with another number of components, or without one of the
+// elements, is an error, and so are more than `most` elements without `only`.
 [[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(
-    const tinygltf::Model& model, int64_t accessor, int components, uint64_t most);
+    const tinygltf::Model& model, int64_t accessor, int components, uint64_t most,
+    const std::vector<uint32_t>* only = nullptr);
 
 // Reads a scalar accessor of unsigned integers. A value that is not below `bound`, or more than
 // `most` values, is an error.

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
-#include "scene/gltf_images.h"
-#include "scene/gltf_sampler.h"
-#include "scene/gltf_texture_transform.h"
+#include "scene/gltf_texture.h"
 
 namespace alcove::sample {
 namespace {
@@ -88,11 +87,12 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
           reference("normal map", material.normalTexture)};
 }
 
-// Adds materials to a scene, and the images that the materials use.
+// Adds materials to a scene.
 class MaterialReader {
  public:
-  MaterialReader(const tinygltf::Model& model, const ImageLimits& limits, Scene& scene)
-      : model_(model), scene_(scene), images_(model, limits, scene) {}
+  // `images` has the index in Scene::images for each image of the model.
+  MaterialReader(const tinygltf::Model& model, const std::vector<int32_t>& images, Scene& scene)
+      : model_(model), scene_(scene), images_(images) {}
 
   tl::expected<void, std::string> add(const tinygltf::Material& material);
 
@@ -102,7 +102,7 @@ class MaterialReader {
 
   const tinygltf::Model& model_;
   Scene& scene_;
-  GltfImages images_;
+  const std::vector<int32_t>& images_;
 };
 
 float clamped(double value, double low, double high, double otherwise) {
@@ -190,22 +190,49 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
   if (static_cast<size_t>(texture.source) >= model_.images.size()) {
     return Failure("has a texture without its image " + std::to_string(texture.source));
   }
-  auto read = images_.decode(static_cast<size_t>(texture.source));
-  if (!read) return Failure(read.error());
-  use.image = *read;
+  use.image = images_[static_cast<size_t>(texture.source)];
   return use;
+}
+
+// Marks the images that the materials of meshes of nodes use. Materials that no node draws need no
+// images.
+std::vector<char> used_images(const tinygltf::Model& model,
+                              const std::vector<tinygltf::Material>& materials) {
+  std::vector<char> meshes(model.meshes.size(), 0), drawn(materials.size(), 0),
+      images(model.images.size(), 0);
+  const auto mark = [](std::vector<char>& all, int index) {
+    if (index >= 0 && static_cast<size_t>(index) < all.size()) all[static_cast<size_t>(index)] = 1;
+  };
+  for (const tinygltf::Node& node : model.nodes) mark(meshes, node.mesh);
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    for (const auto& primitive : model.meshes[i].primitives) {
+      if (meshes[i]) mark(drawn, primitive.material);
+    }
+  }
+  for (size_t i = 0; i < materials.size(); ++i) {
+    if (!drawn[i]) continue;
+    for (const TextureReference& reference : references(materials[i])) {
+      const auto index = static_cast<size_t>(reference.index);
+      if (index < model.textures.size()) mark(images, model.textures[index].source);
+    }
+  }
+  return images;
 }
 
 }  // namespace
 
-tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
+tl::expected<void, std::string> add_materials(const tinygltf::Model& model, GltfFiles& files,
                                               const ImageLimits& limits, Scene& scene) {
-  MaterialReader reader(model, limits, scene);
+  std::vector<tinygltf::Material> materials;
   for (const tinygltf::Material& material : model.materials) {
     const tinygltf::Value* extension = specular_glossiness(material);
-    auto added = extension == nullptr ? reader.add(material)
-                                      : reader.add(as_metallic_roughness(material, *extension));
-    if (!added) return added;
+    materials.push_back(extension == nullptr ? material
+                                             : as_metallic_roughness(material, *extension));
+  }
+  const auto images = decode_images(model, used_images(model, materials), files, limits, scene);
+  MaterialReader reader(model, images, scene);
+  for (const tinygltf::Material& material : materials) {
+    if (auto added = reader.add(material); !added) return added;
   }
   scene.materials.emplace_back();
   scene.materials.back().double_sided = false;

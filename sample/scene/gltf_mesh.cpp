@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -15,11 +16,6 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-
-int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
-  const auto found = primitive.attributes.find(name);
-  return found == primitive.attributes.end() ? -1 : found->second;
-}
 
 bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -44,64 +40,29 @@ std::vector<uint32_t> as_list(std::vector<uint32_t> in, int mode) {
   return out;
 }
 
-tl::expected<std::vector<glm::vec3>, std::string> world_positions(const tinygltf::Model& model,
-                                                                  int accessor,
-                                                                  const VertexPlacement& placement,
-                                                                  uint64_t most) {
-  const auto values = read_floats(model, accessor, 3, most);
-  if (!values) return Failure(values.error());
-  std::vector<glm::vec3> out(values->size() / 3);
-  // The squares of larger lengths overflow a float.
-  constexpr float kFarthest = 1e15f;
-  for (size_t i = 0; i < out.size(); ++i) {
-    const glm::dvec4 local((*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2], 1.0);
-    out[i] = glm::vec3(placement.at(i) * local);
-    if (!finite(out[i]) ||
-        std::max({std::abs(out[i].x), std::abs(out[i].y), std::abs(out[i].z)}) > kFarthest) {
-      return Failure("has a vertex " + std::to_string(i) +
-                     " that is not a finite position within 1e15 of the origin");
+// Returns the vertices that the indices name, in ascending order, and renumbers the indices by it.
+std::vector<uint32_t> compacted(std::vector<uint32_t>& indices) {
+  if (indices.empty()) return {};
+  const auto [low, high] = std::ranges::minmax(indices);
+  std::vector<uint32_t> vertices;
+  if (high - low < 4 * indices.size()) {
+    std::vector<uint32_t> numbers(size_t{high - low} + 1, 0);
+    for (const uint32_t i : indices) numbers[i - low] = 1;
+    for (uint32_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i] == 0) continue;
+      numbers[i] = static_cast<uint32_t>(vertices.size());
+      vertices.push_back(low + i);
     }
+    for (uint32_t& i : indices) i = numbers[i - low];
+    return vertices;
   }
-  return out;
-}
-
-// Reads normals in world space. Normals that are zero or not finite become zero.
-tl::expected<std::vector<glm::vec3>, std::string> world_normals(const tinygltf::Model& model,
-                                                                int accessor,
-                                                                const VertexPlacement& placement,
-                                                                uint64_t most) {
-  const auto values = read_floats(model, accessor, 3, most);
-  if (!values) return Failure(values.error());
-  std::vector<glm::vec3> out(values->size() / 3);
-  for (size_t i = 0; i < out.size(); ++i) {
-    // Normals are transformed by the cofactor matrix, the inverse transpose times the determinant.
-    // It exists even if the determinant is 0.
-    const glm::dmat3 m(placement.at(i));
-    const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
-    const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
-                              side * glm::cross(m[0], m[1]));
-    const float* in = &(*values)[3 * i];
-    out[i] = glm::vec3(direction_of(cofactor * glm::dvec3(in[0], in[1], in[2])));
+  vertices = indices;
+  std::ranges::sort(vertices);
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (uint32_t& i : indices) {
+    i = static_cast<uint32_t>(std::ranges::lower_bound(vertices, i) - vertices.begin());
   }
-  return out;
-}
-
-// Reads tangents in world space. Tangents that are zero or not finite become zero.
-tl::expected<std::vector<glm::vec4>, std::string> world_tangents(const tinygltf::Model& model,
-                                                                 int accessor,
-                                                                 const VertexPlacement& placement,
-                                                                 uint64_t most) {
-  const auto values = read_floats(model, accessor, 4, most);
-  if (!values) return Failure(values.error());
-  std::vector<glm::vec4> out(values->size() / 4);
-  for (size_t i = 0; i < out.size(); ++i) {
-    const glm::dmat3 m(placement.at(i));
-    const float side = glm::determinant(m) < 0.0 ? -1.0f : 1.0f;
-    const float* in = &(*values)[4 * i];
-    out[i] = glm::vec4(glm::vec3(direction_of(m * glm::dvec3(in[0], in[1], in[2]))),
-                       in[3] < 0.0f ? -side : side);
-  }
-  return out;
+  return vertices;
 }
 
 // Reverses the winding of triangles that their transform mirrors.
@@ -175,157 +136,234 @@ bool reads_by(const Material& material, uint32_t uv_set) {
   });
 }
 
-// Returns texture coordinates, or an empty array if the file has none. Coordinates that are not
-// finite become zero.
-tl::expected<std::vector<glm::vec2>, std::string> texture_coordinates(
-    const tinygltf::Model& model, const tinygltf::Primitive& primitive, uint32_t uv_set,
-    size_t vertices) {
-  const int accessor = attribute(primitive, "TEXCOORD_" + std::to_string(uv_set));
-  if (accessor < 0) return {};
-  const auto values = read_floats(model, accessor, 2, vertices);
-  if (!values) return Failure(values.error());
-  if (values->size() != 2 * vertices) {
-    return Failure("has texture coordinates for some of its vertices only");
-  }
-  std::vector<glm::vec2> out(vertices, glm::vec2(0.0f));
-  for (size_t i = 0; i < vertices; ++i) {
-    const glm::vec2 uv((*values)[2 * i], (*values)[2 * i + 1]);
-    if (std::isfinite(uv.x) && std::isfinite(uv.y)) out[i] = uv;
-  }
-  return out;
+void charge(uint64_t& budget, uint64_t count) { budget -= std::min(budget, count); }
+
+bool is_invisible(const Material& material) {
+  return material.alpha_mode == AlphaMode::kBlend && material.base_color.a == 0.0f;
 }
 
-// Adds the sets of texture coordinates that the textures of the material use.
-tl::expected<void, std::string> add_texture_coordinates(const tinygltf::Model& model,
-                                                        const tinygltf::Primitive& primitive,
-                                                        Mesh& mesh, Scene& scene) {
-  const size_t vertices = mesh.positions.size();
-  for (const uint32_t set : {0u, 1u}) {
-    if (!reads_by(scene.materials[mesh.material], set)) continue;
-    auto uvs = texture_coordinates(model, primitive, set, vertices);
-    if (!uvs) return Failure(uvs.error());
-    if (uvs->empty()) {
-      scene.warnings.push_back("Mesh " + mesh.name + " lacks the texture coordinates " +
-                               std::to_string(set) +
-                               " that its material names: they are taken to be zero.");
+// Reads one primitive as a mesh. The steps are called in the order of their declaration.
+class PrimitiveReader {
+ public:
+  using Read = tl::expected<void, std::string>;
+
+  PrimitiveReader(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                  const PrimitivePlacement& placement, MeshBudget& budget, Scene& scene, Mesh begun)
+      : mesh(std::move(begun)),
+        model_(model),
+        primitive_(primitive),
+        placement_(placement),
+        budget_(budget),
+        scene_(scene),
+        material_(scene.materials[this->mesh.material]),
+        transforms_(placement.world_from_mesh) {}
+
+  // Reads the indices as a list of triangles, and takes its size from the budget.
+  Read read_triangles(int mode);
+  Read read_positions();
+  // Reads the sets of texture coordinates that the textures of the material use.
+  Read read_uvs();
+  // Reads COLOR_0. Colours without alpha get an alpha of 1. If all are white, none are kept.
+  Read read_colors();
+  // Reads normals and tangents. Without normals, triangles have geometric normals and tangents are
+  // ignored (glTF 2.0 section 3.7.2.1).
+  Read read_normals();
+
+  Mesh mesh;
+
+ private:
+  Read read_indices_of(const tinygltf::Accessor& positions);
+  Read charge_budget();
+  // Returns the values of an attribute for all vertices, with the deltas of the morph targets,
+  // which have three components. The attribute must exist.
+  tl::expected<std::vector<float>, std::string> values(const std::string& name, int components);
+
+  const tinygltf::Model& model_;
+  const tinygltf::Primitive& primitive_;
+  const PrimitivePlacement& placement_;
+  MeshBudget& budget_;
+  Scene& scene_;
+  const Material& material_;
+  VertexPlacement transforms_;
+  std::vector<uint32_t> vertices_;  // the vertices of the file that the triangles use
+};
+
+PrimitiveReader::Read PrimitiveReader::read_triangles(int mode) {
+  const auto position = static_cast<size_t>(attribute(primitive_.attributes, "POSITION"));
+  if (position >= model_.accessors.size()) {
+    return Failure("accessor " + std::to_string(position) + " does not exist");
+  }
+  if (auto read = read_indices_of(model_.accessors[position]); !read) return read;
+  mesh.indices = as_list(std::move(mesh.indices), mode);
+  vertices_ = compacted(mesh.indices);
+  return charge_budget();
+}
+
+PrimitiveReader::Read PrimitiveReader::read_indices_of(const tinygltf::Accessor& positions) {
+  const uint64_t vertices = positions.count;
+  if (primitive_.indices >= 0) {
+    auto read = read_indices(model_, primitive_.indices, vertices, budget_.indices);
+    if (!read) return Failure(read.error());
+    mesh.indices = std::move(*read);
+    return {};
+  }
+  // A few bytes of a file can name any number of vertices without data.
+  constexpr uint64_t kMostWithoutData = uint64_t{1} << 22;
+  if (vertices > std::min(budget_.vertices, budget_.indices) ||
+      (positions.bufferView < 0 && vertices > kMostWithoutData)) {
+    return Failure("has too many vertices: " + std::to_string(vertices));
+  }
+  mesh.indices.resize(vertices);
+  std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
+  return {};
+}
+
+PrimitiveReader::Read PrimitiveReader::charge_budget() {
+  if (mesh.indices.size() > budget_.indices || vertices_.size() > budget_.vertices) {
+    return Failure("takes the scene past the number of triangles that is read here");
+  }
+  if (placement_.instances != nullptr) {
+    if (placement_.instances->size() > budget_.instances) {
+      return Failure("takes the scene past the number of instances that is read here");
     }
-    (set == 0 ? mesh.uvs : mesh.second_uvs) = std::move(*uvs);
+    budget_.instances -= placement_.instances->size();
+    mesh.instances = *placement_.instances;
+  }
+  const uint64_t drawn = mesh.indices.size() / 3 * instance_count(mesh);
+  if (drawn > budget_.drawn_triangles) {
+    return Failure(
+        "takes the scene past the number of triangles that is drawn here, instances "
+        "counted each");
+  }
+  // Triangles without an area count too, because they took time to read.
+  charge(budget_.vertices, vertices_.size());
+  charge(budget_.indices, mesh.indices.size());
+  charge(budget_.drawn_triangles, drawn);
+  return {};
+}
+
+tl::expected<std::vector<float>, std::string> PrimitiveReader::values(const std::string& name,
+                                                                      int components) {
+  auto sum = read_floats(model_, attribute(primitive_.attributes, name), components, 0, &vertices_);
+  const bool morphs = name == "POSITION" || name == "NORMAL" || name == "TANGENT";
+  if (!sum || !morphs || placement_.morph_weights == nullptr) return sum;
+  const size_t targets = std::min(primitive_.targets.size(), placement_.morph_weights->size());
+  for (size_t t = 0; t < targets; ++t) {
+    const int delta = attribute(primitive_.targets[t], name);
+    const auto weight = static_cast<float>((*placement_.morph_weights)[t]);
+    if (delta < 0 || weight == 0.0f) continue;
+    if (budget_.vertices < vertices_.size()) {
+      return Failure("takes the scene past the number of vertices of morph targets");
+    }
+    charge(budget_.vertices, vertices_.size());
+    const auto deltas = read_floats(model_, delta, 3, 0, &vertices_);
+    if (!deltas) return deltas;
+    for (size_t v = 0; v < vertices_.size(); ++v) {
+      for (size_t c = 0; c < 3; ++c) {
+        (*sum)[v * static_cast<size_t>(components) + c] += weight * (*deltas)[3 * v + c];
+      }
+    }
+  }
+  return sum;
+}
+
+PrimitiveReader::Read PrimitiveReader::read_positions() {
+  // The squares of larger lengths overflow a float.
+  constexpr float kFarthest = 1e15f;
+  if (placement_.joints != nullptr) {
+    auto skinned = VertexPlacement::skinned(model_, primitive_, vertices_, *placement_.joints,
+                                            budget_.vertices);
+    if (!skinned) return Failure(skinned.error());
+    transforms_ = std::move(*skinned);
+  }
+  const auto read = values("POSITION", 3);
+  if (!read) return Failure(read.error());
+  mesh.positions.resize(vertices_.size());
+  for (size_t i = 0; i < vertices_.size(); ++i) {
+    const float* in = &(*read)[3 * i];
+    glm::vec3& out = mesh.positions[i];
+    out = glm::vec3(transforms_.at(i) * glm::dvec4(in[0], in[1], in[2], 1.0));
+    if (!finite(out) || std::max({std::abs(out.x), std::abs(out.y), std::abs(out.z)}) > kFarthest) {
+      return Failure("has a vertex " + std::to_string(vertices_[i]) +
+                     " that is not a finite position within 1e15 of the origin");
+    }
+  }
+  turn_mirrored(transforms_, mesh.indices);
+  drop_flat_faces(mesh);
+  return {};
+}
+
+PrimitiveReader::Read PrimitiveReader::read_uvs() {
+  for (const uint32_t set : {0u, 1u}) {
+    if (!reads_by(material_, set)) continue;
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    if (attribute(primitive_.attributes, name) < 0) {
+      scene_.warnings.push_back("Mesh " + mesh.name + " lacks the texture coordinates " +
+                                std::to_string(set) +
+                                " that its material names: they are taken to be zero.");
+      continue;
+    }
+    const auto read = values(name, 2);
+    if (!read) return Failure(read.error());
+    std::vector<glm::vec2>& uvs = set == 0 ? mesh.uvs : mesh.second_uvs;
+    for (size_t i = 0; i < read->size(); i += 2) {
+      const glm::vec2 uv((*read)[i], (*read)[i + 1]);
+      uvs.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f));
+    }
   }
   return {};
 }
 
-// Adds the vertex colours COLOR_0. Colours without alpha get an alpha of 1. If all colours are
-// white, none are kept.
-tl::expected<void, std::string> add_colors(const tinygltf::Model& model,
-                                           const tinygltf::Primitive& primitive, Mesh& mesh) {
-  const int accessor = attribute(primitive, "COLOR_0");
-  if (accessor < 0) return {};
-  const size_t vertices = mesh.positions.size();
-  const bool has_alpha = static_cast<size_t>(accessor) < model.accessors.size() &&
-                         model.accessors[static_cast<size_t>(accessor)].type == TINYGLTF_TYPE_VEC4;
-  const int components = has_alpha ? 4 : 3;
-  const auto values = read_floats(model, accessor, components, vertices);
-  if (!values) return Failure(values.error());
-  const auto width = static_cast<size_t>(components);
-  if (values->size() != width * vertices) return Failure("has colours for some vertices only");
-  mesh.colors.assign(vertices, glm::u8vec4(255));
-  for (size_t v = 0; v < vertices; ++v) {
-    for (size_t c = 0; c < width; ++c) {
-      const float value = (*values)[v * width + c];
-      const float clamped = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1.0f;
-      mesh.colors[v][static_cast<int>(c)] = static_cast<uint8_t>(std::lround(255.0f * clamped));
-    }
+PrimitiveReader::Read PrimitiveReader::read_colors() {
+  const auto accessor = static_cast<size_t>(attribute(primitive_.attributes, "COLOR_0"));
+  if (accessor == SIZE_MAX) return {};
+  const bool has_alpha =
+      accessor < model_.accessors.size() && model_.accessors[accessor].type == TINYGLTF_TYPE_VEC4;
+  const size_t width = has_alpha ? 4 : 3;
+  const auto read = values("COLOR_0", static_cast<int>(width));
+  if (!read) return Failure(read.error());
+  mesh.colors.assign(vertices_.size(), glm::u8vec4(255));
+  for (size_t i = 0; i < read->size(); ++i) {
+    const float value = std::isfinite((*read)[i]) ? std::clamp((*read)[i], 0.0f, 1.0f) : 1.0f;
+    mesh.colors[i / width][static_cast<int>(i % width)] =
+        static_cast<uint8_t>(std::lround(255.0f * value));
   }
   const auto is_white = [](const glm::u8vec4& color) { return color == glm::u8vec4(255); };
   if (std::ranges::all_of(mesh.colors, is_white)) mesh.colors = {};
   return {};
 }
 
-// Adds normals and tangents. `vertices` is the number of vertices in the file. Without normals,
-// triangles have geometric normals and tangents are ignored (glTF 2.0 section 3.7.2.1).
-tl::expected<void, std::string> add_normals(const tinygltf::Model& model,
-                                            const tinygltf::Primitive& primitive,
-                                            const Material& material,
-                                            const VertexPlacement& placement, size_t vertices,
-                                            Mesh& mesh) {
-  const int normal = attribute(primitive, "NORMAL");
-  if (normal < 0) {
+PrimitiveReader::Read PrimitiveReader::read_normals() {
+  const bool mapped = material_.normal_texture.image >= 0;
+  if (attribute(primitive_.attributes, "NORMAL") < 0) {
     // The tangents of a normal map are computed at vertices that have a normal, so that the mesh
     // needs vertex normals.
-    if (material.normal_texture.image >= 0) make_flat_normals(mesh);
+    if (mapped) make_flat_normals(mesh);
     return {};
   }
-  auto normals = world_normals(model, normal, placement, vertices);
+  const auto normals = values("NORMAL", 3);
   if (!normals) return Failure(normals.error());
-  if (normals->size() != vertices) return Failure("has normals for some of its vertices only");
-  mesh.normals = std::move(*normals);
+  for (size_t i = 0; i < vertices_.size(); ++i) {
+    // Normals are transformed by the cofactor matrix, the inverse transpose times the determinant.
+    // It exists even if the determinant is 0. Normals that are zero or not finite become zero.
+    const glm::dmat3 m(transforms_.at(i));
+    const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
+    const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
+                              side * glm::cross(m[0], m[1]));
+    const float* in = &(*normals)[3 * i];
+    mesh.normals.emplace_back(direction_of(cofactor * glm::dvec3(in[0], in[1], in[2])));
+  }
   mend_normals(mesh);
-  const int tangent = attribute(primitive, "TANGENT");
-  if (tangent < 0) return {};
-  if (static_cast<size_t>(tangent) < model.accessors.size() &&
-      model.accessors[static_cast<size_t>(tangent)].count != vertices) {
-    return Failure("has tangents for some of its vertices only");
-  }
-  if (material.normal_texture.image < 0) return {};
-  auto tangents = world_tangents(model, tangent, placement, vertices);
+  if (!mapped || attribute(primitive_.attributes, "TANGENT") < 0) return {};
+  const auto tangents = values("TANGENT", 4);
   if (!tangents) return Failure(tangents.error());
-  if (tangents->size() != vertices) return Failure("has tangents for some of its vertices only");
-  mesh.tangents = std::move(*tangents);
-  return {};
-}
-
-void charge(uint64_t& budget, uint64_t count) { budget -= std::min(budget, count); }
-
-tl::expected<std::vector<uint32_t>, std::string> vertex_order(const tinygltf::Model& model,
-                                                              const tinygltf::Primitive& primitive,
-                                                              size_t vertices, uint64_t most) {
-  if (primitive.indices >= 0) return read_indices(model, primitive.indices, vertices, most);
-  std::vector<uint32_t> order(vertices);
-  std::iota(order.begin(), order.end(), 0u);
-  return order;
-}
-
-// Returns the transforms of the vertices of a primitive to the space of its mesh.
-tl::expected<VertexPlacement, std::string> vertex_placement(const tinygltf::Model& model,
-                                                            const tinygltf::Primitive& primitive,
-                                                            const PrimitivePlacement& placement,
-                                                            uint64_t most) {
-  if (placement.joints == nullptr) return VertexPlacement(placement.world_from_mesh);
-  const int position = attribute(primitive, "POSITION");
-  const size_t vertices = static_cast<size_t>(position) < model.accessors.size()
-                              ? model.accessors[static_cast<size_t>(position)].count
-                              : 0;
-  if (vertices > most) return Failure("has too many vertices: " + std::to_string(vertices));
-  return VertexPlacement::skinned(model, primitive, vertices, *placement.joints, most);
-}
-
-bool is_invisible(const Material& material) {
-  return material.alpha_mode == AlphaMode::kBlend && material.base_color.a == 0.0f;
-}
-
-// Gives the mesh its instances and takes its size from the budget.
-tl::expected<void, std::string> charge_mesh(size_t vertices, const PrimitivePlacement& placement,
-                                            MeshBudget& budget, Mesh& mesh) {
-  if (mesh.indices.size() > budget.indices || mesh.indices.size() > budget.vertices) {
-    return Failure("takes the scene past the number of triangles that is read here");
+  for (size_t i = 0; i < vertices_.size(); ++i) {
+    const glm::dmat3 m(transforms_.at(i));
+    const float side = glm::determinant(m) < 0.0 ? -1.0f : 1.0f;
+    const float* in = &(*tangents)[4 * i];
+    mesh.tangents.emplace_back(glm::vec3(direction_of(m * glm::dvec3(in[0], in[1], in[2]))),
+                               in[3] < 0.0f ? -side : side);
   }
-  if (placement.instances != nullptr) {
-    if (placement.instances->size() > budget.instances) {
-      return Failure("takes the scene past the number of instances that is read here");
-    }
-    budget.instances -= placement.instances->size();
-    mesh.instances = *placement.instances;
-  }
-  const uint64_t drawn = mesh.indices.size() / 3 * instance_count(mesh);
-  if (drawn > budget.drawn_triangles) {
-    return Failure(
-        "takes the scene past the number of triangles that is drawn here, instances "
-        "counted each");
-  }
-  // Triangles without an area count too, because they took time to read.
-  charge(budget.vertices, vertices);
-  charge(budget.indices, mesh.indices.size());
-  charge(budget.drawn_triangles, drawn);
   return {};
 }
 
@@ -350,8 +388,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
   if (primitive.material >= static_cast<int>(model.materials.size())) {
     return refuse("has no material " + std::to_string(primitive.material));
   }
-  const int position = attribute(primitive, "POSITION");
-  if (position < 0) return {};
+  if (attribute(primitive.attributes, "POSITION") < 0) return {};
 
   Mesh mesh;
   mesh.name = name;
@@ -363,32 +400,15 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                              "\" blends with an alpha of 0: its triangles are not drawn.");
     return {};
   }
-  auto placed = vertex_placement(model, primitive, placement, budget.vertices);
-  if (!placed) return refuse(placed.error());
-  auto positions = world_positions(model, position, *placed, budget.vertices);
-  if (!positions) return refuse(positions.error());
-  const size_t vertices = positions->size();
-  auto order = vertex_order(model, primitive, vertices, budget.indices);
-  if (!order) return refuse(order.error());
-  mesh.positions = std::move(*positions);
-  if (auto added = add_texture_coordinates(model, primitive, mesh, scene); !added) {
-    return refuse(added.error());
-  }
-  if (auto added = add_colors(model, primitive, mesh); !added) return refuse(added.error());
-  mesh.indices = as_list(std::move(*order), mode);
-  if (auto charged = charge_mesh(vertices, placement, budget, mesh); !charged) {
-    return refuse(charged.error());
-  }
-  turn_mirrored(*placed, mesh.indices);
-  drop_flat_faces(mesh);
-  if (mesh.indices.empty()) return {};
-
-  if (auto added = add_normals(model, primitive, material, *placed, vertices, mesh); !added) {
-    return refuse(added.error());
-  }
-  // Flat normals may have added vertices.
-  charge(budget.vertices, mesh.positions.size() - std::min(vertices, mesh.positions.size()));
-  scene.meshes.push_back(std::move(mesh));
+  PrimitiveReader reader(model, primitive, placement, budget, scene, std::move(mesh));
+  auto read = reader.read_triangles(mode).and_then([&] { return reader.read_positions(); });
+  if (!read) return refuse(read.error());
+  if (reader.mesh.indices.empty()) return {};
+  read = reader.read_uvs().and_then([&] { return reader.read_colors(); }).and_then([&] {
+    return reader.read_normals();
+  });
+  if (!read) return refuse(read.error());
+  scene.meshes.push_back(std::move(reader.mesh));
   return {};
 }
 

@@ -29,9 +29,11 @@ struct PrimitivePlacement {
       nullptr;  // joints of a skin; they replace world_from_mesh
   // If not null, the mesh is not transformed and gets these instances.
   const std::vector<glm::mat4x3>* instances = nullptr;
+  const std::vector<double>* morph_weights = nullptr;  // by morph target; null: all are 0
 };
 
-// Adds the triangles of one primitive as a mesh. Points and lines are left out with a warning.
+// Adds the triangles of one primitive as a mesh, with the vertices that they use. Morph targets are
+// applied before the placement. Points and lines are left out with a warning.
 // Triangles without an area, and primitives whose material is alpha-blended with an alpha of 0, are
 // left out. A mirroring transform reverses the winding. Error texts are the end of a sentence whose
 // beginning the caller adds.

@@ -1,16 +1,24 @@
 #include "scene/gltf_model.h"
 
+// tinygltf is compiled here from its header, because its conversions of JSON objects have no other
+// interface. Its readers and writers of images are left out.
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#include <tiny_gltf.h>
+#undef TINYGLTF_IMPLEMENTATION
+
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "scene/gltf_container.h"
-#include "scene/gltf_extensions.h"
-#include "scene/gltf_files.h"
+#include "scene/gltf_meshopt.h"
 #include "scene/gltf_properties.h"
-#include "support/printable.h"
 
 namespace alcove::sample {
 namespace {
@@ -48,12 +56,14 @@ std::optional<Version> version_of(const std::string& text) {
   return version;
 }
 
-// Checks the glTF version. Files of a later version 2.x are read, unless asset.minVersion says that
-// readers of 2.0 cannot read them.
-Checked check_version(const json& asset) {
+// Checks the glTF version, before other properties, because those of glTF 1.0 are different. Files
+// of a later version 2.x are read, unless asset.minVersion says that readers of 2.0 cannot.
+Checked check_version(const json& root) {
+  const auto asset = root.find("asset");
+  if (asset == root.end() || !asset->is_object()) return {};
   for (const char* name : {"version", "minVersion"}) {
-    const auto found = asset.find(name);
-    if (found == asset.end()) continue;
+    const auto found = asset->find(name);
+    if (found == asset->end() || !found->is_string()) continue;
     const auto& text = found->get_ref<const std::string&>();
     const auto version = version_of(text);
     if (!version) {
@@ -68,111 +78,108 @@ Checked check_version(const json& asset) {
   return {};
 }
 
-Checked check_required_extensions(const json& root) {
-  const auto required = root.find("extensionsRequired");
-  if (required == root.end()) return {};
-  for (const json& name : *required) {
-    const auto& text = name.get_ref<const std::string&>();
-    if (is_extension_read(text) || changes_no_shape(text)) continue;
-    return Failure("it requires the extension " + text +
-                   ", which is not read here; export it without");
-  }
-  return {};
+bool is_one_of(std::span<const std::string_view> names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
 }
 
-Failure reached_twice(size_t node) {
-  return Failure("node " + std::to_string(node) +
-                 " is reached twice: nodes form a cycle or have two parents");
-}
-
-// Checks that the nodes form a forest (glTF 2.0 section 3.5.2), including nodes that no scene
-// shows.
-Checked check_node_tree(const json& root) {
-  const auto nodes = root.find("nodes");
-  if (nodes == root.end()) return {};
-  constexpr size_t kNone = SIZE_MAX;
-  std::vector<size_t> parents(nodes->size(), kNone);
-  for (size_t i = 0; i < nodes->size(); ++i) {
-    const auto children = (*nodes)[i].find("children");
-    if (children == (*nodes)[i].end()) continue;
-    for (const json& child : *children) {
-      const auto index = child.get<size_t>();
-      if (index >= parents.size()) {
-        return Failure("nodes[" + std::to_string(i) + "].children names node " +
-                       std::to_string(index) + ", which does not exist");
+// Notes the extensions that are not read, and refuses those that hold or place triangles. Other
+// extensions, also unknown ones, change appearance, light, behaviour or metadata.
+tl::expected<std::vector<std::string>, std::string> check_extensions(const json& root) {
+  static constexpr std::string_view kRead[] = {
+      "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_materials_pbrSpecularGlossiness",
+      "KHR_mesh_quantization",   "KHR_meshopt_compression", "KHR_node_visibility",
+      "KHR_texture_transform"};
+  static constexpr std::string_view kGeometry[] = {
+      "ALI_amc_mesh_compression",      "EXT_implicit_cylinder_region",
+      "EXT_implicit_ellipsoid_region", "EXT_mesh_primitive_restart",
+      "EXT_primitive_voxels",          "FB_ngon_encoding",
+      "KHR_accessor_float64",          "KHR_binary_glTF",
+      "KHR_draco_mesh_compression",    "KHR_gaussian_splatting",
+      "KHR_implicit_shapes",           "KHR_mesh_primitive_restart",
+      "MPEG_accessor_timed",           "MPEG_buffer_circular",
+      "WEB3D_quantized_attributes"};
+  std::vector<std::string> notes;
+  for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
+    const bool required = std::string_view(list) == "extensionsRequired";
+    for (const json& name : root.value(list, json::array())) {
+      const auto& text = name.get_ref<const std::string&>();
+      if (is_one_of(kRead, text)) continue;
+      if (required && is_one_of(kGeometry, text)) {
+        return Failure("it requires the extension " + text +
+                       ", which is not read here; export it without");
       }
-      if (std::exchange(parents[index], i) != kNone) return reached_twice(index);
+      notes.push_back("The extension " + text + " is left out.");
     }
   }
-  // Follows the parents of every node. If a walk has more steps than there are nodes, it is in a
-  // cycle. `cleared` marks nodes that are known to lead to a root.
-  std::vector<char> cleared(parents.size(), 0);
-  for (size_t start = 0; start < parents.size(); ++start) {
-    size_t steps = 0;
-    for (size_t node = start; node != kNone && !cleared[node]; node = parents[node]) {
-      if (++steps > parents.size()) return reached_twice(node);
-    }
-    for (size_t node = start; node != kNone && !cleared[node]; node = parents[node]) {
-      cleared[node] = 1;
-    }
+  return notes;
+}
+
+// Checks that no scene lists a node twice.
+Checked check_scenes(const json& root) {
+  const json scenes = root.value("scenes", json::array());
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    auto nodes = scenes[i].value("nodes", std::vector<size_t>());
+    std::ranges::sort(nodes);
+    const auto twice = std::ranges::adjacent_find(nodes);
+    if (twice == nodes.end()) continue;
+    return Failure("scenes[" + std::to_string(i) + "].nodes lists node " + std::to_string(*twice) +
+                   " twice; list each node once");
   }
   return {};
 }
 
-// Parts of the JSON that are removed before tinygltf reads it. tinygltf would read external files
-// by its own rules, and it refuses valid index accessors that have no buffer view.
-struct Taken {
-  json buffers;
-  json images;
-  size_t animations = 0;
-  std::vector<std::vector<int>> indices;  // by mesh and primitive; -1: none
-};
-
-json take_member(json& root, const char* name) {
+// Converts the elements of an array of the JSON by a function of tinygltf.
+template <class Element, class Convert>
+void convert(const json& root, const char* name, std::vector<Element>& out,
+             const Convert& convert_one) {
   const auto found = root.find(name);
-  if (found == root.end()) return json::array();
-  json out = std::move(*found);
-  root.erase(found);
-  return out;
+  if (found == root.end()) return;
+  out.reserve(found->size());
+  for (const json& element : *found) {
+    if (!convert_one(&out.emplace_back(), element)) return;
+  }
 }
 
-Taken take(json& root) {
-  Taken out{take_member(root, "buffers"),
-            take_member(root, "images"),
-            take_member(root, "animations").size(),
-            {}};
-  const auto meshes = root.find("meshes");
-  if (meshes == root.end()) return out;
-  for (json& mesh : *meshes) {
-    auto& indices = out.indices.emplace_back();
-    for (json& primitive : mesh.at("primitives")) {
-      indices.push_back(primitive.value("indices", -1));
-      primitive.erase("indices");
-    }
-  }
-  return out;
-}
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-Checked read_by_tinygltf(const json& root, const Taken& taken, tinygltf::Model& model) {
-  const std::string text = root.dump();
-  tinygltf::TinyGLTF loader;
-  std::string error, warning;
-  if (!loader.LoadASCIIFromString(&model, &error, &warning, text.data(),
-                                  static_cast<unsigned>(text.size()), "")) {
-    return Failure(
-        "it is not valid glTF; check it with Khronos' glTF validator and export it "
-        "again (tinygltf says: " +
-        first_line(error) + ")");
-  }
-  for (size_t m = 0; m < model.meshes.size(); ++m) {
-    for (size_t p = 0; p < model.meshes[m].primitives.size(); ++p) {
-      model.meshes[m].primitives[p].indices = taken.indices[m][p];
-    }
-  }
-  model.animations.resize(taken.animations);
-  return {};
+// Converts the JSON to tinygltf's model by tinygltf's own functions, so that it is parsed once.
+Checked fill_model(const json& root, tinygltf::Model& model) {
+  std::string error;
+  const auto by = [&](auto parse) {
+    return [&error, parse](auto* out, const json& from) {
+      return error.empty() && parse(out, &error, from, false);
+    };
+  };
+  convert(root, "accessors", model.accessors, by(tinygltf::ParseAccessor));
+  convert(root, "bufferViews", model.bufferViews, by(tinygltf::ParseBufferView));
+  convert(root, "nodes", model.nodes, by(tinygltf::ParseNode));
+  convert(root, "materials", model.materials, by(tinygltf::ParseMaterial));
+  convert(root, "samplers", model.samplers, by(tinygltf::ParseSampler));
+  convert(root, "cameras", model.cameras, by(tinygltf::ParseCamera));
+  convert(root, "meshes", model.meshes, [&](tinygltf::Mesh* out, const json& from) {
+    return tinygltf::ParseMesh(out, &model, &error, from, false);
+  });
+  convert(root, "textures", model.textures, [&](tinygltf::Texture* out, const json& from) {
+    return tinygltf::ParseTexture(out, &error, from, false, "");
+  });
+  convert(root, "images", model.images, [&](tinygltf::Image* out, const json& from) {
+    out->uri = from.value("uri", "");
+    out->bufferView = from.value("bufferView", -1);
+    return true;
+  });
+  convert(root, "scenes", model.scenes, [&](tinygltf::Scene* out, const json& from) {
+    out->nodes = from.value("nodes", std::vector<int>());
+    return true;
+  });
+  std::string missing_matrices;  // tinygltf calls them required; the specification does not
+  convert(root, "skins", model.skins, [&](tinygltf::Skin* out, const json& from) {
+    return tinygltf::ParseSkin(out, &missing_matrices, from, false);
+  });
+  model.defaultScene = root.value("scene", -1);
+  model.animations.resize(root.value("animations", json::array()).size());
+  if (error.empty()) return {};
+  return Failure(
+      "it is not valid glTF; check it with Khronos' glTF validator and export it again (tinygltf "
+      "says: " +
+      error.substr(0, error.find('\n')) + ")");
 }
 
 // Fills the buffers of the model. The first buffer of a binary file may be its binary chunk. Other
@@ -213,75 +220,6 @@ Checked fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfP
   return {};
 }
 
-// Sets `all[index]` if that element exists.
-void mark(std::vector<char>& all, int index) {
-  if (index >= 0 && static_cast<size_t>(index) < all.size()) all[static_cast<size_t>(index)] = 1;
-}
-
-// Marks the images that are used by a material of a mesh of a node.
-std::vector<char> used_images(const json& root, size_t image_count) {
-  const json none = json::array();
-  const auto array = [&](const char* name) -> const json& {
-    const auto found = root.find(name);
-    return found == root.end() ? none : *found;
-  };
-  const json &meshes = array("meshes"), &materials = array("materials"),
-             &textures = array("textures");
-  std::vector<char> mesh_used(meshes.size(), 0), material_used(materials.size(), 0),
-      texture_used(textures.size(), 0), image_used(image_count, 0);
-  for (const json& node : array("nodes")) mark(mesh_used, node.value("mesh", -1));
-  for (size_t i = 0; i < meshes.size(); ++i) {
-    if (!mesh_used[i]) continue;
-    for (const json& primitive : meshes[i].at("primitives")) {
-      mark(material_used, primitive.value("material", -1));
-    }
-  }
-  // A material can refer to textures in several places. Each reference is an object with an index.
-  std::vector<const json*> open;
-  for (size_t i = 0; i < materials.size(); ++i) {
-    if (material_used[i]) open.push_back(&materials[i]);
-  }
-  while (!open.empty()) {
-    const json* object = open.back();
-    open.pop_back();
-    if (object->contains("index")) mark(texture_used, object->at("index").get<int>());
-    for (const json& member : *object) {
-      if (member.is_object()) open.push_back(&member);
-    }
-  }
-  for (size_t i = 0; i < textures.size(); ++i) {
-    if (texture_used[i]) mark(image_used, textures[i].value("source", -1));
-  }
-  return image_used;
-}
-
-void fill_images(const json& images, const std::vector<char>& used, GltfFiles& files,
-                 GltfModel& out) {
-  for (size_t i = 0; i < images.size(); ++i) {
-    tinygltf::Image& image = out.model.images.emplace_back();
-    image.bufferView = images[i].value("bufferView", -1);
-    const auto leave_out = [&](const std::string& name, const std::string& why) {
-      out.warnings.push_back(name + " " + why + " and is left out.");
-    };
-    const std::string name = "image " + std::to_string(i);
-    const auto uri = images[i].find("uri");
-    if (image.bufferView >= 0 || !used[i]) continue;
-    if (uri == images[i].end()) {
-      leave_out(name, "has neither a uri nor a bufferView");
-      continue;
-    }
-    const auto& text = uri->get_ref<const std::string&>();
-    const std::string shown = GltfFiles::shown(text);
-    auto bytes = files.read(text);
-    if (!shown.starts_with("data:")) image.uri = printable(shown);
-    if (!bytes || bytes->empty()) {
-      leave_out(name + " (" + shown + ")", bytes ? "is empty" : bytes.error());
-      continue;
-    }
-    image.image = std::move(*bytes);
-  }
-}
-
 }  // namespace
 
 tl::expected<GltfModel, std::string> read_gltf_model(std::vector<uint8_t> file,
@@ -291,22 +229,20 @@ tl::expected<GltfModel, std::string> read_gltf_model(std::vector<uint8_t> file,
   auto parsed = parse(parts->json);
   if (!parsed) return Failure(parsed.error());
   if (!parts->has_binary) file = {};
-  auto root = checked_properties(std::move(*parsed));
+  if (auto checked = check_version(*parsed); !checked) return Failure(checked.error());
+  const auto root = checked_properties(std::move(*parsed));
   if (!root) return Failure(root.error());
-  auto checked = check_version(root->at("asset"))
-                     .and_then([&] { return check_required_extensions(*root); })
-                     .and_then([&] { return check_node_tree(*root); });
-  if (!checked) return Failure(checked.error());
-
-  const Taken taken = take(*root);
-  GltfModel out;
-  if (auto read = read_by_tinygltf(*root, taken, out.model); !read) return Failure(read.error());
-  GltfFiles files(folder);
-  if (auto filled = fill_buffers(taken.buffers, std::move(file), *parts, files, out.model);
-      !filled) {
-    return Failure(filled.error());
-  }
-  fill_images(taken.images, used_images(*root, taken.images.size()), files, out);
+  auto notes = check_extensions(*root);
+  if (!notes) return Failure(notes.error());
+  GltfModel out{{}, GltfFiles(folder), std::move(*notes)};
+  const auto read = check_scenes(*root)
+                        .and_then([&] { return fill_model(*root, out.model); })
+                        .and_then([&] {
+                          return fill_buffers(root->value("buffers", json::array()),
+                                              std::move(file), *parts, out.files, out.model);
+                        })
+                        .and_then([&] { return decompress_views(out.model); });
+  if (!read) return Failure(read.error());
   return out;
 }
 

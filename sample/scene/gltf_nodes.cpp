@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "scene/gltf_layout.h"
-#include "scene/gltf_origin.h"
 
 namespace alcove::sample {
 namespace {
@@ -32,26 +31,32 @@ class NodeReader {
     nodes_of_.resize(model.meshes.size());
     for (const DrawnNode& drawn : layout.drawn) {
       const tinygltf::Node& node = model.nodes[drawn.node];
-      if (node.skin >= 0 || node.mesh < 0) continue;
+      // A node with morph weights of its own has a shape of its own.
+      if (node.skin >= 0 || node.mesh < 0 || !node.weights.empty()) continue;
       if (static_cast<size_t>(node.mesh) >= model.meshes.size()) continue;
       nodes_of_[static_cast<size_t>(node.mesh)].push_back(&drawn);
     }
   }
 
-  tl::expected<void, std::string> add(size_t index) {
-    const tinygltf::Node& node = model_.nodes[index];
+  tl::expected<void, std::string> add(const DrawnNode& drawn_node) {
+    const tinygltf::Node& node = model_.nodes[drawn_node.node];
     if (node.mesh < 0) return {};
     if (static_cast<size_t>(node.mesh) >= model_.meshes.size()) {
       return Failure("node \"" + node.name + "\" has no mesh " + std::to_string(node.mesh));
     }
     if (node.skin >= 0) return add_skinned(node);
+    if (!node.weights.empty()) return add_nodes({&drawn_node}, node);
     // The first node of a mesh adds the instances of all nodes with that mesh.
-    const auto nodes = std::exchange(nodes_of_[static_cast<size_t>(node.mesh)], {});
+    return add_nodes(std::exchange(nodes_of_[static_cast<size_t>(node.mesh)], {}), node);
+  }
+
+ private:
+  tl::expected<void, std::string> add_nodes(const std::vector<const DrawnNode*>& nodes,
+                                            const tinygltf::Node& node) {
     size_t count = 0;
     for (const DrawnNode* drawn : nodes) count += std::max<size_t>(drawn->instances.size(), 1);
     std::vector<glm::mat4x3> shared;
     std::vector<glm::dmat4> apart;
-    if (count > 1) shared.reserve(count);
     const auto place = [&](const glm::dmat4& world) {
       if (count > 1 && can_be_instance(world)) {
         shared.emplace_back(world);
@@ -62,7 +67,13 @@ class NodeReader {
     for (const DrawnNode* drawn : nodes) {
       const glm::dmat4 world = world_of(drawn->node);
       if (drawn->instances.size() == 0) place(world);
-      for (size_t i = 0; i < drawn->instances.size(); ++i) place(world * drawn->instances.at(i));
+      // Instances that coincide, such as those of attributes without data, are drawn once.
+      glm::dmat4 previous(0.0);
+      for (size_t i = 0; i < drawn->instances.size(); ++i) {
+        const glm::dmat4 instance = drawn->instances.at(i);
+        if (instance != previous) place(world * instance);
+        previous = instance;
+      }
     }
     for (const glm::dmat4& world : apart) {
       if (auto added = add_mesh(node, PrimitivePlacement{world}); !added) return added;
@@ -71,7 +82,6 @@ class NodeReader {
     return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), nullptr, &shared});
   }
 
- private:
   glm::dmat4 world_of(size_t node) const {
     glm::dmat4 world = layout_.world_from_node[node];
     world[3] -= glm::dvec4(scene_.origin, 0.0);
@@ -104,12 +114,11 @@ class NodeReader {
   }
 
   tl::expected<void, std::string> add_mesh(const tinygltf::Node& node,
-                                           const PrimitivePlacement& placement) {
+                                           PrimitivePlacement placement) {
     const std::string name = name_of(node);
-    for (const auto& primitive : model_.meshes[static_cast<size_t>(node.mesh)].primitives) {
-      if (!primitive.targets.empty()) {
-        scene_.warnings.push_back("Mesh " + name + " has morph targets, which are left out.");
-      }
+    const tinygltf::Mesh& mesh = model_.meshes[static_cast<size_t>(node.mesh)];
+    placement.morph_weights = node.weights.empty() ? &mesh.weights : &node.weights;
+    for (const auto& primitive : mesh.primitives) {
       auto added = add_primitive(model_, primitive, name, placement, budget_, scene_);
       if (!added) return added;
     }
@@ -131,11 +140,11 @@ tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudg
                                           const Progress& progress) {
   const auto layout = place_nodes(model, budget.instances);
   if (!layout) return Failure(layout.error());
-  scene.origin = chosen_origin(model, *layout, budget.vertices);
+  scene.origin = chosen_origin(model, *layout);
   NodeReader reader(model, *layout, budget, scene);
   size_t done = 0;
   for (const DrawnNode& drawn : layout->drawn) {
-    if (auto added = reader.add(drawn.node); !added) return added;
+    if (auto added = reader.add(drawn); !added) return added;
     if (progress) progress(double(++done) / double(layout->drawn.size()));
     glm::dmat4 world_from_node = layout->world_from_node[drawn.node];
     world_from_node[3] -= glm::dvec4(scene.origin, 0.0);

@@ -41,34 +41,36 @@ std::vector<JointSet> joint_sets(const tinygltf::Primitive& primitive) {
   std::vector<JointSet> sets;
   for (;;) {
     const std::string number = std::to_string(sets.size());
-    const auto joints = primitive.attributes.find("JOINTS_" + number);
-    const auto weights = primitive.attributes.find("WEIGHTS_" + number);
-    if (joints == primitive.attributes.end() || weights == primitive.attributes.end()) return sets;
-    sets.push_back({joints->second, weights->second});
+    const JointSet set{attribute(primitive.attributes, "JOINTS_" + number),
+                       attribute(primitive.attributes, "WEIGHTS_" + number)};
+    if (set.joints < 0 || set.weights < 0) return sets;
+    sets.push_back(set);
   }
 }
 
 }  // namespace
 
 tl::expected<VertexPlacement, std::string> VertexPlacement::skinned(
-    const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices,
-    const std::vector<glm::dmat4>& joints, uint64_t most_sets) {
+    const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+    const std::vector<uint32_t>& vertices, const std::vector<glm::dmat4>& joints,
+    uint64_t most_sets) {
   const std::vector<JointSet> sets = joint_sets(primitive);
-  if (vertices > 0 && sets.size() > most_sets / vertices) {
+  const size_t count = vertices.size();
+  if (count > 0 && sets.size() > most_sets / count) {
     return Failure("has too many joints and weights: " + std::to_string(sets.size()) +
-                   " sets for " + std::to_string(vertices) + " vertices");
+                   " sets for " + std::to_string(count) + " vertices");
   }
   VertexPlacement out(glm::dmat4(1.0));
   out.joints_ = &joints;
   out.influences_ = kJointsPerSet * sets.size();
-  out.joint_of_.resize(vertices * out.influences_);
-  out.weight_of_.resize(vertices * out.influences_);
+  out.joint_of_.resize(count * out.influences_);
+  out.weight_of_.resize(count * out.influences_);
   for (size_t set = 0; set < sets.size(); ++set) {
     if (auto read = out.read_set(model, sets[set], vertices, kJointsPerSet * set); !read) {
       return Failure(read.error());
     }
   }
-  for (size_t v = 0; v < vertices && out.influences_ > 0; ++v) {
+  for (size_t v = 0; v < count && out.influences_ > 0; ++v) {
     const std::span<float> weights(&out.weight_of_[v * out.influences_], out.influences_);
     float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
     if (!(sum > 0.0f)) weights[0] = sum = 1.0f;
@@ -78,15 +80,13 @@ tl::expected<VertexPlacement, std::string> VertexPlacement::skinned(
 }
 
 tl::expected<void, std::string> VertexPlacement::read_set(const tinygltf::Model& model,
-                                                          const JointSet& set, size_t vertices,
+                                                          const JointSet& set,
+                                                          const std::vector<uint32_t>& vertices,
                                                           size_t first_influence) {
-  const auto joints = read_floats(model, set.joints, kJointsPerSet, vertices);
+  const auto joints = read_floats(model, set.joints, kJointsPerSet, 0, &vertices);
   if (!joints) return Failure(joints.error());
-  const auto weights = read_floats(model, set.weights, kJointsPerSet, vertices);
+  const auto weights = read_floats(model, set.weights, kJointsPerSet, 0, &vertices);
   if (!weights) return Failure(weights.error());
-  if (joints->size() != kJointsPerSet * vertices || weights->size() != kJointsPerSet * vertices) {
-    return Failure("has joints or weights for some of its vertices only");
-  }
   const auto joint_count = static_cast<float>(joints_->size());
   for (size_t i = 0; i < joints->size(); ++i) {
     const float joint = (*joints)[i];

@@ -24,13 +24,15 @@ class VertexPlacement {
  public:
   explicit VertexPlacement(const glm::dmat4& transform) : transform_(transform) {}
 
-  // Reads the sets JOINTS_n and WEIGHTS_n of a primitive with `vertices` vertices. `joints` is the
-  // result of joint_matrices(). Weights are normalised; a vertex without weights follows its first
-  // joint. `most_sets` is the largest allowed number of vertices times the number of sets. Error
-  // texts are the end of a sentence whose beginning the caller adds.
+  // Reads the sets JOINTS_n and WEIGHTS_n of the vertices of a primitive, which are numbered in the
+  // order of `vertices`. `joints` is the result of joint_matrices(). Weights are normalised; a
+  // vertex without weights follows its first joint. `most_sets` is the largest allowed number of
+  // vertices times the number of sets. Error texts are the end of a sentence whose beginning the
+  // caller adds.
   [[nodiscard]] static tl::expected<VertexPlacement, std::string> skinned(
-      const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices,
-      const std::vector<glm::dmat4>& joints, uint64_t most_sets);
+      const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+      const std::vector<uint32_t>& vertices, const std::vector<glm::dmat4>& joints,
+      uint64_t most_sets);
 
   [[nodiscard]] glm::dmat4 at(size_t vertex) const;
 
@@ -38,7 +40,8 @@ class VertexPlacement {
   // Reads one set into the influences of each vertex, from index `first_influence` on. Weights are
   // not yet normalised.
   [[nodiscard]] tl::expected<void, std::string> read_set(const tinygltf::Model& model,
-                                                         const JointSet& set, size_t vertices,
+                                                         const JointSet& set,
+                                                         const std::vector<uint32_t>& vertices,
                                                          size_t first_influence);
 
   glm::dmat4 transform_{1.0};

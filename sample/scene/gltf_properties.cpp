@@ -16,27 +16,27 @@ using Failure = tl::unexpected<std::string>;
 using Checked = tl::expected<void, std::string>;
 
 enum class Type : uint8_t {
-  kObject,   // its members have rows of their own
-  kObjects,  // an array of objects
-  kWhole,    // an integer from `low` to `high`
-  kWholes,   // an array of them
-  kNumber,   // a finite number from `low` to `high`
-  kNumbers,  // an array of `count` of them
+  kObject,  // its members have rows of their own
+  kWhole,   // an integer from `low` to `high`
+  kNumber,  // a finite number from `low` to `high`
   kBoolean,
-  kString,   // one of `choices`, which `|` separates; any where that is empty
-  kStrings,  // an array of strings
+  kString,  // one of `choices`, which `|` separates; any where that is empty
 };
 
 enum class Presence : uint8_t { kOptional, kRequired };
 
+constexpr size_t kSingle = 0;            // as `count`: one value and no array
+constexpr size_t kAnyNumber = SIZE_MAX;  // an array of any length
+
 // A row of the table. `path` has the names from the root, separated by /; * stands for every
-// element of an array or member of an object. A parent has its row before its members.
+// element of an array or member of an object. A parent has its row before its members. `count` is
+// the length of an array of values.
 struct Property {
   std::string_view path;
   Type type;
+  size_t count = kSingle;
   double low = 0.0;
   double high = 0.0;
-  size_t count = 0;
   std::string_view choices = {};
   Presence presence = Presence::kOptional;
 };
@@ -50,34 +50,34 @@ constexpr double kLargestStride = 252.0;
 constexpr double kLargestEnumerator = 65535.0;
 
 constexpr Property object(std::string_view path, Presence presence = Presence::kOptional) {
-  return {path, Type::kObject, 0, 0, 0, {}, presence};
+  return {path, Type::kObject, kSingle, 0, 0, {}, presence};
 }
 constexpr Property objects(std::string_view path, Presence presence = Presence::kOptional) {
-  return {path, Type::kObjects, 0, 0, 0, {}, presence};
-}
-constexpr Property index(std::string_view path, Presence presence = Presence::kOptional) {
-  return {path, Type::kWhole, 0, kLargestIndex, 0, {}, presence};
-}
-constexpr Property indices(std::string_view path, Presence presence = Presence::kOptional) {
-  return {path, Type::kWholes, 0, kLargestIndex, 0, {}, presence};
+  return {path, Type::kObject, kAnyNumber, 0, 0, {}, presence};
 }
 constexpr Property whole(std::string_view path, double low, double high,
                          Presence presence = Presence::kOptional) {
-  return {path, Type::kWhole, low, high, 0, {}, presence};
+  return {path, Type::kWhole, kSingle, low, high, {}, presence};
+}
+constexpr Property index(std::string_view path, Presence presence = Presence::kOptional) {
+  return whole(path, 0, kLargestIndex, presence);
+}
+constexpr Property indices(std::string_view path, Presence presence = Presence::kOptional) {
+  return {path, Type::kWhole, kAnyNumber, 0, kLargestIndex, {}, presence};
 }
 constexpr Property number(std::string_view path, double low, double high,
                           Presence presence = Presence::kOptional) {
-  return {path, Type::kNumber, low, high, 0, {}, presence};
+  return {path, Type::kNumber, kSingle, low, high, {}, presence};
 }
 constexpr Property numbers(std::string_view path, size_t count, double low, double high) {
-  return {path, Type::kNumbers, low, high, count};
+  return {path, Type::kNumber, count, low, high};
 }
 constexpr Property boolean(std::string_view path) { return {path, Type::kBoolean}; }
 constexpr Property text(std::string_view path, std::string_view choices = {},
                         Presence presence = Presence::kOptional) {
-  return {path, Type::kString, 0, 0, 0, choices, presence};
+  return {path, Type::kString, kSingle, 0, 0, choices, presence};
 }
-constexpr Property texts(std::string_view path) { return {path, Type::kStrings}; }
+constexpr Property texts(std::string_view path) { return {path, Type::kString, kAnyNumber}; }
 
 // The rows of a material's texture reference, including the extension KHR_texture_transform.
 #define ALCOVE_TEXTURE_INFO(path)                                                   \
@@ -87,6 +87,14 @@ constexpr Property texts(std::string_view path) { return {path, Type::kStrings};
       numbers(path "/extensions/KHR_texture_transform/scale", 2, -kAny, kAny),      \
       number(path "/extensions/KHR_texture_transform/rotation", -kAny, kAny),       \
       index(path "/extensions/KHR_texture_transform/texCoord")
+
+// The rows of a compressed buffer view. The format is the same by either name.
+#define ALCOVE_MESHOPT(path)                                                                   \
+  object(path), index(path "/buffer", kRequired), whole(path "/byteOffset", 0, kLargestExact), \
+      whole(path "/byteLength", 0, kLargestExact, kRequired),                                  \
+      whole(path "/byteStride", 1, 256, kRequired), index(path "/count", kRequired),           \
+      text(path "/mode", "ATTRIBUTES|TRIANGLES|INDICES", kRequired),                           \
+      text(path "/filter", "NONE|OCTAHEDRAL|QUATERNION|EXPONENTIAL")
 
 constexpr Property kProperties[] = {
     object("asset", kRequired),
@@ -105,6 +113,7 @@ constexpr Property kProperties[] = {
     index("nodes/*/mesh"),
     index("nodes/*/camera"),
     index("nodes/*/skin"),
+    numbers("nodes/*/weights", kAnyNumber, -kAny, kAny),
     numbers("nodes/*/matrix", 16, -kAny, kAny),
     numbers("nodes/*/translation", 3, -kAny, kAny),
     numbers("nodes/*/rotation", 4, -kAny, kAny),
@@ -125,6 +134,8 @@ constexpr Property kProperties[] = {
     index("meshes/*/primitives/*/material"),
     whole("meshes/*/primitives/*/mode", 0, 6),
     objects("meshes/*/primitives/*/targets"),
+    index("meshes/*/primitives/*/targets/*/*"),
+    numbers("meshes/*/weights", kAnyNumber, -kAny, kAny),
 
     objects("skins"),
     indices("skins/*/joints", kRequired),
@@ -153,6 +164,9 @@ constexpr Property kProperties[] = {
     whole("bufferViews/*/byteOffset", 0, kLargestExact),
     whole("bufferViews/*/byteLength", 0, kLargestExact, kRequired),
     whole("bufferViews/*/byteStride", 0, kLargestStride),
+    object("bufferViews/*/extensions"),
+    ALCOVE_MESHOPT("bufferViews/*/extensions/EXT_meshopt_compression"),
+    ALCOVE_MESHOPT("bufferViews/*/extensions/KHR_meshopt_compression"),
 
     objects("buffers"),
     text("buffers/*/uri"),
@@ -222,6 +236,7 @@ constexpr Property kProperties[] = {
 };
 
 #undef ALCOVE_TEXTURE_INFO
+#undef ALCOVE_MESHOPT
 
 // Returns the shortest text of a limit, such as 0, 5126 or 2^53.
 std::string shown(double value) {
@@ -229,41 +244,39 @@ std::string shown(double value) {
   return json(static_cast<int64_t>(value)).dump();
 }
 
-std::string expectation(const Property& property) {
+// Returns the values that a property may have; `one`: of one element of its array.
+std::string expectation(const Property& property, bool one) {
   const bool bounded_above = property.high<kAny, bounded_below = property.low> - kAny;
-  const std::string range =
-      !bounded_below
-          ? ""
-          : (bounded_above ? " from " + shown(property.low) + " to " + shown(property.high)
-                           : " of at least " + shown(property.low));
+  std::string range;
+  if (bounded_below && bounded_above) {
+    range = " from " + shown(property.low) + " to " + shown(property.high);
+  } else if (bounded_below) {
+    range = " of at least " + shown(property.low);
+  }
+  if (property.count != kSingle && !one) {
+    const std::string count =
+        property.count == kAnyNumber ? "" : std::to_string(property.count) + " ";
+    constexpr std::string_view kNames[] = {"objects", "whole numbers", "numbers", "", "strings"};
+    const bool ranged = property.type == Type::kWhole || property.type == Type::kNumber;
+    return "an array of " + count + std::string(kNames[static_cast<size_t>(property.type)]) +
+           (ranged ? range : "");
+  }
   switch (property.type) {
     case Type::kObject:
       return "an object";
-    case Type::kObjects:
-      return "an array of objects";
     case Type::kWhole:
       return "a whole number" + range;
-    case Type::kWholes:
-      return "an array of whole numbers" + range;
     case Type::kNumber:
       return "a number" + range;
-    case Type::kNumbers:
-      return "an array of " + std::to_string(property.count) + " numbers" + range;
     case Type::kBoolean:
       return "true or false";
-    case Type::kStrings:
-      return "an array of strings";
     case Type::kString:
       break;
   }
   if (property.choices.empty()) return "a string";
-  std::string all;
-  for (const char c : property.choices) {
-    if (c == '|') {
-      all.append(", ");
-    } else {
-      all.push_back(c);
-    }
+  std::string all(property.choices);
+  for (size_t bar = all.find('|'); bar != std::string::npos; bar = all.find('|')) {
+    all.replace(bar, 1, ", ");
   }
   return "one of " + all;
 }
@@ -332,84 +345,50 @@ class Copier {
   }
 
   Checked take(json& from, json& to) {
-    switch (property_->type) {
-      case Type::kObject:
-        if (!from.is_object()) return wrong(from);
-        to = json::object();
-        return {};
-      case Type::kObjects:
-        return take_objects(from, to);
-      case Type::kWhole:
-        return take_whole(from, to);
-      case Type::kNumber:
-        return take_number(from, to);
-      case Type::kWholes:
-      case Type::kNumbers:
-      case Type::kStrings:
-        return take_array(from, to);
-      case Type::kBoolean:
-        if (!from.is_boolean()) return wrong(from);
-        to = std::move(from);
-        return {};
-      case Type::kString:
-        return take_string(from, to);
-    }
-    return {};
-  }
-
-  Checked take_objects(const json& from, json& to) {
-    if (!from.is_array()) return wrong(from);
-    for (size_t i = 0; i < from.size(); ++i) {
-      if (from[i].is_object()) continue;
-      place_.emplace_back(i);
-      return wrong(from[i], "an object");
-    }
-    to = json(from.size(), json::object());
-    return {};
-  }
-
-  Checked take_array(json& from, json& to) {
-    const Type type = property_->type;
-    if (!from.is_array() || (type == Type::kNumbers && from.size() != property_->count)) {
-      return wrong(from);
+    if (property_->count == kSingle) return take_value(from, to, false);
+    if (!from.is_array() || (property_->count != kAnyNumber && from.size() != property_->count)) {
+      return wrong(from, false);
     }
     to = json::array();
     for (size_t i = 0; i < from.size(); ++i) {
       place_.emplace_back(i);
       json element;
-      auto taken = type == Type::kWholes    ? take_whole(from[i], element)
-                   : type == Type::kNumbers ? take_number(from[i], element)
-                                            : take_string(from[i], element);
-      if (!taken) return taken;
+      if (auto taken = take_value(from[i], element, true); !taken) return taken;
       place_.pop_back();
       to.push_back(std::move(element));
     }
     return {};
   }
 
-  Checked take_whole(const json& from, json& to) {
-    if (!from.is_number()) return wrong_element(from);
-    const auto value = from.get<double>();
-    const bool whole = std::isfinite(value) && value == std::floor(value);
-    if (!whole || value < property_->low || value > property_->high) return wrong_element(from);
-    to = from.is_number_float() ? json(static_cast<uint64_t>(value)) : from;
+  Checked take_value(json& from, json& to, bool of_array) {
+    if (!fits(from)) return wrong(from, of_array);
+    if (property_->type == Type::kObject) {
+      to = json::object();
+    } else if (property_->type == Type::kWhole && from.is_number_float()) {
+      to = static_cast<uint64_t>(from.get<double>());
+    } else {
+      to = std::move(from);
+    }
     return {};
   }
 
-  Checked take_number(const json& from, json& to) {
-    if (!from.is_number()) return wrong_element(from);
-    const auto value = from.get<double>();
-    if (!(value >= property_->low && value <= property_->high)) return wrong_element(from);
-    to = from;
-    return {};
-  }
-
-  Checked take_string(json& from, json& to) {
-    if (!from.is_string()) return wrong_element(from);
-    const std::string& value = from.get_ref<const std::string&>();
-    if (!property_->choices.empty() && !is_choice(value)) return wrong_element(from);
-    to = std::move(from);
-    return {};
+  bool fits(const json& value) const {
+    switch (property_->type) {
+      case Type::kObject:
+        return value.is_object();
+      case Type::kBoolean:
+        return value.is_boolean();
+      case Type::kString:
+        return value.is_string() &&
+               (property_->choices.empty() || is_choice(value.get_ref<const std::string&>()));
+      case Type::kWhole:
+      case Type::kNumber:
+        break;
+    }
+    if (!value.is_number()) return false;
+    const auto number = value.get<double>();
+    return number >= property_->low && number <= property_->high &&
+           (property_->type == Type::kNumber || number == std::floor(number));
   }
 
   bool is_choice(std::string_view value) const {
@@ -437,20 +416,12 @@ class Copier {
     return out;
   }
 
-  Failure wrong(const json& value, const std::string& expected) const {
-    return Failure(path() + " is " + shown(value) + "; it must be " + expected);
-  }
-  Failure wrong(const json& value) const { return wrong(value, expectation(*property_)); }
-  // Checks one value, which may be an element of an array.
-  Failure wrong_element(const json& value) const {
-    Property element = *property_;
-    if (element.type == Type::kWholes) element.type = Type::kWhole;
-    if (element.type == Type::kNumbers) element.type = Type::kNumber;
-    if (element.type == Type::kStrings) element.type = Type::kString;
-    return wrong(value, expectation(element));
+  Failure wrong(const json& value, bool of_array) const {
+    return Failure(path() + " is " + shown(value) + "; it must be " +
+                   expectation(*property_, of_array));
   }
   Failure missing() const {
-    return Failure(path() + " is missing; it must be " + expectation(*property_));
+    return Failure(path() + " is missing; it must be " + expectation(*property_, false));
   }
 
   const Property* property_ = nullptr;

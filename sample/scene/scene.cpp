@@ -44,7 +44,7 @@ const Camera* find_camera(const Scene& scene, const std::string& name) {
 
 float default_radius(const Scene& scene) {
   if (scene.suggested_radius > 0.0f) return scene.suggested_radius;
-  for (const Bounds& bounds : {scene.core_bounds_ws, scene.bounds_ws}) {
+  for (const Bounds& bounds : {scene.subject.bounds_ws, scene.bounds_ws}) {
     const float diagonal = glm::length(bounds.high - bounds.low);
     if (diagonal > 0.0f) return 0.05f * diagonal;
   }

@@ -7,6 +7,7 @@
 
 #include "scene/bounds.h"
 #include "scene/camera.h"
+#include "scene/subject.h"
 #include "support/glm.h"
 
 namespace alcove::sample {
@@ -109,8 +110,8 @@ struct Scene {
   // are in the coordinates of the file.
   glm::dvec3 origin{0.0};
   Bounds bounds_ws;                   // of all triangles
-  Bounds core_bounds_ws;              // see scene_core(); if without extent, bounds_ws is used
-  float suggested_radius = 0.0f;      // 0 for a twentieth of the diagonal of core_bounds_ws
+  Subject subject;                    // see find_subject()
+  float suggested_radius = 0.0f;      // scene units; 0: the view decides (radius_for_view())
   std::vector<std::string> warnings;  // one sentence for each part that is not drawn as stored
 };
 
@@ -120,7 +121,7 @@ struct Scene {
 // Returns the camera of a name, or the first for an empty name. Null if there is no such camera.
 [[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);
 
-// Returns the radius in scene units that is used if the user gives none.
+// Returns a radius in scene units that suits the whole subject.
 [[nodiscard]] float default_radius(const Scene& scene);
 
 // Returns the transform of an instance, whose index is below instance_count(). It is the identity

@@ -34,7 +34,8 @@ struct DecodedImage {
 constexpr uint32_t kLargestImageSide = 16384;
 
 // Reads the size from the header without decoding. Another format, a damaged header, or a file too
-// short for so many pixels is an error.
+// short for so many pixels is an error, and so is a PNG of more than 2^26 pixels that is interlaced
+// or has less than one byte for 64 pixels.
 [[nodiscard]] tl::expected<ImageHeader, std::string> read_image_header(
     std::span<const uint8_t> bytes);
 

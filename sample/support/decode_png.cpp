@@ -95,6 +95,16 @@ tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
   if (row * reader.height() / kBestRatio > bytes.size()) {
     return Failure("is cut short");
   }
+  // Larger images take seconds to decode, and interlaced ones a gibibyte of memory. Those with real
+  // contents have more bytes.
+  constexpr uint64_t kManyPixels = uint64_t{1} << 26, kMostPixelsPerByte = 64;
+  const uint64_t pixels = uint64_t{reader.width()} * reader.height();
+  if (pixels > kManyPixels && (reader.interlaced() || pixels / kMostPixelsPerByte > bytes.size())) {
+    return Failure("has " + std::to_string(pixels >> 20) +
+                   " million pixels, which is more than the " + std::to_string(kManyPixels >> 20) +
+                   " million of " + (reader.interlaced() ? "an interlaced PNG" : "so small a PNG") +
+                   " that are decoded,");
+  }
   return ImageHeader{ImageFormat::kPng, reader.width(), reader.height()};
 }
 

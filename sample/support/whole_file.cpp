@@ -1,12 +1,6 @@
 #include "support/whole_file.h"
 
-#if defined(__unix__) || defined(__APPLE__)
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
-#define ALCOVE_HAS_FILE_LOCKS 1
-#endif
 
 #include <cerrno>
 #include <chrono>
@@ -31,78 +25,6 @@ fs::path temporary_beside(const fs::path& file) {
   fs::path temporary = file;
   temporary += fmt::format("{}{}", kPart, random());
   return temporary;
-}
-
-// Returns whether temporary_beside() made the name for the file `of` or, if `of` is empty, for any
-// file.
-bool is_temporary(const std::string& name, const std::string& of) {
-  const size_t part = name.rfind(kPart);
-  if (part == std::string::npos || (!of.empty() && name.compare(0, part, of) != 0)) return false;
-  const size_t digits = part + std::strlen(kPart);
-  return digits < name.size() && name.find_first_not_of("0123456789", digits) == std::string::npos;
-}
-
-bool is_old(const fs::path& file) {
-  constexpr auto kAge = std::chrono::hours(1);
-  std::error_code error;
-  const auto written = fs::last_write_time(file, error);
-  return !error && fs::file_time_type::clock::now() - written > kAge;
-}
-
-// A lock on a file that other processes respect, held until the object or its process ends.
-class FileLock {
- public:
-  FileLock() = default;
-  FileLock(const FileLock&) = delete;
-  FileLock& operator=(const FileLock&) = delete;
-#ifdef ALCOVE_HAS_FILE_LOCKS
-  ~FileLock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-
-  // Creates the file and locks it. A failure is detected when the file is written.
-  void create(const fs::path& file) {
-    descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ >= 0) (void)::flock(descriptor_, LOCK_EX | LOCK_NB);
-  }
-
-  enum class State { kHeld, kFree, kUnknown };
-  // Takes the lock if it is free.
-  State take(const fs::path& file) {
-    descriptor_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
-    if (descriptor_ < 0) return State::kUnknown;
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return State::kFree;
-    return errno == EWOULDBLOCK ? State::kHeld : State::kUnknown;
-  }
-
- private:
-  int descriptor_ = -1;
-#else
-  void create(const fs::path&) {}
-  enum class State { kHeld, kFree, kUnknown };
-  State take(const fs::path&) { return State::kUnknown; }
-#endif
-};
-
-void remove_if_abandoned(const fs::path& file) {
-  FileLock lock;
-  const FileLock::State state = lock.take(file);
-  const bool abandoned =
-      state == FileLock::State::kFree || (state == FileLock::State::kUnknown && is_old(file));
-  std::error_code ignored;
-  if (abandoned) fs::remove(file, ignored);
-}
-
-// Removes the abandoned temporary files in `folder` of the file named `of`; empty: of all files.
-void remove_abandoned_of(const fs::path& folder, const std::string& of) {
-  std::error_code error;
-  fs::directory_iterator entry(folder, error);
-  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    std::error_code ignored;
-    if (is_temporary(entry->path().filename().string(), of) && entry->is_regular_file(ignored)) {
-      remove_if_abandoned(entry->path());
-    }
-  }
 }
 
 // Writes all bytes or returns an error. A full disk may only be detected by the flush.
@@ -152,11 +74,7 @@ OutputFolder::~OutputFolder() {
 }
 
 Outcome write_whole(const fs::path& file, const std::function<Outcome(const fs::path&)>& write) {
-  remove_abandoned_of(file.has_parent_path() ? file.parent_path() : fs::path("."),
-                      file.filename().string());
   const fs::path temporary = temporary_beside(file);
-  FileLock lock;
-  lock.create(temporary);
   std::error_code reason;
   Outcome outcome = write(temporary);
   if (outcome) {
@@ -176,6 +94,19 @@ Outcome write_text(const fs::path& file, const std::string& text) {
   return write_bytes(file, text.data(), text.size());
 }
 
-void remove_abandoned(const fs::path& folder) { remove_abandoned_of(folder, ""); }
+void remove_abandoned(const fs::path& folder) {
+  constexpr auto kAge = std::chrono::hours(1);
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    std::error_code unknown;
+    const auto written = fs::last_write_time(entry->path(), unknown);
+    const std::string ending = entry->path().extension().string();
+    if (!unknown && ending.starts_with(kPart) && entry->is_regular_file(unknown) &&
+        fs::file_time_type::clock::now() - written > kAge) {
+      fs::remove(entry->path(), unknown);
+    }
+  }
+}
 
 }  // namespace alcove::sample

@@ -38,9 +38,8 @@ class OutputFolder {
 [[nodiscard]] tl::expected<void, std::string> write_text(const std::filesystem::path& file,
                                                          const std::string& text);
 
-// Removes the temporary files in a folder whose writers were killed. A writer holds a lock on its
-// file (flock), which ends with the process. If the file system does not support locks, a file
-// counts as abandoned when it is an hour old. `write_whole` does this for the file that it writes.
+// Removes the temporary files in a folder that have not been written for an hour, because their
+// writers were killed.
 void remove_abandoned(const std::filesystem::path& folder);
 
 }  // namespace alcove::sample

@@ -85,6 +85,7 @@ constexpr const char* kKeys =
     "1 to 9        choose the picture\n"
     "Home          return to the first view\n"
     "R             reset the settings\n"
+    "A             fit the radius to the view\n"
     "P             screenshot and command\n"
     "H             show or hide the panel\n"
     "Escape        close\n"

@@ -1,6 +1,7 @@
 #include "viewer/scene_view.h"
 
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "scene/environment.h"
+#include "scene/framing.h"
 #include "support/image_io.h"
 #include "support/whole_file.h"
 
@@ -124,6 +126,14 @@ Camera SceneView::camera_around_scene() const {
   return camera;
 }
 
+void SceneView::fit_radius() {
+  const VkExtent2D size = presenter_->size();
+  const double aspect = static_cast<double>(size.width) / std::max(size.height, 1u);
+  const RadiusChoice choice = radius_for_view(session_.scene, state_.camera, aspect);
+  state_.settings.radius = choice.radius;
+  facts_.message = fmt::format("Radius {:.3g}: {}.", choice.radius, choice.reason);
+}
+
 void SceneView::take_keys() {
   if (ImGui::GetIO().WantTextInput) {
     return;  // a number is being typed
@@ -138,6 +148,9 @@ void SceneView::take_keys() {
         break;
       case GLFW_KEY_R:
         state_.settings = facts_.first_settings;
+        break;
+      case GLFW_KEY_A:
+        fit_radius();
         break;
       case GLFW_KEY_P:
         take_screenshot();

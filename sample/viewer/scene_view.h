@@ -83,6 +83,7 @@ class SceneView {
   // Returns the camera with its far plane moved behind the whole scene, because the user may have
   // moved the camera away from it.
   Camera camera_around_scene() const;
+  void fit_radius();  // to the current view
   void take_keys();
   void lay_out();
   // Copies the window's image to `read_back` unless it is null.

@@ -38,11 +38,22 @@ inline bool has_no_constant_w(const dmat4& m) {
   return std::abs(m[3][3]) <= std::max(1e-6 * std::abs(m[2][3]), 1e-4 * std::abs(m[3][2]));
 }
 
+// Returns whether `m` is a perspective projection times a rotated view matrix: its w is a distance
+// along a unit vector that is not the z axis, and its x and y are at right angles.
+inline bool is_view_projection(const dmat4& m) {
+  const auto row = [&](int i) { return dvec3(m[0][i], m[1][i], m[2][i]); };
+  const dvec3 x = row(0), y = row(1), w = row(3);
+  return std::abs(length(w) - 1.0) < 1e-3 && std::abs(w.z) < 1.0 - 1e-6 &&
+         std::abs(dot(x, y)) < 0.05 * length(x) * length(y);
+}
+
 // Returns the reason why `m` cannot be a Projection, or null if it can.
 inline const char* projection_fault(const dmat4& m) {
   const double size = std::abs(m[0][0]) + std::abs(m[1][1]);
   const double w_size = std::abs(m[2][3]) + std::abs(m[3][3]);
   const double depth_size = std::abs(m[2][2]) + w_size;
+  if (is_view_projection(m))
+    return "the projection matrix looks like a view-projection: pass the projection alone";
   if (m[0][0] == 0.0 || m[1][1] == 0.0)
     return "the projection matrix flattens x or y: its first two diagonal elements must not be 0";
   if (std::abs(m[0][1]) > kRounding * size || std::abs(m[1][0]) > kRounding * size)
@@ -53,7 +64,8 @@ inline const char* projection_fault(const dmat4& m) {
     return "the projection matrix has an oblique near plane: its depth must depend on z alone";
   const bool orthographic = is_orthographic(m);
   if (orthographic ? m[3][3] <= 0.0 : m[2][3] > 0.0)
-    return "the projection matrix looks along +Z: view space must have the camera along -Z";
+    return "the projection matrix looks along +Z: convert it with "
+           "ALCOVE_CAMERA_CONVENTION_FORWARD_Z";
   if (!orthographic && !has_no_constant_w(m))
     return "the projection matrix moves the eye along z: in perspective its w must be 0 where z is";
   if (m[2][2] * m[3][3] == m[3][2] * m[2][3])

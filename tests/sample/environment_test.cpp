@@ -55,11 +55,13 @@ TEST(Environment, EnvironmentMapsInExrAndRadianceHdrFormatAreRead) {
   EnvironmentImage image(8, 4, glm::vec3(0.5f, 1.0f, 2.0f));
   image.at(3, 1) = {std::numeric_limits<float>::quiet_NaN(), -1.0f,
                     std::numeric_limits<float>::infinity()};
+  image.at(5, 1) = glm::vec3(std::numeric_limits<float>::max());
   ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
   const auto exr = load_environment(folder.path / "a.exr");
   ASSERT_TRUE(exr) << exr.error();
   EXPECT_EQ(exr->at(0, 0), glm::vec3(0.5f, 1.0f, 2.0f));
   EXPECT_EQ(exr->at(3, 1), glm::vec3(0.0f)) << "negative, infinite and NaN radiance becomes 0";
+  EXPECT_EQ(exr->at(5, 1), glm::vec3(65504.0f)) << "the largest 16-bit float";
 
   write_file(folder.path / "b.HDR", radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4)));
   const auto hdr = load_environment(folder.path / "b.HDR");

@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "scene/builtin_scene.h"
-#include "scene/depth_range.h"
-#include "scene/scene_core.h"
 
 namespace alcove::sample {
 namespace {
@@ -53,72 +51,37 @@ Scene scene_of(std::vector<Mesh> meshes) {
   scene.materials.emplace_back();
   scene.meshes = std::move(meshes);
   scene.bounds_ws = bounds_of(scene.meshes);
-  scene.core_bounds_ws = scene_core(scene.meshes).bounds_ws;
+  scene.subject = find_subject(scene);
   return scene;
 }
 
-double size_of(const Bounds& bounds) { return glm::length(bounds.high - bounds.low); }
-
-TEST(SceneCore, FramedCoreOfAnOrdinarySceneIsItsWholeBoundingBox) {
+TEST(Framing, WholeExtentOfAnOrdinarySceneIsItsSubject) {
   const Scene scene = builtin_scene();
-  const SceneCore core = scene_core(scene.meshes);
-  EXPECT_EQ(core.triangles_outside, 0u);
-  EXPECT_EQ(core.bounds_ws.low, scene.bounds_ws.low);
-  EXPECT_EQ(core.bounds_ws.high, scene.bounds_ws.high);
+  const Subject subject = find_subject(scene);
+  EXPECT_EQ(subject.triangles_outside, 0u);
+  EXPECT_EQ(subject.bounds_ws.low, scene.bounds_ws.low);
+  EXPECT_EQ(subject.bounds_ws.high, scene.bounds_ws.high);
 }
 
-TEST(SceneCore, TinyMeshFarAwayDoesNotEnlargeTheFramedCore) {
-  Mesh sliver;
-  sliver.positions = {{2000, 0, 0}, {2000, 0.01f, 0}, {2000, 0, 0.01f}};
-  sliver.indices = {0, 1, 2};
-  const SceneCore core = scene_core({grid(3.0f, 4), sliver});
-  EXPECT_EQ(core.triangles_outside, 1u);
-  EXPECT_LT(size_of(core.bounds_ws), 9.0);
-}
-
-TEST(SceneCore, StrayTrianglesOfTheSameMeshDoNotEnlargeTheFramedCore) {
-  Mesh mesh = grid(3.0f, 30);
-  const auto first = static_cast<uint32_t>(mesh.positions.size());
-  for (const glm::vec3 stray : {glm::vec3(0, 9e4f, 0), glm::vec3(50, 9e4f, 0), {0, 9e4f, 50}}) {
-    mesh.positions.push_back(stray);
-  }
-  for (const uint32_t i : {0u, 1u, 2u}) mesh.indices.push_back(first + i);
-  const SceneCore core = scene_core({mesh});
-  EXPECT_EQ(core.triangles_outside, 1u);
-  EXPECT_LT(size_of(core.bounds_ws), 9.0);
-}
-
-TEST(SceneCore, SkyDomeAndGroundPlaneAreOutsideTheFramedCore) {
+TEST(Framing, SkyAndGroundAreCountedOutsideTheSubject) {
   const Mesh character = sphere(1.0f, {0, 1, 0}, 16);
-  const SceneCore core = scene_core({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), character});
-  EXPECT_EQ(core.triangles_outside, 4u * 16 * 16 + 2);
-  EXPECT_NEAR(size_of(core.bounds_ws), 2.0 * std::sqrt(3.0), 0.1);
-}
-
-TEST(SceneCore, LargeDetailedTerrainAroundASmallModelBelongsToTheFramedCore) {
-  Mesh terrain = grid(500.0f, 100);
-  for (size_t i = 0; i < terrain.positions.size(); ++i) {
-    terrain.positions[i].y = 100.0f * std::sin(0.37f * float(i));
-  }
-  const SceneCore core = scene_core({terrain, sphere(1.0f, {0, 0, 0}, 8)});
-  EXPECT_EQ(core.triangles_outside, 0u);
-}
-
-TEST(Framing, DefaultCameraShowsTheWholeSceneCoreBetweenNearAndFarPlane) {
-  const Scene scene =
-      scene_of({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), sphere(1.0f, {0, 1, 0}, 16)});
+  const Scene scene = scene_of({sphere(5000.0f, {0, 0, 0}, 16), grid(1000.0f, 1), character});
+  EXPECT_EQ(scene.subject.triangles_outside, 4u * 16 * 16 + 2);
   const Camera camera = with_fitted_planes(scene, framing_camera(scene, 16.0 / 9.0), 16.0 / 9.0);
   EXPECT_LT(glm::distance(camera.eye_ws, camera.target_ws), 10.0f);
   EXPECT_LT(camera.near_plane, 0.1f);
   EXPECT_GT(camera.far_plane, 4000.0f);
-  const CameraMatrices matrices = camera_matrices(camera, 160, 90);
-  for (const glm::vec3& corner : corners_of(scene.core_bounds_ws)) {
-    const glm::vec4 clip = matrices.clip_from_world * glm::vec4(corner, 1.0f);
-    EXPECT_LT(std::max({std::abs(clip.x), std::abs(clip.y), std::abs(clip.z)}), clip.w);
-  }
 }
 
-TEST(Framing, SceneCoreFillsNineTenthsOfTheWidthOrHeightOfTheImage) {
+TEST(Framing, SubjectOfALandscapeIsTheLandscapeAndNotASmallMark) {
+  Mesh terrain = grid(500.0f, 100);
+  for (size_t i = 0; i < terrain.positions.size(); ++i) {
+    terrain.positions[i].y = 100.0f * std::sin(0.37f * float(i));
+  }
+  EXPECT_EQ(scene_of({terrain, sphere(1.0f, {0, 0, 0}, 8)}).subject.triangles_outside, 0u);
+}
+
+TEST(Framing, SubjectFillsNineTenthsOfTheWidthOrHeightOfTheImage) {
   for (const glm::vec3 size : {glm::vec3(1, 1, 1), glm::vec3(20, 1, 1), glm::vec3(1, 30, 1)}) {
     for (const double aspect : {0.5, 1.0, 16.0 / 9.0}) {
       Mesh box = sphere(0.5f, {0, 0, 0}, 8);
@@ -127,21 +90,13 @@ TEST(Framing, SceneCoreFillsNineTenthsOfTheWidthOrHeightOfTheImage) {
       const auto width = static_cast<uint32_t>(100 * aspect);
       const CameraMatrices matrices = camera_matrices(framing_camera(scene, aspect), width, 100);
       float most = 0.0f;
-      for (const glm::vec3& corner : corners_of(scene.core_bounds_ws)) {
+      for (const glm::vec3& corner : corners_of(scene.subject.bounds_ws)) {
         const glm::vec4 clip = matrices.clip_from_world * glm::vec4(corner, 1.0f);
         most = std::max({most, std::abs(clip.x) / clip.w, std::abs(clip.y) / clip.w});
       }
       EXPECT_NEAR(most, 0.9f, 0.01f) << size.x << " " << size.y << " " << aspect;
     }
   }
-}
-
-TEST(Framing, DefaultCameraIsInsideTheRoomThatEnclosesTheSceneCore) {
-  Mesh walls = sphere(10.0f, {-8, 0, -8}, 4);
-  const Scene scene = scene_of({walls, sphere(0.5f, {-3, 0, -3}, 16)});
-  const glm::vec3 eye = framing_camera(scene, 16.0 / 9.0).eye_ws;
-  EXPECT_LT(eye.x, 2.0f);
-  EXPECT_LT(eye.z, 2.0f);
 }
 
 TEST(DepthInView, TrianglesOutsideTheImageDoNotExtendTheDepthRange) {
@@ -151,12 +106,12 @@ TEST(DepthInView, TrianglesOutsideTheImageDoNotExtendTheDepthRange) {
   camera.eye_ws = {0.0f, 2.0f, 0.0f};
   camera.target_ws = {0.0f, 2.0f, -1.0f};
   camera.fov_y = glm::radians(90.0f);
-  const auto range = depth_in_view(scene, camera, 1.0);
+  const auto range = draw_depth(scene, camera, 1.0).range;
   ASSERT_TRUE(range);
   EXPECT_NEAR(range->nearest, 2.0, 1e-4);
   EXPECT_NEAR(range->farthest, 100.0, 1e-3);
   camera.target_ws = {0.0f, 3.0f, 0.01f};
-  EXPECT_FALSE(depth_in_view(scene, camera, 1.0));
+  EXPECT_FALSE(draw_depth(scene, camera, 1.0).range);
 }
 
 TEST(DepthInView, InstancesExtendTheDepthRangeAtTheirOwnPositions) {
@@ -166,7 +121,7 @@ TEST(DepthInView, InstancesExtendTheDepthRangeAtTheirOwnPositions) {
     placed[3] = {0, 0, z};
     mesh.instances.push_back(placed);
   }
-  const auto range = depth_in_view(scene_of({mesh}), Camera(), 1.0);
+  const auto range = draw_depth(scene_of({mesh}), Camera(), 1.0).range;
   ASSERT_TRUE(range);
   EXPECT_NEAR(range->nearest, 9.0, 0.05);
   EXPECT_NEAR(range->farthest, 31.0, 0.05);
@@ -180,7 +135,7 @@ TEST(DepthInView, LargeTrianglesAreClippedToTheImageBeforeTheirDepthCounts) {
   camera.eye_ws = {0, 1, 0};
   camera.target_ws = {0, 1, -1};
   camera.fov_y = glm::radians(90.0f);
-  const auto range = depth_in_view(scene_of({mesh}), camera, 1.0);
+  const auto range = draw_depth(scene_of({mesh}), camera, 1.0).range;
   ASSERT_TRUE(range);
   EXPECT_NEAR(range->nearest, 1.0, 1e-4);
   EXPECT_NEAR(range->farthest, 201.0, 1e-2);
@@ -196,7 +151,7 @@ TEST(DepthInView, DepthRangeOfAMillionInstancesIsFoundWithoutSearchingAllTheirTr
       mesh.instances.push_back(placed);
     }
   }
-  const auto range = depth_in_view(scene_of({mesh}), Camera(), 1.0);
+  const auto range = draw_depth(scene_of({mesh}), Camera(), 1.0).range;
   ASSERT_TRUE(range);
   EXPECT_NEAR(range->nearest, 1.6, 1e-3);
   EXPECT_NEAR(range->farthest, 1001.4, 1e-3);
@@ -217,7 +172,7 @@ TEST(DepthInView, BeyondTheSearchLimitBoundingBoxesOfInstancesCountInsteadOfTria
     placed[3] = {0, 0, -4 - 0.001f * float(i)};
     mesh.instances.push_back(placed);
   }
-  const auto range = depth_in_view(scene_of({mesh}), Camera(), 1.0);
+  const auto range = draw_depth(scene_of({mesh}), Camera(), 1.0).range;
   ASSERT_TRUE(range);
   // The limit is 1024 instances.
   EXPECT_NEAR(range->nearest, 4.0 + 1.024 - 0.1, 0.01);

@@ -2,15 +2,14 @@
 // limits, which count data once for each use.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tiny_gltf.h>
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "cli/open_session.h"
 #include "cli/options.h"
 #include "gltf_maker.h"
-#include "scene/gltf_origin.h"
 #include "temporary_folder.h"
 
 namespace alcove::sample {
@@ -60,7 +59,7 @@ TEST(GltfRepeatedData, InstancesCountTowardsTheLimitOnceForEachPrimitive) {
 
 TEST(GltfRepeatedData, EachSetOfJointsAndWeightsCountsTowardsTheVertexLimit) {
   GltfLimits limits;
-  limits.vertices = 6;
+  limits.vertices = 9;  // 3 vertices and 2 sets for each
   EXPECT_TRUE(parsed_within(skinned_triangle(2), limits));
   const auto scene = parsed_within(skinned_triangle(3), limits);
   ASSERT_FALSE(scene);
@@ -88,35 +87,43 @@ TEST(GltfRepeatedData, FileWithHalfABillionInstancesIsRefused) {
   EXPECT_THAT(scene.error(), HasSubstr("past the number of instances"));
 }
 
-// Three meshes of three vertices: the first is a thousand units away, the others are at the origin.
-TEST(GltfRepeatedData, SceneOriginIsChosenFromVerticesUpToALimit) {
-  tinygltf::Model model;
-  Layout layout;
-  std::vector<float> positions = {1000, 0, 0, 1001, 0, 0, 1000, 1, 0};
-  for (int i = 0; i < 2; ++i) positions.insert(positions.end(), {0, 0, 0, 1, 0, 0, 0, 1, 0});
-  model.buffers.resize(1);
-  const auto* bytes = reinterpret_cast<const unsigned char*>(positions.data());
-  model.buffers[0].data.assign(bytes, bytes + positions.size() * sizeof(float));
-  model.bufferViews.resize(1);
-  model.bufferViews[0].buffer = 0;
-  model.bufferViews[0].byteLength = model.buffers[0].data.size();
-  for (int i = 0; i < 3; ++i) {
-    tinygltf::Accessor accessor;
-    accessor.bufferView = 0;
-    accessor.byteOffset = static_cast<size_t>(36 * i);
-    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-    accessor.type = TINYGLTF_TYPE_VEC3;
-    accessor.count = 3;
-    model.accessors.push_back(accessor);
-    tinygltf::Primitive primitive;
-    primitive.attributes["POSITION"] = i;
-    model.meshes.emplace_back().primitives.push_back(primitive);
-    model.nodes.emplace_back().mesh = i;
-    layout.world_from_node.emplace_back(1.0);
-    layout.drawn.push_back({static_cast<size_t>(i), {}});
-  }
-  EXPECT_EQ(chosen_origin(model, layout, 9), glm::dvec3(0.0));
-  EXPECT_NEAR(chosen_origin(model, layout, 3).x, 1000.5, 1.0);
+TEST(GltfRepeatedData, OnlyTheVerticesThatIndicesUseAreReadAndKept) {
+  GltfMaker maker = GltfMaker::triangle();
+  // A zero-filled accessor of 67 million elements, of which three have values.
+  maker.json["accessors"][0].erase("bufferView");
+  maker.json["accessors"][0]["count"] = 67'000'000;
+  maker.json["accessors"][0]["sparse"] = {
+      {"count", 3},
+      {"indices",
+       {{"bufferView", maker.view<uint32_t>({5, 6, 66'999'999})}, {"componentType", 5125}}},
+      {"values", {{"bufferView", 0}}}};
+  maker.primitive()["indices"] =
+      maker.accessor(maker.view<uint32_t>({66'999'999, 5, 6}), 5125, "SCALAR", 3);
+  GltfLimits limits;
+  limits.vertices = 3;
+  const auto scene = parsed_within(maker, limits);
+  ASSERT_TRUE(scene) << scene.error();
+  EXPECT_EQ(scene->meshes[0].positions.size(), 3u);
+  EXPECT_THAT(corners(*scene),
+              testing::ElementsAre(glm::vec3(0, 1, 0), glm::vec3(0, 0, 0), glm::vec3(1, 0, 0)));
+}
+
+TEST(GltfRepeatedData, UnusedVertexThatIsNotFiniteIsNoReasonToRefuseAFile) {
+  GltfMaker maker = GltfMaker::triangle();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const int positions = maker.view<float>({nan, nan, nan, 0, 0, 0, 1, 0, 0, 0, 1, 0});
+  maker.primitive()["attributes"]["POSITION"] = maker.accessor(positions, 5126, "VEC3", 4);
+  maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({1, 2, 3}), 5123, "SCALAR", 3);
+  EXPECT_EQ(triangle_count(parsed(maker.gltf())), 1u);
+}
+
+TEST(GltfRepeatedData, VerticesWithoutDataAndWithoutIndicesAreLimited) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["accessors"][0].erase("bufferView");
+  maker.json["accessors"][0]["count"] = 60'000'000;
+  const auto scene = parsed_within(maker, {});
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr("has too many vertices: 60000000"));
 }
 
 TEST(GltfRepeatedData, EmptyEmbeddedImageIsLeftOutWithAWarning) {

@@ -2,6 +2,7 @@
 // its materials cut out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <meshoptimizer.h>
 
 #include <cmath>
 
@@ -128,16 +129,103 @@ TEST(GltfNodes, NodesHiddenByTheVisibilityExtensionAreNotDrawn) {
   EXPECT_EQ(triangle_count(parsed(maker.gltf())), 1u);
 }
 
-TEST(GltfNodes, RequiredExtensionsAreAcceptedOnlyIfKnownNotToChangeGeometry) {
+TEST(GltfNodes, OnlyRequiredExtensionsThatHoldGeometryAreRefused) {
   GltfMaker maker = GltfMaker::triangle();
-  for (const char* name : {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_xmp_json_ld"}) {
+  for (const char* name : {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_xmp_json_ld",
+                           "KHR_texture_basisu", "EXT_texture_webp", "EXT_mesh_features",
+                           "KHR_physics_rigid_bodies", "VRMC_vrm", "unknown"}) {
     maker.json["extensionsRequired"] = {name};
-    EXPECT_EQ(triangle_count(parsed(maker.gltf())), 1u) << name;
+    maker.json["extensionsUsed"] = {name};
+    const Scene scene = parsed(maker.gltf());
+    EXPECT_EQ(triangle_count(scene), 1u) << name;
+    EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr(name)));
   }
-  for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "unknown"}) {
+  for (const char* name : {"KHR_draco_mesh_compression", "MPEG_accessor_timed"}) {
     maker.json["extensionsRequired"] = {name};
     EXPECT_THAT(refusal(maker.gltf()), HasSubstr(name));
   }
+}
+
+// A triangle with two morph targets, whose first moves a corner and turns the normals.
+GltfMaker morphed_triangle() {
+  GltfMaker maker = GltfMaker::triangle();
+  const int normals =
+      maker.accessor(maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}), 5126, "VEC3", 3);
+  const int moves = maker.accessor(maker.view<float>({0, 0, 0, 0, 0, 4, 0, 0, 0}), 5126, "VEC3", 3);
+  const int turns =
+      maker.accessor(maker.view<float>({2, 0, -2, 2, 0, -2, 2, 0, -2}), 5126, "VEC3", 3);
+  maker.primitive()["attributes"]["NORMAL"] = normals;
+  // Morphed texture coordinates have two components and are not read.
+  const int uvs = maker.accessor(maker.view<float>({0, 0, 0, 0, 0, 0}), 5126, "VEC2", 3);
+  maker.primitive()["targets"] = {{{"POSITION", moves}, {"NORMAL", turns}, {"TEXCOORD_0", uvs}},
+                                  {{"POSITION", moves}}};
+  maker.json["meshes"][0]["weights"] = {0.5, 0.0};
+  return maker;
+}
+
+TEST(GltfMorph, TargetsAreAppliedAtTheWeightsOfTheMesh) {
+  const Scene scene = parsed(morphed_triangle().gltf());
+  EXPECT_EQ(corners(scene)[1], glm::vec3(1, 0, 2));
+  EXPECT_LT(glm::distance(scene.meshes[0].normals[0], glm::vec3(1, 0, 0)), 1e-6f);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST(GltfMorph, WeightsOfANodeReplaceThoseOfTheMeshForThatNodeOnly) {
+  GltfMaker maker = morphed_triangle();
+  maker.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"weights", {0.0, 2.0}}}};
+  maker.json["scenes"][0]["nodes"] = {0, 1};
+  const auto read = corners(parsed(maker.gltf()));
+  ASSERT_EQ(read.size(), 6u);
+  EXPECT_EQ(read[1], glm::vec3(1, 0, 2));
+  EXPECT_EQ(read[4], glm::vec3(1, 0, 8));
+}
+
+TEST(GltfMorph, TargetsAreAppliedBeforeSkins) {
+  GltfMaker maker = morphed_triangle();
+  auto& attributes = maker.primitive()["attributes"];
+  attributes["JOINTS_0"] =
+      maker.accessor(maker.view<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), 5121, "VEC4", 3);
+  attributes["WEIGHTS_0"] =
+      maker.accessor(maker.view<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}), 5126, "VEC4", 3);
+  maker.json["skins"] = {{{"joints", {1}}}};
+  maker.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"scale", {1, 1, 10}}}};
+  maker.json["scenes"][0]["nodes"] = {0, 1};
+  EXPECT_EQ(corners(parsed(maker.gltf()))[1], glm::vec3(1, 0, 20));
+}
+
+// A quad whose positions and indices are compressed. The positions are 16-bit, normalised.
+TEST(GltfCompression, MeshoptViewsAreDecompressed) {
+  GltfMaker maker = GltfMaker::triangle();
+  const std::vector<int16_t> positions = {0,     0,     0, 0, 32767, 0,     0, 0,
+                                          32767, 32767, 0, 0, 0,     32767, 0, 0};
+  const std::vector<uint32_t> triangles = {0, 1, 2, 0, 2, 3};
+  std::vector<uint8_t> vertices(meshopt_encodeVertexBufferBound(4, 8));
+  vertices.resize(
+      meshopt_encodeVertexBuffer(vertices.data(), vertices.size(), positions.data(), 4, 8));
+  std::vector<uint8_t> indices(meshopt_encodeIndexBufferBound(6, 4));
+  indices.resize(meshopt_encodeIndexBuffer(indices.data(), indices.size(), triangles.data(), 6));
+  const auto compress = [&](int view, const char* mode, int stride, int count) {
+    nlohmann::json& json = maker.json["bufferViews"][static_cast<size_t>(view)];
+    json["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
+                                                     {"byteOffset", json["byteOffset"]},
+                                                     {"byteLength", json["byteLength"]},
+                                                     {"byteStride", stride},
+                                                     {"mode", mode},
+                                                     {"count", count}};
+    json["buffer"] = 7;  // the fallback, which does not exist here
+    json["byteLength"] = stride * count;
+  };
+  const int position_view = maker.view(vertices, 8), index_view = maker.view(indices);
+  compress(position_view, "ATTRIBUTES", 8, 4);
+  compress(index_view, "TRIANGLES", 2, 6);
+  maker.primitive()["attributes"]["POSITION"] =
+      maker.accessor(position_view, 5122, "VEC3", 4, true);
+  maker.primitive()["indices"] = maker.accessor(index_view, 5123, "SCALAR", 6);
+  maker.json["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(triangle_count(scene), 2u);
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
+  EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
 // Ten triangles around the origin, and a camera, moved by `offset`.

@@ -52,7 +52,7 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   EXPECT_EQ(read->view.width, shot.width);
   EXPECT_EQ(read->view.height, shot.height);
   const Scene scene = builtin_scene();
-  const auto settings = occlusion_settings(read->occlusion, scene);
+  const auto settings = occlusion_settings(read->occlusion, 1.0f);
   ASSERT_TRUE(settings) << settings.error();
   EXPECT_EQ(*settings, shot.settings);
   const auto camera = camera_of(read->view, scene);

@@ -279,9 +279,9 @@ typedef struct AlcoveFrame {
   uint32_t slot;
   uint32_t view_count;  // 1 to ALCOVE_MAX_VIEWS
   const AlcoveView* views;
-  // Whether alcoveDiagnose may examine pixels: a small additional pass samples depth and normals of
-  // the first view, and the samples are read when the slot is recorded again. It takes 0.1 MB per
-  // frame in flight.
+  // Whether alcoveDiagnose may examine pixels: a small additional pass samples depth, normals and
+  // motion vectors of the first view, and the samples are read when the slot is recorded again. It
+  // takes 0.15 MB, and 0.15 MB more for each frame in flight.
   VkBool32 diagnose_pixels;
 } AlcoveFrame;
 

@@ -30,26 +30,35 @@ AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* c
 // memory for the text.
 size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 
-// Writes a line with a sentence for each mistake of the engine that shows in the frames recorded so
-// far, or an empty text if there is none. Call it after some dozens of frames in which the camera
-// moved. `text`, `size` and the result are as in alcovePrintSettings.
+// Writes a line with a sentence for each mistake of the engine that most of the last eight frames
+// show that could show it, or an empty text if there is none. Call it after a dozen frames in which
+// the camera moved, and at any later time: a mistake is named whenever it begins, and no longer
+// once it has been mended. `text`, `size` and the result are as in alcovePrintSettings.
 //
-// Some mistakes show in the calls: an index that stays the same, a previous_camera that is always
-// this frame's or never the last frame's, jitter in only one of the two cameras, static_frames that
-// are not 0 although the camera moves, and reset_history in every frame.
+// Some mistakes show in the calls: an index that stays the same or goes back, a wrong
+// previous_camera or previous size, jitter in only one of the two cameras, static_frames that are
+// not 0 although the image changes, reset_history in every frame, and views that are never dropped.
+// A sentence in the log tells of the last one, too.
 //
-// Other mistakes show in the pixels, if at least three frames had AlcoveFrame::diagnose_pixels and
-// all of them show the mistake: depth that runs in the opposite direction to that of the
-// projection; a projection with depth from -1 to 1; normals that fit the depth only with another
-// angle of view or other near and far planes, in the other space, unpacked in the other way, with
-// the other sign of z, or with the other sign of y of the projection; a radius that is far too
-// small or too large for the image; an image that is smaller than it is said to be; and a slot that
-// is recorded again before its frame has finished.
+// Other mistakes show in the pixels, in frames with AlcoveFrame::diagnose_pixels:
+// - in depth: another range, direction or format than stated, another size of the image, dynamic
+//   resolution without a largest size, and a radius that is far too small or too large;
+// - in depth and normals: another angle of view, other near and far planes, the other sign of y,
+//   normals in another space or encoding or with the other sign of z, an inverted view_from_world,
+//   and normals that fit depth under no reading;
+// - from frame to frame: a camera or a depth image of another frame, jitter that is missing or of
+//   another sign or unit, a view_from_world without translation or in another unit, a near plane
+//   that scales the whole scene, cameras that do not fit the depth of most pixels, motion vectors
+//   of another sign, unit or jitter or that lack the camera's motion, and a slot that is recorded
+//   again before its frame has finished.
 //
-// These mistakes do not show: an infinite projection with a wrong near plane, which scales the
-// whole scene; a wrong angle of view if almost every surface is parallel or perpendicular to the
-// view axis, because the scene is then only stretched across that axis, and its normals stay as
-// they are; jitter that is in neither camera; and motion vectors with the wrong sign or unit.
+// These mistakes do not show: a camera that is one frame late, if it moves evenly and without
+// jitter, because successive cameras are then the same; a near plane or a view_from_world in
+// another unit while the camera does not move, or if all that is seen is one plane; another angle
+// of view if almost every surface is parallel or perpendicular to the view axis and the camera does
+// not move; motion vectors of moving objects, as long as those of static surfaces are right; a
+// depth image that is always empty, which looks like the sky; and the contents of roughness,
+// albedo, back_depth and second_depth.
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 #ifdef __cplusplus

@@ -16,7 +16,7 @@
 #include "c/failure.h"
 #include "c/host.h"
 #include "c/images.h"
-#include "diagnose/call_observer.h"
+#include "diagnose/mistake_finder.h"
 #include "diagnose/pixel_observer.h"
 
 namespace alcove::passes {
@@ -84,7 +84,7 @@ struct AlcoveContext {
   alcove::passes::Kernels kernels;
   alcove::framegraph::Graph graph;
   alcove::passes::ImageTable images;
-  alcove::passes::CallObserver observer;
+  alcove::passes::MistakeFinder finder;
   alcove::passes::PixelObserver pixels;
   alcove::framegraph::FrameReport
       report;                // of the last recorded frame; its plan is null before the first

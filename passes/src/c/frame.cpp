@@ -131,7 +131,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   }
   Declaration declaration(context.graph);
   context.kernels.begin_frame(frame->slot);
-  context.pixels.collect(frame->slot);
+  context.pixels.collect(frame->slot, context.finder);
   const std::size_t pipelines = context.kernels.pipeline_count();
   const auto passes = add_views(context.graph, context, *frame, false);
   if (!passes) {
@@ -151,7 +151,9 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   context.slot = frame->slot;
   context.may_discard = declaration.recorded = true;
   context.passes_of_views[frame->slot] = *passes;
-  context.observer.observe(*frame);
+  if (context.finder.observe(*frame)) {
+    context.host->log(ALCOVE_SEVERITY_WARNING, passes::MistakeFinder::kTooManyViews);
+  }
   context.pixels.recorded(frame->slot);
   return {};
 }
@@ -186,6 +188,7 @@ AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
     confirm_last_frame(*context);
     context->graph.histories().end_frame();
     passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
+    context->finder.drop_view(id);
     return {};
   });
 }

@@ -73,7 +73,7 @@ size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size) {
   copy_text("", text, size);
   std::size_t length = 0;
   guarded(context, [&]() -> Result {
-    length = copy_text(context->observer.describe() + context->pixels.describe(), text, size);
+    length = copy_text(context->finder.describe(), text, size);
     return {};
   });
   return length;

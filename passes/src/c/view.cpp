@@ -246,11 +246,10 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (!added) {
     return tl::unexpected(failure_of(added.error(), view_name(view)));
   }
-  const OcclusionInputs& inputs = settled->inputs.occlusion;
   if (observer == nullptr) {
     return {};
   }
-  return observer->add(frame, view, inputs.depth_ndc, inputs.normals, described.slot)
+  return observer->add(frame, view, settled->inputs.occlusion, described.slot)
       .map_error([](const Error& error) { return failure_of(error, "View"); });
 }
 

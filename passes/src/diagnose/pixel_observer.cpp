@@ -16,16 +16,17 @@ using maths::kInspectColumns;
 using maths::kInspectRows;
 
 using Texel = std::array<float, 4>;
-constexpr std::uint32_t kTexelRows = 2 * kInspectRows + 1;
+constexpr std::uint32_t kTexelsOfASample = 3;
+constexpr std::uint32_t kTexelRows = kTexelsOfASample * kInspectRows + 1;
 constexpr VkDeviceSize kTexelBytes = VkDeviceSize{kInspectColumns} * kTexelRows * sizeof(Texel);
 // The serial number of the frame follows the texels.
 constexpr VkDeviceSize kBytes = kTexelBytes + sizeof(std::uint32_t);
-constexpr std::uint32_t kSureFrames = 3;
+constexpr std::size_t kFrames = 3;  // that inspect() compares
 
 }  // namespace
 
 tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveView& view,
-                                             Texture depth, Texture normals, std::uint32_t slot) {
+                                             const OcclusionInputs& inputs, std::uint32_t slot) {
   Pending& pending = pending_.at(slot);
   if (!pending.buffer) {
     auto made = HostBuffer::create(vk_, device_, kBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
@@ -38,35 +39,45 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
   if (!kernel) {
     return tl::unexpected(kernel.error());
   }
-  ++serial_;
+  const Texture depth = inputs.depth_ndc, normals = inputs.normals;
+  const Texture motion = view.static_frames == 0 ? inputs.motion : Texture{};
   pending.declared = true;
   pending.serial = serial_;
   pending.id = view.id;
-  pending.view = {.view = frame.view,
-                  .size = {view.depth.width, view.depth.height},
-                  .depth_format = view.depth.format,
-                  .has_normals = bool(normals),
-                  .normals_in_view_space = view.normals_in_view_space != VK_FALSE,
-                  .normals_forward_z = view.normals_forward_z != VK_FALSE,
-                  .normal_encoding = static_cast<NormalEncoding>(view.normal_encoding),
-                  .radius = view.settings->radius};
+  pending.frame = {
+      .view = frame.view,
+      .size = {view.depth.width, view.depth.height},
+      .depth_format = view.depth.format,
+      .has_normals = bool(normals),
+      .has_motion = bool(motion),
+      .normals_in_view_space = inputs.normals_in_view_space,
+      .normals_forward_z = inputs.normals_forward_z,
+      .normal_encoding = inputs.normal_encoding,
+      .motion = inputs.motion_convention,
+      .radius = view.settings->radius,
+      .is_static = view.static_frames > 0,
+      .continues_history = view.reset_history == VK_FALSE && view.settings->history_frames > 0,
+      .has_largest_size = view.largest_width > 0,
+      .samples = {}};
   framegraph::Graph& graph = frame.graph;
   Texture samples = graph.create_texture(
       "samples",
       {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kInspectColumns, kTexelRows)});
   auto sampling = graph.add_pass("inspect");
   sampling.read(depth, framegraph::access::sampled_compute);
-  if (normals) {
-    sampling.read(normals, framegraph::access::sampled_compute);
+  for (const Texture texture : {normals, motion}) {
+    if (texture) {
+      sampling.read(texture, framegraph::access::sampled_compute);
+    }
   }
   samples = sampling.write(samples, framegraph::access::storage_write_compute, {},
                            framegraph::Contents::discard);
   const maths::InspectParameters parameters{
-      {view.depth.width, view.depth.height}, normals ? 1u : 0u, 0};
-  sampling.record([&kernels = frame.kernels, kernel = *kernel, depth, normals, samples,
+      {view.depth.width, view.depth.height}, normals ? 1u : 0u, motion ? 1u : 0u};
+  sampling.record([&kernels = frame.kernels, kernel = *kernel, depth, normals, motion, samples,
                    parameters](RecordContext& context) {
     const std::array views{context.view(depth), context.view(normals ? normals : depth),
-                           context.view(samples)};
+                           context.view(motion ? motion : depth), context.view(samples)};
     kernels.dispatch(context, kernel, views, bytes_of(parameters),
                      {(kInspectColumns + 7) / 8, (kInspectRows + 8) / 8, 1});
   });
@@ -94,10 +105,19 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
   return {};
 }
 
-void PixelObserver::collect(std::uint32_t slot) {
+void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
+  ++serial_;
   Pending& pending = pending_.at(slot);
   pending.declared = false;
   if (!std::exchange(pending.recorded, false)) {
+    return;
+  }
+  std::uint32_t finished = 0;
+  std::memcpy(&finished, pending.buffer->bytes() + kTexelBytes, sizeof finished);
+  Findings reused;
+  reused.set(Mistake::slot_reused, finished != pending.serial);
+  finder.observe(pending.id, reused);
+  if (finished != pending.serial) {
     return;
   }
   const auto texel = [&](std::uint32_t x, std::uint32_t y) {
@@ -107,64 +127,39 @@ void PixelObserver::collect(std::uint32_t slot) {
                 sizeof result);
     return result;
   };
-  std::uint32_t finished = 0;
-  std::memcpy(&finished, pending.buffer->bytes() + kTexelBytes, sizeof finished);
-  if (finished != pending.serial) {
-    ++early_;
-    return;
-  }
-  InspectedView& view = pending.view;
-  const Texel sizes = texel(0, 2 * kInspectRows);
+  InspectedFrame& frame = pending.frame;
+  const Texel sizes = texel(0, kTexelsOfASample * kInspectRows);
   const auto whole = [](float number) { return static_cast<std::uint32_t>(number); };
-  view.depth_size = {whole(sizes[0]), whole(sizes[1])};
-  view.normals_size = {whole(sizes[2]), whole(sizes[3])};
-  std::vector<PixelSample> samples;
-  samples.reserve(std::size_t{kInspectColumns} * kInspectRows);
+  frame.depth_size = {whole(sizes[0]), whole(sizes[1])};
+  frame.normals_size = {whole(sizes[2]), whole(sizes[3])};
+  frame.samples.reserve(std::size_t{kInspectColumns} * kInspectRows);
   for (std::uint32_t y = 0; y < kInspectRows; ++y) {
     for (std::uint32_t x = 0; x < kInspectColumns; ++x) {
-      const Texel a = texel(x, 2 * y), b = texel(x, 2 * y + 1);
+      const std::uint32_t row = kTexelsOfASample * y;
+      const Texel a = texel(x, row), b = texel(x, row + 1), c = texel(x, row + 2);
       const auto pixel = [](std::uint32_t cell, std::uint32_t cells, std::uint32_t size) {
         return static_cast<std::uint32_t>((static_cast<float>(cell) + 0.5f) /
                                           static_cast<float>(cells) * static_cast<float>(size));
       };
-      samples.push_back({pixel(x, kInspectColumns, view.size.width),
-                         pixel(y, kInspectRows, view.size.height),
-                         a[0],
-                         a[1],
-                         a[2],
-                         a[3],
-                         b[0],
-                         {b[1], b[2], b[3]}});
+      frame.samples.push_back({pixel(x, kInspectColumns, frame.size.width),
+                               pixel(y, kInspectRows, frame.size.height),
+                               a[0],
+                               a[1],
+                               a[2],
+                               a[3],
+                               b[0],
+                               {b[1], b[2], b[3]},
+                               {c[0], c[1]}});
     }
   }
-  auto counts = std::ranges::find(counts_, pending.id, &Counts::id);
-  if (counts == counts_.end()) {
-    counts_.push_back({pending.id});
-    counts = counts_.end() - 1;
+  if (pending.id != view_ || pending.serial != newest_ + 1) {
+    frames_.clear();
   }
-  const Mistakes mistakes = inspect(view, samples);
-  ++counts->frames;
-  for (std::size_t i = 0; i < mistakes.size(); ++i) {
-    counts->seen.at(i) += mistakes.at(i) ? 1 : 0;
-  }
-}
-
-std::string PixelObserver::describe() const {
-  std::string text;
-  if (early_ >= kSureFrames) {
-    text +=
-        "AlcoveFrame::slot was recorded again before the device had finished its last frame; wait "
-        "for the fence of the slot.\n";
-  }
-  for (const Counts& counts : counts_) {
-    for (std::size_t i = 0; i < counts.seen.size(); ++i) {
-      if (counts.frames >= kSureFrames && counts.seen.at(i) == counts.frames) {
-        text +=
-            "View " + std::to_string(counts.id) + ": " + sentence(static_cast<Mistake>(i)) + "\n";
-      }
-    }
-  }
-  return text;
+  view_ = pending.id;
+  newest_ = pending.serial;
+  frames_.insert(frames_.begin(), std::move(frame));
+  frames_.resize(std::min(frames_.size(), kFrames));
+  finder.observe(view_, inspect(frames_));
 }
 
 }  // namespace alcove::passes

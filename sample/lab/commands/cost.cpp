@@ -30,7 +30,7 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
   one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
-  const auto settings = occlusion_settings(one, Scene{});
+  const auto settings = occlusion_settings(one, 1.0f);
   if (!settings) {
     return Failure(settings.error());
   }

@@ -2,24 +2,34 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
-#include <optional>
 #include <utility>
+#include <vector>
 
 #include "gpu/gpu_image.h"
+#include "maths/octahedral.h"
 #include "render/gbuffer.h"
 
 namespace alcove::sample {
 namespace {
 
-using framegraph::Graph;
-using framegraph::Texture;
 using Failure = tl::unexpected<std::string>;
 
 constexpr std::uint32_t kSlots = 2;
 constexpr VkFormat kVisibilityFormat = VK_FORMAT_R8_UNORM;
 constexpr AlcoveState kBetweenFrames{kSampledState.stages, kSampledState.access,
                                      kSampledState.layout};
+constexpr VkImageUsageFlags kDepthUsage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                          VK_IMAGE_USAGE_SAMPLED_BIT |
+                                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+constexpr VkImageUsageFlags kColourUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                           VK_IMAGE_USAGE_SAMPLED_BIT |
+                                           VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+constexpr VkImageUsageFlags kFilledUsage =
+    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+constexpr VkImageUsageFlags kVisibilityUsage =
+    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 
 struct DestroyContext {
   void operator()(AlcoveContext* context) const { alcoveDestroyContext(context); }
@@ -33,97 +43,125 @@ AlcoveCamera to_camera(const CameraMatrices& matrices) {
   return camera;
 }
 
-// The camera of a frame of the course. The jitter repeats after eight frames.
-Camera camera_at(const Camera& camera, const EngineCourse& course, std::uint32_t frame,
-                 bool jittered) {
-  Camera result = orbited(camera, course.orbit * static_cast<float>(frame));
-  if (course.jitter && jittered) {
-    result.jitter_px = {static_cast<float>(frame % 8) / 8.0f - 0.4375f,
-                        static_cast<float>(5 * frame % 8) / 8.0f - 0.4375f};
-  }
-  return result;
-}
+// A frame of the course, before a mistake is made.
+struct DrawnFrame {
+  AlcoveView view{};
+  OtherInputs other;
+};
 
 }  // namespace
 
 struct EngineRun::State {
-  State(Gpu& on, const Scene& of, VkExtent2D with_size) : gpu(on), scene(of), size(with_size) {}
+  State(Gpu& on, const Scene& of, const Camera& from, const EngineCourse& along)
+      : gpu(on), scene(of), camera(from), course(along) {}
   ~State();
 
   tl::expected<void, std::string> create();
-  tl::expected<std::unique_ptr<GpuImage>, std::string> create_image(VkFormat format,
-                                                                    VkExtent2D of_size,
-                                                                    VkImageUsageFlags usage);
-  tl::expected<Context, std::string> create_context() const;
-  tl::expected<void, std::string> draw_gbuffer(const GbufferView& view, bool geometric);
-  EngineFrame describe(const Camera& camera, float radius, const EngineCourse& course,
-                       std::uint32_t frame) const;
-  AlcoveImage describe(const GpuImage& image, VkFormat format, VkExtent2D of_size,
-                       VkImageUsageFlags usage) const;
-  tl::expected<void, std::string> record(AlcoveContext& context, const EngineFrame& described,
-                                         VkCommandBuffer into) const;
+  tl::expected<void, std::string> create_context();
+  tl::expected<AlcoveImage, std::string> create_image(VkFormat format, VkExtent2D size,
+                                                      VkImageUsageFlags usage);
+  template <typename Texel>
+  tl::expected<AlcoveImage, std::string> create_filled(VkFormat format, VkExtent2D size,
+                                                       const std::vector<Texel>& texels);
+  framegraph::Texture import(Graph& graph, const AlcoveImage& image, bool fill) const;
+  template <typename Texel>
+  tl::expected<std::vector<Texel>, std::string> read(const AlcoveImage& image);
+  VkExtent2D size_at(std::uint32_t frame) const;
+  CameraMatrices matrices_at(std::uint32_t frame, bool with_jitter) const;
+  tl::expected<void, std::string> draw_frame(std::uint32_t frame);
+  tl::expected<void, std::string> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
+  EngineFrame describe(std::uint32_t frame) const;
+  VkResult begin(VkCommandBuffer commands_of_slot) const;
   VkResult submit(VkCommandBuffer recorded) const;
-  tl::expected<Image<float>, std::string> read_visibility();
 
   Gpu& gpu;
   const Scene& scene;
-  VkExtent2D size;
-  std::array<std::unique_ptr<GbufferRenderer>, 2> gbuffers;  // by `geometric`; made when needed
-  std::unique_ptr<GpuImage> depth, normals, half_depth, visibility;
-  VkPipelineCache cache = VK_NULL_HANDLE;
+  Camera camera;
+  EngineCourse course;
+  std::unique_ptr<GbufferRenderer> gbuffer;
+  std::vector<std::unique_ptr<GpuImage>> images;
+  std::vector<DrawnFrame> frames;
+  Context context;
+  std::uint32_t next_id = 0;
   VkCommandPool pool = VK_NULL_HANDLE;
   std::array<VkCommandBuffer, kSlots> commands{};
 };
-
-namespace {
-constexpr VkImageUsageFlags kDepthUsage =
-    VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-constexpr VkImageUsageFlags kNormalUsage =
-    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-constexpr VkImageUsageFlags kVisibilityUsage =
-    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-}  // namespace
 
 EngineRun::State::~State() {
   const VkDevice device = gpu.device().device();
   vkDeviceWaitIdle(device);
   vkDestroyCommandPool(device, pool, nullptr);
-  vkDestroyPipelineCache(device, cache, nullptr);
 }
 
-tl::expected<std::unique_ptr<GpuImage>, std::string> EngineRun::State::create_image(
-    VkFormat format, VkExtent2D of_size, VkImageUsageFlags usage) {
-  return GpuImage::create(
-      gpu.device(), {format, framegraph::Extent::absolute(of_size.width, of_size.height)}, usage);
+tl::expected<AlcoveImage, std::string> EngineRun::State::create_image(VkFormat format,
+                                                                      VkExtent2D size,
+                                                                      VkImageUsageFlags usage) {
+  auto made = GpuImage::create(
+      gpu.device(), {format, framegraph::Extent::absolute(size.width, size.height)}, usage);
+  if (!made) {
+    return Failure(std::move(made.error()));
+  }
+  images.push_back(std::move(*made));
+  AlcoveImage image{};
+  image.image = images.back()->image();
+  image.format = format;
+  image.width = size.width;
+  image.height = size.height;
+  image.usage = usage;
+  image.initial_state = image.final_state = kBetweenFrames;
+  return image;
+}
+
+framegraph::Texture EngineRun::State::import(Graph& graph, const AlcoveImage& image,
+                                             bool fill) const {
+  const auto& found = **std::ranges::find(images, image.image, &GpuImage::image);
+  return graph.import_texture("image of the engine", fill ? found.import_to_fill(kSampledState)
+                                                          : found.import_to_read(kSampledState));
+}
+
+template <typename Texel>
+tl::expected<AlcoveImage, std::string> EngineRun::State::create_filled(
+    VkFormat format, VkExtent2D size, const std::vector<Texel>& texels) {
+  const VkDeviceSize bytes = texels.size() * sizeof(Texel);
+  auto buffer = HostBuffer::create(gpu.device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  auto image = create_image(format, size, kFilledUsage);
+  if (!buffer || !image) {
+    return Failure(buffer ? image.error() : buffer.error());
+  }
+  std::memcpy((*buffer)->bytes().data(), texels.data(), bytes);
+  return gpu
+      .run([&](Graph& graph) -> tl::expected<void, std::string> {
+        (void)add_copy(graph, **buffer, import(graph, *image, true));
+        return {};
+      })
+      .map([&](const framegraph::FrameReport&) { return *image; });
+}
+
+template <typename Texel>
+tl::expected<std::vector<Texel>, std::string> EngineRun::State::read(const AlcoveImage& image) {
+  std::vector<Texel> texels(std::size_t{image.width} * image.height);
+  auto buffer = HostBuffer::create(gpu.device(), texels.size() * sizeof(Texel),
+                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  if (!buffer) {
+    return Failure(std::move(buffer.error()));
+  }
+  return gpu
+      .run([&](Graph& graph) -> tl::expected<void, std::string> {
+        add_read_back(graph, import(graph, image, false), **buffer);
+        return {};
+      })
+      .map([&](const framegraph::FrameReport&) {
+        std::memcpy(texels.data(), (*buffer)->bytes().data(), texels.size() * sizeof(Texel));
+        return texels;
+      });
 }
 
 tl::expected<void, std::string> EngineRun::State::create() {
-  const VkExtent2D half{std::max(size.width / 2, 1u), std::max(size.height / 2, 1u)};
-  struct Made {
-    std::unique_ptr<GpuImage>& image;
-    VkFormat format;
-    VkExtent2D size;
-    VkImageUsageFlags usage;
-  };
-  for (const Made& made : {Made{depth, kDepthFormat, size, kDepthUsage},
-                           Made{normals, kNormalFormat, size, kNormalUsage},
-                           Made{half_depth, kDepthFormat, half, kDepthUsage},
-                           Made{visibility, kVisibilityFormat, size, kVisibilityUsage}}) {
-    auto image = create_image(made.format, made.size, made.usage);
-    if (!image) {
-      return Failure(std::move(image.error()));
-    }
-    made.image = std::move(*image);
-  }
   const VkDevice device = gpu.device().device();
-  const VkPipelineCacheCreateInfo cache_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
   const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                           .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                           .queueFamilyIndex = gpu.device().queue_family()};
-  VkResult result = vkCreatePipelineCache(device, &cache_info, nullptr, &cache);
-  if (result == VK_SUCCESS) {
-    result = vkCreateCommandPool(device, &pool_info, nullptr, &pool);
-  }
+  VkResult result = vkCreateCommandPool(device, &pool_info, nullptr, &pool);
   if (result == VK_SUCCESS) {
     const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                            .commandPool = pool,
@@ -134,10 +172,19 @@ tl::expected<void, std::string> EngineRun::State::create() {
   if (result != VK_SUCCESS) {
     return device_failure("create a command buffer", result);
   }
-  return {};
+  auto made = GbufferRenderer::create(gpu, scene, course.geometric);
+  if (!made) {
+    return Failure(std::move(made.error()));
+  }
+  gbuffer = std::move(*made);
+  auto done = create_context();
+  for (std::uint32_t frame = 0; done && frame < course.frames; ++frame) {
+    done = draw_frame(frame);
+  }
+  return done;
 }
 
-tl::expected<Context, std::string> EngineRun::State::create_context() const {
+tl::expected<void, std::string> EngineRun::State::create_context() {
   AlcoveContextInfo info{.struct_size = sizeof info};
   info.queue_family = gpu.device().queue_family();
   info.instance = gpu.device().instance();
@@ -145,103 +192,159 @@ tl::expected<Context, std::string> EngineRun::State::create_context() const {
   info.device = gpu.device().device();
   info.get_instance_proc_addr = vkGetInstanceProcAddr;
   info.frames_in_flight = kSlots;
-  info.pipeline_cache = cache;
   AlcoveContext* made = nullptr;
   std::array<char, ALCOVE_MAX_MESSAGE> message{};
   if (alcoveCreateContext(&info, &made, message.data()) != ALCOVE_SUCCESS) {
     return Failure(message.data());
   }
-  return Context(made);
-}
-
-tl::expected<void, std::string> EngineRun::State::draw_gbuffer(const GbufferView& view,
-                                                               bool geometric) {
-  std::unique_ptr<GbufferRenderer>& renderer = gbuffers.at(geometric ? 1 : 0);
-  if (!renderer) {
-    auto made = GbufferRenderer::create(gpu, scene, geometric);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    renderer = std::move(*made);
-  }
-  auto report = gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {
-    const auto fill = [&](const std::unique_ptr<GpuImage>& image) {
-      return graph.import_texture("g-buffer", image->import_to_fill(kSampledState));
-    };
-    (void)renderer->add(graph, view, {.depth = fill(depth), .normal = fill(normals)});
-    (void)renderer->add(graph, view, {.depth = fill(half_depth)});
-    return {};
-  });
-  if (!report) {
-    return Failure(std::move(report.error()));
-  }
+  context = Context(made);
   return {};
 }
 
-AlcoveImage EngineRun::State::describe(const GpuImage& image, VkFormat format, VkExtent2D of_size,
-                                       VkImageUsageFlags usage) const {
-  AlcoveImage result{};
-  result.image = image.image();
-  result.format = format;
-  result.width = of_size.width;
-  result.height = of_size.height;
-  result.usage = usage;
-  result.initial_state = kBetweenFrames;
-  result.final_state = kBetweenFrames;
-  return result;
+VkExtent2D EngineRun::State::size_at(std::uint32_t frame) const {
+  const bool small = course.resize && frame < course.change_at;
+  return small ? VkExtent2D{course.size.width * 3 / 4, course.size.height * 2 / 3} : course.size;
 }
 
-EngineFrame EngineRun::State::describe(const Camera& camera, float radius,
-                                       const EngineCourse& course, std::uint32_t frame) const {
-  const auto matrices = [&](std::uint32_t of, bool jittered) {
-    return to_camera(
-        camera_matrices(camera_at(camera, course, of, jittered), size.width, size.height));
+// The jitter repeats after eight frames.
+CameraMatrices EngineRun::State::matrices_at(std::uint32_t frame, bool with_jitter) const {
+  const float cut = course.cut && frame < course.change_at ? 0.4f : 0.0f;
+  Camera now = orbited(camera, cut + course.orbit * static_cast<float>(frame));
+  if (course.jitter && with_jitter) {
+    now.jitter_px = {static_cast<float>(frame % 8) / 8.0f - 0.4375f,
+                     static_cast<float>(5 * frame % 8) / 8.0f - 0.4375f};
+  }
+  const VkExtent2D size = size_at(frame);
+  return camera_matrices(now, size.width, size.height);
+}
+
+tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame) {
+  const VkExtent2D size = size_at(frame);
+  const CameraMatrices now = matrices_at(frame, true);
+  const CameraMatrices before = matrices_at(frame == 0 ? 0 : frame - 1, true);
+  const GbufferView seen{.view_from_world = now.view_from_world,
+                         .clip_from_view = now.clip_from_view,
+                         .previous_view_from_world = before.view_from_world,
+                         .previous_clip_from_view = before.clip_from_view,
+                         .reversed_z = camera.reversed_z};
+  DrawnFrame drawn;
+  AlcoveView& view = drawn.view;
+  struct Target {
+    AlcoveImage& image;
+    VkFormat format;
+    VkExtent2D size;
+    VkImageUsageFlags usage;
+  };
+  for (const Target& target : {Target{view.depth, kDepthFormat, size, kDepthUsage},
+                               Target{view.normals, kNormalFormat, size, kColourUsage},
+                               Target{view.motion, kMotionFormat, size, kColourUsage},
+                               Target{view.visibility, kVisibilityFormat, size, kVisibilityUsage},
+                               Target{drawn.other.albedo, kAlbedoFormat, size, kColourUsage},
+                               Target{drawn.other.half_depth,
+                                      kDepthFormat,
+                                      {size.width / 2, size.height / 2},
+                                      kDepthUsage}}) {
+    auto made = create_image(target.format, target.size, target.usage);
+    if (!made) {
+      return Failure(std::move(made.error()));
+    }
+    target.image = *made;
+  }
+  drawn.other.half_depth.width = size.width;
+  drawn.other.half_depth.height = size.height;
+  const auto report = gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {
+    (void)gbuffer->add(graph, seen,
+                       {.depth = import(graph, view.depth, true),
+                        .normal = import(graph, view.normals, true),
+                        .albedo = import(graph, drawn.other.albedo, true),
+                        .motion = import(graph, view.motion, true)});
+    if (course.other_inputs) {
+      (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
+    }
+    return {};
+  });
+  if (!report) {
+    return Failure(report.error());
+  }
+  view.struct_size = sizeof view;
+  view.camera = to_camera(now);
+  view.previous_camera = to_camera(before);
+  view.visibility.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  const bool changes = (course.cut || course.resize) && frame == course.change_at;
+  view.reset_history = changes ? VK_TRUE : VK_FALSE;
+  view.static_frames = course.orbit != 0.0f || course.jitter ? 0 : frame;
+  drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false));
+  auto done =
+      course.other_inputs ? create_other_inputs(drawn, frame) : tl::expected<void, std::string>();
+  frames.push_back(drawn);
+  return done;
+}
+
+tl::expected<void, std::string> EngineRun::State::create_other_inputs(DrawnFrame& drawn,
+                                                                      std::uint32_t frame) {
+  const VkExtent2D size = size_at(frame);
+  const CameraMatrices now = matrices_at(frame, true);
+  const auto depths = read<float>(drawn.view.depth);
+  const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.normals);
+  if (!depths || !halves) {
+    return Failure(depths ? halves.error() : depths.error());
+  }
+  std::vector<float> linear, coarse;
+  std::vector<glm::vec4> octahedral, in_view;
+  for (std::size_t i = 0; i < depths->size(); ++i) {
+    const double distance = view_depth(now.clip_from_view, (*depths)[i]);
+    linear.push_back(static_cast<float>(std::min(distance, 1e3)));
+    coarse.push_back(std::round((*depths)[i] * 65535.0f) / 65535.0f);
+    const auto& half = (*halves)[i];
+    const glm::vec3 normal(half_to_float(half[0]), half_to_float(half[1]), half_to_float(half[2]));
+    const bool is_sky = glm::dot(normal, normal) < 0.25f;
+    octahedral.emplace_back(is_sky ? glm::vec2(0.0f) : maths::octahedral_encode(normal), 0.0f,
+                            0.0f);
+    in_view.emplace_back(glm::mat3(now.view_from_world) * normal, 0.0f);
+  }
+  const auto fill = [&](AlcoveImage& into, VkFormat format, const auto& texels) {
+    return create_filled(format, size, texels).map([&](const AlcoveImage& made) { into = made; });
+  };
+  return fill(drawn.other.linear_depth, VK_FORMAT_R32_SFLOAT, linear)
+      .and_then([&] { return fill(drawn.other.coarse_depth, VK_FORMAT_R32_SFLOAT, coarse); })
+      .and_then([&] {
+        return fill(drawn.other.octahedral_normals, VK_FORMAT_R32G32B32A32_SFLOAT, octahedral);
+      })
+      .and_then(
+          [&] { return fill(drawn.other.view_normals, VK_FORMAT_R32G32B32A32_SFLOAT, in_view); });
+}
+
+EngineFrame EngineRun::State::describe(std::uint32_t frame) const {
+  const auto drawn = [&](std::uint32_t back) -> const DrawnFrame& {
+    return frames.at(frame - std::min(frame, back));
   };
   EngineFrame result;
   result.settings.struct_size = sizeof result.settings;
-  alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, radius, &result.settings);
-  const std::uint32_t before = frame == 0 ? 0 : frame - 1;
-  AlcoveView& view = result.view;
-  view.struct_size = sizeof view;
-  view.static_frames = course.orbit == 0.0f && !course.jitter ? frame : 0;
-  view.camera = matrices(frame, true);
-  view.previous_camera = matrices(before, true);
-  result.camera_without_jitter = matrices(frame, false);
-  result.previous_without_jitter = matrices(before, false);
-  result.first_camera = matrices(0, true);
-  view.depth = describe(*depth, kDepthFormat, size, kDepthUsage);
-  view.normals = describe(*normals, kNormalFormat, size, kNormalUsage);
-  view.visibility = describe(*visibility, kVisibilityFormat, size, kVisibilityUsage);
-  view.visibility.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  result.half_depth = view.depth;
-  result.half_depth.image = half_depth->image();
+  alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, course.radius, &result.settings);
+  if (course.quick) {
+    result.settings.slices = 1;
+    result.settings.steps = 2;
+  }
+  result.view = drawn(0).view;
+  result.view.id = next_id;
+  result.right = result.view;
+  result.view.motion = {};
+  result.other = drawn(0).other;
+  result.other_before = drawn(1).other;
+  result.right_before = drawn(1).view;
+  result.right_before_that = drawn(2).view;
+  result.right_first = frames.front().view;
   result.frame.struct_size = sizeof result.frame;
   result.frame.index = frame;
-  result.frame.slot = course.submit_late ? 0 : frame % kSlots;
+  result.frame.slot = frame % kSlots;
   result.frame.view_count = 1;
   result.frame.diagnose_pixels = VK_TRUE;
   return result;
 }
 
-tl::expected<void, std::string> EngineRun::State::record(AlcoveContext& context,
-                                                         const EngineFrame& described,
-                                                         VkCommandBuffer into) const {
-  AlcoveView view = described.view;
-  view.settings = &described.settings;
-  AlcoveFrame frame = described.frame;
-  frame.views = &view;
-  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  VkResult result = vkBeginCommandBuffer(into, &begin);
-  if (result == VK_SUCCESS && alcoveRecordFrame(&context, into, &frame) != ALCOVE_SUCCESS) {
-    return Failure(alcoveGetMessage(&context));
-  }
-  if (result == VK_SUCCESS) {
-    result = vkEndCommandBuffer(into);
-  }
-  if (result != VK_SUCCESS) {
-    return device_failure("record a frame", result);
-  }
-  return {};
+VkResult EngineRun::State::begin(VkCommandBuffer commands_of_slot) const {
+  const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  return vkBeginCommandBuffer(commands_of_slot, &info);
 }
 
 VkResult EngineRun::State::submit(VkCommandBuffer recorded) const {
@@ -252,88 +355,84 @@ VkResult EngineRun::State::submit(VkCommandBuffer recorded) const {
   return result == VK_SUCCESS ? vkQueueWaitIdle(gpu.device().queue()) : result;
 }
 
-tl::expected<Image<float>, std::string> EngineRun::State::read_visibility() {
-  auto buffer = HostBuffer::create(gpu.device(), VkDeviceSize{size.width} * size.height,
-                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  if (!buffer) {
-    return Failure(std::move(buffer.error()));
-  }
-  auto report = gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {
-    add_read_back(graph,
-                  graph.import_texture("visibility", visibility->import_to_read(kSampledState)),
-                  **buffer);
-    return {};
-  });
-  if (!report) {
-    return Failure(std::move(report.error()));
-  }
-  Image<float> result(size.width, size.height, 0.0f);
-  std::ranges::transform((*buffer)->bytes(), result.pixels.begin(), [](std::byte value) {
-    return static_cast<float>(std::to_integer<unsigned>(value)) / 255.0f;
-  });
-  return result;
-}
-
 EngineRun::EngineRun(std::unique_ptr<State> state) : state_(std::move(state)) {}
 EngineRun::~EngineRun() = default;
 
-tl::expected<std::unique_ptr<EngineRun>, std::string> EngineRun::create(Gpu& gpu,
-                                                                        const Scene& scene,
-                                                                        VkExtent2D size) {
-  auto state = std::make_unique<State>(gpu, scene, size);
+tl::expected<std::unique_ptr<EngineRun>, std::string> EngineRun::create(
+    Gpu& gpu, const Scene& scene, const Camera& camera, const EngineCourse& course) {
+  auto state = std::make_unique<State>(gpu, scene, camera, course);
   if (auto made = state->create(); !made) {
     return Failure(std::move(made.error()));
   }
   return std::unique_ptr<EngineRun>(new EngineRun(std::move(state)));
 }
 
-tl::expected<EngineResult, std::string> EngineRun::draw(const Camera& camera, float radius,
-                                                        const EngineCourse& course) {
-  auto context = state_->create_context();
-  if (!context) {
-    return Failure(std::move(context.error()));
-  }
-  for (std::uint32_t i = 0; i < course.frames; ++i) {
-    const Camera jittered = camera_at(camera, course, i, true);
-    const CameraMatrices matrices =
-        camera_matrices(jittered, state_->size.width, state_->size.height);
-    const GbufferView view{.view_from_world = matrices.view_from_world,
-                           .clip_from_view = matrices.clip_from_view,
-                           .previous_view_from_world = matrices.view_from_world,
-                           .previous_clip_from_view = matrices.clip_from_view,
-                           .reversed_z = camera.reversed_z};
-    EngineFrame described = state_->describe(camera, radius, course, i);
-    if (course.change) {
-      course.change(described);
-    }
-    const VkCommandBuffer commands = state_->commands.at(i % kSlots);
-    const bool last = i + 1 == course.frames;
-    auto done = state_->draw_gbuffer(view, course.geometric).and_then([&] {
-      return state_->record(**context, described, commands);
-    });
-    VkResult result = VK_SUCCESS;
-    if (done && course.submit_late && i > 0) {
-      result = state_->submit(state_->commands.at((i - 1) % kSlots));
-    }
-    if (done && result == VK_SUCCESS && (!course.submit_late || last)) {
-      result = state_->submit(commands);
-    }
-    if (!done) {
-      return Failure(std::move(done.error()));
-    }
-    if (result != VK_SUCCESS) {
-      return device_failure("run a frame", result);
-    }
-  }
+tl::expected<EngineResult, std::string> EngineRun::draw(const ChangeFrame& change,
+                                                        std::uint32_t begin, bool submit_late) {
+  State& s = *state_;
+  AlcoveContext* const context = s.context.get();
   EngineResult result;
-  result.said.resize(alcoveDiagnose(context->get(), nullptr, 0) + 1);
-  alcoveDiagnose(context->get(), result.said.data(), result.said.size());
-  result.said.pop_back();
-  auto visibility = state_->read_visibility();
-  if (!visibility) {
-    return Failure(std::move(visibility.error()));
+  VkCommandBuffer waiting = VK_NULL_HANDLE;  // recorded and not submitted
+  AlcoveImage visibility{};
+  VkResult device = VK_SUCCESS;
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t i = 0; result.said.empty() && i < s.course.frames; ++i) {
+    EngineFrame described = s.describe(i);
+    const bool late = submit_late && i >= begin;
+    if (late) {
+      described.frame.slot = 0;
+    }
+    if (change && i >= begin) {
+      change(described);
+    }
+    ids.push_back(described.view.id);
+    visibility = s.frames.at(i).view.visibility;
+    described.view.settings = &described.settings;
+    described.frame.views = &described.view;
+    const VkCommandBuffer commands = s.commands.at(i % kSlots);
+    device = s.begin(commands);
+    if (device == VK_SUCCESS &&
+        alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS) {
+      result.said = std::string(alcoveGetMessage(context)) + "\n";
+    }
+    device = device == VK_SUCCESS ? vkEndCommandBuffer(commands) : device;
+    if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) {
+      device = s.submit(waiting);
+    }
+    waiting = late ? commands : VK_NULL_HANDLE;
+    if (device == VK_SUCCESS && !late) {
+      device = s.submit(commands);
+    }
+    if (device != VK_SUCCESS) {
+      return device_failure("run a frame", device);
+    }
   }
-  result.visibility = std::move(*visibility);
+  if (waiting != VK_NULL_HANDLE && s.submit(waiting) != VK_SUCCESS) {
+    return Failure("The last frame could not be run.");
+  }
+  if (result.said.empty()) {
+    result.said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
+    alcoveDiagnose(context, result.said.data(), result.said.size());
+    result.said.pop_back();
+    auto texels = s.read<std::uint8_t>(visibility);
+    if (!texels) {
+      return Failure(std::move(texels.error()));
+    }
+    result.visibility = Image<float>(visibility.width, visibility.height);
+    std::ranges::transform(*texels, result.visibility.pixels.begin(),
+                           [](std::uint8_t texel) { return static_cast<float>(texel) / 255.0f; });
+  }
+  ++s.next_id;
+  if (submit_late) {
+    // Memory of a slot that is recorded too early may be freed too early.
+    if (auto made = s.create_context(); !made) {
+      return Failure(std::move(made.error()));
+    }
+  } else {
+    for (const std::uint32_t id : ids) {
+      alcoveDropView(context, id);
+    }
+  }
   return result;
 }
 

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
-#include <vector>
 
 #include "alcove/alcove.h"
 #include "gpu/gpu.h"
@@ -15,50 +14,72 @@
 
 namespace alcove::sample {
 
-// A frame that an engine passes to the C interface, and the wrong values that engines pass by
-// mistake instead of the right ones.
+// The frames that an engine draws: how the camera moves, and what else changes.
+struct EngineCourse {
+  VkExtent2D size{240, 135};
+  float radius = 0.5f;
+  std::uint32_t frames = 16;
+  float orbit = 0.0f;      // radians per frame about the camera's target
+  bool jitter = false;     // of the image, by up to half a pixel
+  bool geometric = false;  // the triangles' own normals instead of shading normals
+  bool resize = false;     // the images before the frame `change_at` are smaller
+  bool cut = false;        // the camera before it is another
+  std::uint32_t change_at = 4;
+  bool quick = false;         // few samples, for callers that do not look at the visibility
+  bool other_inputs = false;  // creates OtherInputs, which takes time
+};
+
+// Images that engines give by mistake instead of the right ones, and cameras without jitter.
+struct OtherInputs {
+  AlcoveCamera camera_without_jitter{};
+  AlcoveImage half_depth{};  // half the width and height
+  AlcoveImage linear_depth{};
+  AlcoveImage coarse_depth{};  // rounded to 16 bits
+  AlcoveImage octahedral_normals{};
+  AlcoveImage view_normals{};  // in view space
+  AlcoveImage albedo{};
+};
+
+// A frame that an engine passes to the C interface.
 struct EngineFrame {
   AlcoveFrame frame{};  // `views` points to `view`
   AlcoveView view{};
   AlcoveSettings settings{};
-  AlcoveCamera camera_without_jitter{};
-  AlcoveCamera previous_without_jitter{};
-  AlcoveCamera first_camera{};  // of the first frame
-  AlcoveImage half_depth{};     // the same view in an image of half the width and height
+  OtherInputs other;
+  OtherInputs other_before;  // of the last frame
+  // The views of this frame and of earlier ones without a mistake.
+  AlcoveView right{};
+  AlcoveView right_before{};
+  AlcoveView right_before_that{};
+  AlcoveView right_first{};
 };
 
 // Changes a frame before it is recorded.
 using ChangeFrame = std::function<void(EngineFrame& frame)>;
 
-// The motion of the camera over the frames, and how the frames are recorded.
-struct EngineCourse {
-  std::uint32_t frames = 16;
-  float orbit = 0.0f;        // radians per frame about the camera's target
-  bool jitter = false;       // of the image, by up to half a pixel
-  bool geometric = false;    // the triangles' own normals instead of shading normals
-  bool submit_late = false;  // each frame is submitted after the next one was recorded
-  ChangeFrame change;        // null: the frames are right
-};
-
 struct EngineResult {
   Image<float> visibility;  // of the last frame
-  std::string said;         // text of alcoveDiagnose, which looks at pixels too: a line per mistake
+  // The lines of alcoveDiagnose, which looks at pixels too, or the message of a refused frame.
+  std::string said;
 };
 
-// Draws g-buffers of a scene and records their occlusion through the C interface, as an engine
-// does.
+// Draws the g-buffers of a course once, and records their occlusion through the C interface as
+// often as a caller wants, as an engine does.
 class EngineRun {
  public:
-  // `gpu` and `scene` must outlive the object. The size is in pixels.
+  // `gpu` and `scene` must outlive the object.
   [[nodiscard]] static tl::expected<std::unique_ptr<EngineRun>, std::string> create(
-      Gpu& gpu, const Scene& scene, VkExtent2D size);
+      Gpu& gpu, const Scene& scene, const Camera& camera, const EngineCourse& course);
   ~EngineRun();
   EngineRun(const EngineRun&) = delete;
   EngineRun& operator=(const EngineRun&) = delete;
 
-  // Draws all frames with a new AlcoveContext. `radius` is in scene units.
-  [[nodiscard]] tl::expected<EngineResult, std::string> draw(const Camera& camera, float radius,
-                                                             const EngineCourse& course);
+  // Records the frames from 0 to `frames` as a new view. `change`, if it is given, changes them
+  // from the frame `begin` on. If `submit_late` is true, each of these is submitted after the next
+  // one was recorded.
+  [[nodiscard]] tl::expected<EngineResult, std::string> draw(const ChangeFrame& change = {},
+                                                             std::uint32_t begin = 0,
+                                                             bool submit_late = false);
 
  private:
   struct State;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <filesystem>
-#include <functional>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -12,33 +12,45 @@ namespace alcove::sample {
 
 // A mistake that engines make when they call Alcove.
 struct PlantedMistake {
-  const char* name;      // for the table
-  const char* file;      // of its picture, without the ending
-  const char* sentence;  // part of the sentence of alcoveDiagnose; empty: it need not say anything
-  ChangeFrame plant;     // makes the mistake in a frame; null for a late submission
-  bool submit_late = false;
+  const char* name;
+  const char* sentence;      // part of the only sentence of alcoveDiagnose, or of the refused call
+  ChangeFrame plant;         // makes the mistake in a frame; null for a late submission
+  const char* picture = "";  // name of the file in the table of passes/INTEGRATION.md, if any
+  bool reversed = false;     // in frames with a reversed depth buffer and an infinite far plane
 };
 
-// The mistakes in the order of the table in passes/INTEGRATION.md.
 [[nodiscard]] const std::vector<PlantedMistake>& planted_mistakes();
 
-// A mistake drawn on a scene.
-struct MistakeResult {
-  const PlantedMistake* mistake = nullptr;
-  double rmse = 0.0;   // of visibility against the picture without the mistake, all pixels
-  std::string said;    // lines of alcoveDiagnose
-  bool named = false;  // `said` is one line, which contains PlantedMistake::sentence
+// Frames without a mistake: a camera that stands still, moves, has jitter, is resized or cut.
+struct RightCourse {
+  const char* name;
+  EngineCourse course;
+};
+[[nodiscard]] std::vector<RightCourse> right_courses(const EngineCourse& base);
+
+// Returns what alcoveDiagnose says of frames without a mistake: as they are, with motion vectors,
+// without normals, and with dynamic resolution. It should be nothing.
+[[nodiscard]] tl::expected<std::string, std::string> said_of_right_frames(EngineRun& run);
+
+// Draws frames without and with mistakes, of a camera that moves and has jitter.
+class MistakeRun {
+ public:
+  // `course` has the size and the radius, and says when the size changes.
+  [[nodiscard]] static tl::expected<MistakeRun, std::string> create(Gpu& gpu, const Scene& scene,
+                                                                    const Camera& camera,
+                                                                    EngineCourse course);
+
+  // Makes a mistake from the frame `begin` on.
+  [[nodiscard]] tl::expected<EngineResult, std::string> draw(const PlantedMistake& mistake,
+                                                             std::uint32_t begin);
+  [[nodiscard]] tl::expected<EngineResult, std::string> draw_right(bool reversed);
+
+ private:
+  std::unique_ptr<EngineRun> plain_;
+  std::unique_ptr<EngineRun> reversed_;
 };
 
-struct MistakeReport {
-  std::string said_of_right_frames;
-  std::vector<MistakeResult> results;
-};
-
-// Draws the view of a moving camera, once without a mistake and once with each mistake. If
-// `pictures` is not empty, it must be an existing folder, to which `right.png` and a picture of
-// each mistake are written.
-[[nodiscard]] tl::expected<MistakeReport, std::string> draw_mistakes(
-    EngineRun& run, const Camera& camera, float radius, const std::filesystem::path& pictures);
+// Returns whether `said` is one line, which contains the sentence of the mistake.
+[[nodiscard]] bool names(const std::string& said, const PlantedMistake& mistake);
 
 }  // namespace alcove::sample

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <string>
+#include <tl/expected.hpp>
+
+namespace alcove::sample {
+
+// Decompresses the buffer views that have the extension EXT_meshopt_compression, or
+// KHR_meshopt_compression, and replaces each by a view of a buffer of its own. The extension's own
+// properties are known to be of the right type (gltf_properties.h). All views together may have at
+// most 1 GiB. The error text is the end of a sentence whose beginning the caller adds.
+[[nodiscard]] tl::expected<void, std::string> decompress_views(tinygltf::Model& model);
+
+}  // namespace alcove::sample

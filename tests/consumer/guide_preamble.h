@@ -1,0 +1,16 @@
+// What the examples of passes/INTEGRATION.md take from the engine.
+#include <alcove/alcove.h>
+
+extern VkInstance instance;
+extern VkPhysicalDevice physical_device;
+extern VkDevice device;
+extern uint32_t queue_family, frame_number;
+extern VkPhysicalDeviceFeatures2 features;
+extern AlcoveContext* context;
+extern AlcoveSettings settings;
+extern AlcoveCamera camera, previous_camera;
+extern AlcoveImage depth, normals, visibility;
+extern VkCommandBuffer commands;
+extern float radius;
+void write_log(void* user, AlcoveSeverity severity, const char* sentence);
+void fail(const char* sentence);
