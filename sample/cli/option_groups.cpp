@@ -105,7 +105,7 @@ void add_scene(CLI::App& app, std::string& scene) {
   app.add_option(
          "SCENE", scene,
          "a .gltf or .glb file, or a scene that the program generates: builtin (the default), "
-         "plane:60, groove:90, corner, sphere, pit or step")
+         "fence, terrain, plane:60, groove:90, corner, sphere, pit or step")
       ->type_name("");
 }
 
