@@ -1,4 +1,4 @@
-// Loops and traffic of shaders/reconstruct.comp.
+// Loops of shaders/reconstruct.comp.
 #include "pass_work.h"
 
 namespace alcove::passes::cost {
@@ -8,45 +8,6 @@ std::optional<double> reconstruct_iterations(const PassWork& /*work*/,
   // The only loops are those of add_ring(), which pixels with a history run only while it is less
   // than two frames old. That is rare, so that the loops are counted as not run.
   return 0.0;
-}
-
-double reconstruct_traffic(const PassWork& work, std::string_view image, Direction direction) {
-  // The name of every history begins with the view's; a first frame reads none.
-  const bool history = image.starts_with("occlusion");
-  return history && direction == Direction::read && work.state == FrameState::first ? 0.0 : 1.0;
-}
-
-std::vector<LoadPattern> reconstruct_loads(const PassWork& work) {
-  const OcclusionSettings& settings = work.settings;
-  const bool half = settings.half_resolution;
-  std::vector<LoadPattern> loads;
-  // load_tiles(): the raw occlusion of adjacent tiles, in up to four instructions.
-  const std::uint32_t span =
-      (half ? 16u : 8u) / settings.tile_size + 2 * settings.advanced.filter_radius;
-  const std::uint32_t across = (span + 7) / 8;
-  loads.push_back({.texel_bytes = 8, .anywhere = true, .count = across * across});
-  if (half) {
-    // The four gathers of representative(), two of which begin a pixel before the texels.
-    loads.push_back({.pitch = 2, .footprint = 2, .first = -1, .count = 2});
-    loads.push_back({.pitch = 2, .footprint = 2, .first = 1, .count = 2});
-  } else {
-    loads.push_back({});                  // depth
-    loads.push_back({.texel_bytes = 8});  // normal
-  }
-  if (settings.history_frames == 0 || work.state == FrameState::first) {
-    return loads;
-  }
-  const bool moving = work.state == FrameState::moving;
-  const std::uint32_t footprint = moving ? 2 : 1;
-  const std::uint32_t channels = moving ? 2 : 1;  // a gather reads one
-  if (half) {
-    loads.push_back({.footprint = footprint, .anywhere = moving});  // depth
-    loads.push_back(
-        {.texel_bytes = 8, .footprint = footprint, .anywhere = moving, .count = channels});
-  } else {
-    loads.push_back({.footprint = footprint, .anywhere = moving, .count = channels});
-  }
-  return loads;
 }
 
 }  // namespace alcove::passes::cost

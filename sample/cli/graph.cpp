@@ -10,7 +10,7 @@ namespace alcove::sample {
 namespace {
 
 // Declares the frame of the occlusion, with placeholders for the images of the g-buffer.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& session,
+tl::expected<void, std::string> declare(framegraph::Graph& graph, const Session& session,
                                         const Options& options) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
   const auto texture = [&](const char* name, VkFormat format) {
@@ -58,24 +58,27 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& sessi
 
 }  // namespace
 
-tl::expected<void, std::string> run_graph(const Options& options) {
-  auto session = open_session(options);
-  if (!session) {
-    return tl::unexpected(session.error());
-  }
+tl::expected<std::string, std::string> plan_text(const Session& session, const Options& options) {
   framegraph::Graph graph;
-  if (auto declared = declare(graph, *session, options); !declared) {
+  if (auto declared = declare(graph, session, options); !declared) {
     return tl::unexpected(declared.error());
   }
   const framegraph::GraphDescription& description = graph.description();
-  const auto plan = framegraph::compile(description, session->gpu->executor().limits());
+  const auto plan = framegraph::compile(description, session.gpu->executor().limits());
   if (!plan) {
     return tl::unexpected(framegraph::to_string(plan.error()));
   }
   const bool dot = options.graph_format == GraphFormat::kDot;
-  std::cout << (dot ? framegraph::print_dot(description, *plan)
-                    : framegraph::print_text(description, *plan));
-  return {};
+  return dot ? framegraph::print_dot(description, *plan)
+             : framegraph::print_text(description, *plan);
+}
+
+tl::expected<void, std::string> run_graph(const Options& options) {
+  const auto session = open_session(options);
+  if (!session) {
+    return tl::unexpected(session.error());
+  }
+  return plan_text(*session, options).map([](const std::string& text) { std::cout << text; });
 }
 
 }  // namespace alcove::sample

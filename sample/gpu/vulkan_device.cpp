@@ -29,6 +29,16 @@ bool has_layer(const char* name) {
   });
 }
 
+bool has_extension(VkPhysicalDevice device, const char* name) {
+  uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& one) {
+    return std::strcmp(one.extensionName, name) == 0;
+  });
+}
+
 // The structures of the Vulkan 1.3 features that Alcove uses, as a pNext chain. fill() queries them
 // from the device.
 struct Features {
@@ -269,7 +279,7 @@ tl::expected<void, std::string> VulkanDevice::choose_physical_device(int index) 
   return {};
 }
 
-tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
+tl::expected<void, std::string> VulkanDevice::create_device(const DeviceOptions& options) {
   vkGetPhysicalDeviceProperties(physical_device_, &properties_);
   vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory_);
   VkPhysicalDeviceMaintenance3Properties limits{
@@ -301,8 +311,17 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
     max_anisotropy_ = properties_.limits.maxSamplerAnisotropy;
   }
   std::vector<const char*> extensions;
-  if (presentation) {
+  if (!options.surface_extensions.empty()) {
     extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  }
+  VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR capture{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
+      .pipelineExecutableInfo = VK_TRUE};
+  if (options.capture &&
+      has_extension(physical_device_, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) {
+    extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    enabled.v13.pNext = &capture;
+    captures_ = true;
   }
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &enabled.all,
@@ -322,10 +341,9 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
 tl::expected<std::unique_ptr<VulkanDevice>, std::string> VulkanDevice::create(
     const DeviceOptions& options) {
   std::unique_ptr<VulkanDevice> made(new VulkanDevice);
-  auto done =
-      made->create_instance(options)
-          .and_then([&] { return made->choose_physical_device(options.index); })
-          .and_then([&] { return made->create_device(!options.surface_extensions.empty()); });
+  auto done = made->create_instance(options)
+                  .and_then([&] { return made->choose_physical_device(options.index); })
+                  .and_then([&] { return made->create_device(options); });
   if (!done) {
     return tl::unexpected(std::move(done.error()));
   }
