@@ -36,3 +36,41 @@ function(alcove_embed_shader target shader)
   target_sources(${target} PRIVATE ${directory}/${name}.h)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
+
+# alcove_add_shader_files(TARGET WRITER NAME...)
+#
+# Adds a target that lets the program WRITER write the SPIR-V of the named shaders and
+# interfaces.json to the folder that ALCOVE_SHADER_FILES then names, and that installs them. With
+# ALCOVE_TRANSLATE_SHADERS, spirv-cross translates each shader to HLSL of shader model 6 (.hlsl), MSL
+# 2.1 (.metal) and GLSL 4.50 (.glsl) too. Numbers of bindings are kept. In GLSL, specialisation
+# constants become macros SPIRV_CROSS_CONSTANT_ID_<id>.
+option(ALCOVE_TRANSLATE_SHADERS "Translate the shaders to HLSL, MSL and GLSL with spirv-cross" OFF)
+
+function(alcove_add_shader_files target writer)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/shader_files)
+  set(ALCOVE_SHADER_FILES ${folder} PARENT_SCOPE)
+  file(MAKE_DIRECTORY ${folder})
+  list(TRANSFORM ARGN APPEND .spv OUTPUT_VARIABLE files)
+  list(TRANSFORM files PREPEND ${folder}/)
+  list(APPEND files ${folder}/interfaces.json)
+  add_custom_command(OUTPUT ${files} COMMAND ${writer} ${folder} DEPENDS ${writer}
+    COMMENT "Writing the shaders as files" VERBATIM)
+  if(ALCOVE_TRANSLATE_SHADERS)
+    find_program(ALCOVE_SPIRV_CROSS spirv-cross REQUIRED)
+    foreach(name IN LISTS ARGN)
+      set(translated ${folder}/${name}.hlsl ${folder}/${name}.metal ${folder}/${name}.glsl)
+      add_custom_command(OUTPUT ${translated}
+        COMMAND ${ALCOVE_SPIRV_CROSS} ${name}.spv --output ${name}.hlsl --hlsl --shader-model 60
+        COMMAND ${ALCOVE_SPIRV_CROSS} ${name}.spv --output ${name}.metal --msl --msl-version 20100
+          --msl-decoration-binding
+        COMMAND ${ALCOVE_SPIRV_CROSS} ${name}.spv --output ${name}.glsl --version 450 --no-es
+          --combined-samplers-inherit-bindings
+        DEPENDS ${folder}/${name}.spv
+        WORKING_DIRECTORY ${folder}
+        COMMENT "Translating ${name} to HLSL, MSL and GLSL" VERBATIM)
+      list(APPEND files ${translated})
+    endforeach()
+  endif()
+  add_custom_target(${target} ALL DEPENDS ${files})
+  install(FILES ${files} DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/alcove/shaders)
+endfunction()

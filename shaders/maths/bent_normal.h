@@ -5,8 +5,8 @@
 //       = ( <n,v> s^3 / 3           + <n,d> (2 - 3c + c^3) / 3,
 //           <n,v> (1 - c^3) / 3     + <n,d> s^3 / 3 )
 // where n is the normal, v the view direction, d the direction of the half-slice, t the angle from
-// v and w(t) = d sin t + v cos t. It needs no trigonometric function. It is not in the paper
-// [Jimenez 2016], and agrees with the closed forms published since.
+// v and w(t) = d sin t + v cos t. It needs no trigonometric function, and it equals the formula in
+// angles that the later edition of the paper [Jimenez 2016] gives as Algorithm 2.
 #ifndef ALCOVE_MATHS_BENT_NORMAL_H
 #define ALCOVE_MATHS_BENT_NORMAL_H
 

@@ -16,7 +16,7 @@ foreach(include IN LISTS INCLUDES)
   endforeach()
 endforeach()
 file(GLOB sources ${PROJECT_DIR}/framegraph/src/*.cpp ${PROJECT_DIR}/framegraph/verifier/src/*.cpp
-  ${PROJECT_DIR}/passes/src/*.cpp)
+  ${PROJECT_DIR}/passes/src/*/*.cpp)
 list(LENGTH sources count)
 if(count LESS 40)
   message(FATAL_ERROR "only ${count} sources in ${PROJECT_DIR}")

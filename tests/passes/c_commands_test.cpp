@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "alcove/framegraph/verify.h"
-#include "c_context.h"
+#include "c/context.h"
 #include "c_interface_fixture.h"
 #include "gtao_scenes.h"
 

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "c_diagnose.h"
 #include "c_interface_fixture.h"
+#include "diagnose/call_observer.h"
 #include "gtao_scenes.h"
 
 namespace alcove::passes {

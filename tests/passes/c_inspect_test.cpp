@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "c_interface_fixture.h"
+#include "diagnose/inspect.h"
 #include "gtao_scenes.h"
-#include "inspect.h"
 
 namespace alcove::passes {
 namespace {

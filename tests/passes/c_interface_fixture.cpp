@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "alcove/passes/multi_bounce.h"
-#include "c_settings.h"
+#include "c/settings.h"
 
 namespace alcove::passes {
 namespace {

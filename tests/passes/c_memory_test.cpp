@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "c/settings.h"
 #include "c_interface_fixture.h"
-#include "c_settings.h"
 #include "gtao_scenes.h"
 
 namespace alcove::passes {

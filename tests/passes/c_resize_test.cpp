@@ -11,8 +11,8 @@
 #include <iostream>
 #include <vector>
 
+#include "c/settings.h"
 #include "c_interface_fixture.h"
-#include "c_settings.h"
 #include "framegraph/failing_device.h"
 #include "gtao_scenes.h"
 #include "maths/random_input.h"

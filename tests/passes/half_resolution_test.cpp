@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include "gtao_scenes.h"
-#include "interleave_offset.h"
 #include "maths/half_texel.h"
 #include "maths/history.h"
 #include "reconstruct_fixture.h"
+#include "work/interleave_offset.h"
 
 namespace alcove::passes {
 namespace {

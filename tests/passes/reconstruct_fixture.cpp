@@ -4,10 +4,10 @@
 #include <bit>
 #include <cmath>
 
-#include "interleave_offset.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
-#include "view_parameters.h"
+#include "work/interleave_offset.h"
+#include "work/view_parameters.h"
 
 namespace alcove::passes {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "gtao_scenes.h"
-#include "interleave_offset.h"
 #include "reconstruct_fixture.h"
+#include "work/interleave_offset.h"
 
 namespace alcove::passes {
 namespace {

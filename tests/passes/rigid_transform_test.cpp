@@ -1,6 +1,6 @@
 // Tests that view matrices with the rounding errors of engines are accepted: inverted in float or
 // double, with and without fused multiply-adds, and far from the origin.
-#include "rigid_transform.h"
+#include "work/rigid_transform.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "random_input.h"
-#include "view_parameters.h"
+#include "work/view_parameters.h"
 
 namespace alcove::passes {
 namespace {

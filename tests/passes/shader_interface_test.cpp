@@ -1,15 +1,15 @@
 // Tests the interfaces that are read from the embedded shaders, and the errors of passes that do
 // not match them.
-#include "shader_interface.h"
+#include "work/shader_interface.h"
 
 #include <gmock/gmock.h>
 
 #include <set>
 #include <string>
 
-#include "descriptor_sets.h"
 #include "pass_fixture.h"
-#include "shader_table.h"
+#include "vulkan/descriptor_sets.h"
+#include "work/shader_table.h"
 
 namespace alcove::passes {
 namespace {

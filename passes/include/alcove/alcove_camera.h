@@ -64,7 +64,7 @@ typedef struct AlcovePerspective {
   float fov_y;        // vertical angle of view in radians, above 0 and below pi
   float near_plane;   // distance in scene units, above 0
   float far_plane;    // above near_plane; 0 or infinity: infinite
-  VkBool32 reversed;  // near at depth 1, far at depth 0
+  uint32_t reversed;  // 1: near at depth 1, far at depth 0
   uint32_t width;     // of the image in pixels
   uint32_t height;
   float jitter_px[2];  // the shift of the image in pixels, x to the right and y down

@@ -3,6 +3,8 @@
 #ifndef ALCOVE_ALCOVE_MEMORY_H_
 #define ALCOVE_ALCOVE_MEMORY_H_
 
+#include <vulkan/vulkan_core.h>
+
 #include "alcove/alcove_result.h"
 
 #ifdef __cplusplus

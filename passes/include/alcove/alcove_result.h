@@ -3,14 +3,14 @@
 #define ALCOVE_ALCOVE_RESULT_H_
 
 #include <stdint.h>
-#include <vulkan/vulkan_core.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define ALCOVE_VERSION VK_MAKE_API_VERSION(0, 0, 1, 0)  // the version of this header
-#define ALCOVE_MAX_VIEWS 8                              // the most views in a frame
+// The version of this header, 0.1.0, as VK_MAKE_API_VERSION encodes versions.
+#define ALCOVE_VERSION ((0u << 22) | (1u << 12) | 0u)
+#define ALCOVE_MAX_VIEWS 8  // the most views in a frame
 #define ALCOVE_MAX_FRAMES_IN_FLIGHT 8
 #define ALCOVE_MAX_NAME 32      // bytes of a pass's name with its terminating zero
 #define ALCOVE_MAX_MESSAGE 512  // bytes of a message with its zero; longer messages are cut

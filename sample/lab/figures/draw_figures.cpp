@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "figures/drawing.h"
-#include "interleave_offset.h"
 #include "maths/gtao.h"
 #include "maths/sampling.h"
 #include "maths/slice.h"
 #include "maths/visibility_bitmask.h"
 #include "support/whole_file.h"
+#include "work/interleave_offset.h"
 
 namespace alcove::sample {
 namespace {

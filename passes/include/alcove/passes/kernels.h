@@ -1,6 +1,7 @@
 // The compute pipelines of the passes, and the descriptors and parameters of their dispatches.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
+#include "alcove/alcove_work.h"
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/graph.h"
 
@@ -115,6 +117,9 @@ class Kernels {
   // that no shader declares, or a pipeline that the device could not create.
   [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
                                                 std::span<const NamedConstant> constants = {});
+  // The same with the values of AlcoveWorkDispatch::constants.
+  [[nodiscard]] tl::expected<Kernel, Error> get(Shader shader,
+                                                std::span<const AlcoveWorkConstant> constants);
 
   // Returns the size in bytes of the lookup tables of the shaders that have a pipeline. Tables of
   // other shaders are not created and do not count.
@@ -134,6 +139,11 @@ class Kernels {
   // no valid slot, or if the frame already has kMaxDispatches.
   void dispatch(framegraph::RecordContext& context, Kernel kernel, std::span<const NamedView> views,
                 std::span<const std::byte> parameters, VkExtent3D size);
+  // The same with one view for each image binding of the shader, ascending by number, and with the
+  // number of groups.
+  void dispatch(framegraph::RecordContext& context, Kernel kernel,
+                std::span<const VkImageView> views, std::span<const std::byte> parameters,
+                const std::array<std::uint32_t, 3>& groups);
 
   // Returns how many pipelines have been created. Passes that are not added create none.
   [[nodiscard]] std::size_t pipeline_count() const;

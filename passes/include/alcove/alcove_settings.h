@@ -1,0 +1,143 @@
+// The settings of a view and their presets. Included by alcove.h. It needs no header of Vulkan.
+#ifndef ALCOVE_ALCOVE_SETTINGS_H_
+#define ALCOVE_ALCOVE_SETTINGS_H_
+
+#include <stddef.h>
+
+#include "alcove/alcove_result.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Presets for alcoveGetSettings. A field that is not in the table has the default that
+// AlcoveSettings states. There are two exceptions: CONSOLE sets half_resolution, and REFERENCE sets
+// the precision FLOAT32 and, in its advanced settings, the paper's infinitely thick occluders and
+// no filter.
+//
+//              slices  steps  tile_size  history_frames  depth fetches per pixel and frame
+//   CONSOLE         1      8        8              32                                0.25
+//   LOW             1      8        4              32                                1
+//   MEDIUM          2     12        4              32                                3
+//   HIGH            2     16        2              32                               16
+//   REFERENCE      32     64        1               0                             4096
+typedef enum AlcoveQuality {
+  ALCOVE_QUALITY_CONSOLE = 0,  // traces one of 8x8 pixels in each frame, filters at half resolution
+  ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
+  ALCOVE_QUALITY_MEDIUM = 2,   // LOW with two slices and more steps; the preset to begin with
+  ALCOVE_QUALITY_HIGH = 3,     // traces one of 2x2 pixels in each frame
+  ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
+  ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
+} AlcoveQuality;
+
+// How specular occlusion is computed, if AlcoveView::specular has an image.
+typedef enum AlcoveSpecular {
+  // Integrates the GGX lobe over the slices that visibility is computed from: the most exact.
+  ALCOVE_SPECULAR_SLICES = 1,
+  // The next two use visibility and the bent normal, which are then computed too.
+  ALCOVE_SPECULAR_TABLE = 2,  // the GGX lobe within the visibility cone, by a 54 KiB table
+  ALCOVE_SPECULAR_CONE = 3,   // the exact intersection of two cones
+  ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
+} AlcoveSpecular;
+
+// How AlcoveView::normals holds normals. The decoded vectors may have any length but 0.
+typedef enum AlcoveNormalEncoding {
+  // xyz in a signed or float format of at least 3 channels.
+  ALCOVE_NORMAL_ENCODING_SIGNED_XYZ = 0,
+  // The components x, y and z packed into [0,1] as 0.5 + 0.5 * normal, in any format of at least 3
+  // channels, such as A2B10G10R10_UNORM or R8G8B8A8_UNORM.
+  ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ = 1,
+  // The octahedral map (Cigolle et al. 2014) in xy of a signed or float format.
+  ALCOVE_NORMAL_ENCODING_OCTAHEDRAL = 2,
+  // The octahedral map packed into [0,1], in any format of at least 2 channels.
+  ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL = 3,
+  ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
+} AlcoveNormalEncoding;
+
+// The channels of AlcoveView::visibility that visibility is written to.
+typedef enum AlcoveChannel {
+  ALCOVE_CHANNEL_ALL = 0,  // every channel: the image holds visibility alone
+  // One channel. The others keep their contents.
+  ALCOVE_CHANNEL_R = 1,
+  ALCOVE_CHANNEL_G = 2,
+  ALCOVE_CHANNEL_B = 3,
+  ALCOVE_CHANNEL_A = 4,
+  ALCOVE_CHANNEL_MAX_ENUM = 0x7fffffff
+} AlcoveChannel;
+
+// The precision of intermediate results that have no image of the engine. Images have their own.
+typedef enum AlcovePrecision {
+  ALCOVE_PRECISION_UNORM8 = 0,   // 8 bits a channel
+  ALCOVE_PRECISION_FLOAT16 = 1,  // half floats
+  ALCOVE_PRECISION_FLOAT32 = 2,  // floats
+  ALCOVE_PRECISION_MAX_ENUM = 0x7fffffff
+} AlcovePrecision;
+
+struct AlcoveAdvancedSettings;  // alcove_advanced.h
+
+// The settings of a view. Fill the struct with alcoveGetSettings, then change individual fields.
+// Values in square brackets are the defaults of all qualities except REFERENCE. If a value is out
+// of range, the call fails with ALCOVE_ERROR_INVALID_INPUT, and alcoveGetMessage names the field
+// and its range.
+typedef struct AlcoveSettings {
+  uint32_t struct_size;  // sizeof(AlcoveSettings)
+  // The largest distance at which occluders count, in scene units, above 0. A twentieth to a fifth
+  // of a room's height is usual.
+  float radius;
+  // Width of a tile in pixels: 1, 2, 4 or 8. In each frame, one pixel of each tile is traced
+  // (searched for occluders). Another pixel of the tile is traced in the next frame, so that each
+  // is traced once in tile_size^2 frames.
+  uint32_t tile_size;
+  // Slices of a traced pixel, 1 to 64. A slice is a plane through the view direction, in which
+  // depth is sampled in both directions. Raising it reduces noise, and raises the cost in
+  // proportion.
+  uint32_t slices;
+  // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders.
+  uint32_t steps;
+  // The thickness of occluders as a fraction of the radius, or in another unit with
+  // AlcoveAdvancedSettings::thickness_unit; at least 0. At its leading edge an occluder is at most
+  // as thick as its visible width. [0.15]
+  float thickness;
+  // The average fraction of the volume hidden behind occluders that is treated as solid, 0 to 1.
+  // The actual fraction grows with the occluder's width in the image: it is larger behind a wall
+  // than behind a twig. [0.33]
+  float hidden_occlusion;
+  uint32_t depth_layers;  // the depth layers that are searched: 1, or 2 with second_depth [1]
+  // The largest number of frames that the history averages, 0 to 127. Raising it reduces noise, and
+  // lets the image follow changes more slowly. After 16 frames without a change (static_frames) the
+  // limit is 127. With 0 there is no history, and no memory for one.
+  uint32_t history_frames;
+  // Whether the passes filter and accumulate texels of 2x2 pixels and then upsample the result
+  // along depth edges. This takes less time and less memory for the history, and has a larger
+  // error. It needs a tile_size of at least 2. [0, but 1 for CONSOLE]
+  uint32_t half_resolution;
+  AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
+  float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
+  uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
+  AlcovePrecision precision;   // of intermediate results [UNORM8]
+  // The passes write the visibility 1 - intensity * (1 - visibility^power), clamped to [0,1]. If
+  // both values are 1, visibility is unchanged and the shaders skip the computation. Multi-bounce
+  // and the specular models TABLE and CONE read the changed visibility.
+  float power;      // above 0, at most 16 [1]
+  float intensity;  // 0 to 16 [1]
+  // Settings that most engines never change. Null: the defaults, which suit every scene. [null]
+  const struct AlcoveAdvancedSettings* advanced;
+} AlcoveSettings;
+
+// Fills `settings`, whose struct_size must be set, with a preset. `radius` is in scene units and
+// above 0. For REFERENCE, `advanced` then points to constants of the library. Returns
+// ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message, because there is no
+// context.
+AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings);
+
+// Writes the settings, including those of `advanced`, to `text` as lines of `name = value`. At most
+// `size` bytes are written, including the terminating zero. A float is written as the shortest text
+// that reads back as the same float, in every locale. Returns the number of bytes of the whole text
+// without that zero, or 0 if the settings are invalid. `text` may be null if `size` is 0.
+size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif  // ALCOVE_ALCOVE_SETTINGS_H_

@@ -1,0 +1,98 @@
+#include "c/failure.h"
+
+#include <cctype>
+
+namespace alcove::passes {
+namespace {
+
+AlcoveResult result_of(VkResult result) {
+  switch (result) {
+    case VK_SUCCESS:
+      return ALCOVE_ERROR_INVALID_INPUT;
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+    case VK_ERROR_OUT_OF_POOL_MEMORY:
+    case VK_ERROR_FRAGMENTED_POOL:
+      return ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY;
+    case VK_ERROR_DEVICE_LOST:
+      return ALCOVE_ERROR_DEVICE_LOST;
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+      return ALCOVE_ERROR_UNSUPPORTED;
+    default:
+      return ALCOVE_ERROR_VULKAN;
+  }
+}
+
+AlcoveResult result_of(const framegraph::Error& error) {
+  switch (error.code) {
+    case framegraph::ErrorCode::vulkan:
+      return result_of(error.result);
+    case framegraph::ErrorCode::unsupported_format:
+      return ALCOVE_ERROR_UNSUPPORTED;
+    case framegraph::ErrorCode::missing_usage:
+    case framegraph::ErrorCode::bad_description:
+    case framegraph::ErrorCode::bad_import:
+      return ALCOVE_ERROR_INVALID_INPUT;
+    default:
+      return ALCOVE_ERROR_INTERNAL;
+  }
+}
+
+// Makes a sentence of an error of the graph, which begins with a small letter and has no full stop.
+std::string as_sentence(std::string text) {
+  if (!text.empty()) {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (text.back() != '.') {
+      text += '.';
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Failure failure_of(const framegraph::Errors& errors) {
+  if (errors.empty()) {
+    return {ALCOVE_ERROR_INTERNAL, "The frame failed without an error."};
+  }
+  return {result_of(errors.front()), as_sentence(errors.front().message)};
+}
+
+Failure failure_of(const Error& error, std::string_view where) {
+  std::string message = std::string(where) + ": " + error.message;
+  const AlcoveResult result = result_of(error.result);
+  if (result == ALCOVE_ERROR_OUT_OF_HOST_MEMORY) {
+    message += " The host is out of memory.";
+  } else if (result == ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY) {
+    message += " The device is out of memory.";
+  } else if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT) {
+    message += " Vulkan's result is " + std::to_string(error.result) + ".";
+  }
+  return {result, std::move(message)};
+}
+
+}  // namespace alcove::passes
+
+const char* alcoveGetResultName(AlcoveResult result) {
+  switch (result) {
+    case ALCOVE_SUCCESS:
+      return "ALCOVE_SUCCESS";
+    case ALCOVE_ERROR_INVALID_INPUT:
+      return "ALCOVE_ERROR_INVALID_INPUT";
+    case ALCOVE_ERROR_UNSUPPORTED:
+      return "ALCOVE_ERROR_UNSUPPORTED";
+    case ALCOVE_ERROR_OUT_OF_HOST_MEMORY:
+      return "ALCOVE_ERROR_OUT_OF_HOST_MEMORY";
+    case ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY";
+    case ALCOVE_ERROR_DEVICE_LOST:
+      return "ALCOVE_ERROR_DEVICE_LOST";
+    case ALCOVE_ERROR_VULKAN:
+      return "ALCOVE_ERROR_VULKAN";
+    case ALCOVE_ERROR_INTERNAL:
+      return "ALCOVE_ERROR_INTERNAL";
+    default:
+      return "unknown AlcoveResult";
+  }
+}

@@ -1,0 +1,74 @@
+// Estimates the memory of a view from its settings.
+#include "alcove/alcove.h"
+#include "c/settings.h"
+#include "work/view_work.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr std::uint32_t kKnownOutputs = ALCOVE_OUTPUT_VISIBILITY | ALCOVE_OUTPUT_BENT_NORMAL |
+                                        ALCOVE_OUTPUT_SPECULAR | ALCOVE_OUTPUT_MULTI_BOUNCE;
+
+// Any projection: sizes do not depend on it.
+constexpr View kView{.clip_from_view = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0}};
+
+// Describes the work of a view with these outputs.
+bool describe(AlcoveWork& work, OcclusionSettings settings, VkExtent2D size, std::uint32_t outputs,
+              bool normals_given) {
+  WorkList list(work);
+  // The formats of the engine's images make no difference.
+  const auto image = [&](std::uint32_t wanted) {
+    return wanted != 0 ? list.add(ALCOVE_RESOURCE_KIND_INPUT, "", VK_FORMAT_R32_SFLOAT, size)
+                       : framegraph::Texture{};
+  };
+  const std::uint32_t multi_bounce = outputs & ALCOVE_OUTPUT_MULTI_BOUNCE;
+  const ViewInputs inputs{.occlusion = {.depth_ndc = image(1),
+                                        .normals = image(normals_given ? 1 : 0),
+                                        .back_depth_ndc = image(1),
+                                        .second_depth_ndc = image(1),
+                                        .into = {image(outputs & ALCOVE_OUTPUT_VISIBILITY),
+                                                 image(outputs & ALCOVE_OUTPUT_BENT_NORMAL),
+                                                 image(outputs & ALCOVE_OUTPUT_SPECULAR)}},
+                          .albedo = image(multi_bounce),
+                          .multi_bounce = image(multi_bounce)};
+  const Occlusion& into = inputs.occlusion.into;
+  settings.visibility = into.visibility || inputs.multi_bounce;
+  settings.bent_normal = bool(into.bent_normal);
+  if (!into.specular) {
+    settings.specular = Specular::none;
+  }
+  return describe_view(list, {.view = kView}, inputs, settings).has_value();
+}
+
+}  // namespace
+}  // namespace alcove::passes
+
+using namespace alcove::passes;
+
+AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width, uint32_t height,
+                                  uint32_t outputs, VkBool32 normals_given, AlcoveMemory* memory) {
+  constexpr std::uint32_t kLargest = 1u << 16;
+  if (memory == nullptr || memory->struct_size != sizeof *memory || width < 1 || height < 1 ||
+      width > kLargest || height > kLargest || outputs == 0 || (outputs & ~kKnownOutputs) != 0) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  const auto given = to_settings(settings);
+  AlcoveWork work;
+  if (!given || !describe(work, *given, {width, height}, outputs, normals_given != VK_FALSE)) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  std::uint64_t transients = 0, history = 0;
+  for (const AlcoveWorkResource& resource : std::span(work.resources).first(work.resource_count)) {
+    if (resource.kind == ALCOVE_RESOURCE_KIND_TRANSIENT) {
+      transients += resource.size;
+    } else if (resource.kind != ALCOVE_RESOURCE_KIND_TABLE) {
+      history += resource.size;  // the engine's images have a size of 0
+    }
+  }
+  *memory = {.struct_size = sizeof *memory,
+             .transients = transients,
+             .transients_unshared = transients,
+             .history = history,
+             .allocated = transients + history};
+  return ALCOVE_SUCCESS;
+}

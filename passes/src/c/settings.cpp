@@ -1,0 +1,217 @@
+#include "c/settings.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "alcove/passes/setting_table.h"
+#include "work/number_text.h"
+
+namespace alcove::passes {
+namespace {
+
+// Enums of C++ and of C have the same numbers.
+template <typename Ours, typename Theirs>
+constexpr bool same(Ours ours, Theirs theirs) {
+  return static_cast<int>(ours) == static_cast<int>(theirs);
+}
+static_assert(same(Quality::console, ALCOVE_QUALITY_CONSOLE) &&
+              same(Quality::low, ALCOVE_QUALITY_LOW) &&
+              same(Quality::medium, ALCOVE_QUALITY_MEDIUM) &&
+              same(Quality::high, ALCOVE_QUALITY_HIGH) &&
+              same(Quality::reference, ALCOVE_QUALITY_REFERENCE));
+static_assert(same(Estimator::horizons, ALCOVE_ESTIMATOR_HORIZONS) &&
+              same(Estimator::heuristic, ALCOVE_ESTIMATOR_HEURISTIC) &&
+              same(Estimator::bitmask, ALCOVE_ESTIMATOR_BITMASK) &&
+              same(Estimator::connected, ALCOVE_ESTIMATOR_CONNECTED));
+static_assert(same(Weighting::cosine, ALCOVE_WEIGHTING_COSINE) &&
+              same(Weighting::uniform, ALCOVE_WEIGHTING_UNIFORM));
+static_assert(same(ThicknessUnit::radius, ALCOVE_THICKNESS_UNIT_RADIUS) &&
+              same(ThicknessUnit::distance, ALCOVE_THICKNESS_UNIT_DISTANCE) &&
+              same(ThicknessUnit::back_faces, ALCOVE_THICKNESS_UNIT_BACK_FACES));
+static_assert(same(Pattern::golden, ALCOVE_PATTERN_GOLDEN) &&
+              same(Pattern::hilbert, ALCOVE_PATTERN_HILBERT) &&
+              same(Pattern::paper, ALCOVE_PATTERN_PAPER));
+static_assert(same(Specular::slices, ALCOVE_SPECULAR_SLICES) &&
+              same(Specular::table, ALCOVE_SPECULAR_TABLE) &&
+              same(Specular::cone, ALCOVE_SPECULAR_CONE));
+static_assert(same(Precision::unorm8, ALCOVE_PRECISION_UNORM8) &&
+              same(Precision::float16, ALCOVE_PRECISION_FLOAT16) &&
+              same(Precision::float32, ALCOVE_PRECISION_FLOAT32));
+
+// Calls `visit(field in C, field in C++)` for each setting that both have.
+template <typename Theirs, typename Ours, typename Visit>
+void for_each_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
+  visit(theirs.radius, ours.radius);
+  visit(theirs.tile_size, ours.tile_size);
+  visit(theirs.slices, ours.slices);
+  visit(theirs.steps, ours.steps);
+  visit(theirs.thickness, ours.thickness);
+  visit(theirs.hidden_occlusion, ours.hidden_occlusion);
+  visit(theirs.depth_layers, ours.depth_layers);
+  visit(theirs.history_frames, ours.history_frames);
+  visit(theirs.half_resolution, ours.half_resolution);
+  visit(theirs.specular, ours.specular);
+  visit(theirs.roughness, ours.roughness);
+  visit(theirs.roughness_channel, ours.roughness_channel);
+  visit(theirs.precision, ours.precision);
+  visit(theirs.power, ours.power);
+  visit(theirs.intensity, ours.intensity);
+}
+
+template <typename Theirs, typename Ours, typename Visit>
+void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
+  visit(theirs.estimator, ours.estimator);
+  visit(theirs.weighting, ours.weighting);
+  visit(theirs.thickness_unit, ours.thickness_unit);
+  visit(theirs.blend, ours.blend);
+  visit(theirs.falloff, ours.falloff);
+  visit(theirs.pattern, ours.pattern);
+  visit(theirs.filter_radius, ours.filter_radius);
+  visit(theirs.filter_tolerance_px, ours.filter_tolerance_px);
+  visit(theirs.clamp_width, ours.clamp_width);
+  visit(theirs.snap_to_texels, ours.snap_to_texels);
+  visit(theirs.extrapolation, ours.extrapolation);
+  visit(theirs.unobserved, ours.unobserved);
+}
+
+constexpr auto kToCpp = [](const auto& theirs, auto& ours) {
+  using Ours = std::remove_reference_t<decltype(ours)>;
+  if constexpr (std::is_enum_v<Ours>) {
+    // A number that the enum does not have is kept, so that validate() refuses it.
+    const std::uint32_t most = std::numeric_limits<std::underlying_type_t<Ours>>::max();
+    ours = static_cast<Ours>(std::min(number_of(theirs), most));
+  } else if constexpr (std::is_same_v<Ours, bool>) {
+    ours = theirs != VK_FALSE;
+  } else {
+    ours = theirs;
+  }
+};
+
+constexpr auto kToC = [](auto& theirs, const auto& ours) {
+  theirs = static_cast<std::remove_reference_t<decltype(theirs)>>(ours);
+};
+
+AlcoveAdvancedSettings from_advanced(const AdvancedSettings& settings) {
+  AlcoveAdvancedSettings result{.struct_size = sizeof(AlcoveAdvancedSettings)};
+  for_each_advanced_pair(result, settings, kToC);
+  return result;
+}
+
+// Returns the constants that AlcoveSettings::advanced points to in the preset REFERENCE.
+const AlcoveAdvancedSettings* reference_advanced() {
+  static const AlcoveAdvancedSettings settings =
+      from_advanced(quality_settings(Quality::reference, 1.0f).advanced);
+  return &settings;
+}
+
+bool is_quality(std::uint32_t number) { return number < kNames<Quality>.size(); }
+
+template <typename Value>
+std::string value_text(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(name_of(value));
+  } else if constexpr (std::is_same_v<Value, float>) {
+    return number_text(value);
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return value ? "true" : "false";
+  } else {
+    return std::to_string(value);
+  }
+}
+
+}  // namespace
+
+tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given) {
+  if (given == nullptr) {
+    return invalid("There are no settings: alcoveGetSettings gives some.");
+  }
+  if (auto right = check_size(given->struct_size, sizeof *given, "AlcoveSettings"); !right) {
+    return tl::unexpected(std::move(right.error()));
+  }
+  OcclusionSettings settings;
+  for_each_pair(*given, settings, kToCpp);
+  if (settings.specular == Specular::none) {
+    return invalid(
+        "The setting 'specular' is 0; it must be a value of AlcoveSpecular. Without an image "
+        "AlcoveView::specular nothing is computed for it.");
+  }
+  if (given->advanced != nullptr) {
+    if (auto right = check_size(given->advanced->struct_size, sizeof *given->advanced,
+                                "AlcoveAdvancedSettings");
+        !right) {
+      return tl::unexpected(std::move(right.error()));
+    }
+    for_each_advanced_pair(*given->advanced, settings.advanced, kToCpp);
+  }
+  if (auto good = validate(settings); !good) {
+    return invalid(std::move(good.error().message));
+  }
+  return settings;
+}
+
+AlcoveSettings from_settings(const OcclusionSettings& settings, AlcoveAdvancedSettings& advanced) {
+  advanced = from_advanced(settings.advanced);
+  AlcoveSettings result{.struct_size = sizeof(AlcoveSettings)};
+  for_each_pair(result, settings, kToC);
+  if (settings.specular == Specular::none) {
+    result.specular = ALCOVE_SPECULAR_SLICES;
+  }
+  result.advanced = &advanced;
+  return result;
+}
+
+}  // namespace alcove::passes
+
+using namespace alcove::passes;
+
+AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings) {
+  const std::uint32_t number = number_of(quality);
+  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number)) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  const OcclusionSettings preset = quality_settings(static_cast<Quality>(number), radius);
+  if (!validate(preset)) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  AlcoveAdvancedSettings unused;
+  *settings = from_settings(preset, unused);
+  settings->advanced = preset.advanced == AdvancedSettings{} ? nullptr : reference_advanced();
+  return ALCOVE_SUCCESS;
+}
+
+AlcoveResult alcoveGetAdvancedSettings(AlcoveQuality quality, AlcoveAdvancedSettings* settings) {
+  const std::uint32_t number = number_of(quality);
+  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number)) {
+    return ALCOVE_ERROR_INVALID_INPUT;
+  }
+  *settings = from_advanced(quality_settings(static_cast<Quality>(number), 1.0f).advanced);
+  return ALCOVE_SUCCESS;
+}
+
+size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size) {
+  if (text != nullptr && size > 0) {
+    text[0] = '\0';
+  }
+  if (text == nullptr && size > 0) {
+    return 0;
+  }
+  const auto known = to_settings(settings);
+  if (!known) {
+    return 0;
+  }
+  std::size_t length = 0;
+  for_each_setting(*known, [&](const SettingInfo& info, const auto& value) {
+    if (info.group == SettingGroup::output) {
+      return;
+    }
+    const bool room = length < size;
+    const int more = std::snprintf(room ? text + length : nullptr, room ? size - length : 0,
+                                   "%s = %s\n", info.name, value_text(value).c_str());
+    length += static_cast<std::size_t>(std::max(more, 0));
+  });
+  return length;
+}

@@ -1,0 +1,383 @@
+#include "alcove/passes/kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vulkan/descriptor_sets.h"
+#include "vulkan/host_buffer.h"
+#include "work/shader_table.h"
+
+namespace alcove::passes {
+namespace {
+
+constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
+constexpr std::uint32_t kGroupSize = 8;
+
+tl::unexpected<Error> failure(std::string_view what, VkResult result) {
+  return tl::unexpected(
+      Error{"The occlusion passes could not create " + std::string(what) + ".", result});
+}
+
+const ShaderInterface& interface_of(std::size_t shader) {
+  return shader_interface(static_cast<Shader>(shader));
+}
+
+// The Vulkan objects of one shader. The module and the table are created with its first pipeline.
+struct ShaderObjects {
+  VkShaderModule module = VK_NULL_HANDLE;
+  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+  VkPipelineLayout pipeline_layout = VK_NULL_HANDLE;
+  std::unique_ptr<HostBuffer> table;  // null if the shader has none
+};
+
+struct Pipeline {
+  Shader shader = Shader::count;
+  std::vector<AlcoveWorkConstant> constants;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+}  // namespace
+
+struct Kernels::State {
+  framegraph::VulkanFunctions vk;
+  framegraph::DeviceHandles handles;
+  VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
+  VkSampler sampler = VK_NULL_HANDLE;      // of all sampled images that have one: nearest, clamped
+  std::array<ShaderObjects, kShaderCount> shaders;
+  std::vector<Pipeline> pipelines;
+  std::unique_ptr<DescriptorSets> sets;
+
+  VkDevice device() const { return handles.device; }
+  const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State();
+
+  tl::expected<void, Error> check_limits() const;
+  tl::expected<void, Error> create_sampler();
+  tl::expected<void, Error> create_layout(std::size_t shader);
+  tl::expected<void, Error> create_layouts();
+  tl::expected<void, Error> create_sets(std::uint32_t slot_count);
+  tl::expected<void, Error> create_module(std::size_t shader);
+  tl::expected<void, Error> create_table(std::size_t shader);
+  tl::expected<Kernel, Error> create_pipeline(Shader shader,
+                                              std::span<const AlcoveWorkConstant> constants);
+};
+
+Kernels::State::~State() {
+  if (device() == VK_NULL_HANDLE) {
+    return;
+  }
+  for (const Pipeline& pipeline : pipelines) {
+    vk.vkDestroyPipeline(device(), pipeline.pipeline, callbacks());
+  }
+  for (const ShaderObjects& shader : shaders) {
+    vk.vkDestroyShaderModule(device(), shader.module, callbacks());
+    vk.vkDestroyPipelineLayout(device(), shader.pipeline_layout, callbacks());
+    vk.vkDestroyDescriptorSetLayout(device(), shader.set_layout, callbacks());
+  }
+  vk.vkDestroySampler(device(), sampler, callbacks());
+}
+
+// Checks the device limit on storage images per stage. It is the only descriptor limit that the
+// shaders may exceed: Vulkan guarantees only 4.
+tl::expected<void, Error> Kernels::State::check_limits() const {
+  VkPhysicalDeviceProperties properties{};
+  vk.vkGetPhysicalDeviceProperties(handles.physical_device, &properties);
+  const std::uint32_t limit = properties.limits.maxPerStageDescriptorStorageImages;
+  std::ptrdiff_t needed = 0;
+  for (std::size_t shader = 0; shader < kShaderCount; ++shader) {
+    needed = std::max(
+        needed, std::ranges::count(interface_of(shader).bindings, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                   &ShaderBinding::type));
+  }
+  if (limit >= static_cast<std::size_t>(needed)) {
+    return {};
+  }
+  return tl::unexpected(Error{"The device '" + std::string(properties.deviceName) +
+                                  "' binds at most " + std::to_string(limit) +
+                                  " storage images to a shader; the occlusion passes need " +
+                                  std::to_string(needed) + ".",
+                              VK_ERROR_FEATURE_NOT_PRESENT});
+}
+
+tl::expected<void, Error> Kernels::State::create_sampler() {
+  // The filters are those whose value is 0: nearest.
+  const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                 .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+  if (const VkResult result = vk.vkCreateSampler(device(), &info, callbacks(), &sampler);
+      result != VK_SUCCESS) {
+    return failure("a sampler", result);
+  }
+  return {};
+}
+
+tl::expected<void, Error> Kernels::State::create_layout(std::size_t shader) {
+  const std::vector<ShaderBinding>& bindings = interface_of(shader).bindings;
+  std::array<VkDescriptorSetLayoutBinding, kMaxBindings> described{};
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const bool sampled = bindings[i].type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    described.at(i) = {bindings[i].number, bindings[i].type, 1, VK_SHADER_STAGE_COMPUTE_BIT,
+                       sampled ? &sampler : nullptr};
+  }
+  const VkDescriptorSetLayoutCreateInfo set_info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+      .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+      .pBindings = described.data()};
+  ShaderObjects& made = shaders[shader];
+  if (const VkResult result =
+          vk.vkCreateDescriptorSetLayout(device(), &set_info, callbacks(), &made.set_layout);
+      result != VK_SUCCESS) {
+    return failure("a descriptor set layout", result);
+  }
+  const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                        .setLayoutCount = 1,
+                                        .pSetLayouts = &made.set_layout};
+  if (const VkResult result =
+          vk.vkCreatePipelineLayout(device(), &info, callbacks(), &made.pipeline_layout);
+      result != VK_SUCCESS) {
+    return failure("a pipeline layout", result);
+  }
+  return {};
+}
+
+tl::expected<void, Error> Kernels::State::create_layouts() {
+  tl::expected<void, Error> done;
+  for (std::size_t shader = 0; done && shader < kShaderCount; ++shader) {
+    done = create_layout(shader);
+  }
+  return done;
+}
+
+tl::expected<void, Error> Kernels::State::create_sets(std::uint32_t slot_count) {
+  auto made = DescriptorSets::create(vk, handles, slot_count);
+  if (!made) {
+    return tl::unexpected(std::move(made.error()));
+  }
+  sets = std::move(*made);
+  return {};
+}
+
+tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
+  VkShaderModule& module = shaders[shader].module;
+  if (module != VK_NULL_HANDLE) {
+    return {};
+  }
+  const std::span<const std::uint32_t> code = shader_source(static_cast<Shader>(shader)).code;
+  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                      .codeSize = code.size_bytes(),
+                                      .pCode = code.data()};
+  if (const VkResult result = vk.vkCreateShaderModule(device(), &info, callbacks(), &module);
+      result != VK_SUCCESS) {
+    return failure("a shader module", result);
+  }
+  return {};
+}
+
+// Creates the shader's storage buffer with its table, if it has one and the buffer does not exist.
+tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
+  const std::span<const std::uint32_t> table = shader_source(static_cast<Shader>(shader)).table;
+  if (table.empty() || shaders[shader].table) {
+    return {};
+  }
+  auto made =
+      HostBuffer::create(vk, handles, table.size_bytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  if (!made) {
+    return failure("the buffer of a table", made.error());
+  }
+  std::memcpy((*made)->bytes(), table.data(), table.size_bytes());
+  shaders[shader].table = std::move(*made);
+  return {};
+}
+
+tl::expected<Kernel, Error> Kernels::State::create_pipeline(
+    Shader shader, std::span<const AlcoveWorkConstant> constants) {
+  const auto index = static_cast<std::size_t>(shader);
+  if (auto made = create_module(index).and_then([&] { return create_table(index); }); !made) {
+    return tl::unexpected(std::move(made.error()));
+  }
+  std::array<VkSpecializationMapEntry, kMaxConstants> entries;
+  for (std::uint32_t i = 0; i < constants.size(); ++i) {
+    entries.at(i) = {constants[i].id,
+                     static_cast<std::uint32_t>(i * sizeof(AlcoveWorkConstant) +
+                                                offsetof(AlcoveWorkConstant, value)),
+                     sizeof constants[i].value};
+  }
+  const VkSpecializationInfo specialisation{static_cast<std::uint32_t>(constants.size()),
+                                            entries.data(), constants.size_bytes(),
+                                            constants.data()};
+  const VkComputePipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+      .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                .module = shaders[index].module,
+                .pName = "main",
+                .pSpecializationInfo = &specialisation},
+      .layout = shaders[index].pipeline_layout};
+  // The vector of pipelines grows before the pipeline is created, so that a failed allocation
+  // cannot leak the pipeline.
+  if (pipelines.size() == pipelines.capacity()) {
+    pipelines.reserve(2 * pipelines.size() + 8);
+  }
+  Pipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
+  if (const VkResult result =
+          vk.vkCreateComputePipelines(device(), cache, 1, &info, callbacks(), &made.pipeline);
+      result != VK_SUCCESS) {
+    return failure("a compute pipeline", result);
+  }
+  pipelines.push_back(std::move(made));
+  if (const framegraph::Log& log = handles.host.log; log.write != nullptr) {
+    log.write(log.user, framegraph::Severity::info, "A compute pipeline has been created.");
+  }
+  return Kernel{pipelines.back().pipeline, shader};
+}
+
+Kernels::Kernels(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Kernels::Kernels(Kernels&&) noexcept = default;
+Kernels& Kernels::operator=(Kernels&&) noexcept = default;
+Kernels::~Kernels() = default;
+
+tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& device,
+                                             std::uint32_t frames_in_flight,
+                                             VkPipelineCache cache) {
+  if (device.instance == VK_NULL_HANDLE || device.physical_device == VK_NULL_HANDLE ||
+      device.device == VK_NULL_HANDLE || device.get_instance_proc_addr == nullptr) {
+    return tl::unexpected(
+        Error{"The occlusion passes need an instance, a physical device, a device and "
+              "vkGetInstanceProcAddr; one of them is null."});
+  }
+  if (frames_in_flight < 1 || frames_in_flight > kMaxFramesInFlight) {
+    return tl::unexpected(
+        Error{"The occlusion passes were asked for " + std::to_string(frames_in_flight) +
+              " frames in flight; there must be 1 to " + std::to_string(kMaxFramesInFlight) + "."});
+  }
+  auto state = std::make_unique<State>();
+  if (const char* missing = framegraph::load(state->vk, device.get_instance_proc_addr,
+                                             device.instance, device.device)) {
+    return tl::unexpected(
+        Error{std::string("The device has no function ") + missing +
+                  "; create instance and device for Vulkan 1.3, or for Vulkan 1.2 with "
+                  "VK_KHR_synchronization2.",
+              VK_ERROR_FEATURE_NOT_PRESENT});
+  }
+  state->handles = device;
+  state->cache = cache;
+  auto done = state->check_limits()
+                  .and_then([&] { return state->create_sampler(); })
+                  .and_then([&] { return state->create_layouts(); })
+                  .and_then([&] { return state->create_sets(frames_in_flight); });
+  if (!done) {
+    return tl::unexpected(std::move(done.error()));
+  }
+  return Kernels(std::move(state));
+}
+
+void Kernels::begin_frame(std::uint32_t slot) { state_->sets->begin_frame(slot); }
+
+tl::expected<Kernel, Error> Kernels::get(Shader shader, std::span<const NamedConstant> constants) {
+  std::array<AlcoveWorkConstant, kMaxConstants> values;
+  return resolve_constants(shader, constants, values).and_then([&](std::uint32_t count) {
+    return get(shader, std::span(std::as_const(values)).first(count));
+  });
+}
+
+tl::expected<Kernel, Error> Kernels::get(Shader shader,
+                                         std::span<const AlcoveWorkConstant> constants) {
+  for (const Pipeline& made : state_->pipelines) {
+    if (made.shader == shader &&
+        std::ranges::equal(made.constants, constants, {}, &AlcoveWorkConstant::value,
+                           &AlcoveWorkConstant::value)) {
+      return Kernel{made.pipeline, shader};
+    }
+  }
+  return state_->create_pipeline(shader, constants);
+}
+
+void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
+                       std::span<const NamedView> views, std::span<const std::byte> parameters,
+                       VkExtent3D size) {
+  std::array<VkImageView, kMaxBindings> bound;
+  std::size_t count = 0;
+  const auto fail = [&](std::string_view what, std::string_view name, std::string_view why) {
+    context.fail(std::string(what)
+                     .append(" '")
+                     .append(name)
+                     .append("' of the shader '")
+                     .append(shader_source(kernel.shader).name)
+                     .append("', ")
+                     .append(why)
+                     .append(","),
+                 VK_ERROR_UNKNOWN);
+  };
+  for (const ShaderBinding& binding : shader_interface(kernel.shader).bindings) {
+    if (!binding.is_image()) {
+      continue;
+    }
+    const NamedView* const given = find_named(views, binding.name, count);
+    if (given == nullptr) {
+      return fail("view of the binding", binding.name, "which the pass does not name");
+    }
+    bound.at(count++) = given->view;
+  }
+  if (views.size() > count) {
+    if (const NamedView* const unknown = find_unknown(views, known_images())) {
+      return fail("view", unknown->name, "a name that no shader declares");
+    }
+  }
+  const auto groups = [](std::uint32_t of) { return (of + kGroupSize - 1) / kGroupSize; };
+  dispatch(context, kernel, std::span<const VkImageView>(bound).first(count), parameters,
+           std::array{groups(size.width), groups(size.height), size.depth});
+}
+
+void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
+                       std::span<const VkImageView> views, std::span<const std::byte> parameters,
+                       const std::array<std::uint32_t, 3>& groups) {
+  // A view that could not be created is an error of the frame's record already.
+  if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) {
+    return;
+  }
+  const State& s = *state_;
+  const ShaderObjects& shader = s.shaders[static_cast<std::size_t>(kernel.shader)];
+  const VkDescriptorSet set = s.sets->get(
+      context, {.shader = kernel.shader,
+                .interface = &shader_interface(kernel.shader),
+                .layout = shader.set_layout,
+                .table = shader.table ? shader.table->buffer() : VkBuffer{VK_NULL_HANDLE},
+                .views = views,
+                .parameters = parameters});
+  if (set == VK_NULL_HANDLE) {
+    return;
+  }
+  const VkCommandBuffer commands = context.commands;
+  s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+  s.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline_layout, 0,
+                               1, &set, 0, nullptr);
+  s.vk.vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
+}
+
+std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }
+
+VkDeviceSize Kernels::memory_bytes() const {
+  return state_->sets->parameter_bytes() + table_bytes();
+}
+
+std::size_t Kernels::table_bytes() const {
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < kShaderCount; ++i) {
+    if (state_->shaders[i].table) {
+      bytes += shader_source(static_cast<Shader>(i)).table.size_bytes();
+    }
+  }
+  return bytes;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,33 @@
+// Values and images that passes give to their shaders.
+#pragma once
+
+#include <cstdint>
+
+#include "alcove/passes/work.h"
+
+namespace alcove::passes {
+
+// Returns the value of a specialisation constant that turns a part of a shader on or off.
+[[nodiscard]] constexpr std::uint32_t flag(bool on) { return on ? 1 : 0; }
+
+// Returns the value of a specialisation constant that selects a channel of a texture. If the
+// texture is not read, the value is 0: all settings of the channel then share one pipeline.
+[[nodiscard]] constexpr std::uint32_t channel_if(bool read, std::uint32_t channel) {
+  return read ? channel : 0;
+}
+
+// Returns `texture`, or `instead` if it is null. Every binding needs an image of its type, even if
+// the shader does not use it.
+[[nodiscard]] constexpr framegraph::Texture or_else(framegraph::Texture texture,
+                                                    framegraph::Texture instead) {
+  return texture.index != framegraph::kNone ? texture : instead;
+}
+
+// Returns the texture that the caller gave for a result, or a new transient if it gave none.
+[[nodiscard]] inline framegraph::Texture given_or_added(WorkList& list, framegraph::Texture given,
+                                                        const char* name, VkFormat format,
+                                                        VkExtent2D size) {
+  return given ? given : list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, format, size);
+}
+
+}  // namespace alcove::passes

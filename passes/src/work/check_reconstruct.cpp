@@ -1,0 +1,173 @@
+#include "work/check_reconstruct.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "work/check_inputs.h"
+#include "work/format_name.h"
+#include "work/kept_channels.h"
+#include "work/number_text.h"
+#include "work/output_format.h"
+
+namespace alcove::passes {
+namespace {
+
+using framegraph::Texture;
+
+tl::expected<void, Error> check_motion(const MotionConvention& motion) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!std::isfinite(motion.scale[i]) || motion.scale[i] == 0.0f ||
+        !std::isfinite(motion.offset[i])) {
+      return tl::unexpected(Error{"The scale of motion vectors is " + number_text(motion.scale[i]) +
+                                  " and their offset " + number_text(motion.offset[i]) +
+                                  "; both must be finite, and the scale not 0."});
+    }
+  }
+  return {};
+}
+
+tl::expected<void, Error> check_textures(const WorkList& list, const ReconstructInputs& inputs) {
+  const auto or_depth = [&](Texture texture) { return texture ? texture : inputs.depth_ndc; };
+  return check_inputs(list, "reconstruct",
+                      {{"depth", inputs.depth_ndc},
+                       {"normals", inputs.normals},
+                       {"motion vectors", or_depth(inputs.motion)},
+                       {"roughness", or_depth(inputs.roughness)}});
+}
+
+// Checks the sizes of the caller's textures for results.
+tl::expected<void, Error> check_result_sizes(const WorkList& list,
+                                             const ReconstructInputs& inputs) {
+  const VkExtent2D depth = list.size(inputs.depth_ndc);
+  const bool half = inputs.half_size_results;
+  const VkExtent2D wanted{half ? (depth.width + 1) / 2 : depth.width,
+                          half ? (depth.height + 1) / 2 : depth.height};
+  const std::array<NamedInput, 3> given{{{"visibility", inputs.into.visibility},
+                                         {"bent normals", inputs.into.bent_normal},
+                                         {"specular occlusion", inputs.into.specular}}};
+  for (const NamedInput& texture : given) {
+    if (!texture.texture) {
+      continue;
+    }
+    const VkExtent2D found = list.size(texture.texture);
+    if (found.width != wanted.width || found.height != wanted.height) {
+      return tl::unexpected(
+          Error{"The pass reconstruct was given a texture for " + std::string(texture.name) +
+                " of " + std::to_string(found.width) + "x" + std::to_string(found.height) +
+                " pixels; it needs one of " + std::to_string(wanted.width) + "x" +
+                std::to_string(wanted.height) +
+                (half ? ", half the depth's size rounded up." : ", the depth's size.")});
+    }
+  }
+  return {};
+}
+
+// Checks that the channels beside that of visibility can be read and written back.
+tl::expected<void, Error> check_channel(const WorkList& list, const ReconstructInputs& inputs) {
+  if (inputs.visibility_channel == VisibilityChannel::all) {
+    return {};
+  }
+  const VkFormat format = list.format(inputs.into.visibility);
+  if (channel_index(inputs.visibility_channel) >= kept_channels(format)) {
+    return tl::unexpected(Error{"Visibility cannot be written to a channel of the format " +
+                                format_name(format) + "; " + kKeptFormats + "."});
+  }
+  return {};
+}
+
+// Checks size and format of a texture of the raw occlusion, which the caller may have made.
+tl::expected<void, Error> check_blocks(const WorkList& list, Texture depth, std::uint32_t tile_size,
+                                       Texture texture, VkFormat format, const char* name) {
+  const VkExtent2D pixels = list.size(depth);
+  const VkExtent2D found = list.size(texture);
+  const VkFormat found_format = list.format(texture);
+  const VkExtent2D blocks{(pixels.width + tile_size - 1) / tile_size,
+                          (pixels.height + tile_size - 1) / tile_size};
+  if (found.width == blocks.width && found.height == blocks.height && found_format == format) {
+    return {};
+  }
+  return tl::unexpected(Error{"The pass reconstruct was given " + std::string(name) + " of " +
+                              std::to_string(found.width) + "x" + std::to_string(found.height) +
+                              " texels and " + format_name(found_format) + "; it needs " +
+                              std::to_string(blocks.width) + "x" + std::to_string(blocks.height) +
+                              ", one for each tile, and " + format_name(format) + "."});
+}
+
+// Checks that add_gtao() can have made the raw occlusion with this tile size and number of slices.
+tl::expected<void, Error> check_tracing(const RawOcclusionTextures& raw_occlusion) {
+  OcclusionSettings settings;
+  settings.tile_size = raw_occlusion.tile_size;
+  settings.slices = raw_occlusion.slices;
+  return validate(settings);
+}
+
+tl::expected<void, Error> check_raw_occlusion(const WorkList& list, const ReconstructInputs& inputs,
+                                              bool half_resolution) {
+  const RawOcclusionTextures& raw_occlusion = inputs.raw_occlusion;
+  const auto check = [&](Texture texture, VkFormat format, const char* name) {
+    return check_blocks(list, inputs.depth_ndc, raw_occlusion.tile_size, texture, format, name);
+  };
+  return check_tracing(raw_occlusion)
+      .and_then([&]() -> tl::expected<void, Error> {
+        if (half_resolution && raw_occlusion.tile_size < 2) {
+          return tl::unexpected(
+              Error{"Half resolution needs tiles of at least 2 pixels; the tile_size is 1."});
+        }
+        return {};
+      })
+      .and_then([&] {
+        return check(raw_occlusion.raw_occlusion, raw_format(raw_occlusion.lobe), "raw occlusion");
+      })
+      .and_then([&] {
+        return raw_occlusion.bent
+                   ? check(raw_occlusion.bent, kBentRawFormat, "bent-normal residuals")
+                   : tl::expected<void, Error>();
+      });
+}
+
+}  // namespace
+
+tl::expected<void, Error> check_reconstruct(const WorkList& list, const ReconstructInputs& inputs,
+                                            const OcclusionSettings& settings) {
+  if (!needs_visibility(settings) && !inputs.raw_occlusion.bent && !inputs.raw_occlusion.lobe) {
+    return tl::unexpected(
+        Error{"The pass reconstruct has nothing to write: visibility is off, and the raw occlusion "
+              "has neither bent normals nor a lobe; ask for one of the three."});
+  }
+  return validate(settings)
+      .and_then([&] { return check_motion(inputs.motion_convention); })
+      .and_then([&]() -> tl::expected<void, Error> {
+        if (inputs.half_size_results && !settings.half_resolution) {
+          return tl::unexpected(
+              Error{"Outputs of half size need the setting half_resolution; it is off."});
+        }
+        return {};
+      })
+      .and_then([&] { return check_textures(list, inputs); })
+      .and_then([&] { return check_result_sizes(list, inputs); })
+      .and_then([&] { return check_channel(list, inputs); })
+      .and_then([&] { return check_raw_occlusion(list, inputs, settings.half_resolution); });
+}
+
+tl::expected<ReconstructSizes, Error> reconstruct_sizes(const WorkFrame& frame, VkExtent2D now) {
+  const auto or_now = [&](VkExtent2D given) {
+    return given.width == 0 && given.height == 0 ? now : given;
+  };
+  const ReconstructSizes sizes{now, or_now(frame.previous_size), or_now(frame.largest_size)};
+  const auto fits = [&](VkExtent2D size) {
+    return size.width > 0 && size.height > 0 && size.width <= sizes.largest.width &&
+           size.height <= sizes.largest.height;
+  };
+  if (fits(sizes.now) && fits(sizes.previous)) {
+    return sizes;
+  }
+  const auto text = [](VkExtent2D size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+  };
+  return tl::unexpected(Error{"The depth has " + text(sizes.now) + " pixels and had " +
+                              text(sizes.previous) + " in the frame before; both must be within " +
+                              text(sizes.largest) + ", the largest size."});
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "alcove/passes/work.h"
+#include "gtao_parameters.h"
+#include "maths/slice_line.h"
+#include "maths/visibility_bitmask.h"
+#include "work/bindings.h"
+#include "work/check_inputs.h"
+#include "work/interleave_offset.h"
+#include "work/output_format.h"
+#include "work/view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Texture;
+
+namespace {
+
+bool has_lobe(const OcclusionSettings& settings) { return settings.specular == Specular::slices; }
+
+// The optional inputs that the shader reads with the given settings.
+struct Reads {
+  bool roughness = false;
+  bool back_faces = false;
+  bool second_layer = false;
+};
+
+Reads reads_of(const GtaoInputs& inputs, const OcclusionSettings& settings) {
+  return {has_lobe(settings) && inputs.roughness, needs_back_depth(settings),
+          needs_second_depth(settings)};
+}
+
+// Larger radii than this, in scene units, are treated as this radius. The shader measures lengths
+// in radii, and the squares of such lengths would underflow.
+constexpr float kLargestRadius = 1e12f;
+
+// Returns whether the thickness is a fraction of the occluder's distance.
+bool of_distance(const OcclusionSettings& settings) {
+  return has_thickness(settings.advanced.estimator) &&
+         settings.advanced.thickness_unit == ThicknessUnit::distance;
+}
+
+std::array<NamedConstant, 20> constants_of(const GtaoInputs& inputs,
+                                           const OcclusionSettings& settings, const Reads& reads,
+                                           const maths::Projection& projection) {
+  const AdvancedSettings& advanced = settings.advanced;
+  return {{{"kSliceCount", settings.slices},
+           {"kStepCount", settings.steps},
+           {"kBentNormal", flag(needs_bent_normal(settings))},
+           {"kEstimator", static_cast<std::uint32_t>(advanced.estimator)},
+           {"kTileSize", settings.tile_size},
+           {"kPattern", static_cast<std::uint32_t>(advanced.pattern)},
+           {"kPerspective", flag(is_perspective(projection))},
+           {"kRoughnessTexture", flag(reads.roughness)},
+           {"kRoughnessChannel", channel_if(reads.roughness, settings.roughness_channel)},
+           {"kUniformWeight", flag(advanced.weighting == Weighting::uniform)},
+           {"kFalloff", flag(advanced.falloff > 0.0f)},
+           {"kThicknessOfDistance", flag(of_distance(settings))},
+           {"kBackFaces", flag(reads.back_faces)},
+           {"kSnapToTexels", flag(advanced.snap_to_texels)},
+           {"kSecondLayer", flag(reads.second_layer)},
+           {"kExtrapolation", flag(advanced.extrapolation)},
+           {"kUnobserved", flag(advanced.unobserved)},
+           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kReversed", flag(is_reversed(projection))},
+           {"kInfiniteFar", flag(has_infinite_far(projection))}}};
+}
+
+maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame,
+                                    const GtaoInputs& inputs, const OcclusionSettings& settings,
+                                    const maths::Projection& projection) {
+  const float radius = std::min(settings.radius, kLargestRadius);
+  const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
+  const maths::DepthStep step = depth_step(projection, inputs.depth_format != VK_FORMAT_UNDEFINED
+                                                           ? inputs.depth_format
+                                                           : list.format(inputs.depth_ndc));
+  return {
+      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z),
+      maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
+                  projection.uv_to_slope.w),
+      inverse_depth_from_ndc(projection),
+      maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
+      radius,
+      frame.index,
+      settings.thickness * (of_distance(settings) ? 1.0f : radius),
+      maths::hidden_exponent(settings.hidden_occlusion),
+      settings.advanced.blend,
+      settings.advanced.falloff,
+      settings.roughness,
+      step.constant,
+      step.per_inverse_depth};
+}
+
+}  // namespace
+
+tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const WorkFrame& frame,
+                                                        const GtaoInputs& inputs,
+                                                        const OcclusionSettings& settings) {
+  const Reads reads = reads_of(inputs, settings);
+  const auto optional = [](bool read, Texture texture, Texture instead) {
+    return read ? texture : instead;
+  };
+  const Texture roughness = optional(reads.roughness, inputs.roughness, inputs.normals);
+  const Texture back = optional(reads.back_faces, inputs.back_depth_ndc, inputs.depth_ndc);
+  const Texture second = optional(reads.second_layer, inputs.second_depth_ndc, inputs.depth_ndc);
+  auto good = validate(settings).and_then([&] {
+    return check_inputs(list, "gtao",
+                        {{"depth", inputs.depth_ndc},
+                         {"normals", inputs.normals},
+                         {"roughness", roughness},
+                         {"back-face depth", back},
+                         {"second depth", second}});
+  });
+  if (!good) {
+    return tl::unexpected(std::move(good.error()));
+  }
+  const VkExtent2D pixels = list.size(inputs.depth_ndc);
+  const auto projection = projection_of(frame.view, pixels);
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const std::uint32_t tile = settings.tile_size;
+  const VkExtent2D size{(pixels.width + tile - 1) / tile, (pixels.height + tile - 1) / tile};
+  RawOcclusionTextures result{
+      .tile_size = tile, .slices = settings.slices, .lobe = has_lobe(settings)};
+  result.raw_occlusion =
+      list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, "raw occlusion", raw_format(result.lobe), size);
+  if (needs_bent_normal(settings)) {
+    result.bent =
+        list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, "bent-normal residual", kBentRawFormat, size);
+  }
+  const NamedTexture images[] = {{"depth_image", inputs.depth_ndc},
+                                 {"normal_image", inputs.normals},
+                                 {"raw_image", result.raw_occlusion},
+                                 {"bent_image", or_else(result.bent, result.raw_occlusion)},
+                                 {"back_image", back},
+                                 {"second_image", second},
+                                 {"roughness_image", roughness}};
+  return list
+      .dispatch({.label = "gtao",
+                 .shader = result.lobe ? Shader::gtao_specular : Shader::gtao,
+                 .constants = constants_of(inputs, settings, reads, *projection),
+                 .images = images,
+                 .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection)),
+                 .size = {size.width, size.height, 1}})
+      .map([&] { return result; });
+}
+
+}  // namespace alcove::passes

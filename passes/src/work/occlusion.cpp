@@ -1,0 +1,129 @@
+#include <string>
+#include <utility>
+
+#include "alcove/passes/setting_names.h"
+#include "alcove/passes/work.h"
+#include "work/view_work.h"
+
+namespace alcove::passes {
+namespace {
+
+// Adds linear depth if an output, specular occlusion or normals from depth need it.
+tl::expected<framegraph::Texture, Error> describe_linear(WorkList& list, const WorkFrame& frame,
+                                                         const OcclusionInputs& inputs,
+                                                         const OcclusionSettings& settings) {
+  const bool read =
+      settings.linear_depth || specular_reads_bent_normal(settings) || !inputs.normals;
+  return read ? describe_linear_depth(list, frame, inputs.depth_ndc)
+              : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
+}
+
+// Adds specular occlusion from visibility and bent normals to `outputs`.
+tl::expected<OcclusionOutputs, Error> describe_model(WorkList& list, const WorkFrame& frame,
+                                                     OcclusionOutputs outputs,
+                                                     const OcclusionInputs& inputs,
+                                                     bool in_view_space,
+                                                     const OcclusionSettings& settings) {
+  return describe_gtso(list, frame,
+                       {.visibility = outputs.visibility,
+                        .bent_normal = outputs.bent_normal,
+                        .normals = outputs.normals,
+                        .depth = outputs.linear_depth,
+                        .roughness = inputs.roughness,
+                        .normals_in_view_space = in_view_space,
+                        .normal_encoding =
+                            inputs.normals ? inputs.normal_encoding : NormalEncoding::signed_xyz,
+                        .normals_forward_z = inputs.normals && inputs.normals_forward_z,
+                        .into = inputs.into.specular,
+                        .visibility_channel = inputs.into.visibility ? inputs.visibility_channel
+                                                                     : VisibilityChannel::all},
+                       settings)
+      .map([&](framegraph::Texture specular) {
+        outputs.specular = specular;
+        return outputs;
+      });
+}
+
+}  // namespace
+
+tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const WorkFrame& frame,
+                                                         const OcclusionInputs& inputs,
+                                                         const OcclusionSettings& settings) {
+  if (auto good = validate(settings); !good) {
+    return tl::unexpected(std::move(good.error()));
+  }
+  if (inputs.half_size_outputs && specular_reads_bent_normal(settings)) {
+    return tl::unexpected(Error{
+        "The setting 'specular' is " + std::string(name_of(settings.specular)) +
+        "; outputs of half size need slices, because that model reads outputs of full size."});
+  }
+  const auto depth = describe_linear(list, frame, inputs, settings);
+  if (!depth) {
+    return tl::unexpected(depth.error());
+  }
+  framegraph::Texture normals = inputs.normals;
+  const bool in_view_space = inputs.normals_in_view_space || !normals;
+  // Normals from depth are signed vectors in view space with the camera looking along -Z.
+  const NormalEncoding encoding = normals ? inputs.normal_encoding : NormalEncoding::signed_xyz;
+  const bool forward_z = normals && inputs.normals_forward_z;
+  if (!normals) {
+    auto made = describe_normals(list, frame, *depth);
+    if (!made) {
+      return tl::unexpected(std::move(made.error()));
+    }
+    normals = *made;
+  }
+  const auto raw_occlusion = describe_gtao(list, frame,
+                                           {.depth_ndc = inputs.depth_ndc,
+                                            .normals = normals,
+                                            .normals_in_view_space = in_view_space,
+                                            .roughness = inputs.roughness,
+                                            .back_depth_ndc = inputs.back_depth_ndc,
+                                            .second_depth_ndc = inputs.second_depth_ndc,
+                                            .normal_encoding = encoding,
+                                            .normals_forward_z = forward_z},
+                                           settings);
+  if (!raw_occlusion) {
+    return tl::unexpected(raw_occlusion.error());
+  }
+  const auto filtered = describe_reconstruct(list, frame,
+                                             {.raw_occlusion = *raw_occlusion,
+                                              .depth_ndc = inputs.depth_ndc,
+                                              .normals = normals,
+                                              .normals_in_view_space = in_view_space,
+                                              .motion = inputs.motion,
+                                              .roughness = inputs.roughness,
+                                              .into = inputs.into,
+                                              .normal_encoding = encoding,
+                                              .normals_forward_z = forward_z,
+                                              .motion_convention = inputs.motion_convention,
+                                              .visibility_channel = inputs.visibility_channel,
+                                              .half_size_results = inputs.half_size_outputs},
+                                             settings);
+  if (!filtered) {
+    return tl::unexpected(filtered.error());
+  }
+  const OcclusionOutputs outputs{filtered->visibility, filtered->bent_normal, filtered->specular,
+                                 *depth, normals};
+  return specular_reads_bent_normal(settings)
+             ? describe_model(list, frame, outputs, inputs, in_view_space, settings)
+             : tl::expected<OcclusionOutputs, Error>(outputs);
+}
+
+tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFrame& frame,
+                                                    const ViewInputs& inputs,
+                                                    const OcclusionSettings& settings) {
+  auto outputs = describe_occlusion(list, frame, inputs.occlusion, settings);
+  if (!outputs || !inputs.multi_bounce) {
+    return outputs;
+  }
+  const VisibilityChannel channel = inputs.occlusion.into.visibility
+                                        ? inputs.occlusion.visibility_channel
+                                        : VisibilityChannel::all;
+  return describe_multi_bounce(list,
+                               {outputs->visibility, inputs.albedo, inputs.multi_bounce, channel},
+                               settings.precision)
+      .map([&](framegraph::Texture) { return *outputs; });
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,77 @@
+// The formats of results for each precision.
+#pragma once
+
+#include "alcove/passes/frame.h"
+
+namespace alcove::passes {
+
+[[nodiscard]] inline VkFormat scalar_format(Precision precision) {
+  switch (precision) {
+    case Precision::unorm8:
+      return VK_FORMAT_R8_UNORM;
+    case Precision::float16:
+      return VK_FORMAT_R16_SFLOAT;
+    default:
+      return VK_FORMAT_R32_SFLOAT;
+  }
+}
+
+// Returns the format of colours from 0 to 1.
+[[nodiscard]] inline VkFormat colour_format(Precision precision) {
+  switch (precision) {
+    case Precision::unorm8:
+      return VK_FORMAT_R8G8B8A8_UNORM;
+    case Precision::float16:
+      return VK_FORMAT_R16G16B16A16_SFLOAT;
+    default:
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
+  }
+}
+
+// Returns the format of unit vectors.
+[[nodiscard]] inline VkFormat direction_format(Precision precision) {
+  return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
+}
+
+// Returns the format of the raw occlusion that add_gtao() writes: two 32-bit words, or four if it
+// also holds a GGX lobe.
+[[nodiscard]] inline VkFormat raw_format(bool lobe) {
+  return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
+}
+inline constexpr VkFormat kBentRawFormat = VK_FORMAT_R32G32_UINT;
+
+// The formats of histories: of visibility (maths::pack_history_texel), of bent normals
+// (maths::pack_half_residual) and of GGX lobes (maths::pack_lobe_texel).
+inline constexpr VkFormat kHistoryFormat = VK_FORMAT_R16G16_UNORM;
+inline constexpr VkFormat kBentHistoryFormat = VK_FORMAT_A2B10G10R10_UNORM_PACK32;
+inline constexpr VkFormat kLobeHistoryFormat = VK_FORMAT_R16_UINT;
+
+// The formats of histories at half resolution, which the upsampling pass also reads:
+// maths::pack_half_texel() and maths::half_texel_depth().
+inline constexpr VkFormat kHalfFormat = VK_FORMAT_R16G16B16A16_SNORM;
+inline constexpr VkFormat kHalfDepthFormat = VK_FORMAT_R32_SFLOAT;
+
+// Returns the bytes per texel of a format that the passes create.
+[[nodiscard]] inline std::uint64_t texel_bytes(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R8_UNORM:
+      return 1;
+    case VK_FORMAT_R16_SFLOAT:
+    case VK_FORMAT_R16_UINT:
+      return 2;
+    case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R8G8B8A8_SNORM:
+    case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R16G16_UNORM:
+    case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
+      return 4;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_SNORM:
+    case VK_FORMAT_R32G32_UINT:
+      return 8;
+    default:
+      return 16;
+  }
+}
+
+}  // namespace alcove::passes

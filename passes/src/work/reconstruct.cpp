@@ -1,0 +1,260 @@
+#include <algorithm>
+#include <array>
+
+#include "alcove/passes/work.h"
+#include "maths/history.h"
+#include "work/bindings.h"
+#include "work/check_reconstruct.h"
+#include "work/output_format.h"
+#include "work/reconstruct_uniforms.h"
+#include "work/upsample.h"
+#include "work/view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Texture;
+
+namespace {
+
+// Static frames after which every pixel of a tile of 4x4 has been traced once.
+constexpr std::uint32_t kConvergedFrames = 16;
+
+// The kind of history that a frame can use. The pipeline depends on it, and also on the settings,
+// the inputs and the kind of projection.
+enum class Past : std::uint8_t {
+  none,  // no history, or none that can be read
+  moving,
+  unchanged,  // the previous frame shows the same
+};
+
+Shader shader_of(bool history, bool lobe, bool half) {
+  if (half && lobe) {
+    return history ? Shader::reconstruct_half_specular_history : Shader::reconstruct_half_specular;
+  }
+  if (half) {
+    return history ? Shader::reconstruct_half_history : Shader::reconstruct_half;
+  }
+  if (lobe) {
+    return history ? Shader::reconstruct_specular_history : Shader::reconstruct_specular;
+  }
+  return history ? Shader::reconstruct_history : Shader::reconstruct;
+}
+
+Past past_of(const WorkFrame& frame, const ReconstructSizes& sizes, bool history_valid,
+             bool motion) {
+  if (!history_valid) {
+    return Past::none;
+  }
+  const bool same_size =
+      sizes.now.width == sizes.previous.width && sizes.now.height == sizes.previous.height;
+  if (motion || !same_size || frame.view != frame.previous_view) {
+    return Past::moving;
+  }
+  return Past::unchanged;
+}
+
+std::array<NamedConstant, 16> constants_of(const ReconstructInputs& inputs,
+                                           const OcclusionSettings& settings,
+                                           const maths::Projection& projection, Past past) {
+  const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
+  return {{{"kTileSize", inputs.raw_occlusion.tile_size},
+           {"kFilterRadius", settings.advanced.filter_radius},
+           {"kBentNormal", flag(bool(inputs.raw_occlusion.bent))},
+           {"kMotion", flag(inputs.motion && past == Past::moving)},
+           {"kPerspective", flag(is_perspective(projection))},
+           {"kClamp", flag(settings.advanced.clamp_width > 0.0f)},
+           {"kStatic", flag(past == Past::unchanged)},
+           {"kRoughnessTexture", flag(bool(inputs.roughness))},
+           {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},
+           {"kFresh", flag(past == Past::none)},
+           {"kVisibility", flag(needs_visibility(settings))},
+           {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+           {"kShaped", flag(!settings.half_resolution && shaped)},
+           {"kReversed", flag(is_reversed(projection))},
+           {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
+           {"kVisibilityChannel", channel_index(inputs.visibility_channel)}}};
+}
+
+// Every texture that the passes access; null where it is not wanted.
+struct Textures {
+  Occlusion result;          // at half resolution the upsampling pass writes it
+  WorkList::History texels;  // visibility; at half resolution maths::pack_half_texel()
+  WorkList::History depth;   // maths::half_texel_depth(), only at half resolution
+  WorkList::History bent;
+  WorkList::History lobe;
+  bool valid = false;  // whether the histories of the previous frame can be read
+};
+
+VkExtent2D texels(VkExtent2D pixels, bool half) {
+  return half ? VkExtent2D{(pixels.width + 1) / 2, (pixels.height + 1) / 2} : pixels;
+}
+
+Textures add_textures(WorkList& list, const ReconstructInputs& inputs,
+                      const OcclusionSettings& settings, const ReconstructSizes& sizes) {
+  const bool half = settings.half_resolution;
+  const bool history = settings.history_frames > 0;
+  const VkExtent2D size = texels(sizes.now, inputs.half_size_results);
+  Textures textures;
+  if (needs_visibility(settings)) {
+    textures.result.visibility = given_or_added(list, inputs.into.visibility, "visibility",
+                                                scalar_format(settings.precision), size);
+  }
+  if (inputs.raw_occlusion.bent) {
+    textures.result.bent_normal = given_or_added(list, inputs.into.bent_normal, "bent normal",
+                                                 direction_format(settings.precision), size);
+  }
+  if (inputs.raw_occlusion.lobe) {
+    textures.result.specular = given_or_added(list, inputs.into.specular, "specular occlusion",
+                                              scalar_format(settings.precision), size);
+  }
+  textures.valid = history;
+  // Adds a history, or at half resolution without history the texture that the upsampling reads.
+  const auto add = [&](bool wanted, HistoryRole role, const char* name, VkFormat format) {
+    if (wanted && history) {
+      const WorkList::History added = list.add_history(role, format, texels(sizes.largest, half));
+      textures.valid = textures.valid && added.valid;
+      return added;
+    }
+    return wanted && half
+               ? WorkList::History{.current = list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, format,
+                                                       texels(sizes.now, half))}
+               : WorkList::History{};
+  };
+  textures.texels =
+      add(true, HistoryRole::visibility, "half resolution", half ? kHalfFormat : kHistoryFormat);
+  textures.depth = add(half, HistoryRole::depth, "half-resolution depth", kHalfDepthFormat);
+  textures.bent = add(bool(inputs.raw_occlusion.bent), HistoryRole::bent_normal,
+                      "half-resolution residual", kBentHistoryFormat);
+  textures.lobe =
+      add(inputs.raw_occlusion.lobe, HistoryRole::lobe, "half-resolution lobe", kLobeHistoryFormat);
+  list.work().history_valid = textures.valid ? 1 : 0;
+  return textures;
+}
+
+// Returns the image of each binding that a variant of the shader can have. An image that the
+// variant does not use is replaced by another image of the same type. The image may be null if the
+// variant does not have the binding.
+std::array<NamedTexture, 19> images_of(const ReconstructInputs& in, const Textures& textures,
+                                       bool half) {
+  // At half resolution the upsampling pass writes the results, and only the weights of GGX lobes
+  // need normals.
+  const Occlusion out = half ? Occlusion{} : textures.result;
+  const Texture written = or_else(or_else(out.visibility, out.bent_normal), out.specular);
+  const Texture sampled = half ? in.depth_ndc : in.normals;
+  const bool keeps = in.visibility_channel != VisibilityChannel::all;
+  const Texture raw = in.raw_occlusion.raw_occlusion;
+  return {{{"raw_image", raw},
+           {"bent_image", or_else(in.raw_occlusion.bent, raw)},
+           {"depth_image", in.depth_ndc},
+           {"normal_image", in.raw_occlusion.lobe ? in.normals : sampled},
+           {"half_image", textures.texels.current},
+           {"half_depth_image", textures.depth.current},
+           {"visibility_image", or_else(out.visibility, written)},
+           {"bent_normal_image", or_else(out.bent_normal, written)},
+           {"kept_image", keeps ? out.visibility : sampled},
+           {"history_image", textures.texels.previous},
+           {"history_depth_image", textures.depth.previous},
+           {"next_history_image", textures.texels.current},
+           {"motion_image", or_else(in.motion, sampled)},
+           {"bent_history_image", or_else(textures.bent.previous, textures.texels.previous)},
+           {"next_bent_history_image", or_else(textures.bent.current, textures.texels.current)},
+           {"roughness_image", or_else(in.roughness, sampled)},
+           {"specular_image", out.specular},
+           {"lobe_history_image", textures.lobe.previous},
+           {"next_lobe_history_image", textures.lobe.current}}};
+}
+
+// Returns the frame without its previous view and sizes, which are not read if there is no history.
+WorkFrame without_past(const WorkFrame& frame) {
+  return {.view = frame.view,
+          .index = frame.index,
+          .previous_view = frame.view,
+          .static_frames = frame.static_frames};
+}
+
+}  // namespace
+
+tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFrame& given_frame,
+                                                    const ReconstructInputs& given,
+                                                    const OcclusionSettings& settings) {
+  const bool history = settings.history_frames > 0;
+  const bool half = settings.half_resolution;
+  WorkFrame frame = history ? given_frame : without_past(given_frame);
+  ReconstructInputs inputs = given;
+  if (frame.view == frame.previous_view && frame.static_frames > 0) {
+    inputs.motion = {};
+  }
+  if (!inputs.raw_occlusion.lobe) {
+    inputs.roughness = {};
+  }
+  if (!inputs.into.visibility || !needs_visibility(settings)) {
+    inputs.visibility_channel = VisibilityChannel::all;
+  }
+  if (auto good = check_reconstruct(list, inputs, settings); !good) {
+    return tl::unexpected(good.error());
+  }
+  if (!history) {
+    inputs.motion = {};
+  }
+  const auto sizes = reconstruct_sizes(frame, list.size(inputs.depth_ndc));
+  if (!sizes) {
+    return tl::unexpected(sizes.error());
+  }
+  const auto projection = projection_of(frame.view, sizes->now);
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const Textures textures = add_textures(list, inputs, settings, *sizes);
+  if (!textures.valid) {  // the previous view is not read
+    frame.previous_view = frame.view;
+  }
+  const auto previous = projection_of(frame.previous_view, sizes->previous, "The previous view");
+  if (!previous) {
+    return tl::unexpected(Error{previous.error().message +
+                                " Where there was none, reset the history (reset_history)."});
+  }
+  const Past past = past_of(frame, *sizes, textures.valid, bool(inputs.motion));
+  maths::ReconstructParameters parameters =
+      reconstruct_parameters(frame, *projection, *previous, inputs, settings);
+  // In a static view all frames get the same weight in the history.
+  if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
+    parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
+  }
+  const VkExtent2D half_size = texels(sizes->now, true);
+  const VkExtent2D stored =
+      textures.texels.current ? list.size(textures.texels.current) : VkExtent2D{1, 1};
+  parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
+  // At half resolution the dispatch covers one more texel to the right and below, if the textures
+  // have room for it, because the upsampling pass reads those texels.
+  const VkExtent2D covered = half ? VkExtent2D{std::min(half_size.width + 1, stored.width),
+                                               std::min(half_size.height + 1, stored.height)}
+                                  : sizes->now;
+  auto added = list.dispatch({.label = "reconstruct",
+                              .shader = shader_of(history, inputs.raw_occlusion.lobe, half),
+                              .constants = constants_of(inputs, settings, *projection, past),
+                              .images = images_of(inputs, textures, half),
+                              .parameters = bytes_of(parameters),
+                              .size = {covered.width, covered.height, 1}});
+  if (!added) {
+    return tl::unexpected(std::move(added.error()));
+  }
+  if (!half) {
+    return textures.result;
+  }
+  return describe_upsample(list, frame,
+                           {.half = textures.texels.current,
+                            .half_depth = textures.depth.current,
+                            .half_size = half_size,
+                            .residuals = textures.bent.current,
+                            .lobes = textures.lobe.current,
+                            .depth_ndc = inputs.depth_ndc,
+                            .normals = inputs.normals,
+                            .normals_in_view_space = inputs.normals_in_view_space,
+                            .normal_encoding = inputs.normal_encoding,
+                            .normals_forward_z = inputs.normals_forward_z,
+                            .visibility_channel = inputs.visibility_channel,
+                            .half_size_results = inputs.half_size_results},
+                           textures.result, settings);
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,200 @@
+#include "work/reconstruct_uniforms.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "maths/slice_line.h"
+#include "work/interleave_offset.h"
+#include "work/view_parameters.h"
+
+namespace alcove::passes {
+namespace {
+
+// Returns the matrix that converts (x s, y s, depth, 1) to a position in view space. (x, y) is a
+// position on the image in pixels, depth is the linear depth, and s is depth in perspective views
+// and 1 in orthographic views.
+maths::mat4 view_from_pixel(const maths::Projection& p) {
+  const maths::vec2 per_px = maths::ray_per_px(p);
+  maths::mat4 m(0.0f);
+  m[0][0] = per_px.x;
+  m[1][1] = per_px.y;
+  m[2] = maths::vec4(p.uv_to_slope.z, p.uv_to_slope.w, -1.0f, 0.0f);
+  m[3] = maths::vec4(p.uv_to_origin.z, p.uv_to_origin.w, 0.0f, 1.0f);
+  return m;
+}
+
+// Returns the matrix from view space to (x w, y w, depth, w), where (x, y) is a position in pixels.
+maths::mat4 pixel_from_view(const maths::Projection& p) {
+  maths::mat4 m(0.0f);
+  m[0][0] = p.position_to_uv.x * p.size_px.x;
+  m[1][1] = p.position_to_uv.y * p.size_px.y;
+  m[2] = -maths::vec4(p.depth_to_uv.x * p.size_px.x, p.depth_to_uv.y * p.size_px.y, 1.0f,
+                      p.depth_to_uv.z);
+  m[3] = maths::vec4(p.position_to_uv.z * p.size_px.x, p.position_to_uv.w * p.size_px.y, 0.0f,
+                     p.depth_to_uv.w);
+  return m;
+}
+
+// The largest range of depths that the history of a perspective view distinguishes, in octaves
+// (factors of two) from the near plane on. 13 bits then resolve a relative change of depth of
+// 2^-9.5. The resolution is finer if the far plane is nearer than that. All surfaces farther away
+// than 65,536 times the distance of the near plane have the same depth in the history.
+constexpr float kLargestDepthOctaves = 16.0f;
+
+// The largest power of two that is no larger than the near plane's distance.
+float history_unit(const maths::Projection& p) {
+  constexpr float kLeast = 1e-30f;
+  return std::ldexp(1.0f, std::ilogb(std::max(p.near_far.x, kLeast)));
+}
+
+// Returns scale and offset for maths::history_depth(), which stores depths between the near and the
+// far plane: the logarithm of depth in perspective views, and depth itself in orthographic views.
+maths::vec2 history_depth_scale(const maths::Projection& p) {
+  constexpr float kLeast = 1e-30f;
+  const float near = p.near_far.x;
+  const float far = p.near_far.y;
+  if (is_perspective(p)) {
+    const float unit = history_unit(p);
+    const float log_near = std::log2(std::max(near, kLeast) / unit);
+    const float octaves =
+        far >= maths::kSkyDepth
+            ? kLargestDepthOctaves
+            : std::clamp(std::log2(far / std::max(near, kLeast)), 0.01f, kLargestDepthOctaves);
+    return {1.0f / octaves, (log_near + octaves) / octaves};
+  }
+  const float scale = 1.0f / std::max(far - near, kLeast);
+  return {scale, -near * scale};
+}
+
+// The error of a stored depth: half a step of its 13 bits, plus the rounding of its computation.
+constexpr float kHistorySlack = 0.75f / 8191.0f;
+
+// Returns the relative difference of depth from the tangent plane at which a history texel's weight
+// reaches 0 in perspective views. It is 1.5 texels, but at most 0.3 % of the depth, and at least
+// 0.13 %, which is about the step of a stored depth. ReconstructParameters::history_sharpness is
+// computed from it.
+float relative_history_distance(float texel) { return std::clamp(1.5f * texel, 0.0013f, 0.003f); }
+
+float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
+  const float pixel = std::abs(maths::ray_per_px(p).y);
+  if (is_perspective(p)) {
+    // A relative change of depth by e changes the stored depth by e * scale / ln 2.
+    constexpr float kLn2 = 0.69314718f;
+    return kLn2 / (relative_history_distance(pixel) * scale.x);
+  }
+  return 1.0f / std::max(1.5f * pixel * scale.x, 2.0f * kHistorySlack);
+}
+
+// The error of the depth of a texel at half resolution, relative to the distance at which its
+// weight reaches 0. The depth is stored with a relative error of 2^-15.
+constexpr float kHalfHistorySlack = 0.03f;
+
+// Returns ReconstructParameters::history_sharpness at half resolution, where depths are stored
+// unscaled: the reciprocal of the change of depth at which a history texel's weight reaches 0. The
+// change is relative in perspective views and in scene units in orthographic views.
+float half_history_sharpness(const maths::Projection& p) {
+  const float texel = 2.0f * std::abs(maths::ray_per_px(p).y);
+  const float rounding = 0x1p-14f * std::abs(p.near_far.y);
+  return 1.0f /
+         (is_perspective(p) ? relative_history_distance(texel) : std::max(1.5f * texel, rounding));
+}
+
+// Returns the value of ReconstructParameters::plane_from_normal.
+maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& view_from_normal) {
+  const maths::mat3 plane_from_view = maths::transpose(maths::mat3(view_from_pixel(p)));
+  return maths::mat4(maths::transpose(plane_from_view * maths::mat3(view_from_normal)));
+}
+
+// Returns the width of the filter's window in pixels for a frame without history: wide if there are
+// few slices, and with many slices hardly wider than a tile. Fitted to the error of first frames
+// (`alcove compare --frames 1`).
+float window_px(const RawOcclusionTextures& raw_occlusion) {
+  const float few = 1.1f / std::sqrt(static_cast<float>(raw_occlusion.slices));
+  return static_cast<float>(raw_occlusion.tile_size) * std::max(few, 0.55f);
+}
+
+// Returns ReconstructParameters::traced_range: the positions of the first and the last traced
+// pixel. The tiles at the right and lower border trace their last pixel within the image if the
+// interleave offset lies outside of it.
+maths::vec4 traced_range(maths::vec2 size_px, maths::vec2 offset, float tile_size) {
+  const maths::vec2 last = maths::ceil(size_px / tile_size) * tile_size - tile_size + offset;
+  const maths::vec2 largest = maths::min(last, size_px - 1.0f);
+  return maths::vec4(maths::min(offset, largest), largest);
+}
+
+}  // namespace
+
+maths::ReconstructParameters reconstruct_parameters(const WorkFrame& frame,
+                                                    const maths::Projection& projection,
+                                                    const maths::Projection& previous,
+                                                    const ReconstructInputs& inputs,
+                                                    const OcclusionSettings& settings) {
+  const maths::mat4 from_pixel = view_from_pixel(projection);
+  // This matrix is computed in double, because the translations nearly cancel if the camera is far
+  // from the origin.
+  const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
+                                   maths::inverse(to_rigid(frame.view.view_from_world));
+  const maths::mat4 to_view =
+      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z);
+  maths::ReconstructParameters parameters{};
+  const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
+      maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
+  // x, y, w and depth.
+  parameters.previous_from_pixel = maths::mat4(previous_from_pixel[0], previous_from_pixel[1],
+                                               previous_from_pixel[3], previous_from_pixel[2]);
+  parameters.normal_from_view = maths::transpose(to_view);
+  parameters.plane_from_normal = plane_from_normal(projection, to_view);
+  parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
+  parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
+                                 projection.uv_to_slope.w);
+  parameters.tolerance =
+      1.0f / (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
+  parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
+  parameters.clamp_width = settings.advanced.clamp_width;
+  const float texel = settings.half_resolution ? 2.0f : 1.0f;
+  parameters.previous_extent = maths::vec4(maths::ceil(previous.size_px / texel) - 0.5f,
+                                           previous.size_px / projection.size_px);
+  parameters.pixel_uv = 1.0f / projection.size_px;
+  parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
+  parameters.pixels_per_slope = 1.0f / maths::ray_per_px(projection);
+  parameters.history_depth_scale =
+      maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
+  parameters.history_unit = history_unit(projection);
+  if (is_perspective(previous)) {
+    // The difference of the units' logarithms is exact, because the units are powers of two.
+    parameters.history_depth_scale.w +=
+        parameters.history_depth_scale.z * static_cast<float>(std::ilogb(history_unit(previous)) -
+                                                              std::ilogb(history_unit(projection)));
+  }
+  if (settings.half_resolution) {
+    parameters.history_sharpness = half_history_sharpness(projection);
+    parameters.history_slack = kHalfHistorySlack;
+  } else {
+    parameters.history_sharpness = history_sharpness(projection, history_depth_scale(previous));
+    parameters.history_slack = kHistorySlack * parameters.history_sharpness;
+  }
+  // The dither offsets of the frames are multiples of the golden ratio modulo 1, which are spread
+  // evenly over any number of successive frames.
+  parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
+  const MotionConvention& motion = inputs.motion_convention;
+  parameters.motion =
+      maths::vec4(maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px,
+                  maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px);
+  parameters.roughness = settings.roughness;
+  const float window = window_px(inputs.raw_occlusion);
+  parameters.inverse_squared_window = 0.125f / (window * window);
+  // More slices narrow the window. They also reduce the distance from the tangent plane that is
+  // tolerated.
+  parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
+  const auto [offset_x, offset_y] =
+      interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
+  parameters.interleave_pixel = {offset_x, offset_y};
+  parameters.interleave_offset = maths::vec2(parameters.interleave_pixel);
+  parameters.traced_range = traced_range(projection.size_px, parameters.interleave_offset,
+                                         static_cast<float>(inputs.raw_occlusion.tile_size));
+  parameters.power = settings.power;
+  parameters.intensity = settings.intensity;
+  return parameters;
+}
+
+}  // namespace alcove::passes

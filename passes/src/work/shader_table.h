@@ -1,0 +1,60 @@
+// The SPIR-V modules that are embedded in the library, their interfaces, and the tables that their
+// shaders look up.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "alcove/alcove_work.h"
+#include "alcove/passes/kernels.h"
+#include "work/shader_interface.h"
+
+namespace alcove::passes {
+
+struct ShaderSource {
+  std::string_view name = {};           // a literal
+  std::span<const std::uint32_t> code;  // words of the SPIR-V module
+  // Contents of the shader's storage buffer. Empty if the shader has none.
+  std::span<const std::uint32_t> table = {};
+};
+
+[[nodiscard]] ShaderSource shader_source(Shader shader);
+
+// Returns the shader of a name, or Shader::count.
+[[nodiscard]] Shader shader_of_name(std::string_view name);
+
+// Returns the interface of a shader. The first call reads those of all shaders, and allocates.
+[[nodiscard]] const ShaderInterface& shader_interface(Shader shader);
+
+// Returns the names of the specialisation constants, or of the images, of all shaders, sorted.
+[[nodiscard]] std::span<const std::string_view> known_constants();
+[[nodiscard]] std::span<const std::string_view> known_images();
+
+// Returns the element of `given` whose name is `name`, or null. Looks at the index `expected`
+// first, because lists usually have the order of the shader's declarations.
+template <typename Named>
+const Named* find_named(std::span<const Named> given, std::string_view name, std::size_t expected) {
+  if (expected < given.size() && given[expected].name == name) {
+    return &given[expected];
+  }
+  const auto found = std::ranges::find(given, name, &Named::name);
+  return found == given.end() ? nullptr : &*found;
+}
+
+// Returns the first element of `given` whose name is not in `known`, which is sorted, or null.
+template <typename Named>
+const Named* find_unknown(std::span<const Named> given, std::span<const std::string_view> known) {
+  const auto found = std::ranges::find_if(
+      given, [&](const Named& named) { return !std::ranges::binary_search(known, named.name); });
+  return found == given.end() ? nullptr : &*found;
+}
+
+// Writes the values of the specialisation constants of `shader` to `values`, ascending by id, and
+// returns their number. Errors: a constant that has no value in the list, or a name that no shader
+// declares.
+[[nodiscard]] tl::expected<std::uint32_t, Error> resolve_constants(
+    Shader shader, std::span<const NamedConstant> given, std::span<AlcoveWorkConstant> values);
+
+}  // namespace alcove::passes

@@ -1,0 +1,102 @@
+#include "work/upsample.h"
+
+#include <array>
+#include <cmath>
+
+#include "maths/half_texel.h"
+#include "upsample_parameters.h"
+#include "work/bindings.h"
+#include "work/view_parameters.h"
+
+namespace alcove::passes {
+
+using framegraph::Texture;
+
+namespace {
+
+// Distance from a texel's tangent plane, in pixels, at which the texel's weight falls to 0.25.
+// Fitted to the error over the development views (`alcove compare --set half_resolution=true`).
+constexpr float kTolerancePx = 1.0f;
+
+Shader shader_of(const UpsampleInputs& inputs, const Occlusion& result) {
+  if (inputs.half_size_results) {
+    return result.specular ? Shader::half_output_specular : Shader::half_output;
+  }
+  return result.specular ? Shader::upsample_specular : Shader::upsample;
+}
+
+std::array<NamedConstant, 8> constants_of(const UpsampleInputs& inputs, const Occlusion& result,
+                                          const OcclusionSettings& settings,
+                                          const maths::Projection& projection) {
+  const std::uint32_t encoding =
+      result.bent_normal ? static_cast<std::uint32_t>(inputs.normal_encoding) : 0u;
+  return {{{"kPerspective", flag(is_perspective(projection))},
+           {"kVisibility", flag(bool(result.visibility))},
+           {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
+           {"kBentNormal", flag(bool(result.bent_normal))},
+           {"kNormalEncoding", encoding},
+           {"kReversed", flag(is_reversed(projection))},
+           {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
+           {"kVisibilityChannel", channel_index(inputs.visibility_channel)}}};
+}
+
+maths::UpsampleParameters parameters_of(const WorkList& list, const WorkFrame& frame,
+                                        const UpsampleInputs& inputs,
+                                        const OcclusionSettings& settings,
+                                        const maths::Projection& projection) {
+  // The textures are of the largest size.
+  const VkExtent2D stored = list.size(inputs.half);
+  const maths::vec2 per_px = maths::ray_per_px(projection);
+  maths::UpsampleParameters parameters{};
+  parameters.normal_from_view = maths::transpose(
+      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z));
+  parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
+  parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
+  parameters.pixel_uv = 1.0f / projection.size_px;
+  parameters.texel_uv = 1.0f / maths::vec2(stored.width, stored.height);
+  parameters.half_pixel_per_tilt =
+      (is_perspective(projection) ? -0.5f : 0.5f) * maths::kLargestTilt * per_px;
+  parameters.tolerance = 1.0f / (kTolerancePx * std::abs(per_px.y));
+  parameters.power = settings.power;
+  parameters.intensity = settings.intensity;
+  return parameters;
+}
+
+}  // namespace
+
+tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame& frame,
+                                                 const UpsampleInputs& inputs,
+                                                 const Occlusion& result,
+                                                 const OcclusionSettings& settings) {
+  const auto projection = projection_of(frame.view, list.size(inputs.depth_ndc));
+  if (!projection) {
+    return tl::unexpected(projection.error());
+  }
+  const Texture written = or_else(or_else(result.visibility, result.bent_normal), result.specular);
+  const bool bent = bool(result.bent_normal);
+  const bool keeps = inputs.visibility_channel != VisibilityChannel::all;
+  const NamedTexture images[] = {
+      {"half_image", inputs.half},
+      {"half_depth_image", inputs.half_size_results ? inputs.half : inputs.half_depth},
+      {"depth_image", inputs.depth_ndc},
+      {"normal_image", bent ? inputs.normals : inputs.depth_ndc},
+      {"residual_image", bent ? inputs.residuals : inputs.half},
+      {"visibility_image", or_else(result.visibility, written)},
+      {"bent_normal_image", or_else(result.bent_normal, written)},
+      {"kept_image", keeps ? result.visibility : inputs.depth_ndc},
+      {"lobe_image", or_else(inputs.lobes, inputs.half)},
+      {"specular_image", or_else(result.specular, written)}};
+  // One invocation of the upsampling computes the pixels between the centres of four texels. One
+  // more row and column of invocations is therefore needed.
+  const std::uint32_t more = inputs.half_size_results ? 0 : 1;
+  return list
+      .dispatch({.label = inputs.half_size_results ? "half-resolution output" : "upsample",
+                 .shader = shader_of(inputs, result),
+                 .constants = constants_of(inputs, result, settings, *projection),
+                 .images = images,
+                 .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection)),
+                 .size = {inputs.half_size.width + more, inputs.half_size.height + more, 1}})
+      .map([&] { return result; });
+}
+
+}  // namespace alcove::passes

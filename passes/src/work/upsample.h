@@ -1,0 +1,33 @@
+// Makes pixels from what is reconstructed at half resolution.
+#pragma once
+
+#include "alcove/passes/work.h"
+
+namespace alcove::passes {
+
+struct UpsampleInputs {
+  framegraph::Texture half;        // maths::pack_half_texel()
+  framegraph::Texture half_depth;  // maths::half_texel_depth()
+  VkExtent2D half_size;            // the part of these textures that is used
+  framegraph::Texture residuals;  // maths::pack_half_residual(); null where there is no bent normal
+  framegraph::Texture lobes;      // maths::LobeTexel; null where there is no lobe
+  framegraph::Texture depth_ndc;  // as GtaoInputs has it
+  framegraph::Texture normals;    // as ReconstructInputs has it, as are the next two
+  bool normals_in_view_space = false;
+  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
+  bool normals_forward_z = false;
+  VisibilityChannel visibility_channel = VisibilityChannel::all;  // as ReconstructInputs has it
+  bool half_size_results = false;  // as ReconstructInputs has it: nothing is upsampled
+};
+
+// Describes the pass that writes `result`. Its textures have the size of the results and were
+// created but not yet written. A texture of `result` that is null is not written.
+//
+// Errors: a view that cannot be used.
+[[nodiscard]] tl::expected<Occlusion, Error> describe_upsample(WorkList& list,
+                                                               const WorkFrame& frame,
+                                                               const UpsampleInputs& inputs,
+                                                               const Occlusion& result,
+                                                               const OcclusionSettings& settings);
+
+}  // namespace alcove::passes

@@ -1,0 +1,123 @@
+// Converts a View to the parameters that the shaders use.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+#include "alcove/passes/work.h"
+#include "maths/make_projection.h"
+#include "maths/slice_line.h"
+#include "work/rigid_transform.h"
+
+namespace alcove::passes {
+
+// Returns whether a perspective matrix was given in row-major instead of column-major order: the
+// coefficient 1 of w = -z is then found in the place of the depth offset. A perspective matrix with
+// a scaled w could look the same, but engines do not use such matrices.
+[[nodiscard]] inline bool is_transposed(const Matrix& clip_from_view) {
+  const auto is_one = [](float value) { return std::abs(std::abs(value) - 1.0f) <= 1e-5f; };
+  return is_one(clip_from_view[14]) && !is_one(clip_from_view[11]) && clip_from_view[11] != 0.0f &&
+         clip_from_view[15] == 0.0f;
+}
+
+// Returns the projection of a view onto an image of `size` pixels, or an error that says what is
+// wrong with the view. The error sentence calls the view `name`.
+[[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
+    const View& view, VkExtent2D size, const char* name = "The view") {
+  const auto unusable = [name](const std::string& why) {
+    return Error{std::string(name) + " cannot be used: " + why + "."};
+  };
+  if (!is_rigid(view.view_from_world)) {
+    return tl::unexpected(
+        unusable("view_from_world is not a rotation and translation; it must be column-major, "
+                 "without scale and finite"));
+  }
+  if (is_transposed(view.clip_from_view)) {
+    return tl::unexpected(unusable("clip_from_view is transposed; it must be column-major"));
+  }
+  return maths::make_projection(to_mat4(view.clip_from_view), size.width, size.height)
+      .map_error(unusable);
+}
+
+// Returns the rotation or reflection from the space of the normals to view space. `forward_z` says
+// that the normals are in a view space whose z axis points away from the eye.
+[[nodiscard]] inline maths::mat4 view_from_normal(const View& view, bool normals_in_view_space,
+                                                  bool forward_z = false) {
+  maths::mat4 result =
+      normals_in_view_space ? maths::mat4(1.0f) : maths::mat4(to_rigid(view.view_from_world));
+  if (normals_in_view_space && forward_z) {
+    result[2][2] = -1.0f;
+  }
+  return result;
+}
+
+[[nodiscard]] inline bool is_perspective(const maths::Projection& projection) {
+  return projection.eye.w > 0.0f;
+}
+
+[[nodiscard]] inline bool is_reversed(const maths::Projection& projection) {
+  return projection.sky.x < 0.0f;
+}
+
+// The scale and offset of maths::inverse_depth_of_ndc().
+[[nodiscard]] inline maths::vec2 inverse_depth_from_ndc(const maths::Projection& projection) {
+  const maths::dvec4 unproject(projection.depth_unproject);
+  const bool perspective = is_perspective(projection);
+  const maths::dvec2 linear = perspective ? maths::dvec2(unproject.z, unproject.w) / unproject.y
+                                          : maths::dvec2(unproject.x, unproject.y) / unproject.w;
+  const bool grows = maths::grows_with_inverse_depth(perspective, is_reversed(projection));
+  const double offset = grows ? linear.y : linear.x + linear.y;
+  // If the matrix has rounding errors, its inverse depth at the far plane can be slightly negative.
+  return {static_cast<float>(std::abs(linear.x)),
+          static_cast<float>(perspective ? std::max(offset, 0.0) : offset)};
+}
+
+// Returns whether the far plane of a perspective projection is infinitely far away, so that its
+// inverse depth is 0.
+[[nodiscard]] inline bool has_infinite_far(const maths::Projection& projection) {
+  return is_perspective(projection) && inverse_depth_from_ndc(projection).y == 0.0f;
+}
+
+// Returns the resolution of a depth buffer of this format.
+[[nodiscard]] inline maths::DepthStep depth_step(const maths::Projection& projection,
+                                                 VkFormat format) {
+  const maths::vec2 from_ndc = inverse_depth_from_ndc(projection);
+  const double scale = from_ndc.x;
+  // The result is 1.5 times the step of the format, because rasterisers do not always round to the
+  // nearest value.
+  const auto fixed = [&](double levels) {
+    return maths::DepthStep{static_cast<float>(1.5 * scale / levels), 0.0f};
+  };
+  switch (format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+    case VK_FORMAT_R16_UNORM:
+      return fixed(65535.0);
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+      return fixed(16777215.0);
+    default: {
+      // Float formats have steps of at most 2^-23 of the stored depth, and of 2^-24 from 0.5 to 1.
+      // The stored depth is (inverse_depth - offset) / scale if it grows with the inverse depth,
+      // otherwise 1 minus that.
+      const double step = std::ldexp(1.0, -23);
+      return maths::grows_with_inverse_depth(is_perspective(projection), is_reversed(projection))
+                 ? maths::DepthStep{static_cast<float>(-step * from_ndc.y),
+                                    static_cast<float>(step)}
+                 : maths::DepthStep{static_cast<float>(step * (scale + from_ndc.y)),
+                                    static_cast<float>(-step)};
+    }
+  }
+}
+
+template <typename Parameters>
+[[nodiscard]] std::span<const std::byte> bytes_of(const Parameters& parameters) {
+  static_assert(std::is_trivially_copyable_v<Parameters> &&
+                sizeof(Parameters) <= ALCOVE_MAX_WORK_PARAMETER_BYTES);
+  return std::as_bytes(std::span(&parameters, 1));
+}
+
+}  // namespace alcove::passes

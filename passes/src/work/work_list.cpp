@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "alcove/passes/work.h"
+#include "work/output_format.h"
+#include "work/shader_table.h"
+
+namespace alcove::passes {
+
+using framegraph::Texture;
+
+namespace {
+
+static_assert(Kernels::kMaxConstants == ALCOVE_MAX_WORK_CONSTANTS);
+
+constexpr std::array kHistoryNames{"visibility history", "depth history", "bent-normal history",
+                                   "lobe history"};
+
+AlcoveBindingType binding_type(VkDescriptorType type) {
+  switch (type) {
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+      return ALCOVE_BINDING_TYPE_PARAMETERS;
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+      return ALCOVE_BINDING_TYPE_TABLE;
+    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+      return ALCOVE_BINDING_TYPE_SAMPLED_IMAGE;
+    case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
+      return ALCOVE_BINDING_TYPE_FETCHED_IMAGE;
+    default:
+      return ALCOVE_BINDING_TYPE_STORAGE_IMAGE;
+  }
+}
+
+// Returns the size of the texels of an image that the passes create.
+std::uint64_t image_bytes(VkFormat format, VkExtent2D size, std::uint32_t mips) {
+  std::uint64_t texels = 0;
+  for (std::uint32_t mip = 0; mip < mips; ++mip) {
+    texels += std::uint64_t{std::max(size.width >> mip, 1u)} * std::max(size.height >> mip, 1u);
+  }
+  return texels * texel_bytes(format);
+}
+
+bool is_of_host(AlcoveResourceKind kind) {
+  return kind == ALCOVE_RESOURCE_KIND_INPUT || kind == ALCOVE_RESOURCE_KIND_OUTPUT;
+}
+
+constexpr std::uint32_t kGroupSize = 8;
+
+std::uint32_t groups(std::uint32_t invocations) {
+  return (invocations + kGroupSize - 1) / kGroupSize;
+}
+
+}  // namespace
+
+WorkList::WorkList(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
+  for (std::uint32_t i = 0; previous != nullptr && i < previous->history_count; ++i) {
+    const AlcoveWorkResource& slot = previous->resources[previous->histories[i].current];
+    previous_[i] = {slot.name, slot.format, {slot.width, slot.height}};
+  }
+  work.history_valid = 0;
+  work.resource_count = work.dispatch_count = work.history_count = 0;
+}
+
+Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format, VkExtent2D size,
+                      std::uint32_t mips) {
+  if (work_.resource_count == ALCOVE_MAX_WORK_RESOURCES) {
+    return {};
+  }
+  work_.resources[work_.resource_count] = {
+      .name = name,
+      .kind = kind,
+      .format = static_cast<std::uint32_t>(format),
+      .width = size.width,
+      .height = size.height,
+      .mip_count = mips,
+      .usage = 0,
+      .first_dispatch = ALCOVE_WORK_NONE,
+      .last_dispatch = ALCOVE_WORK_NONE,
+      .size = is_of_host(kind) ? 0 : image_bytes(format, size, mips),
+      .data = nullptr};
+  return {work_.resource_count++};
+}
+
+WorkList::History WorkList::add_history(HistoryRole role, VkFormat format, VkExtent2D size) {
+  const char* const name = kHistoryNames.at(static_cast<std::size_t>(role));
+  History history{add(ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS, name, format, size),
+                  add(ALCOVE_RESOURCE_KIND_HISTORY_CURRENT, name, format, size)};
+  if (!history.current || work_.history_count == ALCOVE_MAX_WORK_HISTORIES) {
+    return {};
+  }
+  work_.histories[work_.history_count++] = {history.previous.index, history.current.index};
+  history.valid = source_.is_valid != nullptr
+                      ? source_.is_valid(source_.user, role, history)
+                      : std::ranges::any_of(previous_, [&](const KnownHistory& known) {
+                          return known.name == name &&
+                                 known.format == static_cast<std::uint32_t>(format) &&
+                                 known.size.width == size.width && known.size.height == size.height;
+                        });
+  return history;
+}
+
+std::uint32_t WorkList::add_table(const char* name, std::span<const std::uint32_t> words) {
+  const Texture table = add(ALCOVE_RESOURCE_KIND_TABLE, name, VK_FORMAT_UNDEFINED, {});
+  if (table) {
+    AlcoveWorkResource& added = work_.resources[table.index];
+    added.mip_count = 0;
+    added.size = words.size_bytes();
+    added.data = words.data();
+  }
+  return table.index;
+}
+
+tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
+  const ShaderSource source = shader_source(info.shader);
+  const auto fail = [&](std::string_view what, std::string_view name, std::string_view why) {
+    return tl::unexpected(Error{std::string("The shader '")
+                                    .append(source.name)
+                                    .append("' ")
+                                    .append(what)
+                                    .append(" '")
+                                    .append(name)
+                                    .append("', ")
+                                    .append(why)
+                                    .append(".")});
+  };
+  if (work_.dispatch_count == ALCOVE_MAX_WORK_DISPATCHES ||
+      info.parameters.size() > ALCOVE_MAX_WORK_PARAMETER_BYTES) {
+    return fail("does not fit into the list of work, in the pass", info.label,
+                "which has no room for it");
+  }
+  const std::uint32_t number = work_.dispatch_count;
+  AlcoveWorkDispatch& made = work_.dispatches[number];
+  made.label = info.label;
+  made.shader = source.name.data();
+  made.groups[0] = groups(info.size.width);
+  made.groups[1] = groups(info.size.height);
+  made.groups[2] = info.size.depth;
+  const auto constants = resolve_constants(info.shader, info.constants, made.constants);
+  if (!constants) {
+    return tl::unexpected(constants.error());
+  }
+  made.constant_count = *constants;
+  made.binding_count = 0;
+  std::size_t images = 0;
+  for (const ShaderBinding& binding : shader_interface(info.shader).bindings) {
+    AlcoveWorkBinding& bound = made.bindings[made.binding_count++];
+    bound = {.name = binding.name.empty() ? "" : binding.name.data(),
+             .number = binding.number,
+             .type = binding_type(binding.type),
+             .access = binding.access,
+             .resource = ALCOVE_WORK_NONE,
+             .mip = 0,
+             .mip_count = 0};
+    if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS) {
+      continue;
+    }
+    if (bound.type == ALCOVE_BINDING_TYPE_TABLE) {
+      bound.resource = add_table("table", source.table);
+    } else {
+      const NamedTexture* const given = find_named(info.images, binding.name, images++);
+      if (given == nullptr || find(given->texture) == nullptr) {
+        return fail("has a binding", binding.name,
+                    "for which its pass gives no image; name it in the pass's list of images");
+      }
+      bound.resource = given->texture.index;
+      bound.mip = given->range.base_mip;
+      bound.mip_count =
+          given->range.mips == framegraph::kAll ? mips(given->texture) : given->range.mips;
+    }
+    if (bound.resource == ALCOVE_WORK_NONE) {
+      return fail("needs", "a table", "for which the list of work has no room");
+    }
+    AlcoveWorkResource& resource = work_.resources[bound.resource];
+    resource.first_dispatch = std::min(resource.first_dispatch, number);
+    resource.last_dispatch = number;
+    if (binding.is_image()) {
+      resource.usage |= bound.type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE ? ALCOVE_WORK_USAGE_STORAGE
+                                                                        : ALCOVE_WORK_USAGE_SAMPLED;
+    }
+  }
+  if (info.images.size() > images) {
+    if (const NamedTexture* const unknown = find_unknown(info.images, known_images())) {
+      return fail("is given an image", unknown->name, "a name that no shader declares");
+    }
+  }
+  made.parameter_bytes = static_cast<std::uint32_t>(info.parameters.size());
+  std::memcpy(made.parameters, info.parameters.data(), info.parameters.size());
+  ++work_.dispatch_count;
+  return {};
+}
+
+const AlcoveWorkResource* WorkList::find(Texture texture) const {
+  return texture.index < work_.resource_count ? &work_.resources[texture.index] : nullptr;
+}
+
+VkExtent2D WorkList::size(Texture texture) const {
+  const AlcoveWorkResource* const found = find(texture);
+  return found == nullptr ? VkExtent2D{} : VkExtent2D{found->width, found->height};
+}
+
+VkFormat WorkList::format(Texture texture) const {
+  const AlcoveWorkResource* const found = find(texture);
+  return found == nullptr ? VK_FORMAT_UNDEFINED : static_cast<VkFormat>(found->format);
+}
+
+std::uint32_t WorkList::mips(Texture texture) const {
+  const AlcoveWorkResource* const found = find(texture);
+  return found == nullptr ? 0 : found->mip_count;
+}
+
+}  // namespace alcove::passes

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Counts the mutants of the libraries that the tests kill.
+
+  tests/mutants.py [--count 300] [--seed 1] [--build build/mutants] [--folders framegraph/src,...]
+
+A mutant is one source line with one fault: another operator, another constant, a condition that is always
+true or false, or a call that is left out. It is built, and the test programs run until one fails. A mutant
+that does not compile is replaced by the next one. The same seed gives the same mutants of the same sources.
+The tree must have no uncommitted changes; every file is restored. Prints a line for each mutant and the sum.
+"""
+import argparse
+import pathlib
+import random
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FOLDERS = "framegraph/src,framegraph/verifier/src,passes/src,shaders/maths"
+# The test programs, quickest first.
+PROGRAMS = ["framegraph/framegraph_test", "maths/maths_test", "framegraph/framegraph_gpu_test",
+            "passes/passes_test", "passes/c_interface_test"]
+OPERATORS = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > "), (" == ", " != "),
+             (" != ", " == "), (" && ", " || "), (" || ", " && "), (" + ", " - "), (" - ", " + "),
+             (" * ", " / "), (" / ", " * "), (" | ", " & "), ("++", "--"), ("min(", "max("), ("max(", "min(")]
+
+
+def mutations(line):
+    """Returns every mutated form of a line of code."""
+    found = [line[:m.start()] + new + line[m.end():]
+             for old, new in OPERATORS for m in re.finditer(re.escape(old), line)]
+    for m in re.finditer(r"(?<![\w.])(\d+)(\.\d+)?(?=[fu;,) \]])", line):
+        found.append(line[:m.start(1)] + str(int(m.group(1)) + 1) + line[m.end(1):])
+    if m := re.match(r"(\s*(?:\} else )?if \()(.*)(\) \{\s*)$", line):
+        found += [m.group(1) + value + m.group(3) for value in ("true", "false")]
+    if re.match(r"\s+[\w.:>-]+\(.*\);\s*$", line) and "return" not in line:
+        found.append(re.match(r"\s*", line).group() + ";\n")
+    return found
+
+
+def candidates(folders):
+    """Lists (file, line number, mutated line) of all sources, without comments and includes."""
+    every = []
+    for folder in folders:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix not in (".cpp", ".h"):
+                continue
+            for number, line in enumerate(path.read_text().splitlines(keepends=True)):
+                code = line.split("//")[0]
+                if code.strip() and not code.lstrip().startswith(("#", "static_assert")):
+                    every += [(path, number, text.rstrip("\n") + "\n") for text in mutations(code)]
+    return every
+
+
+def run(command, seconds):
+    try:
+        return subprocess.run(command, cwd=ROOT, timeout=seconds, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL).returncode
+    except subprocess.TimeoutExpired:
+        return 124
+
+
+def judge(build):
+    """Builds and tests the mutant: 'invalid', the name of the program that kills it, or 'SURVIVES'."""
+    names = [program.split("/")[1] for program in PROGRAMS]
+    if run(["ninja", "-C", build, *names], 1800) != 0:
+        return "invalid"
+    for program in PROGRAMS:
+        if run([f"{build}/tests/{program}", "--gtest_brief=1", "--gtest_fail_fast"], 900) != 0:
+            return program.split("/")[1]
+    return "SURVIVES"
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    options.add_argument("--count", type=int, default=300)
+    options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--build", default="build/mutants")
+    options.add_argument("--folders", default=FOLDERS)
+    given = options.parse_args()
+    if subprocess.run(["git", "diff", "--quiet", "HEAD"], cwd=ROOT).returncode != 0:
+        sys.exit("mutants: the tree has uncommitted changes; commit them first")
+    build = str(ROOT / given.build)
+    if run(["cmake", "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"], 300) != 0 or judge(build) != "SURVIVES":
+        sys.exit(f"mutants: {given.build} cannot be built, or its tests fail without a mutant")
+    every = candidates(given.folders.split(","))
+    random.Random(given.seed).shuffle(every)
+    valid = killed = 0
+    for path, number, text in every:
+        if valid == given.count:
+            break
+        original = path.read_text()
+        lines = original.splitlines(keepends=True)
+        was, lines[number] = lines[number].strip(), text
+        try:
+            path.write_text("".join(lines))
+            verdict = judge(build)
+        finally:
+            path.write_text(original)
+        if verdict != "invalid":
+            valid += 1
+            killed += verdict != "SURVIVES"
+            print(f"{verdict}: {path.relative_to(ROOT)}:{number + 1}: {was} -> {text.strip()}", flush=True)
+    print(f"{killed} of {valid} mutants killed (seed {given.seed})")
+
+
+if __name__ == "__main__":
+    main()
