@@ -237,7 +237,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
     kCommands[i].add_options(*command.group(kCommands[i].group), options[i]);
   }
   app.require_subcommand(1);
-  app.set_version_flag("--version", "alcove " ALCOVE_VERSION);
+  app.set_version_flag("--version", "alcove " ALCOVE_PROGRAM_VERSION);
   app.footer("`alcove COMMAND --help` lists the options of a command.");
   if (argc < 2) return tl::unexpected(no_command("name a command"));
   if (argv[1][0] != '-' && !is_command(argv[1])) {
