@@ -43,8 +43,8 @@ tl::expected<double, std::string> iterations(const PassWork& work, const Compile
 // seen_normal() computes a normal from depth if the given normal is missing or seems to face away
 // from the eye by a little. It loads the depth of a pixel and of its four neighbours.
 double branch_share(const PassWork& /*work*/, const CompiledBranch& branch) {
-  // An assumption about the share of the groups of 8x8 pixels with such a pixel; it is zero with the
-  // triangles' own normals, except at silhouettes.
+  // An assumption about the share of the groups of 8x8 pixels with such a pixel; it is zero with
+  // the triangles' own normals, except at silhouettes.
   constexpr double kNormalFromDepth = 0.02;
   const bool normal_from_depth = branch.stores == 0 && (branch.loads == 4 || branch.loads == 5);
   return normal_from_depth ? kNormalFromDepth : 1.0;

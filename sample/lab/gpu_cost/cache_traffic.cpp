@@ -15,7 +15,7 @@ using passes::cost::Texel;
 
 // At most this many accesses of waves are simulated: the first rows of groups of a larger dispatch
 // stand for all. At 1920x1080 the searches of console, low and medium are simulated completely.
-constexpr std::size_t kMostAccesses = 250'000;
+constexpr std::size_t kMostAccesses = 110'000;
 constexpr std::uint32_t kGroup = 8;  // invocations of a group along x and y; a group is a wave
 
 // A set-associative cache that replaces the line that was used least recently.
