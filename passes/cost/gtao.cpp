@@ -1,4 +1,4 @@
-// Loops and traffic of shaders/gtao.comp.
+// Loops of shaders/gtao.comp.
 #include "pass_work.h"
 
 namespace alcove::passes::cost {
@@ -86,15 +86,6 @@ std::optional<double> gtao_iterations(const PassWork& work, const CompiledLoop& 
     return integrates_runs(work.settings) ? std::optional(kOccluderRuns) : std::nullopt;
   }
   return sampling_iterations(work, loop.index);
-}
-
-double gtao_traffic(const PassWork& work, std::string_view image, Direction direction) {
-  // Returns the fraction of the 64-byte cache lines (eight normals) that contain a traced pixel.
-  // One of every `tile` rows contains traced pixels. In these rows every cache line contains one if
-  // tiles are at most eight pixels wide.
-  const std::uint32_t tile = work.settings.tile_size;
-  const bool normals = image == "normals" && direction == Direction::read;
-  return normals && tile >= 4 ? 1.0 / tile : 1.0;
 }
 
 }  // namespace alcove::passes::cost

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "pass_work.h"
@@ -41,50 +40,14 @@ tl::expected<double, std::string> iterations(const PassWork& work, const Compile
                         std::to_string(loop.stores) + " image stores; declare it in passes/cost.");
 }
 
-double traffic_share(const PassWork& work, std::string_view image, Direction direction) {
-  if (work.pass == "gtao") {
-    return gtao_traffic(work, image, direction);
-  }
-  if (work.pass == "reconstruct") {
-    return reconstruct_traffic(work, image, direction);
-  }
-  return 1.0;
-}
-
-double cache_lines(const LoadPattern& pattern) {
-  constexpr std::int32_t kLine = 64;
-  constexpr std::int32_t kGroup = 8;
-  const auto texel = static_cast<std::int32_t>(pattern.texel_bytes);
-  const auto pitch = static_cast<std::int32_t>(pattern.pitch);
-  const auto footprint = static_cast<std::int32_t>(pattern.footprint);
-  std::set<std::int32_t> rows;
-  for (std::int32_t i = 0; i < kGroup * footprint; ++i) {
-    rows.insert(i / footprint * pitch + i % footprint);
-  }
-  const std::int32_t positions = pattern.anywhere ? kLine / texel : 1;
-  double lines = 0;
-  for (std::int32_t position = 0; position < positions; ++position) {
-    std::set<std::int32_t> of_row;
-    for (const std::int32_t column : rows) {
-      const std::int32_t x = column + position + pattern.first;
-      of_row.insert((x * texel + kLine) / kLine);  // a group begins at most a line before its image
-    }
-    lines += static_cast<double>(of_row.size() * rows.size());
-  }
-  return lines / positions;
-}
-
-double cache_lines_per_load(const PassWork& work) {
-  if (work.pass != "reconstruct") {
-    return 0;
-  }
-  double lines = 0;
-  double loads = 0;
-  for (const LoadPattern& pattern : reconstruct_loads(work)) {
-    lines += pattern.count * cache_lines(pattern);
-    loads += pattern.count;
-  }
-  return lines / loads;
+// seen_normal() computes a normal from depth if the given normal is missing or seems to face away
+// from the eye by a little. It loads the depth of a pixel and of its four neighbours.
+double branch_share(const PassWork& /*work*/, const CompiledBranch& branch) {
+  // An assumption about the share of the groups of 8x8 pixels with such a pixel; it is zero with
+  // the triangles' own normals, except at silhouettes.
+  constexpr double kNormalFromDepth = 0.02;
+  const bool normal_from_depth = branch.stores == 0 && (branch.loads == 4 || branch.loads == 5);
+  return normal_from_depth ? kNormalFromDepth : 1.0;
 }
 
 }  // namespace alcove::passes::cost

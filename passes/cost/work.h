@@ -1,10 +1,9 @@
 // Facts about the occlusion passes that a compiler cannot know: how often each loop of a shader
-// runs, and how much of an image a pass actually reads or writes. The GPU cost model
-// (sample/lab/gpu_cost) multiplies the instructions of each loop by these counts.
+// runs, how rare a branch is, and (accesses.h) which texels a pass reads and writes. The GPU cost
+// model (sample/lab/gpu_cost) multiplies the instructions of each loop by these counts.
 //
-// A commit that changes a loop of a shader, or the texels that a pass uses, must also change
-// gtao.cpp or reconstruct.cpp in this folder. A loop without a count is an error that names the
-// loop, so that no count is guessed.
+// A commit that changes a loop of a shader must also change gtao.cpp or reconstruct.cpp in this
+// folder. A loop without a count is an error that names the loop, so that no count is guessed.
 #pragma once
 
 #include <cstdint>
@@ -51,32 +50,15 @@ struct PassWork {
 [[nodiscard]] tl::expected<double, std::string> iterations(const PassWork& work,
                                                            const CompiledLoop& loop);
 
-enum class Direction : std::uint8_t { read, write };
-
-// Returns the fraction, 0 to 1, of the bytes of an image that a pass moves between memory and
-// caches. It is 1 unless a smaller fraction is known for the pass.
-[[nodiscard]] double traffic_share(const PassWork& work, std::string_view image,
-                                   Direction direction);
-
-// The texels that the 64 invocations of a group of 8x8 load with one instruction.
-struct LoadPattern {
-  std::uint32_t texel_bytes = 4;
-  std::uint32_t pitch = 1;      // texels from one invocation's texel to the next, in x and y
-  std::uint32_t footprint = 1;  // texels of an invocation in x and y: 2 for a gather
-  // Whether the position of the group's first texel is arbitrary, as it is if the history of a
-  // moving camera is read. If false, its position is a multiple of 8 * pitch, plus `first`.
-  bool anywhere = false;
-  std::int32_t first = 0;
-  std::uint32_t count = 1;  // instructions of this pattern in a wave
+// One side of a divergent branch of the compiled shader.
+struct CompiledBranch {
+  std::uint32_t instructions = 0;
+  std::uint32_t loads = 0;   // image loads, samples and gathers among them
+  std::uint32_t stores = 0;  // image stores among them
 };
 
-// Returns the number of 64-byte cache lines that a load with this pattern touches. The image is
-// assumed to be stored row by row, with each row beginning at a cache line. If the group can be
-// anywhere, it is the mean over all positions.
-[[nodiscard]] double cache_lines(const LoadPattern& pattern);
-
-// Returns the mean number of cache lines per load over all loads of a pass. It is 0 for passes
-// whose patterns are not declared, which are all except reconstruct.
-[[nodiscard]] double cache_lines_per_load(const PassWork& work);
+// Returns the share of waves, [0,1], in which at least one invocation executes `branch`. It is 1
+// unless the branch is known to be rare.
+[[nodiscard]] double branch_share(const PassWork& work, const CompiledBranch& branch);
 
 }  // namespace alcove::passes::cost

@@ -11,7 +11,7 @@
 namespace alcove::sample {
 namespace {
 
-passes::Frame frame_of(framegraph::Graph& graph, Session& session, const Options& options) {
+passes::Frame frame_of(framegraph::Graph& graph, const Session& session, const Options& options) {
   const CameraMatrices matrices =
       camera_matrices(session.camera, options.view.width, options.view.height);
   return pass_frame(graph, *session.gpu,
@@ -20,7 +20,7 @@ passes::Frame frame_of(framegraph::Graph& graph, Session& session, const Options
 }
 
 // Declares the frame of the occlusion, with placeholders for the images of the g-buffer.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& session,
+tl::expected<void, std::string> declare(framegraph::Graph& graph, const Session& session,
                                         const Options& options) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
   const auto texture = [&](const char* name, VkFormat format) {
@@ -60,7 +60,7 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, Session& sessi
 }
 
 // Prints the work of the occlusion as data.
-tl::expected<void, std::string> print_work(Session& session, const Options& options) {
+tl::expected<void, std::string> print_work(const Session& session, const Options& options) {
   const auto work = std::make_unique<AlcoveWork>();
   passes::WorkList list(*work);
   const auto image = [&](bool wanted, AlcoveResourceKind kind, const char* name, VkFormat format) {
@@ -97,27 +97,30 @@ tl::expected<void, std::string> print_work(Session& session, const Options& opti
 
 }  // namespace
 
+tl::expected<std::string, std::string> plan_text(const Session& session, const Options& options) {
+  framegraph::Graph graph;
+  if (auto declared = declare(graph, session, options); !declared) {
+    return tl::unexpected(declared.error());
+  }
+  const framegraph::GraphDescription& description = graph.description();
+  const auto plan = framegraph::compile(description, session.gpu->executor().limits());
+  if (!plan) {
+    return tl::unexpected(framegraph::to_string(plan.error()));
+  }
+  const bool dot = options.graph_format == GraphFormat::kDot;
+  return dot ? framegraph::print_dot(description, *plan)
+             : framegraph::print_text(description, *plan);
+}
+
 tl::expected<void, std::string> run_graph(const Options& options) {
-  auto session = open_session(options);
+  const auto session = open_session(options);
   if (!session) {
     return tl::unexpected(session.error());
   }
   if (options.graph_format == GraphFormat::kWork) {
     return print_work(*session, options);
   }
-  framegraph::Graph graph;
-  if (auto declared = declare(graph, *session, options); !declared) {
-    return tl::unexpected(declared.error());
-  }
-  const framegraph::GraphDescription& description = graph.description();
-  const auto plan = framegraph::compile(description, session->gpu->executor().limits());
-  if (!plan) {
-    return tl::unexpected(framegraph::to_string(plan.error()));
-  }
-  const bool dot = options.graph_format == GraphFormat::kDot;
-  std::cout << (dot ? framegraph::print_dot(description, *plan)
-                    : framegraph::print_text(description, *plan));
-  return {};
+  return plan_text(*session, options).map([](const std::string& text) { std::cout << text; });
 }
 
 }  // namespace alcove::sample

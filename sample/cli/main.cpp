@@ -38,6 +38,10 @@ tl::expected<void, std::string> run(const Options& options) {
       return alcove::sample::run_bench(options);
     case Command::kCost:
       return alcove::sample::run_cost(options);
+    case Command::kMeasure:
+      return alcove::sample::run_measure(options);
+    case Command::kReport:
+      return alcove::sample::run_report(options);
   }
   return {};  // not reached: a missing command does not compile
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <sstream>
 #include <tuple>
 #include <utility>
 
@@ -113,7 +114,7 @@ void add_scene(CLI::App& app, std::string& scene) {
   app.add_option(
          "SCENE", scene,
          "a .gltf or .glb file, or a scene that the program generates: builtin (the default), "
-         "plane:60, groove:90, corner, sphere, pit or step")
+         "fence, terrain, plane:60, groove:90, corner, sphere, pit or step")
       ->type_name("");
 }
 
@@ -212,6 +213,15 @@ void add_motion(CLI::App& app, Options& options) {
              "compared with the ray-traced truth. Default: 48");
 }
 
+void add_radius(CLI::App& app, OcclusionOptions& occlusion) {
+  const Group group(app, "Occlusion");
+  group.add(
+      "--radius", "LENGTH",
+      "distance up to which occluders count, scene units. Default: a twentieth of the diagonal of "
+      "the scene, without sky domes, ground planes and stray triangles far away",
+      [&](const OptionValue& given) { occlusion.radius = given.length(); });
+}
+
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
   group.add("--quality", "NAME", "preset: console, low, medium, high or reference. Default: medium",
@@ -221,6 +231,13 @@ void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
                   static_cast<passes::Quality>(given.one_of(passes::kNames<passes::Quality>));
             });
   add_radius(group, occlusion);
+  group.add("--settings", "FILE",
+            "settings that `alcove recommend --out` wrote. --set changes them further",
+            [&](const OptionValue& given) {
+              auto read = read_settings(given.text);
+              if (!read) throw Mistake{"--settings: " + read.error()};
+              occlusion.file = std::move(*read);
+            });
   group.add_repeatable(
       "--set", "NAME=VALUE",
       "changes one setting of the preset; the settings are listed below. May be repeated",
@@ -287,9 +304,39 @@ void add_limits(CLI::App& app, Options& options) {
       [&](const OptionValue& given) {
         options.budget_ms = given.positive("a time above 0 in milliseconds");
       });
+  group.add("--situation", "NAME",
+            "the situation whose error and time count: first (frame), moving (camera), standing "
+            "(camera) or mix. Default: mix, in which the moving camera counts 60 %, the standing "
+            "30 % and the first frame 10 %",
+            [&](const OptionValue& given) {
+              std::vector<std::string_view> names(kSituationNames.begin(), kSituationNames.end());
+              names.emplace_back("mix");
+              const std::size_t which = given.one_of(names);
+              options.situation = which < kSituationNames.size()
+                                      ? std::optional(static_cast<Situation>(which))
+                                      : std::nullopt;
+            });
+  group.add("--out", "FILE", "also write the settings, for --settings",
+            [&](const OptionValue& given) { options.settings_out = given.text; });
   group.add(
       "--tolerance", "E", "find the fastest setting whose RMSE of visibility is at most this error",
       [&](const OptionValue& given) { options.tolerance = given.positive("an error above 0"); });
+}
+
+void add_target(CLI::App& app, Options& options) {
+  const Group group(app);
+  group.add("--target-size", "WxH",
+            "size of the image whose time counts; errors are measured at --size. Default: "
+            "1920x1080",
+            [&](const OptionValue& given) {
+              std::tie(options.target_width, options.target_height) = given.size();
+            });
+  group.add(
+      "--gpu", "NAME", "the GPU whose time is modelled: ps4 or rdna2. Default: rdna2",
+      [&](const OptionValue& given) {
+        constexpr std::array<std::string_view, 2> kNames{kGpuParts[0].name, kGpuParts[1].name};
+        options.gpu = &kGpuParts[given.one_of(kNames)];
+      });
 }
 
 void add_grid(CLI::App& app, bool& grid) {
@@ -340,6 +387,20 @@ void add_cost(CLI::App& app, Options& options) {
             [&](const OptionValue& given) { options.cost.budget = given.text; });
   group.add("--chart", "FILE", "also write an SVG chart of the time of each pass",
             [&](const OptionValue& given) { options.cost.chart = given.text; });
+}
+
+void add_sizes(CLI::App& app, Options& options) {
+  const Group group(app);
+  group.add("--sizes", "WxH,...",
+            "sizes of the image in pixels. Default: 1920x1080,3840x2160,7680x4320",
+            [&](const OptionValue& given) {
+              options.sizes.clear();
+              std::istringstream all(given.text + ",");
+              for (std::string one; std::getline(all, one, ',');) {
+                options.sizes.push_back(OptionValue{given.option, one}.size());
+              }
+            });
+  add_frames(group, options.view, 1, "number of frames that are timed. Default: 200");
 }
 
 void add_doctor(CLI::App& app, Options& options) {

@@ -38,6 +38,12 @@ void add_limits(CLI::App& app, Options& options);
 void add_clock(CLI::App& app, std::optional<Clock>& clock);
 // Adds the options of `cost`: the GPU, the image size, and the output files.
 void add_cost(CLI::App& app, Options& options);
+// Adds --target-size and --gpu, for which times are modelled.
+void add_target(CLI::App& app, Options& options);
+// Adds --radius alone, for commands without the other options of the occlusion.
+void add_radius(CLI::App& app, OcclusionOptions& occlusion);
+// Adds --sizes and --frames of `measure`.
+void add_sizes(CLI::App& app, Options& options);
 // Adds the option of `bench` that measures the grid of steps and slices.
 void add_grid(CLI::App& app, bool& grid);
 // Adds the options of `doctor`: --mistakes and --pictures.

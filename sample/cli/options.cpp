@@ -58,6 +58,7 @@ void add_comparison(CLI::App& app, Options& options) {
 void add_ablate(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_materials(app, options.materials);
+  add_clock(app, options.clock);
   add_comparison(app, options);
   add_output(app, options);
 }
@@ -75,6 +76,7 @@ void add_recommend(CLI::App& app, Options& options) {
   add_scene(app, options.scene);
   add_materials(app, options.materials);
   add_limits(app, options);
+  add_target(app, options);
   add_clock(app, options.clock);
   add_comparison(app, options);
   add_device(app, options);
@@ -85,6 +87,26 @@ void add_cost_command(CLI::App& app, Options& options) {
   options.view.height = 1080;
   add_cost(app, options);
   add_occlusion(app, options.occlusion);
+}
+
+void add_report(CLI::App& app, Options& options) {
+  options.view.width = 480;
+  options.view.height = 270;
+  add_scenes(app, options.scenes);
+  add_materials(app, options.materials);
+  add_target(app, options);
+  add_comparison(app, options);
+  add_output(app, options);
+}
+
+void add_measure(CLI::App& app, Options& options) {
+  options.view.frames = 200;
+  add_scene(app, options.scene);
+  add_materials(app, options.materials);
+  add_sizes(app, options);
+  add_view(app, options.view);
+  add_occlusion(app, options.occlusion);
+  add_output(app, options);
 }
 
 void add_graph(CLI::App& app, Options& options) {
@@ -123,6 +145,7 @@ void add_doctor_command(CLI::App& app, Options& options) {
   add_materials(app, options.materials);
   add_doctor(app, options);
   add_view(app, options.view);
+  add_radius(app, options.occlusion);
   add_device(app, options);
 }
 
@@ -136,7 +159,7 @@ struct Entry {
   const char* help;
   void (*add_options)(CLI::App& app, Options& options);
 };
-constexpr std::array<Entry, 10> kCommands{{
+constexpr std::array<Entry, 12> kCommands{{
     {Command::kRender, kUse, "render", "render a scene to occlusion images and print timings",
      add_render},
     {Command::kView, kUse, "view",
@@ -160,6 +183,12 @@ constexpr std::array<Entry, 10> kCommands{{
     {Command::kCost, kLaboratory, "cost",
      "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
      add_cost_command},
+    {Command::kMeasure, kLaboratory, "measure",
+     "time each pass on the device, beside the times that the model of `cost` predicts",
+     add_measure},
+    {Command::kReport, kLaboratory, "report",
+     "write a web page: error against time, pictures beside the truth, and what a scene requires",
+     add_report},
 }};
 
 // Joins the lines of a message of CLI11.

@@ -14,6 +14,8 @@
 #include "alcove/passes/occlusion.h"
 #include "evaluate/clock.h"
 #include "evaluate/motion_kind.h"
+#include "evaluate/recommendation.h"
+#include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"
 #include "scene/load_scene.h"
 #include "support/glm.h"
@@ -32,7 +34,9 @@ enum class Command {
   kMotion,
   kAblate,
   kBench,
-  kCost
+  kCost,
+  kMeasure,
+  kReport
 };
 // Names are in the order of the enumerators.
 enum class GraphFormat { kText, kDot, kWork };
@@ -61,9 +65,10 @@ struct OcclusionOptions {
   bool quality_given = false;   // --quality was given
   std::optional<float> radius;  // scene units; none: radius_for_view()
   NormalSource normals = NormalSource::kShading;
-  std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
-  std::vector<float> roughness;                          // overrides the materials; perceptual
-  uint32_t spp = 256;                                    // rays per pixel of the truth
+  std::vector<std::pair<std::string, std::string>> file;  // settings of --settings
+  std::vector<std::pair<std::string, std::string>> set;   // --set name=value, in order
+  std::vector<float> roughness;                           // overrides the materials; perceptual
+  uint32_t spp = 256;                                     // rays per pixel of the truth
 };
 
 struct CostOptions {
@@ -90,9 +95,16 @@ struct Options {
   // The limits of the command `recommend`: GPU time in milliseconds, or RMSE of visibility. Exactly
   // one of them is given.
   std::optional<double> budget_ms, tolerance;
-  std::optional<Clock> clock;      // bench, recommend: empty for the clock that fits the device
-  std::optional<MotionKind> path;  // motion: empty for all paths
+  std::optional<Situation> situation;  // recommend: empty for a mix of all
+  uint32_t target_width = 1920;        // recommend: of the image whose time is modelled, pixels
+  uint32_t target_height = 1080;
+  const GpuPart* gpu = &kGpuParts[1];  // recommend: the modelled one
+  std::filesystem::path settings_out;  // recommend: empty for none
+  std::optional<Clock> clock;          // bench, recommend: empty for the clock that fits the device
+  std::optional<MotionKind> path;      // motion: empty for all paths
   CostOptions cost;
+  // measure: sizes of the image in pixels
+  std::vector<std::pair<uint32_t, uint32_t>> sizes{{1920, 1080}, {3840, 2160}, {7680, 4320}};
   bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes
   std::filesystem::path pictures;  // doctor: folder for pictures of the mistakes; empty for none
   bool grid = false;  // bench: measures the grid of steps and slices instead of the presets

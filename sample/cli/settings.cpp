@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <iomanip>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "alcove/passes/setting_table.h"
 #include "cli/option_value.h"
+#include "support/printable.h"
+#include "support/regular_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -125,15 +129,46 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
                                                                 float default_radius) {
   OcclusionSettings settings =
       passes::quality_settings(options.quality, options.radius.value_or(default_radius));
-  for (const auto& [name, value] : options.set) {
-    if (const auto wanted = set(settings, name, value)) {
-      return Failure("--set " + name + "=" + value + ": give " + *wanted);
+  for (const auto* list : {&options.file, &options.set}) {
+    for (const auto& [name, value] : *list) {
+      if (const auto wanted = set(settings, name, value)) {
+        return Failure("--set " + name + "=" + value + ": give " + *wanted);
+      }
     }
   }
   if (const auto good = passes::validate(settings); !good) {
     return Failure("--set: " + good.error().message);
   }
   return settings;
+}
+
+tl::expected<std::vector<std::pair<std::string, std::string>>, std::string> read_settings(
+    const std::string& file) {
+  constexpr std::size_t kMost = 64 << 10;  // bytes
+  const auto opened = open_regular_file(file);
+  if (!opened) {
+    return Failure("cannot read " + printable(file) + ": " + opened.error());
+  }
+  std::string text(kMost + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), opened->get()));
+  const auto json = text.size() > kMost ? nlohmann::ordered_json()
+                                        : nlohmann::ordered_json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("settings") || !json["settings"].is_object()) {
+    return Failure(printable(file) +
+                   " holds no settings; give a file that `alcove recommend --out` wrote");
+  }
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const auto& [name, value] : json["settings"].items()) {
+    const std::string shown_value = value.is_string()         ? value.get<std::string>()
+                                    : value.is_number_float() ? shown(value.get<float>())
+                                                              : value.dump();
+    if (const auto wanted = wanted_instead(name, shown_value)) {
+      return Failure(printable(file) + ": " + printable(name) + " is " + printable(shown_value) +
+                     "; give " + *wanted);
+    }
+    found.emplace_back(name, shown_value);
+  }
+  return found;
 }
 
 }  // namespace alcove::sample

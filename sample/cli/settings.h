@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
+#include <vector>
 
 #include "alcove/passes/occlusion.h"
 #include "cli/options.h"
@@ -22,5 +24,11 @@ namespace alcove::sample {
 
 // Returns a text with one line for each setting: name, meaning, range, default.
 [[nodiscard]] std::string settings_help();
+
+// Reads the names and values of settings from a file that `alcove recommend --out` wrote: a JSON
+// object `settings` with a value for each name of --set. Errors: the file cannot be read, it is not
+// such an object, or a name or value is not allowed.
+[[nodiscard]] tl::expected<std::vector<std::pair<std::string, std::string>>, std::string>
+read_settings(const std::string& file);
 
 }  // namespace alcove::sample

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string_view>
 
 namespace alcove::sample {
 namespace {
@@ -20,6 +21,16 @@ using Failure = tl::unexpected<std::string>;
 
 Failure failure(std::string what, VkResult result) {
   return Failure(std::move(what) + " (" + std::string(result_name(result)) + ").");
+}
+
+bool has_extension(VkPhysicalDevice device, std::string_view name) {
+  std::uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  return std::ranges::any_of(extensions, [&](const VkExtensionProperties& extension) {
+    return extension.extensionName == name;
+  });
 }
 
 // The structures of the Vulkan 1.3 features that Alcove uses, as a pNext chain.
@@ -249,7 +260,7 @@ tl::expected<void, std::string> VulkanDevice::choose_physical_device(int index) 
   return {};
 }
 
-tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
+tl::expected<void, std::string> VulkanDevice::create_device(const DeviceOptions& options) {
   vkGetPhysicalDeviceProperties(physical_device_, &properties_);
   vkGetPhysicalDeviceMemoryProperties(physical_device_, &memory_);
   VkPhysicalDeviceMaintenance3Properties limits{
@@ -281,16 +292,24 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
     max_anisotropy_ = properties_.limits.maxSamplerAnisotropy;
   }
   std::vector<const char*> extensions;
-  if (presentation) {
+  if (!options.surface_extensions.empty()) {
     extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   }
-  const VkDeviceCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-      .pNext = &enabled.all,
-      .queueCreateInfoCount = 1,
-      .pQueueCreateInfos = &queue,
-      .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
-      .ppEnabledExtensionNames = extensions.data()};
+  VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR capture{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
+      .pipelineExecutableInfo = VK_TRUE};
+  if (options.capture &&
+      has_extension(physical_device_, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) {
+    extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    enabled.v13.pNext = &capture;
+    captures_ = true;
+  }
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = &enabled.all,
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue,
+                                .enabledExtensionCount = static_cast<uint32_t>(extensions.size()),
+                                .ppEnabledExtensionNames = extensions.data()};
   const VkResult result = vkCreateDevice(physical_device_, &info, nullptr, &device_);
   if (result != VK_SUCCESS) {
     return failure("The device " + std::string(properties_.deviceName) + " could not be opened",
@@ -303,10 +322,9 @@ tl::expected<void, std::string> VulkanDevice::create_device(bool presentation) {
 tl::expected<std::unique_ptr<VulkanDevice>, std::string> VulkanDevice::create(
     const DeviceOptions& options) {
   std::unique_ptr<VulkanDevice> made(new VulkanDevice);
-  auto done =
-      made->create_instance(options)
-          .and_then([&] { return made->choose_physical_device(options.index); })
-          .and_then([&] { return made->create_device(!options.surface_extensions.empty()); });
+  auto done = made->create_instance(options)
+                  .and_then([&] { return made->choose_physical_device(options.index); })
+                  .and_then([&] { return made->create_device(options); });
   if (!done) {
     return tl::unexpected(std::move(done.error()));
   }

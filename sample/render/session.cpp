@@ -12,7 +12,8 @@ tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const DeviceRequest& re
   executor.check_uses = executor.check_uses || request.validation;
   return Gpu::create({.validation = request.validation,
                       .index = request.index,
-                      .surface_extensions = request.surface_extensions},
+                      .surface_extensions = request.surface_extensions,
+                      .capture = request.capture},
                      executor);
 }
 

@@ -3,6 +3,7 @@
 #include "scene/analytic_scenes.h"
 #include "scene/builtin_scene.h"
 #include "scene/gltf.h"
+#include "scene/outdoor_scenes.h"
 
 namespace alcove::sample {
 
@@ -28,6 +29,8 @@ tl::expected<Scene, std::string> load_scene(const std::string& what,
                                             const MaterialTreatment& treatment,
                                             const Progress& progress) {
   if (what.empty() || what == "builtin") return builtin_scene();
+  if (what == "fence") return fence_scene();
+  if (what == "terrain") return terrain_scene();
   if (is_analytic_name(what)) {
     auto analytic = analytic_scene(what);
     if (!analytic) return tl::unexpected(analytic.error());

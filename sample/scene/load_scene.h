@@ -15,10 +15,10 @@ struct MaterialTreatment {
   bool both_sides = false;  // single-sided materials are drawn from behind too
 };
 
-// Loads a scene by the name that the user typed: empty or `builtin`, an analytic scene (`plane:60`,
-// `groove:90`, `corner`, `sphere`, `pit`, `step`), or the path of a .gltf or .glb file. A scene
-// from a file has only the cameras of the file. Errors are one sentence that names the scene and
-// the remedy. The scene's warnings name each alpha-blended material.
+// Loads a scene by the name that the user typed: empty or `builtin`, `fence`, `terrain`, an
+// analytic scene (`plane:60`, `groove:90`, `corner`, `sphere`, `pit`, `step`), or the path of a
+// .gltf or .glb file. A scene from a file has only the cameras of the file. Errors are one sentence
+// that names the scene and the remedy. The scene's warnings name each alpha-blended material.
 [[nodiscard]] tl::expected<Scene, std::string> load_scene(const std::string& what,
                                                           const MaterialTreatment& treatment = {},
                                                           const Progress& progress = {});

@@ -21,6 +21,8 @@ class SceneBuilder {
 
   // Adds one flat face with its corners counter-clockwise from the front.
   void quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d);
+  // Adds a face with a normal at each corner. The normals need not be unit.
+  void smooth_quad(const glm::vec3 (&positions)[4], const glm::vec3 (&normals)[4]);
   void triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c);
   void box(glm::vec3 low, glm::vec3 high);
   // Adds a solid of revolution about +Y. The profile is a list of (radius, height) from bottom to
@@ -40,7 +42,6 @@ class SceneBuilder {
 
  private:
   void vertex(glm::vec3 position, glm::vec3 normal);
-  void smooth_quad(const glm::vec3 (&positions)[4], const glm::vec3 (&normals)[4]);
   Mesh& mesh() { return scene_.meshes[material_]; }
 
   Scene scene_;

@@ -9,6 +9,7 @@
 #include "cli/report.h"
 #include "evaluate/ablation.h"
 #include "evaluate/errors.h"
+#include "evaluate/situations.h"
 #include "evaluate/variant_errors.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
@@ -80,18 +81,59 @@ tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const
                                 common_surfaces(pair, *images, *others))};
 }
 
-std::string table_of(const std::vector<VariantErrors>& rows) {
+// Returns the clock for the times of the device, as add_clock() says.
+tl::expected<Clock, std::string> clock_of(const Options& options, const Session& session) {
+  const bool software =
+      session.gpu->device().properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const Clock wanted = options.clock.value_or(software ? Clock::modelled : Clock::timestamps);
+  if (wanted != Clock::modelled) {
+    return wanted;
+  }
+  const auto device = create_null_device(options.gpu->family);
+  if (!device && options.clock) {
+    return Failure(device.error());
+  }
+  return device ? Clock::modelled : Clock::processor;
+}
+
+// Replaces the ratios of device timestamps by those of the modelled times of a moving frame.
+Done model_times(const Options& options, std::vector<VariantErrors>& rows) {
+  const auto times =
+      ModelledTimes::create(*options.gpu,
+                            {.width = options.target_width,
+                             .height = options.target_height,
+                             .normals = options.occlusion.normals != NormalSource::kDepth},
+                            options.use_cache);
+  if (!times) {
+    return Failure(times.error());
+  }
+  constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
+  double base_ms = 0;
+  for (VariantErrors& row : rows) {
+    const auto ms = times->measure(row.variant.settings);
+    if (!ms) {
+      return Failure(ms.error());
+    }
+    base_ms = &row == rows.data() ? (*ms)[kMoving] : base_ms;
+    row.cost.gpu = (*ms)[kMoving] / base_ms;
+  }
+  return {};
+}
+
+std::string table_of(const std::vector<VariantErrors>& rows, Clock clock) {
   std::string out = fmt::format(
       "RMSE of visibility over {} pixels, and cost relative to the first row\n"
-      "  {:47}scene truth   height field    bias   GPU   processor   MiB\n",
-      rows.front().scene.count, "");
+      "  {:47}scene truth   height field    bias {:>5}   processor   MiB\n",
+      rows.front().scene.count, "", clock == Clock::modelled ? "model" : "GPU");
   std::string part;
   for (const VariantErrors& row : rows) {
     const bool begins = row.variant.part != part;
     part = row.variant.part;
-    out += fmt::format("  {:15}{:32}{:10.4f}{:15.4f}{:+10.3f}{:6.2f}{:10.2f}{:9.1f}\n",
+    out += fmt::format("  {:15}{:32}{:10.4f}{:15.4f}{:+10.3f}{:>6}{:10.2f}{:9.1f}\n",
                        begins ? part : "", row.variant.name, row.scene.rmse, row.height_field.rmse,
-                       row.scene.bias, row.cost.gpu, row.cost.processor, mib(row.cost.bytes));
+                       row.scene.bias,
+                       clock == Clock::processor ? "-" : fmt::format("{:.2f}", row.cost.gpu),
+                       row.cost.processor, mib(row.cost.bytes));
   }
   return out;
 }
@@ -128,13 +170,21 @@ Done run_ablate(const Options& options) {
   if (!folder) {
     return tl::unexpected(folder.error());
   }
-  const auto variants =
-      run_variants(*session, static_setup(options, session->camera), truth_options(options),
-                   variants_of(session->settings), "changes");
+  const auto clock = clock_of(options, *session);
+  if (!clock) {
+    return Failure(clock.error());
+  }
+  auto variants = run_variants(*session, static_setup(options, session->camera),
+                               truth_options(options), variants_of(session->settings), "changes");
   if (!variants) {
     return Failure(variants.error());
   }
-  std::cout << table_of(variants->rows) << std::flush;
+  if (*clock == Clock::modelled) {
+    if (auto modelled = model_times(options, variants->rows); !modelled) {
+      return modelled;
+    }
+  }
+  std::cout << table_of(variants->rows, *clock) << std::flush;
   std::vector<InvariancePairRow> invariance_pair_rows;
   const std::uint32_t largest = session->gpu->device().properties().limits.maxImageDimension2D;
   for (const InvariancePair& pair : invariance_pairs_of(session->camera, options.view.height)) {

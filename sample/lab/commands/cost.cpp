@@ -34,11 +34,13 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
   if (!settings) {
     return Failure(settings.error());
   }
-  LabelledSettings given{
-      std::string(passes::name_of(quality)),
-      {options.view.width, options.view.height, options.occlusion.normals != NormalSource::kDepth,
-       options.cost.motion_vectors, *settings},
-      ""};
+  LabelledSettings given{std::string(passes::name_of(quality)),
+                         {.width = options.view.width,
+                          .height = options.view.height,
+                          .normals = options.occlusion.normals != NormalSource::kDepth,
+                          .motion = options.cost.motion_vectors,
+                          .settings = *settings},
+                         ""};
   for (const auto& [name, value] : options.occlusion.set) {
     given.label += " " + name + "=" + value;
   }
@@ -90,7 +92,7 @@ Done write_budget(const std::filesystem::path& file) {
   if (!costs) {
     return Failure(costs.error());
   }
-  return write_text(file, budget_of(*costs, compiler_name(*device)).dump(1) + "\n");
+  return write_text(file, budget_of(*costs, compiler_name(*device)));
 }
 
 }  // namespace

@@ -72,8 +72,10 @@ std::string TradeClock::title() const {
 
 tl::expected<double, std::string> TradeClock::modelled_ms(
     const passes::OcclusionSettings& settings) const {
-  CostInputs inputs{setup_.width, setup_.height, setup_.normals != NormalSource::kDepth, false,
-                    settings};
+  CostInputs inputs{.width = setup_.width,
+                    .height = setup_.height,
+                    .normals = setup_.normals != NormalSource::kDepth,
+                    .settings = settings};
   // Variants are rendered with these settings too.
   inputs.settings.specular = passes::Specular::none;
   inputs.settings.bent_normal = false;

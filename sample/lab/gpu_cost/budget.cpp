@@ -1,8 +1,11 @@
 #include "gpu_cost/budget.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "alcove/passes/setting_names.h"
 
@@ -15,6 +18,7 @@ using passes::Quality;
 
 constexpr double kTolerance = 0.01;  // fraction by which instructions per pixel may exceed a budget
 constexpr float kRadius = 0.5f;      // scene units; the instructions do not depend on it
+constexpr const char* kKeys[] = {"part", "settings", "pass"};
 
 LabelledSettings preset(Quality quality) {
   LabelledSettings settings;
@@ -23,76 +27,44 @@ LabelledSettings preset(Quality quality) {
   return settings;
 }
 
-Json budget_of_pass(const ModelledPass& pass) {
-  return {{"instructions_per_pixel", std::ceil(10 * pass.instructions_per_pixel) / 10},
-          {"vector_registers", pass.vector_registers},
-          {"waves_per_simd", pass.waves_per_simd},
-          {"spilled_registers", pass.spills}};
+// The figures of a pass: instructions in each frame, and registers for each kind of projection.
+Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
+  Json instructions = Json::array();
+  for (const ModelledFrame& frame : cost.frames) {
+    for (const ModelledPass& pass : frame.passes) {
+      if (pass.pass == occupancy.pass) {
+        instructions.push_back(std::ceil(10 * pass.instructions_per_pixel) / 10);
+      }
+    }
+  }
+  return {{"part", cost.part->family},
+          {"settings", cost.settings.label},
+          {"pass", occupancy.pass},
+          {"instructions_per_pixel", std::move(instructions)},
+          {"vector_registers", occupancy.vector_registers},
+          {"waves_per_simd", occupancy.waves_per_simd},
+          {"spilled_registers", occupancy.spills}};
 }
 
-// A figure that must not exceed its budget or, with `at_least`, not fall below it.
-struct Figure {
-  const char* key;
-  double value;
-  double tolerance = 0;
-  bool at_least = false;
-};
-
-void check(const Json& budget, const ModelledPass& pass, const std::string& where,
+// Compares each number of a list with its limit.
+void check(const Json& limits, const Json& row, const char* key, double tolerance, bool at_least,
            std::vector<std::string>& complaints) {
-  const Figure figures[] = {{"instructions_per_pixel", pass.instructions_per_pixel, kTolerance},
-                            {"vector_registers", pass.vector_registers},
-                            {"waves_per_simd", pass.waves_per_simd, 0, true},
-                            {"spilled_registers", pass.spills}};
-  for (const Figure& figure : figures) {
-    const auto found = budget.find(figure.key);
-    const double limit = found != budget.end() && found->is_number() ? found->get<double>() : -1.0;
-    const bool fine = figure.at_least ? limit >= 0 && figure.value >= limit
-                                      : figure.value <= limit * (1 + figure.tolerance);
-    if (!fine) {
-      complaints.push_back(fmt::format("{}: {} is {:g}, the budget is {}.", where, figure.key,
-                                       figure.value,
-                                       limit < 0 ? "missing" : fmt::format("{:g}", limit)));
+  const Json& found = row[key];
+  const Json limit = limits.value(key, Json::array());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double value = found[i];
+    const bool known = i < limit.size() && limit[i].is_number();
+    const double bound = known ? limit[i].get<double>() : 0.0;
+    if (!known || (at_least ? value < bound : value > bound * (1 + tolerance))) {
+      complaints.push_back(fmt::format(
+          "{}, {}, {}: {}[{}] is {:g}, the budget is {}.", row["part"].get<std::string>(),
+          row["settings"].get<std::string>(), row["pass"].get<std::string>(), key, i, value,
+          known ? fmt::format("{:g}", bound) : "missing"));
     }
   }
-}
-
-// The object at the path `keys`, or null if there is none.
-const Json& at(const Json& json, std::initializer_list<std::string> keys) {
-  static const Json kNull;
-  const Json* found = &json;
-  for (const std::string& key : keys) {
-    if (!found->is_object() || !found->contains(key)) {
-      return kNull;
-    }
-    found = &(*found)[key];
-  }
-  return *found;
 }
 
 }  // namespace
-
-std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) {
-  LabelledSettings bent = plain;
-  bent.label += " with bent normals";
-  bent.inputs.settings.bent_normal = true;
-  bent.label_without = plain.label;
-  LabelledSettings specular = plain;
-  specular.label += " with specular occlusion";
-  specular.inputs.settings.specular = passes::Specular::slices;
-  specular.label_without = plain.label;
-  return {std::move(bent), std::move(specular)};
-}
-
-tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part, const NullDevice& device,
-                                                const LabelledSettings& settings) {
-  auto frames = modelled_frames(part, device, settings.inputs);
-  if (!frames) {
-    return Failure(std::move(frames.error()));
-  }
-  return SettingsCost{settings.label, std::string(part.family), std::move(*frames),
-                      settings.label_without};
-}
 
 std::vector<LabelledSettings> budgeted_settings() {
   std::vector<LabelledSettings> all;
@@ -101,9 +73,7 @@ std::vector<LabelledSettings> budgeted_settings() {
       all.push_back(preset(quality));
     }
   }
-  for (LabelledSettings& settings : with_each_output(preset(Quality::medium))) {
-    all.push_back(std::move(settings));
-  }
+  std::ranges::move(with_each_output(preset(Quality::medium)), std::back_inserter(all));
   return all;
 }
 
@@ -134,30 +104,44 @@ std::string compiler_name(const NullDevice& device) {
   return std::string(driver.driverName) + ", " + driver.driverInfo;
 }
 
-Json budget_of(const std::vector<SettingsCost>& costs, const std::string& compiler) {
-  Json budget;
-  budget["written_by"] = "alcove cost --write-budget";
-  budget["compiler"] = compiler;
+std::string budget_of(const std::vector<SettingsCost>& costs, const std::string& compiler) {
+  std::string lines =
+      Json{{"written_by", "alcove cost --write-budget"}, {"compiler", compiler}}.dump();
   for (const SettingsCost& cost : costs) {
-    for (const ModelledFrame& frame : cost.frames) {
-      for (const ModelledPass& pass : frame.passes) {
-        budget["passes"][cost.family][cost.label][std::string(name_of(frame.state))][pass.pass] =
-            budget_of_pass(pass);
-      }
+    for (const Occupancy& occupancy : cost.occupancies) {
+      (lines += "\n") += row_of(cost, occupancy).dump();
     }
   }
-  return budget;
+  return lines += "\n";
 }
 
-std::vector<std::string> over_budget(const Json& budget, const std::vector<SettingsCost>& costs) {
+tl::expected<std::vector<std::string>, std::string> over_budget(
+    const std::string& budget, const std::string& compiler,
+    const std::vector<SettingsCost>& costs) {
+  std::vector<Json> rows;
+  std::istringstream lines(budget);
+  for (std::string line; std::getline(lines, line);) {
+    rows.push_back(Json::parse(line, nullptr, false));
+  }
+  if (rows.empty() || !rows.front().is_object() || rows.front().value("compiler", "") != compiler) {
+    return Failure("The budget was written with another compiler than " + compiler +
+                   ", which makes other code.");
+  }
   std::vector<std::string> complaints;
   for (const SettingsCost& cost : costs) {
-    for (const ModelledFrame& frame : cost.frames) {
-      const std::string state(name_of(frame.state));
-      for (const ModelledPass& pass : frame.passes) {
-        check(at(budget, {"passes", cost.family, cost.label, state, pass.pass}), pass,
-              cost.family + ", " + cost.label + ", " + state + " frame, " + pass.pass, complaints);
-      }
+    for (const Occupancy& occupancy : cost.occupancies) {
+      const Json row = row_of(cost, occupancy);
+      const auto limits = std::ranges::find_if(rows, [&](const Json& other) {
+        return std::ranges::all_of(kKeys, [&](const char* key) {
+          return other.is_object() && other.value(key, "") == row[key];
+        });
+      });
+      const Json none = Json::object();
+      const Json& found = limits == rows.end() ? none : *limits;
+      check(found, row, "instructions_per_pixel", kTolerance, false, complaints);
+      check(found, row, "vector_registers", 0, false, complaints);
+      check(found, row, "waves_per_simd", 0, true, complaints);
+      check(found, row, "spilled_registers", 0, false, complaints);
     }
   }
   return complaints;

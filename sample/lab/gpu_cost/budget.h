@@ -2,11 +2,10 @@
 //
 //   alcove cost --write-budget tests/sample/gpu_budget.json
 //
-// rewrites the file of limits. A change that makes a pass slower must do so in the same commit.
+// rewrites the file of limits. A change that makes a pass slower must do so in the same commit. The
+// file has a line of JSON for the compiler, then one for each pass of the settings on each GPU.
 #pragma once
 
-#include <array>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -14,22 +13,6 @@
 #include "gpu_cost/cost_report.h"
 
 namespace alcove::sample {
-
-// Settings whose cost is modelled, and their name in tables and files.
-struct LabelledSettings {
-  std::string label;
-  CostInputs inputs;
-  std::string label_without;  // as SettingsCost::label_without
-};
-
-// Returns the settings `plain` with bent normals, and `plain` with specular occlusion from the
-// slices. Both name `plain` as the settings to compare with (LabelledSettings::label_without).
-[[nodiscard]] std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain);
-
-// The costs of `settings` on a GPU. Errors: those of modelled_frames().
-[[nodiscard]] tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part,
-                                                              const NullDevice& device,
-                                                              const LabelledSettings& settings);
 
 // Returns the settings that a budget covers: every preset except `reference`, and `medium` with
 // bent normals and with specular occlusion.
@@ -42,13 +25,13 @@ struct LabelledSettings {
 // The name and version of the driver, whose compiler determines the costs.
 [[nodiscard]] std::string compiler_name(const NullDevice& device);
 
-[[nodiscard]] nlohmann::ordered_json budget_of(const std::vector<SettingsCost>& costs,
-                                               const std::string& compiler);
+[[nodiscard]] std::string budget_of(const std::vector<SettingsCost>& costs,
+                                    const std::string& compiler);
 
 // Returns a sentence for each figure that exceeds its budget: more than 1 % more instructions per
 // pixel, more vector registers or spilled registers, fewer waves per SIMD, or a pass without a
-// budget.
-[[nodiscard]] std::vector<std::string> over_budget(const nlohmann::ordered_json& budget,
-                                                   const std::vector<SettingsCost>& costs);
+// budget. Error: the budget is for another compiler, whose code is different.
+[[nodiscard]] tl::expected<std::vector<std::string>, std::string> over_budget(
+    const std::string& budget, const std::string& compiler, const std::vector<SettingsCost>& costs);
 
 }  // namespace alcove::sample

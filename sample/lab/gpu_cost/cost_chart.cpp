@@ -3,6 +3,7 @@
 #include <array>
 
 #include "gpu_cost/cost_report.h"
+#include "gpu_cost/xegtao.h"
 #include "support/svg.h"
 
 namespace alcove::sample {
@@ -65,39 +66,41 @@ class Chart {
 };
 
 void Chart::draw_part(const GpuPart& part) {
-  const PeerTime& peer = part.peers[2];
-  double longest = peer.milliseconds;
+  const auto own = std::ranges::find(costs_, &part, &SettingsCost::part);
+  if (own == costs_.end()) {
+    return;
+  }
+  const CostInputs& size = own->settings.inputs;
+  const double peer_ms = xegtao_ms(part, kXeGtaoHigh, size.width, size.height);
+  double longest = peer_ms;
   std::size_t rows = 0;
   std::size_t labels = 0;
   for (const SettingsCost& cost : costs_) {
-    labels += cost.family == part.family ? 1 : 0;
+    labels += cost.part == &part ? 1 : 0;
     for (const ModelledFrame& frame : cost.frames) {
-      if (cost.family == part.family) {
+      if (cost.part == &part) {
         longest = std::max(longest, frame.milliseconds());
         ++rows;
       }
     }
   }
-  if (rows == 0) {
-    return;
-  }
   const double scale = (kWidth - kLeft - kRight) / longest;
   svg_.text({12, y_ + 20}, "start", fmt::format("{}: modelled milliseconds", part.title),
             "font-weight=\"bold\"");
   const double top = y_ + kHeading;
-  const double line = kLeft + peer.milliseconds * scale;
-  svg_.text({line, top - 6}, "middle", fmt::format("{} {:.3g}", peer.name, peer.milliseconds));
+  const double line = kLeft + peer_ms * scale;
+  svg_.text({line, top - 6}, "middle", fmt::format("{} {:.3g}", kXeGtaoHigh.name, peer_ms));
   y_ = top;
   // The line of the reference time is drawn first, so that bars and texts cover it.
   const double height = kRow * static_cast<double>(rows) + kGap * static_cast<double>(labels);
   svg_.line({line, top - 2}, {line, top + height}, "stroke=\"black\" stroke-dasharray=\"4 3\"");
   for (const SettingsCost& cost : costs_) {
-    if (cost.family != part.family) {
+    if (cost.part != &part) {
       continue;
     }
     for (const ModelledFrame& frame : cost.frames) {
       svg_.text({kLeft - 8, y_ + kBar - 2}, "end",
-                fmt::format("{}, {}", cost.label, name_of(frame.state)));
+                fmt::format("{}, {}", cost.settings.label, name_of(frame.state)));
       double x = kLeft;
       for (const ModelledPass& pass : frame.passes) {
         const double width = pass.milliseconds() * scale;

@@ -2,32 +2,27 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "gpu_cost/xegtao.h"
 
 namespace alcove::sample {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t kXeGtaoHigh = 2;  // index in GpuPart::peers
-
-const GpuPart& part_of(const SettingsCost& cost) {
-  return *std::ranges::find(kGpuParts, cost.family, &GpuPart::family);
-}
-
-double reference_ms(const GpuPart& part) { return part.peers[kXeGtaoHigh].milliseconds; }
+using Failure = tl::unexpected<std::string>;
 
 std::string pass_row(const ModelledPass& pass) {
   return fmt::format(
-      "    {:20}{:8.3f}  {:14}{:8.0f}{:8.1f}{:7.1f}{:7.1f}{:7.0f}{:7.0f}{:8.0f}{:8.0f}{:8.0f}{:>7} "
-      "  {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
+      "    {:20}{:8.3f}  "
+      "{:14}{:8.0f}{:8.1f}{:7.1f}{:7.1f}{:7.1f}{:7.0f}{:7.0f}{:8.0f}{:8.0f}{:8.0f}"
+      "{:7.1f}   {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
       pass.pass, pass.milliseconds(), pass.limit(), pass.instructions_per_pixel,
-      pass.fetches_per_pixel, pass.stores_per_pixel, pass.bytes_per_pixel, pass.vector_registers,
-      pass.waves_per_simd, pass.spills > 0 ? pass.spills : pass.scratch_bytes, pass.code_bytes,
-      pass.shared_bytes,
-      pass.cache_lines_per_load > 0 ? fmt::format("{:.1f}", pass.cache_lines_per_load) : "-",
-      pass.alu_ms, pass.texture_ms, pass.shared_ms, pass.bandwidth_ms, pass.latency_ms);
+      pass.fetches_per_pixel, pass.stores_per_pixel, pass.l2_bytes_per_pixel, pass.bytes_per_pixel,
+      pass.vector_registers, pass.waves_per_simd,
+      pass.spills > 0 ? pass.spills : pass.scratch_bytes, pass.code_bytes, pass.shared_bytes,
+      pass.cache_lines_per_load, pass.alu_ms, pass.texture_ms, pass.shared_ms, pass.l2_ms,
+      pass.memory_ms, pass.latency_ms);
 }
 
 std::string wave_rows(const ModelledPass& pass) {
@@ -37,40 +32,50 @@ std::string wave_rows(const ModelledPass& pass) {
       pass.wave.instructions, pass.wave.vector_instructions, pass.wave.transcendentals,
       pass.wave.selects, pass.wave.scalar_instructions, pass.wave.loads, pass.wave.stores,
       pass.wave.shared_operations);
-  for (const CountedLoop& counted : pass.loops) {
-    const passes::cost::CompiledLoop& loop = counted.loop;
+  for (const auto& [loop, iterations] : pass.loops) {
     out += fmt::format(
         "      loop {}, depth {}: {} instructions, {} fetches, {} stores, {} on shared memory; "
         "runs {:.1f} times\n",
         loop.index, loop.depth, loop.instructions, loop.loads, loop.stores, loop.shared,
-        counted.iterations);
+        iterations);
+  }
+  for (const auto& [branch, share] : pass.branches) {
+    out += fmt::format("      branch: {} instructions, {} fetches; {:g} of the waves run it\n",
+                       branch.instructions, branch.loads, share);
   }
   return out;
 }
 
 std::string settings_rows(const SettingsCost& cost, bool loops) {
   std::string out;
-  const double reference = reference_ms(part_of(cost));
+  const CostInputs& inputs = cost.settings.inputs;
+  const double peer_ms = xegtao_ms(*cost.part, kXeGtaoHigh, inputs.width, inputs.height);
   for (const ModelledFrame& frame : cost.frames) {
-    out +=
-        fmt::format("  {}, {} frame: {:.3f} ms, {:.2f} of XeGTAO high\n", cost.label,
-                    name_of(frame.state), frame.milliseconds(), frame.milliseconds() / reference);
+    out += fmt::format("  {}, {} frame: {:.3f} ms, {:.2f} of {} at this size\n",
+                       cost.settings.label, name_of(frame.state), frame.milliseconds(),
+                       frame.milliseconds() / peer_ms, kXeGtaoHigh.name);
     for (const ModelledPass& pass : frame.passes) {
       out += pass_row(pass) + (loops ? wave_rows(pass) : "");
     }
   }
+  for (const Occupancy& occupancy : cost.occupancies) {
+    out += fmt::format("    {:20}vector registers and waves per SIMD:", occupancy.pass);
+    for (std::size_t i = 0; i < kProjectionNames.size(); ++i) {
+      out += fmt::format("{} {} {:.0f} and {:.0f}", i == 0 ? "" : ",", kProjectionNames[i],
+                         occupancy.vector_registers[i], occupancy.waves_per_simd[i]);
+    }
+    out += "\n";
+  }
   return out;
 }
 
-// A line for each choice of settings on `family` that has an output more than another one.
-std::string ratio_rows(std::span<const SettingsCost> costs, std::string_view family) {
+// A line for each choice of settings on `part` that has an output more than another one.
+std::string ratio_rows(std::span<const SettingsCost> costs, const GpuPart& part) {
   std::string rows;
   for (const SettingsCost& cost : costs) {
-    if (cost.family != family) {
-      continue;
-    }
-    if (const std::vector<double> ratios = output_ratios(cost, costs); !ratios.empty()) {
-      rows += fmt::format("    {:36}{:11.3f}\n", cost.label, fmt::join(ratios, ""));
+    const std::vector<double> ratios = output_ratios(cost, costs);
+    if (cost.part == &part && !ratios.empty()) {
+      rows += fmt::format("    {:36}{:11.3f}\n", cost.settings.label, fmt::join(ratios, ""));
     }
   }
   if (rows.empty()) {
@@ -92,11 +97,14 @@ Json to_json(const ModelledPass& pass) {
            {{"alu", pass.alu_ms},
             {"texture", pass.texture_ms},
             {"shared_memory", pass.shared_ms},
-            {"bandwidth", pass.bandwidth_ms},
+            {"l2", pass.l2_ms},
+            {"memory", pass.memory_ms},
             {"latency", pass.latency_ms}}},
+          {"dispatch_ms", pass.dispatch_ms},
           {"instructions_per_pixel", pass.instructions_per_pixel},
           {"fetches_per_pixel", pass.fetches_per_pixel},
           {"stores_per_pixel", pass.stores_per_pixel},
+          {"l2_bytes_per_pixel", pass.l2_bytes_per_pixel},
           {"bytes_per_pixel", pass.bytes_per_pixel},
           {"cache_lines_per_load", pass.cache_lines_per_load},
           {"vector_registers", pass.vector_registers},
@@ -118,14 +126,66 @@ Json to_json(const ModelledPass& pass) {
             {"shared_memory", pass.wave.shared_operations}}}};
 }
 
+Json to_json(const SettingsCost& cost, double peer_ms, const std::vector<double>& ratios) {
+  Json frames = Json::array();
+  for (const ModelledFrame& frame : cost.frames) {
+    Json passes = Json::array();
+    for (const ModelledPass& pass : frame.passes) {
+      passes.push_back(to_json(pass));
+    }
+    frames.push_back({{"frame", name_of(frame.state)},
+                      {"ms", frame.milliseconds()},
+                      {"of_xegtao_high", frame.milliseconds() / peer_ms},
+                      {"passes", std::move(passes)}});
+    if (!ratios.empty()) {
+      frames.back()["of_time_without_output"] = ratios[frames.size() - 1];
+    }
+  }
+  Json occupancies = Json::array();
+  for (const Occupancy& occupancy : cost.occupancies) {
+    occupancies.push_back({{"pass", occupancy.pass},
+                           {"projections", kProjectionNames},
+                           {"vector_registers", occupancy.vector_registers},
+                           {"waves_per_simd", occupancy.waves_per_simd}});
+  }
+  return {{"label", cost.settings.label},
+          {"frames", std::move(frames)},
+          {"occupancy", std::move(occupancies)}};
+}
+
 }  // namespace
+
+std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) {
+  LabelledSettings bent = plain;
+  bent.label += " with bent normals";
+  bent.inputs.settings.bent_normal = true;
+  bent.label_without = plain.label;
+  LabelledSettings specular = plain;
+  specular.label += " with specular occlusion";
+  specular.inputs.settings.specular = passes::Specular::slices;
+  specular.label_without = plain.label;
+  return {std::move(bent), std::move(specular)};
+}
+
+tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part, const NullDevice& device,
+                                                const LabelledSettings& settings) {
+  auto frames = modelled_frames(part, device, settings.inputs);
+  if (!frames) {
+    return Failure(std::move(frames.error()));
+  }
+  auto found = occupancies(part, device, settings.inputs);
+  if (!found) {
+    return Failure(std::move(found.error()));
+  }
+  return SettingsCost{settings, &part, std::move(*frames), std::move(*found)};
+}
 
 std::vector<double> output_ratios(const SettingsCost& cost, std::span<const SettingsCost> costs) {
   const auto without = std::ranges::find_if(costs, [&](const SettingsCost& other) {
-    return other.family == cost.family && other.label == cost.label_without;
+    return other.part == cost.part && other.settings.label == cost.settings.label_without;
   });
   std::vector<double> ratios;
-  if (cost.label_without.empty() || without == costs.end()) {
+  if (cost.settings.label_without.empty() || without == costs.end()) {
     return ratios;
   }
   for (const ModelledFrame& frame : cost.frames) {
@@ -138,24 +198,27 @@ std::vector<double> output_ratios(const SettingsCost& cost, std::span<const Sett
 std::string table_of(std::span<const SettingsCost> costs, bool loops) {
   std::string out;
   for (const GpuPart& part : kGpuParts) {
-    if (std::ranges::find(costs, part.family, &SettingsCost::family) == costs.end()) {
+    const auto first = std::ranges::find(costs, &part, &SettingsCost::part);
+    if (first == costs.end()) {
       continue;
     }
-    out += fmt::format("{}: {}. Modelled milliseconds;", part.family, part.title);
-    for (const PeerTime& peer : part.peers) {
-      out += fmt::format("{} {} {:g}", &peer == part.peers.data() ? "" : ",", peer.name,
-                         peer.milliseconds);
+    const CostInputs& size = first->settings.inputs;
+    out += fmt::format("{}: {}. Modelled milliseconds at {}x{};", part.family, part.title,
+                       size.width, size.height);
+    for (const XeGtao& peer : kXeGtao) {
+      out += fmt::format("{} {} {:.3f}", &peer == kXeGtao.data() ? "" : ",", peer.name,
+                         xegtao_ms(part, peer, size.width, size.height));
     }
     out +=
-        "; all passes of the paper on a PS4 0.5 (as published)\n"
-        "    pass                      ms  limit          instr/px fetches stores  bytes  VGPRs"
-        "  waves  spills    code  shared  lines   ALU texture shared bandwidth latency\n";
+        "; all passes of the paper on a PS4 0.5 (as published, 1920x1080)\n"
+        "    pass                      ms  limit          instr/px fetches stores    L2 memory"
+        "  VGPRs  waves  spills    code  shared  lines   ALU texture shared L2 memory latency\n";
     for (const SettingsCost& cost : costs) {
-      if (cost.family == part.family) {
+      if (cost.part == &part) {
         out += settings_rows(cost, loops);
       }
     }
-    out += ratio_rows(costs, part.family);
+    out += ratio_rows(costs, part);
   }
   return out;
 }
@@ -164,38 +227,24 @@ Json to_json(std::span<const SettingsCost> costs) {
   Json parts = Json::array();
   for (const GpuPart& part : kGpuParts) {
     Json settings = Json::array();
+    Json peers = Json::object();
     for (const SettingsCost& cost : costs) {
-      if (cost.family != part.family) {
+      if (cost.part != &part) {
         continue;
       }
-      Json frames = Json::array();
-      const std::vector<double> ratios = output_ratios(cost, costs);
-      for (const ModelledFrame& frame : cost.frames) {
-        Json passes = Json::array();
-        for (const ModelledPass& pass : frame.passes) {
-          passes.push_back(to_json(pass));
-        }
-        frames.push_back({{"frame", name_of(frame.state)},
-                          {"ms", frame.milliseconds()},
-                          {"of_xegtao_high", frame.milliseconds() / reference_ms(part)},
-                          {"passes", std::move(passes)}});
-        if (!ratios.empty()) {
-          frames.back()["of_time_without_output"] = ratios[frames.size() - 1];
-        }
+      const CostInputs& size = cost.settings.inputs;
+      for (const XeGtao& peer : kXeGtao) {
+        peers[std::string(peer.name)] = xegtao_ms(part, peer, size.width, size.height);
       }
-      settings.push_back({{"label", cost.label}, {"frames", std::move(frames)}});
+      settings.push_back(
+          to_json(cost, peers[std::string(kXeGtaoHigh.name)], output_ratios(cost, costs)));
     }
-    if (settings.empty()) {
-      continue;
+    if (!settings.empty()) {
+      parts.push_back({{"family", part.family},
+                       {"part", part.title},
+                       {"peers_ms", std::move(peers)},
+                       {"settings", std::move(settings)}});
     }
-    Json peers = Json::object();
-    for (const PeerTime& peer : part.peers) {
-      peers[std::string(peer.name)] = peer.milliseconds;
-    }
-    parts.push_back({{"family", part.family},
-                     {"part", part.title},
-                     {"peers_ms", std::move(peers)},
-                     {"settings", std::move(settings)}});
   }
   return parts;
 }

@@ -1,28 +1,47 @@
 // The tables and files of `alcove cost`.
 #pragma once
 
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu_cost/modelled_frame.h"
 
 namespace alcove::sample {
 
-// The costs of one choice of settings on one GPU.
-struct SettingsCost {
-  std::string label;   // such as the name of a preset
-  std::string family;  // of the GPU, as GpuPart::family
-  std::vector<ModelledFrame> frames;
+// Settings whose cost is modelled.
+struct LabelledSettings {
+  std::string label;  // such as the name of a preset
+  CostInputs inputs;
   // The label of the settings that equal these except for one output. The report compares the times
   // of both. If it is empty, there is no comparison.
   std::string label_without;
 };
 
+// Returns the settings `plain` with bent normals, and `plain` with specular occlusion from the
+// slices. Both name `plain` as the settings to compare with.
+[[nodiscard]] std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain);
+
+// The costs of one choice of settings on one GPU.
+struct SettingsCost {
+  LabelledSettings settings;
+  const GpuPart* part = nullptr;
+  std::vector<ModelledFrame> frames;   // for a finite far plane
+  std::vector<Occupancy> occupancies;  // of each pass, for each kind of projection
+};
+
+// Errors: those of modelled_frames().
+[[nodiscard]] tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part,
+                                                              const NullDevice& device,
+                                                              const LabelledSettings& settings);
+
 // Returns the costs as text: a table for each GPU, with the passes of each frame and their sums.
-// With `loops`, also the instructions of a wave by kind, and each loop of the compiled shader with
-// its number of iterations. The ratios of output_ratios() follow, if there are any.
+// With `loops`, also the instructions of a wave by kind, each loop of the compiled shader with its
+// number of iterations, and each branch that not every wave executes. The ratios of output_ratios()
+// follow, if there are any.
 [[nodiscard]] std::string table_of(std::span<const SettingsCost> costs, bool loops);
 [[nodiscard]] nlohmann::ordered_json to_json(std::span<const SettingsCost> costs);
 

@@ -2,39 +2,35 @@
 #pragma once
 
 #include <array>
-#include <span>
+#include <cstddef>
 #include <string_view>
 
 namespace alcove::sample {
 
-// The modelled time of a frame of another program.
-struct PeerTime {
-  std::string_view name;
-  double milliseconds;
-};
-
 struct GpuPart {
   std::string_view family;  // as RADV_FORCE_FAMILY names it
+  std::string_view name;    // for --gpu
   std::string_view title;
   bool rdna;  // true: RDNA2; false: GCN
   double compute_units;
   double simds;
   double hertz;
-  double bytes_per_second;
-  std::span<const PeerTime> peers;
+  double bytes_per_second;    // of memory
+  double l2_bytes_per_cycle;  // between L2 and the compute units
+  double line_bytes;          // of a cache line
+  double l1_bytes;            // of a compute unit
+  double array_l1_bytes;      // that a shader array shares between L1 and L2; 0: there is none
+  std::size_t array_units;    // compute units of a shader array
+  double l2_bytes;
+  // The time of a dispatch that waits for the one before: the barrier drains the waves and
+  // invalidates caches, then the first waves start. `alcove measure` measures it on a GPU.
+  double dispatch_seconds;
 };
 
-// XeGTAO's own shaders (32-bit floats, one denoise pass) at 1920x1080 in this model.
-inline constexpr std::array<PeerTime, 4> kXeGtaoOnGcn{
-    {{"XeGTAO low", 1.56}, {"XeGTAO medium", 2.21}, {"XeGTAO high", 3.40}, {"XeGTAO ultra", 8.46}}};
-inline constexpr std::array<PeerTime, 4> kXeGtaoOnRdna{{{"XeGTAO low", 0.123},
-                                                        {"XeGTAO medium", 0.164},
-                                                        {"XeGTAO high", 0.243},
-                                                        {"XeGTAO ultra", 0.560}}};
-
 inline constexpr std::array<GpuPart, 2> kGpuParts{
-    {{"bonaire", "PS4-like GCN, 18 CUs, 800 MHz, 176 GB/s", false, 18, 72, 800e6, 176e9,
-      kXeGtaoOnGcn},
-     {"navi21", "RDNA2, 72 CUs, 2250 MHz, 512 GB/s", true, 72, 144, 2250e6, 512e9, kXeGtaoOnRdna}}};
+    {{"bonaire", "ps4", "PS4-like GCN, 18 CUs, 800 MHz, 176 GB/s", false, 18, 72, 800e6, 176e9, 512,
+      64, 16384, 0, 1, 512 << 10, 5e-6},
+     {"navi21", "rdna2", "RDNA2, 72 CUs, 2250 MHz, 512 GB/s", true, 72, 144, 2250e6, 512e9, 2048,
+      128, 16384, 128 << 10, 9, 4 << 20, 2e-6}}};
 
 }  // namespace alcove::sample

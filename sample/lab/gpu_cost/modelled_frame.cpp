@@ -1,12 +1,14 @@
 #include "gpu_cost/modelled_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "gpu_cost/cache_traffic.h"
 
 namespace alcove::sample {
 namespace {
 
+using passes::cost::CompiledBranch;
 using passes::cost::CompiledLoop;
 using passes::cost::FrameState;
 using passes::cost::PassWork;
@@ -62,18 +64,27 @@ double wave_latency(const Statistics& statistics, const WaveWork& work, double h
   return statistics.latency * work.busiest() / std::max(usage, 1.0);
 }
 
+// The waves that a SIMD holds. RDNA counts in subgroups of 32 lanes.
+double waves_held(const GpuPart& part, const Statistics& statistics, double wave) {
+  return part.rdna ? std::floor(statistics.subgroups_per_simd * 32 / wave)
+                   : statistics.subgroups_per_simd;
+}
+
 struct Model {
   const GpuPart& part;
   const RecordingDevice& device;
   const CostInputs& inputs;
 
   double pixels() const { return static_cast<double>(inputs.width) * inputs.height; }
+  double milliseconds(double cycles) const { return cycles / part.hertz * 1e3; }
   tl::expected<ModelledPass, std::string> cost(const RecordedPass& pass, FrameState state) const;
-  tl::expected<void, std::string> add_dispatch(const RecordedDispatch& dispatch, FrameState state,
-                                               ModelledPass& cost) const;
+  tl::expected<void, std::string> add_dispatch(const RecordedDispatch& dispatch,
+                                               std::span<const passes::cost::PassImage> images,
+                                               FrameState state, ModelledPass& cost) const;
 };
 
 tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& dispatch,
+                                                    std::span<const passes::cost::PassImage> images,
                                                     FrameState state, ModelledPass& cost) const {
   const CompiledShader* shader = device.compiled(dispatch.pipeline);
   if (shader == nullptr) {
@@ -99,31 +110,51 @@ tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& disp
     iterations.push_back(*count);
     cost.loops.push_back({loop, *count});
   }
+  std::vector<Branch> branches = branches_of(*blocks);
+  for (Branch& branch : branches) {
+    branch.share = passes::cost::branch_share(work, branch.summary);
+    if (branch.share < 1.0) {
+      cost.branches.push_back({branch.summary, branch.share});
+    }
+  }
   const double wave = shader->wave;
-  cost.wave = wave_work(*blocks, loops, iterations, part.rdna, shader->wave);
-  cost.waves = static_cast<double>(dispatch.groups) * std::ceil(shader->group / wave);
+  cost.wave = wave_work(*blocks, loops, iterations, branches, part.rdna, shader->wave);
+  const double waves =
+      static_cast<double>(dispatch.groups_x) * dispatch.groups_y * std::ceil(shader->group / wave);
+  cost.waves += waves;
   cost.vector_registers = std::max(cost.vector_registers, statistics->vector_registers);
   cost.scalar_registers = std::max(cost.scalar_registers, statistics->scalar_registers);
   cost.spills += statistics->spills;
   cost.scratch_bytes += statistics->scratch_bytes;
   cost.code_bytes += statistics->code_bytes;
   cost.shared_bytes = std::max(cost.shared_bytes, statistics->shared_bytes);
-  // RDNA counts in subgroups of 32 lanes.
-  const double held = part.rdna ? std::floor(statistics->subgroups_per_simd * 32 / wave)
-                                : statistics->subgroups_per_simd;
+  const double held = waves_held(part, *statistics, wave);
   cost.waves_per_simd = cost.waves_per_simd == 0 ? held : std::min(cost.waves_per_simd, held);
-  const double lanes = cost.waves * wave;
+  const double lanes = waves * wave;
   cost.instructions_per_pixel += cost.wave.instructions * lanes / pixels();
   cost.fetches_per_pixel += cost.wave.loads * lanes / pixels();
   cost.stores_per_pixel += cost.wave.stores * lanes / pixels();
-  const double per_simd = cost.waves / part.simds / part.hertz * 1e3;
-  cost.alu_ms += per_simd * cost.wave.busiest();
-  cost.texture_ms += cost.waves / part.compute_units * cost.wave.texture_cycles / part.hertz * 1e3;
+  // A SIMD executes whole waves, so that some SIMDs may execute one more than others.
+  cost.alu_ms += milliseconds(std::ceil(waves / part.simds) * cost.wave.busiest());
+  cost.latency_ms +=
+      milliseconds(std::ceil(waves / part.simds / std::max(held, 1.0)) *
+                   wave_latency(*statistics, cost.wave, held, shader->wave, !loops.empty()));
+  const double per_unit = std::ceil(waves / part.compute_units);
   // A compute unit's shared memory moves 32 words a cycle.
-  cost.shared_ms +=
-      cost.waves / part.compute_units * cost.wave.shared_words * wave / 32 / part.hertz * 1e3;
-  cost.latency_ms += per_simd / std::max(held, 1.0) *
-                     wave_latency(*statistics, cost.wave, held, shader->wave, !loops.empty());
+  cost.shared_ms += milliseconds(per_unit * cost.wave.shared_words * wave / 32);
+  const CacheTraffic traffic =
+      cache_traffic(part,
+                    {dispatch.groups_x, dispatch.groups_y,
+                     passes::cost::accesses_of(work, images, inputs.height)},
+                    held);
+  cost.texture_ms +=
+      milliseconds(std::max(per_unit * cost.wave.texture_cycles, traffic.texture_cycles));
+  cost.l2_bytes_per_pixel += traffic.l2_bytes / pixels();
+  cost.bytes_per_pixel += traffic.memory_bytes / pixels();
+  cost.l2_ms += l2_ms(part, traffic);
+  cost.memory_ms += memory_ms(part, traffic);
+  cost.cache_lines_per_load = std::max(cost.cache_lines_per_load, traffic.lines_per_load);
+  cost.dispatch_ms += 1e3 * part.dispatch_seconds;
   return {};
 }
 
@@ -132,33 +163,39 @@ tl::expected<ModelledPass, std::string> Model::cost(const RecordedPass& pass,
   ModelledPass cost;
   cost.pass = pass.name;
   for (const RecordedDispatch& dispatch : pass.dispatches) {
-    if (auto added = add_dispatch(dispatch, state, cost); !added) {
+    if (auto added = add_dispatch(dispatch, pass.images, state, cost); !added) {
       return Failure(std::move(added.error()));
     }
   }
-  const PassWork work{cost.pass, inputs.settings, state, {}};
-  for (const ImageTraffic& traffic : pass.traffic) {
-    cost.bytes_per_pixel += traffic.bytes / pixels() *
-                            passes::cost::traffic_share(work, traffic.image, traffic.direction);
-  }
-  cost.cache_lines_per_load = passes::cost::cache_lines_per_load(work);
-  cost.bandwidth_ms = cost.bytes_per_pixel * pixels() / part.bytes_per_second * 1e3;
   return cost;
+}
+
+// Returns the modelled cost of a pass of an earlier frame that equals `pass`, or null.
+const ModelledPass* find_same(const std::vector<RecordedFrame>& frames,
+                              const std::vector<ModelledFrame>& costs, const RecordedPass& pass) {
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const auto same = std::ranges::find(frames[i].passes, pass);
+    if (same != frames[i].passes.end()) {
+      return &costs[i].passes[static_cast<std::size_t>(same - frames[i].passes.begin())];
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
 
-double ModelledPass::milliseconds() const {
-  return std::max({alu_ms, texture_ms, shared_ms, bandwidth_ms, latency_ms});
+double ModelledPass::busy_ms() const {
+  return std::max({alu_ms, texture_ms, shared_ms, l2_ms, memory_ms, latency_ms});
 }
 
 std::string_view ModelledPass::limit() const {
-  const double longest = milliseconds();
-  return longest == alu_ms         ? "ALU"
-         : longest == texture_ms   ? "texture"
-         : longest == shared_ms    ? "shared memory"
-         : longest == bandwidth_ms ? "bandwidth"
-                                   : "latency";
+  const double longest = busy_ms();
+  return longest <= alu_ms       ? "ALU"
+         : longest <= texture_ms ? "texture"
+         : longest <= shared_ms  ? "shared memory"
+         : longest <= l2_ms      ? "L2"
+         : longest <= memory_ms  ? "memory"
+                                 : "latency";
 }
 
 double ModelledFrame::milliseconds() const {
@@ -182,6 +219,11 @@ tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(const GpuP
   for (const RecordedFrame& frame : *frames) {
     ModelledFrame cost{frame.state, {}};
     for (const RecordedPass& pass : frame.passes) {
+      // Frames that run the same pipelines on the same images do the same work.
+      if (const ModelledPass* same = find_same(*frames, costs, pass)) {
+        cost.passes.push_back(*same);
+        continue;
+      }
       auto modelled = model.cost(pass, frame.state);
       if (!modelled) {
         return Failure(std::move(modelled.error()));
@@ -191,6 +233,42 @@ tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(const GpuP
     costs.push_back(std::move(cost));
   }
   return costs;
+}
+
+tl::expected<std::vector<Occupancy>, std::string> occupancies(const GpuPart& part,
+                                                              const NullDevice& device,
+                                                              CostInputs inputs) {
+  std::vector<Occupancy> found;
+  for (std::size_t kind = 0; kind < kProjectionNames.size(); ++kind) {
+    inputs.projection = static_cast<ProjectionKind>(kind);
+    RecordingDevice recording(device);
+    const auto frames = record_frames(recording, inputs);
+    if (!frames) {
+      return Failure(frames.error());
+    }
+    for (const RecordedFrame& frame : *frames) {
+      for (const RecordedPass& pass : frame.passes) {
+        auto own = std::ranges::find(found, pass.name, &Occupancy::pass);
+        if (own == found.end()) {
+          own = found.insert(own, Occupancy{pass.name});
+        }
+        for (const RecordedDispatch& dispatch : pass.dispatches) {
+          const CompiledShader& shader = *recording.compiled(dispatch.pipeline);
+          const auto statistics = statistics_of(shader);
+          if (!statistics) {
+            return Failure(statistics.error());
+          }
+          const double held = waves_held(part, *statistics, shader.wave);
+          double& waves = own->waves_per_simd[kind];
+          waves = waves == 0 ? held : std::min(waves, held);
+          double& registers = own->vector_registers[kind];
+          registers = std::max(registers, statistics->vector_registers);
+          own->spills[kind] = std::max(own->spills[kind], statistics->spills);
+        }
+      }
+    }
+  }
+  return found;
 }
 
 }  // namespace alcove::sample

@@ -1,15 +1,17 @@
 // The modelled GPU time of the occlusion passes.
 //
-// A pass takes the longest of five times, and passes add up:
-//   ALU        cycles of the busiest execution unit of a SIMD, over all SIMDs
-//   texture    cycles of the texture units, at four lanes a cycle
-//   shared     words that lanes move to and from shared memory, at 32 a cycle of a compute unit
-//   bandwidth  every image read or written once, over the memory's bandwidth
-//   latency    the compiler's latency of one wave, over the waves that a SIMD holds
-// This is a lower bound: it ignores cache misses beyond one transfer of each image and the fixed
-// cost of a dispatch. The figures are the same on every run and on every machine.
+// A pass takes the longest of these times, plus that of its dispatches; passes add up:
+//   ALU      cycles of the busiest execution unit of a SIMD, for as many whole waves as it gets
+//   texture  cycles of the busiest texture unit: four lanes or one cache line a cycle
+//   shared   words that lanes move to and from shared memory, at 32 a cycle of a compute unit
+//   L2       bytes that L2 receives and sends, after the caches before it
+//   memory   bytes that memory receives and sends, after all caches
+//   latency  the compiler's latency of one wave, over the waves that a SIMD holds
+// A dispatch costs GpuPart::dispatch_seconds, because each waits for the one before. The figures
+// are the same on every run and on every machine. cache_traffic.h says what is left out.
 #pragma once
 
+#include <array>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -25,6 +27,11 @@ struct CountedLoop {
   double iterations = 0;
 };
 
+struct CountedBranch {
+  passes::cost::CompiledBranch branch;
+  double share = 1;  // of the waves that execute it
+};
+
 struct ModelledPass {
   std::string pass;
   double vector_registers = 0;  // of an invocation
@@ -36,21 +43,26 @@ struct ModelledPass {
   double shared_bytes = 0;  // of a workgroup
   WaveWork wave;            // of one wave
   std::vector<CountedLoop> loops;
+  std::vector<CountedBranch> branches;  // those that not every wave executes
   double waves = 0;
   // For each pixel of the full image.
   double instructions_per_pixel = 0;
   double fetches_per_pixel = 0;
   double stores_per_pixel = 0;
-  double bytes_per_pixel = 0;
-  double cache_lines_per_load = 0;  // passes::cost::cache_lines_per_load(); 0: not declared
+  double l2_bytes_per_pixel = 0;
+  double bytes_per_pixel = 0;  // from and to memory
+  double cache_lines_per_load = 0;
   double alu_ms = 0;
   double texture_ms = 0;
   double shared_ms = 0;
-  double bandwidth_ms = 0;
+  double l2_ms = 0;
+  double memory_ms = 0;
   double latency_ms = 0;
+  double dispatch_ms = 0;  // added to the longest of the others
 
-  double milliseconds() const;
-  std::string_view limit() const;  // the name of the longest of the five times
+  double busy_ms() const;  // the longest of the six times
+  double milliseconds() const { return busy_ms() + dispatch_ms; }
+  std::string_view limit() const;  // the name of the longest of the six times
 };
 
 struct ModelledFrame {
@@ -64,5 +76,18 @@ struct ModelledFrame {
 // declared.
 [[nodiscard]] tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(
     const GpuPart& part, const NullDevice& device, const CostInputs& inputs);
+
+// The registers of a pass and the waves that they allow, for each ProjectionKind: the most
+// registers and the fewest waves of all frames.
+struct Occupancy {
+  std::string pass;
+  std::array<double, kProjectionNames.size()> vector_registers{};
+  std::array<double, kProjectionNames.size()> waves_per_simd{};
+  std::array<double, kProjectionNames.size()> spills{};
+};
+
+// Returns the occupancy of each pass that a frame of any state runs.
+[[nodiscard]] tl::expected<std::vector<Occupancy>, std::string> occupancies(
+    const GpuPart& part, const NullDevice& device, CostInputs inputs);
 
 }  // namespace alcove::sample

@@ -13,13 +13,14 @@ using framegraph::GraphDescription;
 using framegraph::Texture;
 using passes::cost::Direction;
 using passes::cost::FrameState;
+using passes::cost::PassImage;
 using Failure = tl::unexpected<std::string>;
 
 constexpr VkFlags64 kReads = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
                              VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
 
 // Bytes of a texel, for the formats that the passes use; 0 for any other.
-double texel_bytes(VkFormat format) {
+std::uint32_t texel_bytes(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8_UNORM:
     case VK_FORMAT_R8_SNORM:
@@ -61,39 +62,29 @@ double texel_bytes(VkFormat format) {
   }
 }
 
-double image_bytes(const framegraph::ResourceRecord& image, const framegraph::Range& range) {
-  double texels = 0;
-  for (std::uint32_t mip = range.base_mip;
-       mip < std::min<std::uint32_t>(image.mips, std::uint32_t{range.base_mip} + range.mips);
-       ++mip) {
-    const auto side = [mip](std::uint32_t size) { return std::max(size >> mip, 1u); };
-    texels += static_cast<double>(side(image.width)) * side(image.height) * side(image.depth);
-  }
-  return texels * texel_bytes(image.format) * image.layers;
-}
-
-tl::expected<std::vector<ImageTraffic>, std::string> traffic_of(const GraphDescription& graph,
-                                                                std::uint32_t pass) {
-  std::vector<ImageTraffic> traffic;
+tl::expected<std::vector<PassImage>, std::string> images_of(const GraphDescription& graph,
+                                                            std::uint32_t pass) {
+  std::vector<PassImage> images;
   for (const AccessRecord& access : graph.pass_accesses(pass)) {
     const framegraph::ResourceRecord& image = graph.resources[access.resource];
     if (image.kind != framegraph::ResourceKind::texture) {
       continue;
     }
-    const std::string name(graph.resource_name(access.resource));
-    const double bytes = image_bytes(image, access.range);
-    if (bytes == 0) {
-      return Failure("The cost model does not know the format of the image '" + name +
+    PassImage found{std::string(graph.resource_name(access.resource)), Direction::read,
+                    texel_bytes(image.format), image.width, image.height};
+    if (found.texel_bytes == 0) {
+      return Failure("The cost model does not know the format of the image '" + found.name +
                      "': add it to sample/lab/gpu_cost/recorded_frame.cpp.");
     }
     if ((access.access & kReads) != 0) {
-      traffic.push_back({name, Direction::read, bytes});
+      images.push_back(found);
     }
     if ((access.access & framegraph::kWriteBits) != 0) {
-      traffic.push_back({name, Direction::write, bytes});
+      found.direction = Direction::write;
+      images.push_back(found);
     }
   }
-  return traffic;
+  return images;
 }
 
 // Declares and records frames of one view.
@@ -131,16 +122,27 @@ Texture FrameRecorder::import(const char* name, VkFormat format) {
   return graph_.import_texture(name, image);
 }
 
-// A camera of 60 degrees with reversed depth and an infinite far plane.
-passes::View camera() {
+// A camera of 60 degrees, or an orthographic view.
+passes::View camera(ProjectionKind kind) {
   passes::View view;
   const float scale = 1.7320508f;  // 1 / tan(30 degrees)
-  view.clip_from_view = {scale * 9 / 16, 0, 0, 0, 0, -scale, 0, 0, 0, 0, 0, -1, 0, 0, 0.1f, 0};
+  const float near_plane = 0.1f;
+  const float far_plane = 100.0f;
+  const float range = far_plane - near_plane;
+  view.clip_from_view = {scale * 9 / 16, 0, 0, 0, 0, -scale, 0, 0, 0, 0, 0, -1, 0, 0,
+                         near_plane,     0};
+  if (kind == ProjectionKind::finite_far) {
+    view.clip_from_view[10] = near_plane / range;
+    view.clip_from_view[14] = near_plane * far_plane / range;
+  } else if (kind == ProjectionKind::orthographic) {
+    view.clip_from_view = {
+        0.09f, 0, 0, 0, 0, -0.16f, 0, 0, 0, 0, -1 / range, 0, 0, 0, -near_plane / range, 1};
+  }
   return view;
 }
 
 tl::expected<void, std::string> FrameRecorder::declare(FrameState state) {
-  passes::Frame frame{graph_, kernels_, camera(), frame_};
+  passes::Frame frame{graph_, kernels_, camera(inputs_.projection), frame_};
   frame.previous_view = frame.view;
   if (state == FrameState::moving) {
     frame.previous_view.view_from_world[12] = 0.01f;
@@ -200,11 +202,11 @@ tl::expected<RecordedFrame, std::string> FrameRecorder::record(FrameState state)
     for (; next != dispatches.end() && next->pass == pass.name; ++next) {
       pass.dispatches.push_back(*next);
     }
-    auto traffic = traffic_of(graph_.description(), planned.pass);
-    if (!traffic) {
-      return Failure(std::move(traffic.error()));
+    auto images = images_of(graph_.description(), planned.pass);
+    if (!images) {
+      return Failure(std::move(images.error()));
     }
-    pass.traffic = std::move(*traffic);
+    pass.images = std::move(*images);
     frame.passes.push_back(std::move(pass));
   }
   return frame;

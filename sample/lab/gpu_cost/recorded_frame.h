@@ -1,14 +1,22 @@
 // The commands of the occlusion passes' frames, recorded without a device that executes them.
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "cost/work.h"
+#include "cost/accesses.h"
 #include "gpu_cost/recording_device.h"
 
 namespace alcove::sample {
+
+// The kinds of projection for which the shaders are compiled differently. Depth is reversed in
+// perspective views.
+enum class ProjectionKind : std::uint8_t { infinite_far, finite_far, orthographic };
+inline constexpr std::array<std::string_view, 3> kProjectionNames{
+    "infinite far plane", "finite far plane", "orthographic"};
 
 // The inputs that an engine gives to the passes, and the size of its images.
 struct CostInputs {
@@ -16,21 +24,17 @@ struct CostInputs {
   std::uint32_t height = 1080;
   bool normals = true;  // true: a texture of normals (RGBA16F); false: normals from depth
   bool motion = false;  // motion vectors (RG16F)
+  ProjectionKind projection = ProjectionKind::finite_far;
   passes::OcclusionSettings settings;
   passes::NormalEncoding normal_encoding = passes::NormalEncoding::signed_xyz;
-};
-
-// An image that a pass reads or writes.
-struct ImageTraffic {
-  std::string image;  // its name in the graph
-  passes::cost::Direction direction = passes::cost::Direction::read;
-  double bytes = 0;  // of all its texels
 };
 
 struct RecordedPass {
   std::string name;
   std::vector<RecordedDispatch> dispatches;
-  std::vector<ImageTraffic> traffic;
+  std::vector<passes::cost::PassImage> images;
+
+  bool operator==(const RecordedPass&) const = default;
 };
 
 struct RecordedFrame {

@@ -19,7 +19,10 @@ namespace alcove::sample {
 struct RecordedDispatch {
   std::string pass;  // its name in the graph
   VkPipeline pipeline = VK_NULL_HANDLE;
-  std::uint64_t groups = 0;
+  std::uint32_t groups_x = 0;
+  std::uint32_t groups_y = 0;
+
+  bool operator==(const RecordedDispatch&) const = default;
 };
 
 class RecordingDevice {

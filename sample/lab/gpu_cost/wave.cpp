@@ -163,9 +163,14 @@ std::vector<BasicBlock> blocks_of_aco(const std::string& text, bool instructions
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     if (const auto index = block_of_line(line)) {
-      blocks.push_back({*index, {}, {}});
+      blocks.push_back({.index = *index});
     } else if (!blocks.empty() && line.starts_with("/* logical preds:")) {
+      const std::string_view kind =
+          std::string_view(line).substr(std::min(line.find("kind:"), line.size()));
       blocks.back().predecessors = predecessors_of(line);
+      blocks.back().branches = kind.find("branch,") != std::string_view::npos;
+      blocks.back().inverts = kind.find("invert,") != std::string_view::npos;
+      blocks.back().merges = kind.find("merge,") != std::string_view::npos;
     } else if (!blocks.empty() && line.starts_with("\t") && instructions) {
       blocks.back().instructions.push_back(instruction_of_aco(line));
     }
@@ -278,6 +283,18 @@ void add(const Instruction& instruction, bool rdna, std::uint32_t wave, double t
   }
 }
 
+// The instructions of the blocks from `first` to `last`, each once.
+WaveWork work_between(const std::vector<BasicBlock>& blocks, std::uint32_t first,
+                      std::uint32_t last) {
+  WaveWork work;
+  for (std::uint32_t i = first; i <= last; ++i) {
+    for (const Instruction& instruction : blocks[i].instructions) {
+      add(instruction, false, 64, instruction.repeats, work);
+    }
+  }
+  return work;
+}
+
 }  // namespace
 
 double WaveWork::busiest() const {
@@ -323,12 +340,7 @@ std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks) {
     loop.summary.index = static_cast<std::uint32_t>(i);
     loop.summary.depth = static_cast<std::uint32_t>(std::ranges::count_if(
         loops, [&](const Loop& o) { return o.first <= loop.first && loop.last <= o.last; }));
-    WaveWork body;
-    for (std::uint32_t b = loop.first; b <= loop.last; ++b) {
-      for (const Instruction& instruction : blocks[b].instructions) {
-        add(instruction, false, 64, instruction.repeats, body);
-      }
-    }
+    const WaveWork body = work_between(blocks, loop.first, loop.last);
     loop.summary.instructions = static_cast<std::uint32_t>(body.instructions);
     loop.summary.loads = static_cast<std::uint32_t>(body.loads);
     loop.summary.stores = static_cast<std::uint32_t>(body.stores);
@@ -337,14 +349,50 @@ std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks) {
   return loops;
 }
 
+std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks) {
+  // ACO stores the blocks of a divergent branch in order: the branch, one side, a block that
+  // inverts the lanes, the other side, and the block in which both merge.
+  std::vector<Branch> branches;
+  std::vector<std::uint32_t> open;  // the block before the current side of each nested branch
+  const auto end_side = [&](std::uint32_t end) {
+    if (end > open.back() + 1) {
+      const WaveWork work = work_between(blocks, open.back() + 1, end - 1);
+      branches.push_back(
+          {{static_cast<std::uint32_t>(work.instructions), static_cast<std::uint32_t>(work.loads),
+            static_cast<std::uint32_t>(work.stores)},
+           open.back() + 1,
+           end - 1});
+    }
+    open.back() = end;
+  };
+  for (const BasicBlock& block : blocks) {
+    if ((block.inverts || block.merges) && !open.empty()) {
+      end_side(block.index);
+    }
+    if (block.merges && !open.empty()) {
+      open.pop_back();
+    }
+    if (block.branches) {
+      open.push_back(block.index);
+    }
+  }
+  return branches;
+}
+
 WaveWork wave_work(const std::vector<BasicBlock>& blocks, const std::vector<Loop>& loops,
-                   const std::vector<double>& iterations, bool rdna, std::uint32_t wave) {
+                   const std::vector<double>& iterations, const std::vector<Branch>& branches,
+                   bool rdna, std::uint32_t wave) {
   WaveWork work;
   for (const BasicBlock& block : blocks) {
     double times = 1.0;
     for (std::size_t i = 0; i < loops.size(); ++i) {
       if (loops[i].first <= block.index && block.index <= loops[i].last) {
         times *= iterations[i];
+      }
+    }
+    for (const Branch& branch : branches) {
+      if (branch.first <= block.index && block.index <= branch.last) {
+        times *= branch.share;
       }
     }
     for (const Instruction& instruction : block.instructions) {

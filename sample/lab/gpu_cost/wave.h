@@ -47,6 +47,9 @@ struct Instruction {
 struct BasicBlock {
   std::uint32_t index = 0;
   std::vector<std::uint32_t> predecessors;
+  bool branches = false;  // ends with a divergent branch
+  bool inverts = false;   // stands between the two sides of a divergent branch
+  bool merges = false;    // follows the sides of a divergent branch
   std::vector<Instruction> instructions;
 };
 
@@ -63,10 +66,20 @@ struct Loop {
 };
 [[nodiscard]] std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks);
 
+// One side of a divergent branch: the blocks from `first` to `last`.
+struct Branch {
+  passes::cost::CompiledBranch summary;
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+  double share = 1;  // of the waves that execute it
+};
+[[nodiscard]] std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks);
+
 // `iterations[i]` is the number of iterations of loop i each time that it is entered.
 [[nodiscard]] WaveWork wave_work(const std::vector<BasicBlock>& blocks,
                                  const std::vector<Loop>& loops,
-                                 const std::vector<double>& iterations, bool rdna,
+                                 const std::vector<double>& iterations,
+                                 const std::vector<Branch>& branches, bool rdna,
                                  std::uint32_t wave);
 
 }  // namespace alcove::sample

@@ -1,0 +1,68 @@
+// The texels that a dispatch of the passes reads and writes, from which the GPU cost model
+// (sample/lab/gpu_cost) computes the traffic of caches and memory.
+//
+// A commit that changes the texels that a shader reads must also change accesses.cpp.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "work.h"
+
+namespace alcove::passes::cost {
+
+enum class Direction : std::uint8_t { read, write };
+
+// An image that a pass reads or writes, in the order of its declaration to the graph.
+struct PassImage {
+  std::string name;
+  Direction direction = Direction::read;
+  std::uint32_t texel_bytes = 4;
+  std::uint32_t width = 1;  // texels
+  std::uint32_t height = 1;
+
+  bool operator==(const PassImage&) const = default;
+};
+
+struct Texel {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  std::uint32_t level = 0;  // mip level
+};
+
+// An image instruction of a shader.
+struct ImageAccess {
+  PassImage image;
+  std::uint32_t footprint = 1;  // texels of an invocation along x and y: 2 for a gather
+  // The texel of an invocation, or with a footprint of 2 the first of its texels. It is clamped to
+  // the image.
+  std::function<Texel(Texel invocation)> texel;
+};
+
+// The image instructions that each wave of a dispatch executes, in this order. A workgroup has 8x8
+// invocations and is one wave.
+struct DispatchAccesses {
+  std::uint32_t groups_x = 1;
+  std::uint32_t groups_y = 1;
+  std::vector<ImageAccess> accesses;
+};
+
+// The image instructions of a pass whose pattern is not declared read or write one texel of each
+// image, that of the invocation. `height` is that of the full image, in pixels: the radius of the
+// search is 96 pixels of 1080.
+[[nodiscard]] std::vector<ImageAccess> accesses_of(const PassWork& work,
+                                                   std::span<const PassImage> images,
+                                                   std::uint32_t height);
+
+// The texel that is `distance` pixels from `from` in the direction `phi`, in radians, to within a
+// quarter of a pixel per hundred.
+[[nodiscard]] Texel along_slice(Texel from, float phi, float distance);
+
+// The access to the texel of an invocation, times `scale` and moved by `offset`.
+[[nodiscard]] ImageAccess at_invocation(const PassImage& image, std::int32_t scale = 1,
+                                        Texel offset = {}, std::uint32_t footprint = 1);
+
+}  // namespace alcove::passes::cost

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "gpu/vulkan_device.h"
+
+namespace alcove::sample {
+
+// The GPU time of dispatches of one workgroup that does nothing, in microseconds; medians.
+struct DispatchCost {
+  double alone_us = 0;           // of one in a row of dispatches without barriers
+  double behind_barrier_us = 0;  // of one that waits for the memory writes of the one before
+};
+
+[[nodiscard]] tl::expected<DispatchCost, std::string> measure_dispatch_cost(
+    const VulkanDevice& device);
+
+}  // namespace alcove::sample

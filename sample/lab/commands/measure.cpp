@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "alcove/passes/setting_names.h"
+#include "cli/commands.h"
+#include "cli/open_session.h"
+#include "cli/settings.h"
+#include "commands/dispatch_cost.h"
+#include "gpu/pipeline_capture.h"
+#include "gpu_cost/cost_report.h"
+#include "render/frame_renderer.h"
+#include "support/median.h"
+#include "support/whole_file.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using Done = tl::expected<void, std::string>;
+using Json = nlohmann::ordered_json;
+
+constexpr float kOrbit = 0.007f;  // radians per frame
+
+// The median GPU times of the passes of one choice of settings at one size, in milliseconds.
+struct MeasuredFrame {
+  LabelledSettings settings;
+  std::vector<PassTime> passes;
+};
+
+FrameRequest moving_request(const Session& session, const CostInputs& inputs, std::uint32_t frame) {
+  const auto matrices = [&](std::uint32_t of) {
+    return camera_matrices(orbited(session.camera, kOrbit * static_cast<float>(of)), inputs.width,
+                           inputs.height);
+  };
+  const CameraMatrices now = matrices(frame);
+  const CameraMatrices before = matrices(frame == 0 ? 0 : frame - 1);
+  FrameRequest request;
+  request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
+                  before.clip_from_view, session.camera.reversed_z};
+  request.index = frame;
+  request.occlusion = inputs.settings;
+  return request;
+}
+
+// Renders frames of a moving camera. The first ones, which compile shaders, are not counted.
+tl::expected<MeasuredFrame, std::string> measure(const Session& session, const Options& options,
+                                                 const LabelledSettings& settings) {
+  const CostInputs& inputs = settings.inputs;
+  const auto gpu = open_gpu(session.device);
+  if (!gpu) {
+    return Failure(gpu.error());
+  }
+  const auto renderer = FrameRenderer::create(**gpu, session.scene, {inputs.width, inputs.height},
+                                              options.occlusion.normals);
+  if (!renderer) {
+    return Failure(renderer.error());
+  }
+  constexpr std::uint32_t kWarmUp = 4;
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<double>> times;
+  for (std::uint32_t i = 0; i < kWarmUp + options.view.frames; ++i) {
+    const auto cost = (*renderer)->draw(moving_request(session, inputs, i));
+    if (!cost) {
+      return Failure(cost.error());
+    }
+    for (const PassTime& pass : cost->gpu) {
+      if (i == 0) {
+        order.push_back(pass.pass);
+      }
+      if (i >= kWarmUp) {
+        times[pass.pass].push_back(pass.milliseconds);
+      }
+    }
+  }
+  if (auto valid = check_validation(**gpu); !valid) {
+    return Failure(std::move(valid.error()));
+  }
+  MeasuredFrame frame{settings, {}};
+  for (const std::string& name : order) {
+    frame.passes.push_back({name, median(times[name])});
+  }
+  return frame;
+}
+
+// The modelled times of the same passes on each GPU of the model; empty without its driver.
+std::vector<std::pair<const GpuPart*, ModelledFrame>> modelled(const CostInputs& inputs) {
+  std::vector<std::pair<const GpuPart*, ModelledFrame>> all;
+  for (const GpuPart& part : kGpuParts) {
+    const auto device = create_null_device(part.family);
+    if (!device) {
+      continue;
+    }
+    const auto frames = modelled_frames(part, *device, inputs);
+    if (frames) {
+      const auto moving =
+          std::ranges::find(*frames, passes::cost::FrameState::moving, &ModelledFrame::state);
+      all.emplace_back(&part, *moving);
+    }
+  }
+  return all;
+}
+
+// Prints a measured frame beside its model and returns its part of the report.
+Json print(const MeasuredFrame& frame) {
+  const CostInputs& inputs = frame.settings.inputs;
+  const auto models = modelled(inputs);
+  std::cout << fmt::format("{}, {}x{}, moving camera: measured ms", frame.settings.label,
+                           inputs.width, inputs.height);
+  for (const auto& [part, model] : models) {
+    std::cout << fmt::format("; modelled {} ms, measured / modelled", part->family);
+  }
+  std::cout << "\n";
+  Json passes = Json::array();
+  for (const PassTime& pass : frame.passes) {
+    Json row{{"pass", pass.pass}, {"ms", pass.milliseconds}};
+    std::cout << fmt::format("  {:24}{:10.4f}", pass.pass, pass.milliseconds);
+    for (const auto& [part, model] : models) {
+      const auto own = std::ranges::find(model.passes, pass.pass, &ModelledPass::pass);
+      if (own != model.passes.end()) {
+        const double ratio = pass.milliseconds / own->milliseconds();
+        std::cout << fmt::format("{:12.4f}{:8.2f}", own->milliseconds(), ratio);
+        row["modelled"][std::string(part->family)] = {{"ms", own->milliseconds()},
+                                                      {"quotient", ratio}};
+      }
+    }
+    std::cout << "\n";
+    passes.push_back(std::move(row));
+  }
+  std::cout << std::flush;
+  return {{"settings", frame.settings.label},
+          {"width", inputs.width},
+          {"height", inputs.height},
+          {"passes", std::move(passes)}};
+}
+
+// Prints what the driver's compiler says about the pipelines of one frame after another.
+Json print_registers(const Session& session) {
+  Json list = Json::array();
+  std::cout << "Compute pipelines in the order of their creation, as the driver describes them:\n";
+  for (const VkPipeline pipeline : captured_pipelines()) {
+    const auto compiled = read_compiled_shader(session.gpu->device().device(), pipeline);
+    if (!compiled) {
+      std::cout << "  " << compiled.error() << "\n";
+      break;
+    }
+    std::cout << fmt::format("  subgroup {}:", compiled->wave);
+    for (const auto& [name, value] : compiled->statistics) {
+      std::cout << fmt::format(" {} {:g},", name, value);
+    }
+    std::cout << "\n";
+    list.push_back({{"subgroup", compiled->wave}, {"statistics", compiled->statistics}});
+  }
+  if (captured_pipelines().empty()) {
+    std::cout << "  The device does not have VK_KHR_pipeline_executable_properties.\n";
+  }
+  return list;
+}
+
+// Draws a few frames on the session's own device, so that its pipelines are captured.
+Done compile(const Session& session, const Options& options, const CostInputs& inputs) {
+  const auto renderer = FrameRenderer::create(
+      *session.gpu, session.scene, {inputs.width, inputs.height}, options.occlusion.normals);
+  if (!renderer) {
+    return Failure(renderer.error());
+  }
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    if (auto cost = (*renderer)->draw(moving_request(session, inputs, i)); !cost) {
+      return Failure(std::move(cost.error()));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Done run_measure(const Options& options) {
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
+  }
+  auto session = load_session(options);
+  if (!session) {
+    return Failure(std::move(session.error()));
+  }
+  session->device = {options.device, options.validation, {}, true};
+  auto gpu = open_gpu(session->device);
+  if (!gpu) {
+    return Failure(std::move(gpu.error()));
+  }
+  session->gpu = std::move(*gpu);
+  const VulkanDevice& device = session->gpu->device();
+  std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
+  const auto dispatch = measure_dispatch_cost(device);
+  if (!dispatch) {
+    return Failure(dispatch.error());
+  }
+  std::cout << fmt::format("An empty dispatch takes {:.2f} microseconds, behind a barrier {:.2f}\n",
+                           dispatch->alone_us, dispatch->behind_barrier_us);
+  Json report{{"device", device.properties().deviceName},
+              {"driver", device.driver()},
+              {"frames", options.view.frames},
+              {"dispatch_us", dispatch->alone_us},
+              {"dispatch_behind_barrier_us", dispatch->behind_barrier_us}};
+  std::vector<passes::Quality> qualities{passes::Quality::console, passes::Quality::low,
+                                         passes::Quality::medium, passes::Quality::high};
+  if (options.occlusion.quality_given) {
+    qualities = {options.occlusion.quality};
+  }
+  std::optional<CostInputs> last;
+  for (const auto& [width, height] : options.sizes) {
+    for (const passes::Quality quality : qualities) {
+      OcclusionOptions one = options.occlusion;
+      one.quality = quality;
+      const auto settings = occlusion_settings(one, session->settings.radius);
+      if (!settings) {
+        return Failure(settings.error());
+      }
+      last = CostInputs{.width = width, .height = height, .settings = *settings};
+      const auto frame =
+          measure(*session, options, {std::string(passes::name_of(quality)), *last, ""});
+      if (!frame) {
+        return Failure(frame.error());
+      }
+      report["measured"].push_back(print(*frame));
+    }
+  }
+  if (auto compiled = compile(*session, options, *last); !compiled) {
+    return compiled;
+  }
+  report["pipelines"] = print_registers(*session);
+  return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
+    std::cout << "report.json is in " << options.out.string() << "\n";
+  });
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "alcove/passes/setting_names.h"
+#include "cli/commands.h"
+#include "cli/open_session.h"
+#include "cli/render_command.h"
+#include "evaluate/errors.h"
+#include "evaluate/situations.h"
+#include "evaluate/trade.h"
+#include "gpu_cost/xegtao.h"
+#include "report/report_page.h"
+#include "support/printable.h"
+#include "support/progress.h"
+#include "support/whole_file.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using Json = nlohmann::ordered_json;
+using passes::OcclusionSettings;
+using passes::Quality;
+
+constexpr std::array<Quality, 4> kPresets{Quality::console, Quality::low, Quality::medium,
+                                          Quality::high};
+constexpr auto kFirst = static_cast<std::size_t>(Situation::first);
+constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
+constexpr auto kStanding = static_cast<std::size_t>(Situation::standing);
+
+// The part of the page about one scene.
+class ScenePage {
+ public:
+  ScenePage(const Options& options, const Session& session, const ModelledTimes& times,
+            SituationErrors errors)
+      : options_(options), session_(session), times_(times), errors_(std::move(errors)) {}
+
+  tl::expected<Json, std::string> make() {
+    auto done = add_points()
+                    .and_then([&] { return add_requirements(); })
+                    .and_then([&] { return add_pictures(); })
+                    .and_then([&] { return add_plan(); });
+    if (!done) {
+      return Failure(std::move(done.error()));
+    }
+    json_["name"] = options_.scene.empty() ? "builtin" : printable(options_.scene);
+    json_["points"] = std::move(points_);
+    return std::move(json_);
+  }
+
+ private:
+  using Done = tl::expected<void, std::string>;
+
+  tl::expected<Achievement, std::string> measure(const OcclusionSettings& settings) {
+    const auto ms = times_.measure(settings);
+    if (!ms) {
+      return Failure(ms.error());
+    }
+    const auto rmse = errors_.measure(settings);
+    if (!rmse) {
+      return Failure(rmse.error());
+    }
+    return Achievement{settings, *rmse, *ms};
+  }
+
+  void add_point(const std::string& name, const Achievement& of, bool preset, bool recommended) {
+    const Shot shot{session_.camera,     of.settings,          std::nullopt,
+                    options_.view.width, options_.view.height, options_.view.frames};
+    points_.push_back({{"name", name},
+                       {"ms", of.ms[kMoving]},
+                       {"rmse", of.rmse[kMoving]},
+                       {"rmse_each", {of.rmse[kMoving], of.rmse[kStanding], of.rmse[kFirst]}},
+                       {"ms_each", {of.ms[kMoving], of.ms[kStanding]}},
+                       {"preset", preset},
+                       {"recommended", recommended},
+                       {"command", shell_line(render_arguments(options_, shot))}});
+  }
+
+  // The presets, and numbers of samples between them.
+  Done add_points() {
+    const std::vector<Variant> variants = preset_sweep(session_.settings);
+    const Progress progress = print_progress("settings");
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      const auto found = measure(variants[i].settings);
+      if (!found) {
+        return Failure(found.error());
+      }
+      const bool preset = std::ranges::any_of(
+          kPresets, [&](Quality quality) { return variants[i].name == passes::name_of(quality); });
+      add_point(variants[i].name, *found, preset, false);
+      progress(static_cast<double>(i + 1) / static_cast<double>(variants.size()));
+    }
+    return {};
+  }
+
+  // What `recommend` finds within the time of `medium`.
+  Done add_requirements() {
+    OcclusionSettings medium = passes::quality_settings(Quality::medium, session_.settings.radius);
+    const auto limit = times_.measure(medium);
+    if (!limit) {
+      return Failure(limit.error());
+    }
+    RecommendationGoal goal;
+    goal.budget_ms = goal.ms({medium, {}, *limit});
+    const RecommendationWorld world{
+        [&](const OcclusionSettings& settings) { return measure(settings); },
+        [&](const OcclusionSettings& settings) { return times_.measure(settings); }};
+    const auto found = recommend(medium, goal, world);
+    if (!found) {
+      return Failure(found.error());
+    }
+    add_point("recommended within the time of medium", found->chosen, false, true);
+    json_["summary"] = fmt::format(
+        "Within the time of medium ({:.4f} ms): tiles of {}x{}, {} slices of {} steps, {} depth "
+        "layers; RMSE {:.4f}.",
+        *goal.budget_ms, found->chosen.settings.tile_size, found->chosen.settings.tile_size,
+        found->chosen.settings.slices, found->chosen.settings.steps,
+        found->chosen.settings.depth_layers, goal.rmse(found->chosen));
+    json_["requirements"] = Json::array();
+    for (const FeatureEffect& feature : found->features) {
+      json_["requirements"].push_back(feature.sentence());
+    }
+    return {};
+  }
+
+  Done add_picture(const char* list, const std::string& name,
+                   const tl::expected<std::string, std::string>& uri) {
+    if (!uri) {
+      return Failure(uri.error());
+    }
+    json_[list].push_back({{"name", name}, {"image", *uri}});
+    return {};
+  }
+
+  Done add_pictures() {
+    const Image<float>& truth = errors_.truths().scene.visibility;
+    Image<float> open(truth.width, truth.height, 1.0f);
+    auto done = add_picture("pictures", "truth", data_uri(truth, options_.out)).and_then([&] {
+      return add_picture("pictures", "no occlusion", data_uri(open, options_.out));
+    });
+    for (std::size_t i = 0; i < kPresets.size() && done; ++i) {
+      const std::string name(passes::name_of(kPresets[i]));
+      const auto visibility = errors_.draw(
+          passes::quality_settings(kPresets[i], session_.settings.radius), options_.view.frames, 0);
+      if (!visibility) {
+        return Failure(visibility.error());
+      }
+      done = add_picture("pictures", name, data_uri(*visibility, options_.out)).and_then([&] {
+        return add_picture("errors", name,
+                           data_uri(error_colours(*visibility, truth), options_.out));
+      });
+    }
+    return done;
+  }
+
+  Done add_plan() {
+    auto text = plan_text(session_, options_);
+    if (!text) {
+      return Failure(std::move(text.error()));
+    }
+    json_["plan"] = std::move(*text);
+    return {};
+  }
+
+  const Options& options_;
+  const Session& session_;
+  const ModelledTimes& times_;
+  SituationErrors errors_;
+  Json json_;
+  Json points_ = Json::array();
+};
+
+}  // namespace
+
+tl::expected<void, std::string> run_report(const Options& options) {
+  const auto folder = OutputFolder::create(options.out);
+  if (!folder) {
+    return tl::unexpected(folder.error());
+  }
+  // A missing Chart.js is reported before the measurement, which takes minutes.
+  if (const auto page = report_page({}); !page) {
+    return Failure(page.error());
+  }
+  const auto times =
+      ModelledTimes::create(*options.gpu,
+                            {.width = options.target_width,
+                             .height = options.target_height,
+                             .normals = options.occlusion.normals != NormalSource::kDepth},
+                            options.use_cache);
+  if (!times) {
+    return Failure(times.error());
+  }
+  Json data{{"gpu", options.gpu->title},
+            {"target", fmt::format("{}x{}", options.target_width, options.target_height)},
+            {"size", fmt::format("{}x{}", options.view.width, options.view.height)},
+            {"peers", Json::array()}};
+  for (const XeGtao& peer : {kXeGtao[1], kXeGtaoHigh}) {
+    data["peers"].push_back(
+        {{"name", peer.name},
+         {"ms", xegtao_ms(*options.gpu, peer, options.target_width, options.target_height)}});
+  }
+  const std::vector<std::string> scenes =
+      options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;
+  for (const std::string& scene : scenes) {
+    Options one = options;
+    one.scene = scene;
+    const auto session = open_session(one);
+    if (!session) {
+      return Failure(session.error());
+    }
+    data["device"] = session->gpu->device().properties().deviceName;
+    auto errors =
+        SituationErrors::create(*session, static_setup(one, session->camera), truth_options(one));
+    if (!errors) {
+      return Failure(std::move(errors.error()));
+    }
+    auto page = ScenePage(one, *session, *times, std::move(*errors)).make();
+    if (!page) {
+      return Failure(std::move(page.error()));
+    }
+    data["scenes"].push_back(std::move(*page));
+  }
+  const auto page = report_page(data);
+  if (!page) {
+    return Failure(page.error());
+  }
+  return write_text(options.out / "index.html", *page).map([&] {
+    std::cout << "index.html is in " << options.out.string() << "\n";
+  });
+}
+
+}  // namespace alcove::sample

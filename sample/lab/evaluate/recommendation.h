@@ -1,0 +1,76 @@
+// The choice of settings for a view: a coordinate search over numbers of samples and over features.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "alcove/passes/occlusion.h"
+
+namespace alcove::sample {
+
+// The situations in which error and time differ. Names are in the order of the enumerators.
+enum class Situation { first, moving, standing };
+inline constexpr std::array<std::string_view, 3> kSituationNames{"first", "moving", "standing"};
+
+// What settings achieve: the RMSE of visibility against scene truth, and the time of the occlusion
+// passes in milliseconds, in each situation.
+struct Achievement {
+  passes::OcclusionSettings settings;
+  std::array<double, 3> rmse{};
+  std::array<double, 3> ms{};
+};
+
+// How much each situation counts; the sum is 1. By default mostly the moving camera.
+using SituationWeights = std::array<double, 3>;
+inline constexpr SituationWeights kMixedWeights{0.1, 0.6, 0.3};
+
+// The limit that the settings have to meet. Exactly one of the two is given.
+struct RecommendationGoal {
+  std::optional<double> budget_ms;
+  std::optional<double> tolerance;  // RMSE
+  SituationWeights weights = kMixedWeights;
+
+  double rmse(const Achievement& of) const;
+  double ms(const Achievement& of) const;
+  bool met(const Achievement& by) const;
+  bool prefers(const Achievement& a, const Achievement& b) const;
+};
+
+// The effect of one feature at otherwise equal settings.
+struct FeatureEffect {
+  std::string name;
+  double rmse_change = 0;  // relative: -0.2 for 20 % less
+  double ms_change = 0;
+  bool chosen = false;
+  std::string problem;  // an error if the feature could not be measured; empty otherwise
+
+  std::string sentence() const;
+};
+
+struct Recommendation {
+  Achievement chosen;
+  std::vector<Achievement> measured;  // all settings that were measured, in this order
+  std::vector<FeatureEffect> features;
+};
+
+// Functions that a search calls. `time` gives Achievement::ms alone and takes much less time.
+struct RecommendationWorld {
+  std::function<tl::expected<Achievement, std::string>(const passes::OcclusionSettings&)> measure;
+  std::function<tl::expected<std::array<double, 3>, std::string>(const passes::OcclusionSettings&)>
+      time;
+};
+
+// Searches from `base`, whose settings beyond those that the search changes are kept. First it
+// measures numbers of samples near the limit, then each feature with the best of them; a feature
+// that lowers the error is also tried with fewer samples. If nothing meets the goal, the result is
+// the closest. Errors: those of `measure` and `time` for numbers of samples.
+[[nodiscard]] tl::expected<Recommendation, std::string> recommend(
+    const passes::OcclusionSettings& base, const RecommendationGoal& goal,
+    const RecommendationWorld& world);
+
+}  // namespace alcove::sample

@@ -1,0 +1,149 @@
+#include "evaluate/situations.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "evaluate/errors.h"
+#include "render/settings_json.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using passes::OcclusionSettings;
+using passes::cost::FrameState;
+
+constexpr float kOrbit = 0.007f;             // radians per frame
+constexpr std::uint32_t kMovingFrames = 16;  // of the orbit
+
+// A hash of the running program, because the shaders that it contains determine the times; empty if
+// the system does not give its file.
+std::string program_hash() {
+  static const std::string hash = [] {
+    std::ifstream file("/proc/self/exe", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    CacheKey key;
+    key.add(std::string_view(bytes));
+    return bytes.empty() ? std::string() : key.hex();
+  }();
+  return hash;
+}
+
+}  // namespace
+
+tl::expected<SituationErrors, std::string> SituationErrors::create(
+    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options) {
+  SituationErrors made(setup);
+  auto renderer = FrameRenderer::create(*session.gpu, session.scene, {setup.width, setup.height},
+                                        setup.normals);
+  if (!renderer) {
+    return Failure(std::move(renderer.error()));
+  }
+  made.renderer_ = std::move(*renderer);
+  const auto images = draw_static(*session.gpu, session.scene, setup, session.settings);
+  if (!images) {
+    return Failure(images.error());
+  }
+  auto truths = truths_of(
+      {session.scene, setup.camera, session.settings.radius, images->depth_ndc, images->normal_ws},
+      truth_options);
+  if (!truths) {
+    return Failure(std::move(truths.error()));
+  }
+  made.truths_ = std::move(*truths);
+  return made;
+}
+
+tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSettings& settings,
+                                                              std::uint32_t frames, float orbit) {
+  const auto matrices = [&](std::uint32_t frame) {
+    const float angle = orbit * (static_cast<float>(frame) - static_cast<float>(frames - 1));
+    return camera_matrices(orbited(setup_.camera, angle), setup_.width, setup_.height);
+  };
+  FrameRequest request;
+  request.occlusion = settings;
+  request.occlusion.specular = passes::Specular::none;
+  request.occlusion.bent_normal = false;
+  for (std::uint32_t i = 0; i < frames; ++i) {
+    const CameraMatrices now = matrices(i);
+    const CameraMatrices before = matrices(i == 0 ? 0 : i - 1);
+    request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
+                    before.clip_from_view, setup_.camera.reversed_z};
+    request.index = i;
+    request.static_frames = orbit == 0.0f ? i : 0;
+    if (i + 1 < frames) {
+      if (auto cost = renderer_->draw(request); !cost) {
+        return Failure(std::move(cost.error()));
+      }
+    }
+  }
+  auto images = renderer_->draw_and_read(request);
+  if (!images) {
+    return Failure(std::move(images.error()));
+  }
+  return std::move(images->visibility);
+}
+
+tl::expected<std::array<double, 3>, std::string> SituationErrors::measure(
+    const OcclusionSettings& settings) {
+  struct Course {
+    std::uint32_t frames;
+    float orbit;
+  };
+  const std::array<Course, 3> courses{{{1, 0.0f}, {kMovingFrames, kOrbit}, {setup_.frames, 0.0f}}};
+  std::array<double, 3> rmse{};
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    const auto visibility = draw(settings, courses[i].frames, courses[i].orbit);
+    if (!visibility) {
+      return Failure(visibility.error());
+    }
+    rmse[i] = compare_images(*visibility, truths_.scene.visibility, truths_.surfaces).rmse;
+  }
+  return rmse;
+}
+
+tl::expected<ModelledTimes, std::string> ModelledTimes::create(const GpuPart& part,
+                                                               const CostInputs& inputs,
+                                                               bool use_cache) {
+  auto device = create_null_device(part.family);
+  if (!device) {
+    return Failure(std::move(device.error()));
+  }
+  ModelledTimes made(part, inputs, use_cache && !program_hash().empty());
+  made.device_ = std::move(*device);
+  return made;
+}
+
+tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
+    const OcclusionSettings& settings) const {
+  CostInputs inputs = inputs_;
+  inputs.settings = settings;
+  inputs.settings.specular = passes::Specular::none;
+  inputs.settings.bent_normal = false;
+  CacheKey key;
+  key.add(std::string_view("modelled times"), std::string_view(program_hash()), part_->family,
+          inputs.width, inputs.height, inputs.normals, inputs.motion,
+          std::string_view(to_json(inputs.settings).dump()));
+  std::array<double, 3> ms{};
+  if (const auto known = cache_.read(key, ms.size())) {
+    std::ranges::copy(*known, ms.begin());
+    return ms;
+  }
+  const auto frames = modelled_frames(*part_, device_, inputs);
+  if (!frames) {
+    return Failure(frames.error());
+  }
+  constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
+                                              FrameState::converged};
+  for (std::size_t i = 0; i < kStates.size(); ++i) {
+    ms[i] = std::ranges::find(*frames, kStates[i], &ModelledFrame::state)->milliseconds();
+  }
+  const std::vector<float> kept(ms.begin(), ms.end());
+  cache_.write(key, kept);
+  return ms;
+}
+
+}  // namespace alcove::sample

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "evaluate/recommendation.h"
+#include "evaluate/truths.h"
+#include "evaluate/variant.h"
+#include "gpu_cost/modelled_frame.h"
+#include "reference/truth_cache.h"
+#include "render/session.h"
+
+namespace alcove::sample {
+
+// Measures the errors of settings in one view: of the first frame, of the last frame of an orbit
+// that ends at the view, and after StaticSetup::frames frames of a static camera.
+class SituationErrors {
+ public:
+  // Borrows the session. Computes the truth of the view.
+  [[nodiscard]] static tl::expected<SituationErrors, std::string> create(
+      const Session& session, const StaticSetup& setup, const TruthOptions& truth_options);
+
+  // The errors in the order of Situation.
+  [[nodiscard]] tl::expected<std::array<double, 3>, std::string> measure(
+      const passes::OcclusionSettings& settings);
+
+  // Renders frames of an orbit that ends at the view, with `orbit` radians per frame, and returns
+  // the visibility of the last one.
+  [[nodiscard]] tl::expected<Image<float>, std::string> draw(
+      const passes::OcclusionSettings& settings, std::uint32_t frames, float orbit);
+  const Truths& truths() const { return truths_; }
+
+ private:
+  explicit SituationErrors(const StaticSetup& setup) : setup_(setup) {}
+
+  StaticSetup setup_;
+  std::unique_ptr<FrameRenderer> renderer_;
+  Truths truths_;
+};
+
+// Models the times of settings on a GPU, and keeps them in the cache on disk for this build of the
+// program.
+class ModelledTimes {
+ public:
+  // `inputs` are those of the view; settings are replaced. Error: Mesa's AMD driver is missing.
+  [[nodiscard]] static tl::expected<ModelledTimes, std::string> create(const GpuPart& part,
+                                                                       const CostInputs& inputs,
+                                                                       bool use_cache);
+
+  // The times in the order of Situation, in milliseconds.
+  [[nodiscard]] tl::expected<std::array<double, 3>, std::string> measure(
+      const passes::OcclusionSettings& settings) const;
+
+ private:
+  ModelledTimes(const GpuPart& part, const CostInputs& inputs, bool use_cache)
+      : part_(&part),
+        inputs_(inputs),
+        cache_(use_cache ? TruthCache::default_folder() : std::filesystem::path()) {}
+
+  const GpuPart* part_;
+  CostInputs inputs_;
+  NullDevice device_;
+  TruthCache cache_;
+};
+
+}  // namespace alcove::sample

@@ -1,0 +1,156 @@
+#include "evaluate/recommendation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "evaluate/trade.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::OcclusionSettings;
+
+// A world in which errors and times have closed forms: more samples take longer and err less, and a
+// second layer takes 20 % of the error away for 15 % of the time.
+struct World {
+  double layer_gain = 0.2;
+  int renders = 0;
+
+  static double samples(const OcclusionSettings& s) {
+    return static_cast<double>(s.slices * s.steps) / (s.tile_size * s.tile_size);
+  }
+  double ms(const OcclusionSettings& s) const {
+    return (s.half_resolution ? 0.3 : 1.0) + 0.4 * samples(s) * (s.depth_layers > 1 ? 1.5 : 1.0);
+  }
+  double rmse(const OcclusionSettings& s) const {
+    const double hidden = 0.1 * std::abs(s.hidden_occlusion - 0.33);
+    const double layers = s.depth_layers > 1 ? 1.0 - layer_gain : 1.0;
+    const double horizons = s.advanced.estimator == passes::Estimator::horizons ? 1.6 : 1.0;
+    return (0.04 + 0.02 / (0.5 + samples(s)) + hidden + (s.half_resolution ? 0.01 : 0.0)) * layers *
+           horizons;
+  }
+  RecommendationWorld functions() {
+    const auto times = [this](const OcclusionSettings& s) {
+      return std::array<double, 3>{ms(s), ms(s), 0.9 * ms(s)};
+    };
+    return {
+        [this, times](const OcclusionSettings& s) -> tl::expected<Achievement, std::string> {
+          ++renders;
+          return Achievement{s, {1.2 * rmse(s), rmse(s), 0.9 * rmse(s)}, times(s)};
+        },
+        [times](const OcclusionSettings& s) -> tl::expected<std::array<double, 3>, std::string> {
+          return times(s);
+        }};
+  }
+};
+
+RecommendationGoal within_ms(double ms) { return {ms, std::nullopt}; }
+RecommendationGoal within_rmse(double rmse) { return {std::nullopt, rmse}; }
+
+// The best of every number of samples with and without a second layer.
+Achievement best_of_all(const RecommendationGoal& goal, World world) {
+  std::optional<Achievement> best;
+  const auto functions = world.functions();
+  for (const Variant& variant : preset_sweep({})) {
+    for (const std::uint32_t layers : {1u, 2u}) {
+      OcclusionSettings settings = variant.settings;
+      settings.depth_layers = layers;
+      const Achievement found = functions.measure(settings).value();
+      if (!best || goal.prefers(found, *best)) {
+        best = found;
+      }
+    }
+  }
+  return *best;
+}
+
+TEST(Recommendation, BudgetIsMetWithTheErrorOfABruteForceSearch) {
+  for (const double gain : {0.0, 0.2}) {
+    for (const double ms : {0.5, 0.9, 1.3, 1.8, 3.0, 6.0, 40.0}) {
+      World world{gain};
+      const RecommendationGoal goal = within_ms(ms);
+      const auto found = recommend({}, goal, world.functions());
+      ASSERT_TRUE(found) << found.error();
+      EXPECT_TRUE(goal.met(found->chosen)) << ms;
+      EXPECT_LE(goal.rmse(found->chosen), 1.03 * goal.rmse(best_of_all(goal, world))) << ms;
+      EXPECT_LE(world.renders, 45) << ms;
+    }
+  }
+}
+
+TEST(Recommendation, ToleranceIsMetInNearlyTheTimeOfABruteForceSearch) {
+  for (const double gain : {0.0, 0.2}) {
+    for (const double rmse : {0.09, 0.06, 0.05, 0.046}) {
+      World world{gain};
+      const RecommendationGoal goal = within_rmse(rmse);
+      const auto found = recommend({}, goal, world.functions());
+      ASSERT_TRUE(found) << found.error();
+      EXPECT_TRUE(goal.met(found->chosen)) << rmse;
+      EXPECT_LE(goal.ms(found->chosen), 1.1 * goal.ms(best_of_all(goal, world))) << rmse;
+    }
+  }
+}
+
+TEST(Recommendation, ToleranceThatOnlyAFeatureReachesIsReached) {
+  World world;
+  const RecommendationGoal goal = within_rmse(0.036);
+  const auto found = recommend({}, goal, world.functions());
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_TRUE(goal.met(found->chosen));
+  EXPECT_EQ(found->chosen.settings.depth_layers, 2u);
+}
+
+TEST(Recommendation, ImpossibleGoalYieldsTheClosestSettings) {
+  World world;
+  const RecommendationGoal tolerance = within_rmse(0.001);
+  const auto accurate = recommend({}, tolerance, world.functions());
+  ASSERT_TRUE(accurate) << accurate.error();
+  EXPECT_FALSE(tolerance.met(accurate->chosen));
+  EXPECT_LT(tolerance.rmse(accurate->chosen), 0.04);
+  const RecommendationGoal budget = within_ms(0.1);
+  const auto fast = recommend({}, budget, world.functions());
+  ASSERT_TRUE(fast) << fast.error();
+  EXPECT_FALSE(budget.met(fast->chosen));
+  EXPECT_LT(budget.ms(fast->chosen), 0.45);
+}
+
+TEST(Recommendation, EachFeatureHasASentenceAboutItsErrorAndTime) {
+  World world;
+  const auto found = recommend({}, within_ms(4), world.functions());
+  ASSERT_TRUE(found) << found.error();
+  const auto layer =
+      std::ranges::find(found->features, "a second depth layer", &FeatureEffect::name);
+  ASSERT_NE(layer, found->features.end());
+  EXPECT_THAT(layer->sentence(),
+              testing::StartsWith("a second depth layer: 20.0 % less error for"));
+  EXPECT_THAT(layer->sentence(), testing::HasSubstr("more time; used"));
+  const auto horizons =
+      std::ranges::find(found->features, "horizons, infinitely thick", &FeatureEffect::name);
+  ASSERT_NE(horizons, found->features.end());
+  EXPECT_THAT(horizons->sentence(), testing::HasSubstr("60.0 % more error"));
+  EXPECT_THAT(horizons->sentence(), testing::HasSubstr("not needed here"));
+}
+
+TEST(Recommendation, FeatureThatFailsIsNamedAndTheOthersAreStillTried) {
+  World world;
+  RecommendationWorld functions = world.functions();
+  const auto measure = functions.measure;
+  functions.measure = [&](const OcclusionSettings& s) -> tl::expected<Achievement, std::string> {
+    if (passes::needs_back_depth(s)) {
+      return tl::unexpected<std::string>("no back faces");
+    }
+    return measure(s);
+  };
+  const auto found = recommend({}, within_ms(4), functions);
+  ASSERT_TRUE(found) << found.error();
+  const auto back =
+      std::ranges::find(found->features, "thickness from back faces", &FeatureEffect::name);
+  ASSERT_NE(back, found->features.end());
+  EXPECT_THAT(back->sentence(), testing::HasSubstr("not measured (no back faces)"));
+  EXPECT_GT(found->features.size(), 6u);
+}
+
+}  // namespace
+}  // namespace alcove::sample
