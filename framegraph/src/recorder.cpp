@@ -147,11 +147,13 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = t.src_stages;
   barrier.srcAccessMask = t.src_access;
-  // The validation layers (1.3.239) forget the last use of memory by a buffer, and uses before
-  // full_barrier(), unless the barrier names an access. There is nothing left to make available.
+  // The validation layers (1.3.239) forget the last use of memory by other resources, and uses
+  // before full_barrier(), unless the barrier names an access. There is nothing left to make
+  // available, so that naming it changes nothing.
   if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
-  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && frame_.starts_anew)
+  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0 &&
+      (frame_.starts_anew || device_.handles.debug_utils))
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstStageMask = t.dst_stages;
   barrier.dstAccessMask = t.dst_access;

@@ -69,6 +69,21 @@ Accesses gtao_accesses(const OcclusionSettings& settings, std::span<const PassIm
   return accesses;
 }
 
+// tile_of_invocation() of gtao.comp: groups advance by columns through strips that are `groups.x`
+// groups high. Here the strips of a dispatch lie one below the other.
+ImageAccess in_strips(ImageAccess access, const Groups& groups) {
+  const auto high = static_cast<std::int32_t>(groups.x);
+  const auto wide = static_cast<std::int32_t>(groups.y);
+  access.texel = [=, texel = std::move(access.texel)](Texel invocation) {
+    constexpr auto kSide = static_cast<std::int32_t>(kGroup);
+    const std::int32_t column = invocation.y / kSide;
+    const std::int32_t row = column / wide * high + invocation.x / kSide;
+    return texel(
+        {column % wide * kSide + invocation.x % kSide, row * kSide + invocation.y % kSide});
+  };
+  return access;
+}
+
 // The blocks of 8x8 texels that a group of reconstruct.comp computes, one below the other.
 std::int32_t blocks_of(const OcclusionSettings& settings) {
   return settings.tile_size > (settings.half_resolution ? 2u : 1u) ? 4 : 1;
@@ -245,25 +260,26 @@ ImageAccess at_invocation(const PassImage& image, std::int32_t scale, Texel offs
           }};
 }
 
-std::vector<ImageAccess> accesses_of(const PassWork& work, std::span<const PassImage> images,
-                                     std::uint32_t height) {
+DispatchAccesses accesses_of(const PassWork& work, std::span<const PassImage> images,
+                             std::uint32_t height, const Groups& groups) {
+  DispatchAccesses dispatch{groups.x, groups.y * groups.z, {}};
   if (work.pass == "gtao") {
-    return gtao_accesses(work.settings, images, kRadius * static_cast<float>(height));
+    dispatch.accesses = gtao_accesses(work.settings, images, kRadius * static_cast<float>(height));
+    for (ImageAccess& access : dispatch.accesses) {
+      access = in_strips(std::move(access), groups);
+    }
+  } else if (work.pass == "reconstruct") {
+    dispatch.accesses = reconstruct_accesses(work, images);
+  } else if (work.pass == "upsample") {
+    dispatch.accesses = upsample_accesses(images);
+  } else if (work.pass == "normals") {
+    dispatch.accesses = normals_accesses(images);
+  } else {
+    for (const PassImage& image : images) {
+      dispatch.accesses.push_back(at_invocation(image));
+    }
   }
-  if (work.pass == "reconstruct") {
-    return reconstruct_accesses(work, images);
-  }
-  if (work.pass == "upsample") {
-    return upsample_accesses(images);
-  }
-  if (work.pass == "normals") {
-    return normals_accesses(images);
-  }
-  Accesses accesses;
-  for (const PassImage& image : images) {
-    accesses.push_back(at_invocation(image));
-  }
-  return accesses;
+  return dispatch;
 }
 
 }  // namespace alcove::passes::cost

@@ -50,12 +50,18 @@ struct DispatchAccesses {
   std::vector<ImageAccess> accesses;
 };
 
+// The numbers of groups of a dispatch.
+struct Groups {
+  std::uint32_t x = 1;
+  std::uint32_t y = 1;
+  std::uint32_t z = 1;
+};
+
 // The image instructions of a pass whose pattern is not declared read or write one texel of each
 // image, that of the invocation. `height` is that of the full image, in pixels: the radius of the
 // search is 96 pixels of 1080.
-[[nodiscard]] std::vector<ImageAccess> accesses_of(const PassWork& work,
-                                                   std::span<const PassImage> images,
-                                                   std::uint32_t height);
+[[nodiscard]] DispatchAccesses accesses_of(const PassWork& work, std::span<const PassImage> images,
+                                           std::uint32_t height, const Groups& groups);
 
 // The texel that is `distance` pixels from `from` in the direction `phi`, in radians, to within a
 // quarter of a pixel per hundred.

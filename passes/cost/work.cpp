@@ -46,7 +46,8 @@ double branch_share(const PassWork& /*work*/, const CompiledBranch& branch) {
   // An assumption about the share of the groups of 8x8 pixels with such a pixel; it is zero with
   // the triangles' own normals, except at silhouettes.
   constexpr double kNormalFromDepth = 0.02;
-  const bool normal_from_depth = branch.stores == 0 && (branch.loads == 4 || branch.loads == 5);
+  const bool normal_from_depth =
+      branch.stores == 0 && branch.loops == 0 && (branch.loads == 4 || branch.loads == 5);
   return normal_from_depth ? kNormalFromDepth : 1.0;
 }
 

@@ -55,6 +55,7 @@ struct CompiledBranch {
   std::uint32_t instructions = 0;
   std::uint32_t loads = 0;   // image loads, samples and gathers among them
   std::uint32_t stores = 0;  // image stores among them
+  std::uint32_t loops = 0;   // loops inside
 };
 
 // Returns the share of waves, [0,1], in which at least one invocation executes `branch`. It is 1

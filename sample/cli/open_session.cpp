@@ -85,16 +85,20 @@ tl::expected<Rendering, std::string> render(const Options& options) {
   if (!environment) {
     return Failure(std::move(environment.error()));
   }
-  std::cout << "Radius " << shown(session->settings.radius) << ": " << session->radius_reason
-            << "\n";
-  return render(std::move(*session),
-                {options.view.width,
-                 options.view.height,
-                 options.view.frames,
-                 options.view.orbit,
-                 options.view.orbit_start,
-                 options.occlusion.normals,
-                 {options.occlusion.roughness, std::move(*environment), options.lit}});
+  const std::string radius =
+      "Radius " + shown(session->settings.radius) + ": " + session->radius_reason + "\n";
+  auto rendering = render(std::move(*session),
+                          {options.view.width,
+                           options.view.height,
+                           options.view.frames,
+                           options.view.orbit,
+                           options.view.orbit_start,
+                           options.occlusion.normals,
+                           {options.occlusion.roughness, std::move(*environment), options.lit}});
+  if (rendering && shows_surfaces(*rendering)) {
+    std::cout << radius;
+  }
+  return rendering;
 }
 
 StaticSetup static_setup(const Options& options, const Camera& camera) {

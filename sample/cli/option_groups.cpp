@@ -103,8 +103,8 @@ void check_view(const ViewOptions& view) {
 void add_radius(const Group& group, OcclusionOptions& occlusion) {
   group.add(
       "--radius", "LENGTH",
-      "distance up to which occluders count, scene units. Default: a twentieth of the diagonal of "
-      "the scene, without sky domes, ground planes and stray triangles far away",
+      "distance up to which occluders count, scene units. Default: from the geometry that the view "
+      "shows; the program prints it and why",
       [&](const OptionValue& given) { occlusion.radius = given.length(); });
 }
 
@@ -211,15 +211,6 @@ void add_motion(CLI::App& app, Options& options) {
   add_frames(group, options.view, kFewest,
              "number of frames of each path, which begins at the given view. Three of them are "
              "compared with the ray-traced truth. Default: 48");
-}
-
-void add_radius(CLI::App& app, OcclusionOptions& occlusion) {
-  const Group group(app, "Occlusion");
-  group.add(
-      "--radius", "LENGTH",
-      "distance up to which occluders count, scene units. Default: a twentieth of the diagonal of "
-      "the scene, without sky domes, ground planes and stray triangles far away",
-      [&](const OptionValue& given) { occlusion.radius = given.length(); });
 }
 
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {

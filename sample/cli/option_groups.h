@@ -40,8 +40,6 @@ void add_clock(CLI::App& app, std::optional<Clock>& clock);
 void add_cost(CLI::App& app, Options& options);
 // Adds --target-size and --gpu, for which times are modelled.
 void add_target(CLI::App& app, Options& options);
-// Adds --radius alone, for commands without the other options of the occlusion.
-void add_radius(CLI::App& app, OcclusionOptions& occlusion);
 // Adds --sizes and --frames of `measure`.
 void add_sizes(CLI::App& app, Options& options);
 // Adds the option of `bench` that measures the grid of steps and slices.

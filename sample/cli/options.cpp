@@ -145,7 +145,6 @@ void add_doctor_command(CLI::App& app, Options& options) {
   add_materials(app, options.materials);
   add_doctor(app, options);
   add_view(app, options.view);
-  add_radius(app, options.occlusion);
   add_device(app, options);
 }
 

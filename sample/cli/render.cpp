@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <iostream>
 
 #include "cli/commands.h"
@@ -8,15 +6,6 @@
 #include "support/whole_file.h"
 
 namespace alcove::sample {
-namespace {
-
-bool shows_surfaces(const Rendering& rendering) {
-  const Image<float> depth = linear_depth(rendering);
-  return std::ranges::any_of(depth.pixels, [](float z) { return std::isfinite(z); });
-}
-
-}  // namespace
-
 tl::expected<void, std::string> run_render(const Options& options) {
   const auto folder = OutputFolder::create(options.out);
   if (!folder) {

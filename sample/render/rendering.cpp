@@ -188,6 +188,11 @@ Image<float> linear_depth(const Rendering& rendering) {
   return linear_depth(rendering.camera, rendering.images.depth_ndc);
 }
 
+bool shows_surfaces(const Rendering& rendering) {
+  const Image<float> depth = linear_depth(rendering);
+  return std::ranges::any_of(depth.pixels, [](float z) { return std::isfinite(z); });
+}
+
 Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture) {
   const Camera& camera = rendering.camera;
   const Image<float> depth = linear_depth(rendering);

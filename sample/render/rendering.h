@@ -57,6 +57,9 @@ struct RenderRequest {
 // Returns the distance along the view axis at each pixel, infinity at pixels of the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
 
+// Returns whether a pixel shows a surface.
+[[nodiscard]] bool shows_surfaces(const Rendering& rendering);
+
 // Returns the picture with the environment at pixels without a surface.
 [[nodiscard]] Image<glm::vec3> with_sky(const Rendering& rendering, Image<glm::vec3> picture);
 

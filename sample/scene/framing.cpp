@@ -363,7 +363,7 @@ Camera with_fitted_planes(const Scene& scene, const Camera& camera, double aspec
 RadiusChoice radius_for_view(const Scene& scene, const Camera& camera, double aspect) {
   constexpr double kShare = 0.05;     // of the extent of the surfaces in view
   constexpr size_t kLeastShown = 50;  // one pixel in so many shows the subject
-  if (scene.suggested_radius > 0.0f) return {scene.suggested_radius, "which the scene suggests"};
+  if (scene.suggested_radius > 0.0f) return {scene.suggested_radius, "the scene suggests it"};
   const DepthPicture picture = draw_depth(scene, camera, aspect);
   const Bounds grown = grown_subject(scene);
   // Coordinates by axis, and distances from the eye.

@@ -150,7 +150,7 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
     }
     case 15u:
       return vec4(weight_of_code(b.z * 31.0f), weight_after_clamp(b.y * 32.0f, b.z, b.w, 0.25f),
-                  texel_recent(b.x), texel_codes(b.y));
+                  recent_of_code(texel_recent_code(b.x), b.z), texel_codes(b.y));
     case 16u: {
       Spread spread = spread_of_sums(a.x + a.y + a.z, a.x * a.x + a.y * a.y + a.z * a.z, 3.0f);
       return vec4(spread.mean, spread.deviation, clamp_to_spread(a.w, spread, 1.0f),

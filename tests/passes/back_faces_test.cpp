@@ -52,8 +52,11 @@ TEST_F(BackFaceDepth, VisibilityUnderASlabWithBackFaceDepthMatchesTheClosedForm)
     const OcclusionSettings settings = exact(estimator, 8.0f);
     const double error = mean_error(settings);
     EXPECT_LT(error, 0.02);
-    EXPECT_LT(4.5 * error, mean_error(of_thickness(settings, 0.15f)))
-        << "with a setting far above the actual thickness";
+    // The visible width limits the setting of `connected`, so that a large one does no harm there.
+    if (estimator == Estimator::bitmask) {
+      EXPECT_LT(4.5 * error, mean_error(of_thickness(settings, 0.15f)))
+          << "with a setting far above the actual thickness";
+    }
     EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1e-3f)))
         << "with a setting far below it";
   }
@@ -91,7 +94,10 @@ TEST_F(BackFaceDepth, VisibilityUnderABallWithBackFaceDepthMatchesTheClosedFormI
       const OcclusionSettings settings = exact(estimator, 3.0f);
       const double error = mean_error(settings);
       EXPECT_LT(error, 0.01);
-      EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1.0f)));
+      // The visible width limits the setting of `connected`, so that a large one does no harm there.
+      if (estimator == Estimator::bitmask) {
+        EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1.0f)));
+      }
     }
   }
 }

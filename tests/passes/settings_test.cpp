@@ -120,7 +120,7 @@ TEST(Settings, ValidationEnforcesExactlyTheStatedRangeOfEachSetting) {
       EXPECT_THAT(said, HasSubstr(names_text<Value>()));
     }
   });
-  EXPECT_EQ(numbers, 17);
+  EXPECT_EQ(numbers, 16);
 }
 
 TEST(Settings, SliderRangesContainOnlyAcceptedValues) {

@@ -11,6 +11,7 @@ wide window, of a phone and of the printed page.
 
 import base64
 import html
+import itertools
 import json
 import pathlib
 import re
@@ -111,10 +112,12 @@ def main():
     probed.write_text(page.replace("<head>", "<head>" + CATCH, 1)
                       .replace("</body>\n</html>", PROBE + "</body>\n</html>"))
 
-    def run(*arguments):
+    runs = itertools.count()
+
+    def run(*arguments):  # with a profile of its own: another run may still hold the last one
         return subprocess.run(
             [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
-             f"--user-data-dir={folder}/profile", "--virtual-time-budget=60000", *arguments],
+             f"--user-data-dir={folder}/profile{next(runs)}", "--virtual-time-budget=60000", *arguments],
             capture_output=True, text=True, timeout=240, check=False)
 
     def answer(size):

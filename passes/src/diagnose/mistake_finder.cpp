@@ -99,8 +99,6 @@ constexpr std::array<const char*, kMistakes> kSentences{
     "motion vectors fit the motion of the camera with other jitter; change motion_offset.",
 };
 
-constexpr int bit(Mistake mistake) { return static_cast<int>(mistake); }
-
 bool is_reported(Mistake mistake, std::uint32_t seen) {
   // An index may go back once, for example when a game restarts.
   return mistake == Mistake::index_goes_back ? std::popcount(seen) >= 2

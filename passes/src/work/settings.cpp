@@ -89,7 +89,6 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       break;
     case Quality::high:
       settings.tile_size = 2;
-      settings.steps = 16;
       break;
     case Quality::reference:
       settings.tile_size = 1;

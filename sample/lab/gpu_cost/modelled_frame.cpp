@@ -112,6 +112,10 @@ tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& disp
   }
   std::vector<Branch> branches = branches_of(*blocks);
   for (Branch& branch : branches) {
+    branch.summary.loops =
+        static_cast<std::uint32_t>(std::ranges::count_if(loops, [&](const Loop& loop) {
+          return branch.first <= loop.first && loop.last <= branch.last;
+        }));
     branch.share = passes::cost::branch_share(work, branch.summary);
     if (branch.share < 1.0) {
       cost.branches.push_back({branch.summary, branch.share});
@@ -119,8 +123,8 @@ tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& disp
   }
   const double wave = shader->wave;
   cost.wave = wave_work(*blocks, loops, iterations, branches, part.rdna, shader->wave);
-  const double waves =
-      static_cast<double>(dispatch.groups_x) * dispatch.groups_y * std::ceil(shader->group / wave);
+  const double waves = static_cast<double>(dispatch.groups_x) * dispatch.groups_y *
+                       dispatch.groups_z * std::ceil(shader->group / wave);
   cost.waves += waves;
   cost.vector_registers = std::max(cost.vector_registers, statistics->vector_registers);
   cost.scalar_registers = std::max(cost.scalar_registers, statistics->scalar_registers);
@@ -142,11 +146,11 @@ tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& disp
   const double per_unit = std::ceil(waves / part.compute_units);
   // A compute unit's shared memory moves 32 words a cycle.
   cost.shared_ms += milliseconds(per_unit * cost.wave.shared_words * wave / 32);
-  const CacheTraffic traffic =
-      cache_traffic(part,
-                    {dispatch.groups_x, dispatch.groups_y,
-                     passes::cost::accesses_of(work, images, inputs.height)},
-                    held);
+  const CacheTraffic traffic = cache_traffic(
+      part,
+      passes::cost::accesses_of(work, images, inputs.height,
+                                {dispatch.groups_x, dispatch.groups_y, dispatch.groups_z}),
+      held);
   cost.texture_ms +=
       milliseconds(std::max(per_unit * cost.wave.texture_cycles, traffic.texture_cycles));
   cost.l2_bytes_per_pixel += traffic.l2_bytes / pixels();

@@ -193,9 +193,9 @@ struct RecordingFunctions {
   }
 
   static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x,
-                                             std::uint32_t y, std::uint32_t /*z*/) {
+                                             std::uint32_t y, std::uint32_t z) {
     RecordingDevice& recording = self(commands);
-    recording.dispatches_.push_back({recording.pass_, recording.bound_, x, y});
+    recording.dispatches_.push_back({recording.pass_, recording.bound_, x, y, z});
   }
 
   template <typename Function>

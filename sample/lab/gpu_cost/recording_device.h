@@ -21,6 +21,7 @@ struct RecordedDispatch {
   VkPipeline pipeline = VK_NULL_HANDLE;
   std::uint32_t groups_x = 0;
   std::uint32_t groups_y = 0;
+  std::uint32_t groups_z = 0;
 
   bool operator==(const RecordedDispatch&) const = default;
 };

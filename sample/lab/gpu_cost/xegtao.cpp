@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "gpu_cost/cache_traffic.h"
 #include "maths/sampling.h"
@@ -41,17 +42,41 @@ DispatchAccesses dispatch_over(std::uint32_t invocations_x, std::uint32_t invoca
   return {(invocations_x + 7) / 8, (invocations_y + 7) / 8, {}};
 }
 
+// Returns the position, 0 to 4095, of a pixel along a Hilbert curve through 64x64 pixels.
+std::uint32_t hilbert_index(Texel pixel) {
+  std::uint32_t x = static_cast<std::uint32_t>(pixel.x) & 63u;
+  std::uint32_t y = static_cast<std::uint32_t>(pixel.y) & 63u;
+  std::uint32_t index = 0;
+  for (std::uint32_t size = 32; size > 0; size >>= 1u) {
+    const std::uint32_t right = (x & size) != 0 ? 1 : 0;
+    const std::uint32_t below = (y & size) != 0 ? 1 : 0;
+    index += size * size * ((3 * right) ^ below);
+    if (below == 0) {
+      const std::uint32_t mirror = right * 63;
+      std::swap(x, y);
+      x ^= mirror;
+      y ^= mirror;
+    }
+  }
+  return index;
+}
+
+// An element of the R2 sequence, [0,1).
+float r2_element(std::uint32_t index, double step) {
+  const double value = 0.5 + step * index;
+  return static_cast<float>(value - std::floor(value));
+}
+
 // The depth sample of a step: R2 along a Hilbert curve, and a depth level by the offset in pixels.
 ImageAccess depth_sample(const PassImage& depth, const XeGtao& preset, std::uint32_t slice,
                          float side, std::uint32_t step) {
   const float radius = kRadius * static_cast<float>(depth.height);
   const auto texel = [=](Texel pixel) {
-    const maths::uvec2 position(static_cast<std::uint32_t>(pixel.x),
-                                static_cast<std::uint32_t>(pixel.y));
-    const maths::SliceNoise noise = maths::hilbert_pattern(position, kFrame);
-    const float angle = maths::slice_angle(slice, preset.slices, noise.direction);
+    const std::uint32_t noise = hilbert_index(pixel) + 288 * kFrame;
+    const float angle =
+        maths::slice_angle(slice, preset.slices, r2_element(noise, 0.75487766624669276));
     const auto index = static_cast<float>(slice + step * preset.steps);
-    const float offset = noise.offset + index * 0.6180340f;
+    const float offset = r2_element(noise, 0.56984029099805327) + index * 0.6180340f;
     const float part =
         (static_cast<float>(step) + offset - std::floor(offset)) / static_cast<float>(preset.steps);
     const float px = (part * part + maths::kNearestStep / radius) * radius;

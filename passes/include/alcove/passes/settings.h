@@ -18,7 +18,7 @@ enum class Quality : std::uint8_t {
   console,
   low,     // 1 slice of 8 steps per half-slice; traces one pixel in 4x4: 1 fetch.
   medium,  // 2 slices of 12 steps; one pixel in 4x4: 3 fetches. The default.
-  high,    // 2 slices of 16 steps; one pixel in 2x2: 16 fetches.
+  high,    // 2 slices of 12 steps; one pixel in 2x2: 12 fetches.
   // 32 slices of 64 steps per half-slice; traces every pixel: 4096 fetches. For comparisons with a
   // static image: without filter and history, in 32-bit floats, and with the infinitely thick
   // occluders of [Jimenez 2016].
