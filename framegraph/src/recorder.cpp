@@ -150,10 +150,9 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   // The validation layers (1.3.239) forget the last use of memory by other resources, and uses
   // before full_barrier(), unless the barrier names an access. There is nothing left to make
   // available, so that naming it changes nothing.
-  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0)
-    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
-  if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0 &&
-      (frame_.starts_anew || device_.handles.debug_utils))
+  const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0;
+  if (takes_over) barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
+  if (device_.handles.debug_utils && (takes_over || frame_.starts_anew) && t.src_stages != 0)
     barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstStageMask = t.dst_stages;
   barrier.dstAccessMask = t.dst_access;
