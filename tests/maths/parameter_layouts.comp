@@ -25,7 +25,7 @@ layout(set = 0, binding = 11) uniform K { UpsampleParameters upsample; };
 layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
-  sum = projection.size_px.x + gtao.radius + normals.slope.x +
-        reconstruct.largest_weight + gtso.roughness + multi_bounce.size_px.x + apply.roughness +
-        environment.size + gtao.depth_step + upsample.tolerance;
+  sum = projection.size_px.x + gtao.radius + normals.slope.x + reconstruct.largest_weight +
+        gtso.roughness + multi_bounce.size_px.x + apply.roughness + environment.size +
+        gtao.depth_step + upsample.tolerance;
 }

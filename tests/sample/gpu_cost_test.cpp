@@ -448,6 +448,24 @@ tl::expected<double, std::string> instructions_of(const GpuPart& part, const Nul
   return sum;
 }
 
+// Loops, rare branches and strips of groups must not hide samples from the model.
+TEST(GpuCost, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
+  const GpuPart& part = kGpuParts.front();
+  const auto device = create_null_device(part.family);
+  if (!device) {
+    GTEST_SKIP() << device.error();
+  }
+  CostInputs inputs;
+  inputs.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
+  const auto frames = modelled_frames(part, *device, inputs);
+  ASSERT_TRUE(frames) << frames.error();
+  const ModelledPass& search = frames->front().passes.front();
+  ASSERT_EQ(search.pass, "gtao");
+  const double tile = inputs.settings.tile_size;
+  EXPECT_GE(search.fetches_per_pixel,
+            2.0 * inputs.settings.slices * inputs.settings.steps / (tile * tile));
+}
+
 TEST(NormalEncodings, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPixel) {
   using passes::NormalEncoding;
   struct Named {
