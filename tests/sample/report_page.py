@@ -10,14 +10,16 @@ wide window, of a phone and of the printed page.
 """
 
 import base64
-import html
+import fcntl
 import itertools
 import json
+import os
 import pathlib
-import re
+import select
 import struct
 import subprocess
 import sys
+import time
 import zlib
 
 
@@ -99,6 +101,61 @@ console.warn = console.error;
 </script>"""
 
 
+class Browser:
+    """A headless browser that shows a page, and its protocol over two pipes (its descriptors 3 and 4)."""
+
+    def __init__(self, chromium, profile, size, address):
+        there_reads, self.writes = os.pipe()
+        self.reads, there_writes = os.pipe()
+        inner = [fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (there_reads, there_writes)]
+        self.process = subprocess.Popen(
+            [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
+             f"--user-data-dir={profile}", f"--window-size={size}", address],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, close_fds=False,
+            preexec_fn=lambda: [os.dup2(end, number) for number, end in enumerate(inner, 3)])
+        for end in (there_reads, there_writes, *inner):
+            os.close(end)
+        self.count = 0
+        self.pending = b""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+    def call(self, method, session=None, **parameters):
+        self.count += 1
+        message = {"id": self.count, "method": method, "params": parameters}
+        if session:
+            message["sessionId"] = session
+        os.write(self.writes, json.dumps(message).encode() + b"\0")
+        while True:
+            while b"\0" not in self.pending:
+                if not select.select([self.reads], [], [], 60)[0]:
+                    sys.exit(f"the browser does not answer {method}")
+                self.pending += os.read(self.reads, 1 << 16)
+            first, self.pending = self.pending.split(b"\0", 1)
+            reply = json.loads(first)
+            if reply.get("id") == self.count:
+                return reply["result"]
+
+    def wait_for(self, expression):
+        """Returns the JSON that an expression is on the page, as soon as it is not empty."""
+        for _ in range(600):
+            targets = self.call("Target.getTargets")["targetInfos"]
+            page = next((t for t in targets if t["type"] == "page" and "probed" in t["url"]), None)
+            if page:
+                session = self.call("Target.attachToTarget", targetId=page["targetId"],
+                                    flatten=True)["sessionId"]
+                found = self.call("Runtime.evaluate", session, expression=expression)
+                if found["result"].get("value"):
+                    return json.loads(found["result"]["value"])
+            time.sleep(0.1)
+        sys.exit("the page did not answer within a minute")
+
+
 def main():
     template, chart, chromium, folder = sys.argv[1:]
     folder = pathlib.Path(folder)
@@ -121,10 +178,8 @@ def main():
             capture_output=True, text=True, timeout=240, check=False)
 
     def answer(size):
-        dom = run(f"--window-size={size}", "--dump-dom", probed.as_uri())
-        attribute = re.search(r'data-found="([^"]*)"', dom.stdout)
-        assert attribute, f"the page did not answer: {dom.stdout[:300]} {dom.stderr[-600:]}"
-        return json.loads(html.unescape(attribute.group(1)))
+        with Browser(chromium, f"{folder}/profile{next(runs)}", size, probed.as_uri()) as browser:
+            return browser.wait_for("document.documentElement.dataset.found || ''")
 
     found = answer("1100,900")
     assert found["errors"] == [], found["errors"]
