@@ -1,6 +1,6 @@
 #include "alcove/framegraph/vulkan_functions.h"
 
-#include <cstring>
+#include <cstdio>
 #include <initializer_list>
 
 namespace alcove::framegraph {
@@ -11,9 +11,8 @@ namespace {
 template <typename Get>
 PFN_vkVoidFunction find(const Get& get, const char* name) {
   for (const char* suffix : {"", "KHR", "EXT"}) {
-    char full[64] = {};
-    std::strncpy(full, name, sizeof full - 4);
-    std::strcat(full, suffix);
+    char full[64];
+    std::snprintf(full, sizeof full, "%s%s", name, suffix);
     if (const PFN_vkVoidFunction found = get(full)) return found;
   }
   return nullptr;

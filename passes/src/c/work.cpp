@@ -21,6 +21,7 @@ AlcoveImage to_image(const AlcoveWorkImage& image, std::uintptr_t number) {
     return {};
   }
   const AlcoveState state{0, 0, VK_IMAGE_LAYOUT_GENERAL};
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): a handle is a pointer or an integer
   return {.image = (VkImage)number,
           .format = static_cast<VkFormat>(image.format),
           .width = image.width,

@@ -45,7 +45,7 @@ class MistakeFinder {
   View& create(const AlcoveView& given);
   static Findings judge(const View& view, const AlcoveView& given, std::uint32_t index);
 
-  std::array<View, 4 * ALCOVE_MAX_VIEWS> views_;
+  std::array<View, std::size_t{4} * ALCOVE_MAX_VIEWS> views_;
   std::uint32_t frames_ = 0;
   bool is_new_ = false;         // a view of this frame is new and has a history
   std::uint8_t new_views_ = 0;  // the same for the last eight frames, a bit each
