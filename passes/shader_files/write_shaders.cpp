@@ -39,7 +39,7 @@ constexpr std::uint32_t kDecorationSpecId = 1;
 constexpr std::uint32_t kDecorationOffset = 35;
 constexpr std::uint32_t kStorageClassUniform = 2;
 
-// What a module declares about its types, its uniform block and its specialisation constants.
+// Declarations of a module about its types, its uniform block and its specialisation constants.
 struct Module {
   struct Member {
     std::string name;

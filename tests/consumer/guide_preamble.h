@@ -1,4 +1,4 @@
-// What the examples of passes/INTEGRATION.md take from the engine.
+// Declarations that the examples of passes/INTEGRATION.md take from the engine.
 #include <alcove/alcove.h>
 
 extern VkInstance instance;

@@ -36,7 +36,7 @@ struct Modelled {
   struct Kept* kept = nullptr;
 };
 
-// What a history or persistent texture must hold in the next frame, if it is valid then.
+// Contents that a history or persistent texture must hold in the next frame, if it is valid then.
 struct Kept {
   const char* name = "history";
   bool persistent = false;

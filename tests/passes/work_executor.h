@@ -389,7 +389,7 @@ class WorkExecutor {
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   std::map<std::string, Pipeline> pipelines_;  // by shader and constants
   std::map<std::string, Image> histories_;     // written in the last frame, by name
-  // Of the frame.
+  // State of the current frame.
   std::vector<Image> images_;  // parallel to the resources
   std::vector<std::pair<VkBuffer, VkDeviceMemory>> buffers_;
   VkDeviceMemory transients_ = VK_NULL_HANDLE;

@@ -59,7 +59,7 @@ enum class Mistake : std::uint8_t {
 
 inline constexpr std::size_t kMistakes = static_cast<std::size_t>(Mistake::count);
 
-// What a frame shows: for each mistake whether it could be seen, and whether it was.
+// The findings of one frame: for each mistake whether it could be seen, and whether it was.
 struct Findings {
   std::uint64_t judged = 0;  // a bit for each mistake
   std::uint64_t seen = 0;

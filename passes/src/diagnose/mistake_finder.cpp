@@ -28,7 +28,8 @@ bool same(const AlcoveCamera& a, const AlcoveCamera& b) {
   return same(a.clip_from_view, b.clip_from_view) && same(a.view_from_world, b.view_from_world);
 }
 
-// What is wrong and what to do, in the order of Mistake. A # stands for Findings::measures.
+// Sentences that say what is wrong and what to do, in the order of Mistake. A # stands for
+// Findings::measures.
 constexpr std::array<const char*, kMistakes> kSentences{
     "AlcoveFrame::index stays the same from frame to frame; count it up, so that the noise "
     "averages out.",

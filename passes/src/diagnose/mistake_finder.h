@@ -33,7 +33,7 @@ class MistakeFinder {
     bool has_history = false;
     std::uint32_t id = 0;
     std::uint32_t last_frame = 0;  // in which it was recorded
-    // Of the last frame that was recorded:
+    // Values of the last recorded frame:
     std::uint32_t index = 0;
     AlcoveCamera camera{};
     VkExtent2D size{};

@@ -118,7 +118,7 @@ auto add_described(const Frame& frame, const Inputs& given, const Describe& desc
   return result;
 }
 
-// The same for passes with a history. With Frame::prepare it also creates the pipelines of the
+// Adds passes with a history. With Frame::prepare it also creates the pipelines of the
 // frames that have a history.
 template <typename Inputs, typename Describe>
 auto add_with_history(const Frame& frame, const Inputs& inputs, const OcclusionSettings& settings,

@@ -10,7 +10,7 @@
 
 namespace alcove::passes {
 
-// What is assumed about the histories of a list.
+// Assumptions about the histories of a list.
 enum class Histories : std::uint8_t {
   of_graph,   // the graph's histories are declared, and it knows whether they are valid
   moving,     // valid, and the camera has moved

@@ -95,7 +95,7 @@ class ScenePage {
     return {};
   }
 
-  // What `recommend` finds within the time of `medium`.
+  // The settings that `recommend` finds within the time of `medium`.
   Done add_requirements() {
     OcclusionSettings medium = passes::quality_settings(Quality::medium, session_.settings.radius);
     const auto limit = times_.measure(medium);

@@ -17,7 +17,7 @@ namespace alcove::sample {
 enum class Situation { first, moving, standing };
 inline constexpr std::array<std::string_view, 3> kSituationNames{"first", "moving", "standing"};
 
-// What settings achieve: the RMSE of visibility against scene truth, and the time of the occlusion
+// The result of settings: the RMSE of visibility against scene truth, and the time of the occlusion
 // passes in milliseconds, in each situation.
 struct Achievement {
   passes::OcclusionSettings settings;

@@ -40,8 +40,8 @@ struct NamedTexture {
   framegraph::Range range = {};
 };
 
-// What a pass asks a shader to do. Constants and images that only other shaders have are ignored,
-// so that all variants of a shader can be given the same lists.
+// A request of a pass to run a shader. Constants and images that only other shaders have are
+// ignored, so that all variants of a shader can be given the same lists.
 struct DispatchInfo {
   const char* label = "";  // static
   Shader shader = Shader::count;
