@@ -13,11 +13,11 @@
 // The surface that a traced pixel shows.
 struct Surface {
   ivec2 pixel;
-  float depth;  // linear, scene units
   float inverse_depth;
-  vec3 normal;       // unit, view space
-  vec3 view;         // unit, view space, towards the eye
-  LobeSurface lobe;  // with the normal as the texture has it
+  vec3 normal;        // unit, view space
+  vec3 view;          // unit, view space, towards the eye
+  uint lobe_surface;  // packed LobeSurface, with the normal as the texture has it
+  float roughness;    // perceptual, [0,1]
 };
 
 float fetch_roughness(ivec2 pixel) {
@@ -41,11 +41,17 @@ float load_inverse_depth(ivec2 pixel) {
 // The centre of the surface's pixel, in pixels from the image's corner.
 vec2 centre_of(Surface surface) { return vec2(surface.pixel) + 0.5; }
 
+// The linear depth of a surface, in scene units. The search computes it by other operations than
+// what follows it, because a common value would hold a register meanwhile.
+float depth_again(Surface surface) {
+  return kPerspective ? surface.view.z / (surface.view.z * surface.inverse_depth)
+                      : surface.inverse_depth;
+}
+
 // The surface at a pixel that is not the sky, whose inverse depth is already loaded.
 Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   Surface surface;
   surface.pixel = pixel;
-  surface.depth = kPerspective ? 1.0 / inverse_depth : inverse_depth;
   surface.inverse_depth = inverse_depth;
   vec2 slope =
       parameters.slope.zw + (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
@@ -60,7 +66,9 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   }
   surface.normal = seen_normal(given_vs, surface.view, of_depth);
   vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
-  surface.lobe = LobeSurface(kLobe ? normalize(own) : own, fetch_roughness(pixel));
+  surface.roughness = fetch_roughness(pixel);
+  surface.lobe_surface =
+      kLobe ? pack_lobe_surface(LobeSurface(normalize(own), surface.roughness)) : 0u;
   return surface;
 }
 
