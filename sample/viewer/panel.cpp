@@ -146,6 +146,15 @@ void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
   }
 }
 
+// Lays out the time that slices and steps are fitted to.
+void lay_out_budget(ViewState& state) {
+  ImGui::Checkbox("fit slices and steps to a time", &state.fits_budget);
+  if (state.fits_budget) {
+    ImGui::SliderFloat("target ms", &state.target_ms, 0.05f, 200.0f, "%.2f",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+  }
+}
+
 void lay_out_roughness(ViewState& state) {
   bool of_materials = !state.roughness;
   if (ImGui::Checkbox("roughness of materials", &of_materials)) {
@@ -216,6 +225,7 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts, bool narrow) {
     }
     if (section("occlusion")) {
       lay_out_qualities(state, facts);
+      lay_out_budget(state);
       lay_out_settings(state.settings, facts.first_settings.radius);
       lay_out_roughness(state);
     }
