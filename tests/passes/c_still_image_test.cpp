@@ -21,11 +21,13 @@ class CStillImage : public CInterface {
     return given;
   }
 
-  // The view of view_of() with an output that keeps its contents from frame to frame.
+  // The view of view_of() with an output that keeps its contents from frame to frame, and that
+  // fill_image() can fill.
   AlcoveView skipping_view_of(const GivenView& given, AlcoveSettings& settings) {
     AlcoveView view = view_of(given, settings);
     view.skip_converged = VK_TRUE;
-    view.visibility.initial_state = kResting;
+    view.visibility = engine().make_image(view.visibility.format, 24, 16,
+                                          view.visibility.usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     return view;
   }
 
