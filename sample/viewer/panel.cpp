@@ -133,11 +133,15 @@ void lay_out_settings(OcclusionSettings& settings, float radius) {
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
   for (std::size_t i = 0; i < passes::kNames<passes::Quality>.size(); ++i) {
-    if (i > 0) {
+    const auto quality = static_cast<passes::Quality>(i);
+    const char* const name = passes::name_of(quality).data();
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize(name).x + 2.0f * style.FramePadding.x;
+    const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) {
       ImGui::SameLine();
     }
-    const auto quality = static_cast<passes::Quality>(i);
-    if (ImGui::Button(passes::name_of(quality).data())) {
+    if (ImGui::Button(name)) {
       state.settings = passes::quality_settings(quality, state.settings.radius);
     }
   }
