@@ -181,6 +181,13 @@ typedef struct AlcoveView {
   // outputs change. If it is at least 1, `motion` is not read. If it is at least 16, the history
   // averages up to 127 frames.
   uint32_t static_frames;
+  // Whether a frame does nothing for the view while its image has converged and does not change:
+  // its outputs keep what they hold, and only barriers to the final states are recorded. The view
+  // must have been recorded alcoveGetConvergedFrames() times in succession with static_frames above
+  // 0 (in all but the first), with the same images, cameras and settings. The outputs must then
+  // still hold the last results; an output that arrives in VK_IMAGE_LAYOUT_UNDEFINED is written
+  // again, and so is a view whose pixels are diagnosed. [VK_FALSE]
+  VkBool32 skip_converged;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
   // The camera with which this id was last recorded. It is not read, and may be zero, in the first
@@ -318,6 +325,32 @@ AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame
 // without an output.
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
                                const AlcoveFrame* frame);
+
+// A still image, such as a screenshot or a thumbnail, takes several frames of a scene and a camera
+// that do not move. Returns how many frames these settings need until their image has converged:
+// 128 with a history, which is then full, and 1 with history_frames = 0 and static_noise. Returns 0
+// if the settings are invalid, or if an image never converges because noise changes from frame to
+// frame and there is no history. Fewer frames have a larger error; INTEGRATION.md has figures.
+uint32_t alcoveGetConvergedFrames(const AlcoveSettings* settings);
+
+// Makes `view` that of frame `number`, counted from 0, of a still image: sets reset_history in the
+// first frame, static_frames, and camera and size of the previous frame. Record and submit the
+// frames one after the other with the same images and a growing AlcoveFrame::index. The last one
+// has the image. A view with an id of its own, dropped afterwards, does not disturb other views.
+AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view);
+
+// How far the image of a view with skip_converged has converged.
+typedef struct AlcoveViewState {
+  uint32_t struct_size;
+  uint32_t frames;            // recorded in succession for the unchanged image
+  uint32_t converged_frames;  // alcoveGetConvergedFrames of the view's settings
+  VkBool32 skipped;           // the last recorded frame did nothing for the view
+} AlcoveViewState;
+
+// Fills `state`, whose struct_size must be set. If `frames` is at least `converged_frames`, and
+// that is not 0, another frame of the unchanged view has nothing to do. All values are 0 for a view
+// that was never recorded with skip_converged.
+AlcoveResult alcoveGetViewState(AlcoveContext* context, uint32_t id, AlcoveViewState* state);
 
 // Undoes the effects of alcoveRecordFrame if the frame that was just recorded will not be
 // submitted, for example because the window was closed. Call it before any other call on the

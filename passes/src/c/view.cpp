@@ -48,7 +48,8 @@ tl::expected<void, Failure> check_hidden(const AlcoveView& view,
   }
   if (needs_second_depth(settings) && view.second_depth.image == VK_NULL_HANDLE) {
     return invalid(view_name(view) +
-                   " has no image of second_depth, which its settings' depth_layers need.");
+                   " has no image of second_depth, which its settings' depth_layers need; give it, "
+                   "or set depth_layers to 1.");
   }
   return {};
 }
@@ -211,19 +212,34 @@ tl::expected<SettledView, Failure> settle(const AlcoveView& view, const ImageImp
   return SettledView{*inputs, settings};
 }
 
-tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
-                                     const AlcoveView& view, const AlcoveFrame& described,
-                                     bool prepare, PixelObserver* observer) {
+namespace {
+
+// Checks a view and imports its images into a graph.
+tl::expected<SettledView, Failure> settle_in(framegraph::Graph& graph, ImageTable& images,
+                                             const AlcoveView& view) {
   struct Import {
     framegraph::Graph& graph;
     ImageTable& images;
   } target{graph, images};
-  const auto settled = settle(
+  return settle(
       view, {[](void* user, const ImageRole& role, const AlcoveImage& image, const AlcoveView& of) {
                const Import& to = *static_cast<Import*>(user);
                return to.images.import(to.graph, role, image, of.depth, of.id);
              },
              &target});
+}
+
+}  // namespace
+
+tl::expected<void, Failure> import_view(framegraph::Graph& graph, ImageTable& images,
+                                        const AlcoveView& view) {
+  return settle_in(graph, images, view).map([](const SettledView&) {});
+}
+
+tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
+                                     const AlcoveView& view, const AlcoveFrame& described,
+                                     bool prepare, PixelObserver* observer) {
+  const auto settled = settle_in(graph, images, view);
   if (!settled) {
     return tl::unexpected(settled.error());
   }

@@ -32,7 +32,7 @@ bool same(const AlcoveCamera& a, const AlcoveCamera& b) {
 // Findings::measures.
 constexpr std::array<const char*, kMistakes> kSentences{
     "AlcoveFrame::index stays the same from frame to frame; count it up, so that the noise "
-    "averages out.",
+    "averages out, or set static_noise if no temporal filter follows.",
     "AlcoveFrame::index goes back again and again; count it up, so that the noise averages out.",
     "previous_camera is this frame's camera in every frame in which the camera moves; give the "
     "camera that the view was last recorded with.",
@@ -140,8 +140,9 @@ void MistakeFinder::drop_view(std::uint32_t id) {
 Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::uint32_t index) {
   Findings result;
   const bool reset = given.reset_history != VK_FALSE;
-  result.set(Mistake::index_repeats, index == view.index);
-  result.set(Mistake::index_goes_back, index < view.index);
+  const bool reads_index = given.settings->static_noise == 0 || given.settings->history_frames > 0;
+  result.set(Mistake::index_repeats, reads_index && index == view.index);
+  result.set(Mistake::index_goes_back, reads_index && index < view.index);
   result.set(Mistake::history_reset, reset);
   if (reset || given.settings->history_frames == 0) {
     return result;

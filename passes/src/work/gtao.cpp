@@ -80,7 +80,8 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
                                     const GtaoInputs& inputs, const OcclusionSettings& settings,
                                     const maths::Projection& projection) {
   const float radius = std::min(settings.radius, kLargestRadius);
-  const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
+  const std::uint32_t index = noise_index(settings, frame.index);
+  const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, index);
   const maths::DepthStep step = depth_step(projection, inputs.depth_format != VK_FORMAT_UNDEFINED
                                                            ? inputs.depth_format
                                                            : list.format(inputs.depth_ndc));
@@ -92,7 +93,7 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
       inverse_depth_from_ndc(projection),
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
       radius,
-      frame.index,
+      index,
       settings.thickness * (of_distance(settings) ? 1.0f : radius),
       maths::hidden_exponent(settings.hidden_occlusion),
       settings.advanced.falloff,

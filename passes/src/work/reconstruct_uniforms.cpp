@@ -217,7 +217,8 @@ maths::ReconstructParameters reconstruct_parameters(
                              (is_perspective(projection) ? 1.442695f : 1.0f);
   // The dither offsets of the frames are multiples of the golden ratio modulo 1, which are spread
   // evenly over any number of successive frames.
-  parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
+  const std::uint32_t index = noise_index(settings, frame.index);
+  parameters.dither_offset = static_cast<float>(index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
   parameters.motion = maths::vec4(
       maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px / texel,
@@ -232,8 +233,7 @@ maths::ReconstructParameters reconstruct_parameters(
   // More slices narrow the window. They also reduce the distance from the tangent plane that is
   // tolerated.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
-  const auto [offset_x, offset_y] =
-      interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
+  const auto [offset_x, offset_y] = interleave_offset_of(inputs.raw_occlusion.tile_size, index);
   parameters.interleave_pixel = {offset_x, offset_y};
   parameters.traced_range =
       traced_range(projection.size_px, maths::vec2(parameters.interleave_pixel),
