@@ -31,6 +31,7 @@ void add_render(CLI::App& app, Options& options) {
 
 void add_compare(CLI::App& app, Options& options) {
   add_render(app, options);
+  add_split(app, options.split);
   add_lit(app, options.lit, options.lit_points);
   add_no_cache(app, options.use_cache);
 }
@@ -73,6 +74,9 @@ void add_bench(CLI::App& app, Options& options) {
 }
 
 void add_recommend(CLI::App& app, Options& options) {
+  options.view.width = 480;
+  options.view.height = 270;
+  options.occlusion.spp = 64;
   add_scene(app, options.scene);
   add_materials(app, options.materials);
   add_limits(app, options);

@@ -87,6 +87,7 @@ struct Options {
   std::vector<std::string> scenes;  // bench: any number, each as `scene`
   MaterialTreatment materials;
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
+  bool split = false;                 // compare: also splits the error into its causes
   bool lit = false;                   // compare: also traces the lit picture
   uint32_t lit_points = 32'000;       // compare: approximate number of pixels with traced light
   ViewOptions view;
@@ -99,6 +100,7 @@ struct Options {
   uint32_t target_width = 1920;        // recommend: of the image whose time is modelled, pixels
   uint32_t target_height = 1080;
   const GpuPart* gpu = &kGpuParts[1];  // recommend: the modelled one
+  bool exhaustive = false;             // recommend: also measures all settings of measure_all()
   std::filesystem::path settings_out;  // recommend: empty for none
   std::optional<Clock> clock;          // bench, recommend: empty for the clock that fits the device
   std::optional<MotionKind> path;      // motion: empty for all paths

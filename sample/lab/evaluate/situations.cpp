@@ -32,6 +32,38 @@ std::string program_hash() {
   return hash;
 }
 
+// The settings that determine the time. Radius, thickness and hidden occlusion are parameters of the
+// shaders; the model's searches have a fixed length.
+OcclusionSettings timed_settings(OcclusionSettings settings) {
+  const OcclusionSettings defaults;
+  settings.specular = passes::Specular::none;
+  settings.bent_normal = false;
+  settings.radius = defaults.radius;
+  settings.thickness = defaults.thickness;
+  settings.hidden_occlusion = defaults.hidden_occlusion;
+  return settings;
+}
+
+// Reads three values from the cache, or computes and writes them.
+template <typename Compute>
+tl::expected<std::array<double, 3>, std::string> cached(const TruthCache& cache,
+                                                        const CacheKey& key,
+                                                        const Compute& compute) {
+  std::array<double, 3> values{};
+  if (const auto known = cache.read(key, values.size())) {
+    std::ranges::copy(*known, values.begin());
+    return values;
+  }
+  const tl::expected<std::array<double, 3>, std::string> computed = compute();
+  if (computed) {
+    const std::vector<float> floats(computed->begin(), computed->end());
+    cache.write(key, floats);
+    std::ranges::copy(floats, values.begin());  // as a later run reads them
+    return values;
+  }
+  return computed;
+}
+
 }  // namespace
 
 tl::expected<SituationErrors, std::string> SituationErrors::create(
@@ -54,6 +86,14 @@ tl::expected<SituationErrors, std::string> SituationErrors::create(
     return Failure(std::move(truths.error()));
   }
   made.truths_ = std::move(*truths);
+  if (truth_options.use_cache && !program_hash().empty()) {
+    made.cache_ = TruthCache(TruthCache::default_folder());
+  }
+  const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
+  made.key_.add(std::string_view("situation errors"), std::string_view(program_hash()),
+                std::string_view(device.deviceName), device.driverVersion, session.scene,
+                setup.camera, setup.width, setup.height, setup.frames,
+                static_cast<std::uint8_t>(setup.normals), truth_options.spp);
   return made;
 }
 
@@ -89,6 +129,13 @@ tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSet
 
 tl::expected<std::array<double, 3>, std::string> SituationErrors::measure(
     const OcclusionSettings& settings) {
+  CacheKey key = key_;
+  key.add(std::string_view(to_json(settings).dump()));
+  return cached(cache_, key, [&] { return compute(settings); });
+}
+
+tl::expected<std::array<double, 3>, std::string> SituationErrors::compute(
+    const OcclusionSettings& settings) {
   struct Course {
     std::uint32_t frames;
     float orbit;
@@ -120,30 +167,24 @@ tl::expected<ModelledTimes, std::string> ModelledTimes::create(const GpuPart& pa
 tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
     const OcclusionSettings& settings) const {
   CostInputs inputs = inputs_;
-  inputs.settings = settings;
-  inputs.settings.specular = passes::Specular::none;
-  inputs.settings.bent_normal = false;
+  inputs.settings = timed_settings(settings);
   CacheKey key;
   key.add(std::string_view("modelled times"), std::string_view(program_hash()), part_->family,
           inputs.width, inputs.height, inputs.normals, inputs.motion,
           std::string_view(to_json(inputs.settings).dump()));
-  std::array<double, 3> ms{};
-  if (const auto known = cache_.read(key, ms.size())) {
-    std::ranges::copy(*known, ms.begin());
+  return cached(cache_, key, [&]() -> tl::expected<std::array<double, 3>, std::string> {
+    const auto frames = modelled_frames(*part_, device_, inputs);
+    if (!frames) {
+      return Failure(frames.error());
+    }
+    constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
+                                                FrameState::converged};
+    std::array<double, 3> ms{};
+    for (std::size_t i = 0; i < kStates.size(); ++i) {
+      ms[i] = std::ranges::find(*frames, kStates[i], &ModelledFrame::state)->milliseconds();
+    }
     return ms;
-  }
-  const auto frames = modelled_frames(*part_, device_, inputs);
-  if (!frames) {
-    return Failure(frames.error());
-  }
-  constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
-                                              FrameState::converged};
-  for (std::size_t i = 0; i < kStates.size(); ++i) {
-    ms[i] = std::ranges::find(*frames, kStates[i], &ModelledFrame::state)->milliseconds();
-  }
-  const std::vector<float> kept(ms.begin(), ms.end());
-  cache_.write(key, kept);
-  return ms;
+  });
 }
 
 }  // namespace alcove::sample

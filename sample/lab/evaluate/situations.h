@@ -22,7 +22,8 @@ class SituationErrors {
   [[nodiscard]] static tl::expected<SituationErrors, std::string> create(
       const Session& session, const StaticSetup& setup, const TruthOptions& truth_options);
 
-  // The errors in the order of Situation.
+  // The errors in the order of Situation. They are kept in the cache on disk, if TruthOptions allow
+  // it, for this build of the program and this device.
   [[nodiscard]] tl::expected<std::array<double, 3>, std::string> measure(
       const passes::OcclusionSettings& settings);
 
@@ -35,9 +36,14 @@ class SituationErrors {
  private:
   explicit SituationErrors(const StaticSetup& setup) : setup_(setup) {}
 
+  tl::expected<std::array<double, 3>, std::string> compute(
+      const passes::OcclusionSettings& settings);
+
   StaticSetup setup_;
   std::unique_ptr<FrameRenderer> renderer_;
   Truths truths_;
+  TruthCache cache_{{}};
+  CacheKey key_;
 };
 
 // Models the times of settings on a GPU, and keeps them in the cache on disk for this build of the

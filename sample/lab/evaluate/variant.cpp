@@ -16,7 +16,8 @@ FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& setti
   FrameRequest request;
   request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view,
                   setup.camera.reversed_z};
-  request.index = frame;
+  request.index = setup.first_frame + frame;
+  request.restart = frame == 0;
   request.static_frames = frame;
   request.occlusion = settings;
   request.occlusion.specular = passes::Specular::none;

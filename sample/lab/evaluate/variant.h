@@ -32,6 +32,7 @@ struct StaticSetup {
   std::uint32_t height = 540;
   std::uint32_t frames = 32;  // at least 1; the last one is evaluated
   NormalSource normals = NormalSource::kShading;
+  std::uint32_t first_frame = 0;  // number of the first frame; others have another noise
 };
 
 // Renders the frames of a static view and reads the last one back.

@@ -72,6 +72,8 @@ struct RecordingFunctions {
         vkCreateShaderModule(self(device).device_.device, info, callbacks, module);
     if (result == VK_SUCCESS) {
       self(device).group_sizes_[*module] = group_size(*info);
+      self(device).codes_[*module].assign(reinterpret_cast<const char*>(info->pCode),
+                                          info->codeSize);
     }
     return result;
   }
@@ -95,6 +97,20 @@ struct RecordingFunctions {
     return vkCreatePipelineLayout(self(device).device_.device, info, callbacks, layout);
   }
 
+  // Returns the shader as this process compiled it before for this driver's device, or an empty one
+  // to fill. Settings that differ in few constants share most of their shaders.
+  static CompiledShader& known_shader(RecordingDevice& recording,
+                                      const VkPipelineShaderStageCreateInfo& stage) {
+    static std::map<std::string, CompiledShader> known;
+    std::string key = recording.device_.name + '\n' + recording.codes_[stage.module];
+    if (const VkSpecializationInfo* constants = stage.pSpecializationInfo) {
+      key.append(reinterpret_cast<const char*>(constants->pMapEntries),
+                 constants->mapEntryCount * sizeof(VkSpecializationMapEntry));
+      key.append(static_cast<const char*>(constants->pData), constants->dataSize);
+    }
+    return known[key];
+  }
+
   static VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache /*cache*/,
                                                          std::uint32_t count,
                                                          const VkComputePipelineCreateInfo* infos,
@@ -105,6 +121,12 @@ struct RecordingFunctions {
         silent;  // ACO prints a warning if it finds no disassembler for old GPUs
     for (std::uint32_t i = 0; i < count; ++i) {
       VkComputePipelineCreateInfo info = infos[i];
+      CompiledShader& known = known_shader(recording, info.stage);
+      if (!known.statistics.empty()) {
+        pipelines[i] = new_handle<VkPipeline>(recording);
+        recording.compiled_[pipelines[i]] = known;
+        continue;
+      }
       info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR |
                     VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
       const VkResult result = vkCreateComputePipelines(recording.device_.device, VK_NULL_HANDLE, 1,
@@ -118,6 +140,7 @@ struct RecordingFunctions {
         return VK_ERROR_FEATURE_NOT_PRESENT;
       }
       compiled->group = recording.group_sizes_[info.stage.module];
+      known = *compiled;
       recording.compiled_[pipelines[i]] = std::move(*compiled);
     }
     return VK_SUCCESS;

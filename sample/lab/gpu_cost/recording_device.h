@@ -56,6 +56,7 @@ class RecordingDevice {
   std::uint64_t last_handle_ = 0x1000;
   std::map<std::uint64_t, std::unique_ptr<std::byte[]>> memory_;
   std::map<VkShaderModule, std::uint32_t> group_sizes_;
+  std::map<VkShaderModule, std::string> codes_;
   std::map<VkPipeline, CompiledShader> compiled_;
   std::vector<RecordedDispatch> dispatches_;
   std::string pass_;
