@@ -496,7 +496,7 @@ void check_together(const Options& options) {
   if (options.split && options.view.orbit != 0.0f) {
     throw Mistake{"--split and --orbit: give one, the error is split for a static camera"};
   }
-  if (options.command == Command::kRecommend &&
+  if (options.command == Command::recommend &&
       options.budget_ms.has_value() == options.tolerance.has_value()) {
     throw Mistake{"recommend: give either --budget-ms or --tolerance"};
   }

@@ -24,22 +24,22 @@ namespace alcove::sample {
 
 enum class Command {
   // For users.
-  kRender,
-  kView,
-  kCompare,
-  kRecommend,
-  kGraph,
-  kDoctor,
+  render,
+  view,
+  compare,
+  recommend,
+  graph,
+  doctor,
   // The laboratory.
-  kMotion,
-  kAblate,
-  kBench,
-  kCost,
-  kMeasure,
-  kReport
+  motion,
+  ablate,
+  bench,
+  cost,
+  measure,
+  report
 };
 // Names are in the order of the enumerators.
-enum class GraphFormat { kText, kDot, kWork };
+enum class GraphFormat { text, dot, work };
 inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "dot", "work"};
 
 // The options of the view. Optional members are empty if the option was not given: camera_of() then
@@ -64,7 +64,7 @@ struct OcclusionOptions {
   passes::Quality quality = passes::Quality::medium;
   bool quality_given = false;   // --quality was given
   std::optional<float> radius;  // scene units; none: radius_for_view()
-  NormalSource normals = NormalSource::kShading;
+  NormalSource normals = NormalSource::shading;
   std::vector<std::pair<std::string, std::string>> file;  // settings of --settings
   std::vector<std::pair<std::string, std::string>> set;   // --set name=value, in order
   std::vector<float> roughness;                           // overrides the materials; perceptual
@@ -82,7 +82,7 @@ struct CostOptions {
 };
 
 struct Options {
-  Command command = Command::kRender;
+  Command command = Command::render;
   std::string scene;                // empty: the built-in one
   std::vector<std::string> scenes;  // bench: any number, each as `scene`
   MaterialTreatment materials;
@@ -110,7 +110,7 @@ struct Options {
   bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes
   std::filesystem::path pictures;  // doctor: folder for pictures of the mistakes; empty for none
   bool grid = false;  // bench: measures the grid of steps and slices instead of the presets
-  GraphFormat graph_format = GraphFormat::kText;
+  GraphFormat graph_format = GraphFormat::text;
   int device = -1;
   bool validation = false;
   bool use_cache = true;

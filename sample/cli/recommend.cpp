@@ -82,13 +82,6 @@ Done recommend_by_clock(const Options& options, const Session& session) {
   return {};
 }
 
-// The cost model's inputs for the view at the size for which the settings are wanted.
-CostInputs cost_inputs(const Options& options) {
-  return {.width = options.target_width,
-          .height = options.target_height,
-          .normals = options.occlusion.normals != NormalSource::kDepth};
-}
-
 SituationWeights weights_of(const Options& options) {
   if (!options.situation) {
     return kMixedWeights;
@@ -278,7 +271,7 @@ Done run_recommend(const Options& options) {
   if (options.clock.value_or(Clock::modelled) != Clock::modelled) {
     return recommend_by_clock(options, *session);
   }
-  const auto times = ModelledTimes::create(*options.gpu, cost_inputs(options), options.use_cache);
+  const auto times = modelled_times(options);
   if (times) {
     return recommend_by_model(options, *session, *times);
   }

@@ -22,7 +22,7 @@ class ErrorSplitTest : public GpuTest {
  protected:
   // Splits the error of `settings` in the scene's first camera.
   ErrorSplit split(const Scene& scene, const OcclusionSettings& settings, std::uint32_t frames) {
-    const StaticSetup setup{scene.cameras.front(), 160, 90, frames, NormalSource::kGeometric};
+    const StaticSetup setup{scene.cameras.front(), 160, 90, frames, NormalSource::geometric};
     const auto images = draw_static(gpu(), scene, setup, settings);
     const auto rays = RayScene::create(scene);
     EXPECT_TRUE(images && rays);

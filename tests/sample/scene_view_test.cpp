@@ -22,7 +22,7 @@ using testing::HasSubstr;
 class ViewerWindowTest : public testing::Test {
  protected:
   void SetUp() override {
-    options_.command = Command::kView;
+    options_.command = Command::view;
     options_.view.width = 96;
     options_.view.height = 54;
     options_.validation = true;
@@ -159,7 +159,7 @@ TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDept
 }
 
 TEST_F(ViewerWindowTest, ImagesAreDrawnWithAMovingCameraAndNormalsFromDepth) {
-  options_.occlusion.normals = NormalSource::kDepth;
+  options_.occlusion.normals = NormalSource::depth;
   options_.view.orbit = 0.02f;
   ASSERT_NO_FATAL_FAILURE(open());
   for (const Picture picture : {Picture::bent_normal, Picture::lit, Picture::motion}) {

@@ -199,12 +199,7 @@ tl::expected<void, std::string> run_report(const Options& options) {
   if (const auto page = report_page({}); !page) {
     return Failure(page.error());
   }
-  const auto times =
-      ModelledTimes::create(*options.gpu,
-                            {.width = options.target_width,
-                             .height = options.target_height,
-                             .normals = options.occlusion.normals != NormalSource::kDepth},
-                            options.use_cache);
+  const auto times = modelled_times(options);
   if (!times) {
     return Failure(times.error());
   }

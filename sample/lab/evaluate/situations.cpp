@@ -99,32 +99,12 @@ tl::expected<SituationErrors, std::string> SituationErrors::create(
 
 tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSettings& settings,
                                                               std::uint32_t frames, float orbit) {
-  const auto matrices = [&](std::uint32_t frame) {
-    const float angle = orbit * (static_cast<float>(frame) - static_cast<float>(frames - 1));
-    return camera_matrices(orbited(setup_.camera, angle), setup_.width, setup_.height);
-  };
-  FrameRequest request;
-  request.occlusion = settings;
-  request.occlusion.specular = passes::Specular::none;
-  request.occlusion.bent_normal = false;
-  for (std::uint32_t i = 0; i < frames; ++i) {
-    const CameraMatrices now = matrices(i);
-    const CameraMatrices before = matrices(i == 0 ? 0 : i - 1);
-    request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
-                    before.clip_from_view, setup_.camera.reversed_z};
-    request.index = i;
-    request.static_frames = orbit == 0.0f ? i : 0;
-    if (i + 1 < frames) {
-      if (auto cost = renderer_->draw(request); !cost) {
-        return Failure(std::move(cost.error()));
-      }
-    }
-  }
-  auto images = renderer_->draw_and_read(request);
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
-  return std::move(images->visibility);
+  StaticSetup setup = setup_;
+  setup.frames = frames;
+  setup.orbit = orbit;
+  return draw_frames(*renderer_, setup, settings).map([](FrameImages images) {
+    return std::move(images.visibility);
+  });
 }
 
 tl::expected<std::array<double, 3>, std::string> SituationErrors::measure(
@@ -185,6 +165,20 @@ tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
     }
     return ms;
   });
+}
+
+tl::expected<Clock, std::string> choose_clock(const VkPhysicalDeviceProperties& device,
+                                              const GpuPart& part, std::optional<Clock> wanted) {
+  const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const Clock clock = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
+  if (clock != Clock::modelled) {
+    return clock;
+  }
+  const auto driver = create_null_device(part.family);
+  if (!driver && wanted) {
+    return Failure(driver.error());
+  }
+  return driver ? Clock::modelled : Clock::processor;
 }
 
 }  // namespace alcove::sample

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
+#include "evaluate/clock.h"
 #include "evaluate/recommendation.h"
 #include "evaluate/truths.h"
 #include "evaluate/variant.h"
@@ -70,5 +72,11 @@ class ModelledTimes {
   NullDevice device_;
   TruthCache cache_;
 };
+
+// Returns the clock for times on a device. Without `wanted`, it is `timestamps` on a GPU; on a
+// software device, whose timestamps are noise, it is `modelled`, or `processor` if Mesa's AMD driver
+// is not installed. Error: `wanted` is `modelled` and the driver is not installed.
+[[nodiscard]] tl::expected<Clock, std::string> choose_clock(
+    const VkPhysicalDeviceProperties& device, const GpuPart& part, std::optional<Clock> wanted);
 
 }  // namespace alcove::sample
