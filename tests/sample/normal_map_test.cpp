@@ -150,7 +150,7 @@ TEST_F(NormalMap, AlphaMasksFollowTheirTextureTransformInRasteriserAndRayTracer)
   Scene scene = quad();
   Material& material = scene.materials[0];
   material.normal_texture = {};
-  material.alpha_mode = AlphaMode::kMask;
+  material.alpha_mode = AlphaMode::mask;
   // The mask is opaque left of the middle. The transform doubles the coordinates and rotates them
   // by 90 degrees, which gives strips.
   scene.images[0] = {"mask", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}};
