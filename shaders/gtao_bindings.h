@@ -22,6 +22,7 @@ layout(constant_id = 14) const bool kUnobserved = true;     // excludes unobserv
 layout(constant_id = 15) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
 layout(constant_id = 16) const bool kReversed = false;      // raw depth is 1 at the near plane
 layout(constant_id = 17) const bool kInfiniteFar = false;   // the far plane is infinitely far away
+layout(constant_id = 18) const bool kAreas = false;         // images are read in part (areas.h)
 
 const uint kBitmask = 1;
 const uint kConnected = 2;
@@ -47,6 +48,6 @@ const bool kLobe = true;
 const bool kLobe = false;
 #endif
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
+#include "areas.h"
 
 #endif

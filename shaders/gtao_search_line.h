@@ -115,7 +115,7 @@ struct HalfSlice {
                          // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
   vec2 border;           // offset of the image's border in this direction (x) and the other (y)
-  ivec2 texel_bias;      // the shaded pixel minus kRoundingBits
+  ivec2 texel_bias;      // the shaded pixel in depth_image, minus kRoundingBits
   float nearness;        // the radius divided by the distance in perspective, else 0
   vec2 height;           // gradient of the height over the tangent plane in the slice's plane
   float tangent_cosine;  // cosine of the tangent plane's horizon
@@ -214,7 +214,7 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.growth = empty ? 0.0 : reach * (1.0 / (steps * steps));
   half_slice.border = border;
   half_slice.step_offset = step_offset;
-  half_slice.texel_bias = surface.pixel - kRoundingBits;
+  half_slice.texel_bias = in_inputs(surface.pixel) - kRoundingBits;
   half_slice.nearness = kPerspective ? parameters.radius * surface.inverse_depth : 0.0;
   return half_slice;
 }

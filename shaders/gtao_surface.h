@@ -22,7 +22,7 @@ struct Surface {
 float fetch_roughness(ivec2 pixel) {
 #ifdef SPECULAR
   if (kRoughnessTexture) {
-    return saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
+    return saturate(texelFetch(roughness_image, in_inputs(pixel), 0)[kRoughnessChannel]);
   }
 #endif
   return parameters.roughness;
@@ -30,9 +30,7 @@ float fetch_roughness(ivec2 pixel) {
 
 #include "load_depth.h"
 
-float load_inverse_depth(ivec2 pixel) {
-  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
-}
+float load_inverse_depth(ivec2 pixel) { return inverse_depth_of(fetch_depth(pixel)); }
 
 #include "depth_normal.h"
 
@@ -48,7 +46,7 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
-  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
+  vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding);
   surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
   vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
   surface.lobe = LobeSurface(kLobe ? normalize(own) : own, fetch_roughness(pixel));

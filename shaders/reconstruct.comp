@@ -54,6 +54,7 @@ layout(constant_id = 13) const bool kReversed = false;    // raw depth is 1 at t
 // Writes visibility to the channel kVisibilityChannel alone and keeps the others.
 layout(constant_id = 14) const bool kKeepsChannels = false;
 layout(constant_id = 15) const int kVisibilityChannel = 0;
+layout(constant_id = 16) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 #include "reconstruct_bindings.h"
 
@@ -76,13 +77,12 @@ const bool kByNormal = (kFresh || kStatic) && kFilterRadius > 0;
 // plane of a surface that is seen edge-on would contain points at every depth.
 const float kLeastNDotV = 0.02;
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
-
+#define GATHERS_DEPTH
+#define WRITES_OUTPUTS
+#include "areas.h"
 #include "load_depth.h"
 
-float load_inverse_depth(ivec2 pixel) {
-  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
-}
+float load_inverse_depth(ivec2 pixel) { return inverse_depth_of(fetch_depth(pixel)); }
 
 #include "depth_normal.h"
 #include "reconstruct_tiles.h"
@@ -103,7 +103,7 @@ const vec2 kDitherGradient = vec2(0.06711056, 0.00583715);
 
 Place first_place() {
   Place place;
-  place.texel = ivec2(gl_WorkGroupID.xy) * ivec2(8, 8 * kBlocks) + ivec2(gl_LocalInvocationID.xy);
+  place.texel = first_texel() + ivec2(gl_LocalInvocationID.xy);
   place.centre = (vec2(place.texel) + 0.5) * float(kTexelSize);
   place.uv = vec2(place.texel * kTexelSize) * parameters.pixel_uv;
   place.around = find_traced(place.texel * kTexelSize);
@@ -166,7 +166,7 @@ vec3 fetch_normal(ivec2 pixel) {
   if (kNormalEncoding == kNoNormals) {
     return depth_normal(pixel);
   }
-  vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
+  vec3 normal = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
@@ -175,7 +175,8 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
 #ifdef SPECULAR
   surface.normal = normalize(normal);
   if (kRoughnessTexture) {
-    surface.roughness = saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
+    surface.roughness =
+        saturate(texelFetch(roughness_image, in_inputs(pixel), 0)[kRoughnessChannel]);
   }
 #endif
   return surface;
@@ -202,7 +203,7 @@ void reconstruct(Surface surface) {
 void main() {
   load_tiles();
   // At half resolution one texel beyond the border too, which upsampling reads.
-  ivec2 last = (size_px() + (2 * kTexelSize - 3)) / kTexelSize;
+  ivec2 last = (last_written() + (2 * kTexelSize - 2)) / kTexelSize;
   Place place = first_place();
   [[dont_unroll]] for (int block = 0; block < kBlocks; ++block) {
     if (place.texel.x <= last.x && place.texel.y <= last.y) {

@@ -27,7 +27,8 @@ const float kSameTexel = 0.776;
 
 // The position of a surface in the image of the previous frame.
 struct Previous {
-  vec2 position;  // texels from the centre of the first one, clamped to that of the last one
+  vec2 position;  // texels from the centre of the first one, clamped to those of the first and the
+                  // last that were written
   float depth;    // in perspective over the depth now, and positive; in orthographic views linear
   bool seen;      // it was on the image
   bool moves;     // the surface moved, not only the camera
@@ -40,7 +41,7 @@ Previous reproject(Surface surface) {
   previous.depth = kPerspective ? max(to.w, 1e-30) : to.w;
   previous.moves = false;
   if (kMotion) {
-    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy;
+    vec2 motion = texelFetch(motion_image, in_inputs(surface.pixel), 0).rg * parameters.motion.xy;
     vec2 moved =
         surface.place.centre * parameters.previous_extent.zw - parameters.motion.zw - motion;
     // More than the rounding of motion vectors, which is 2^-11 in half precision.
@@ -49,7 +50,8 @@ Previous reproject(Surface surface) {
     // A NaN would stay in the history.
     position = moved == moved ? moved : vec2(-1e6);
   }
-  previous.position = clamp(position, vec2(0.0), parameters.previous_extent.xy);
+  vec2 first = vec2(first_written() / kTexelSize);
+  previous.position = clamp(position, first, parameters.previous_extent.xy);
   vec2 outside = abs(position - previous.position);
   previous.seen = to.z > 0.0 && max(outside.x, outside.y) <= 0.5;
   return previous;

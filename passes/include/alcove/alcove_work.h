@@ -132,7 +132,7 @@ typedef struct AlcoveWorkHistory {
 // The work of one view in one frame. Elements beyond the counts are undefined.
 typedef struct AlcoveWork {
   AlcoveCamera camera;  // of AlcoveWorkInfo
-  uint32_t width;       // of the depth image
+  uint32_t width;       // of the depth image, or of the area that is read
   uint32_t height;
   // Whether the previous slots of the histories are read. If not, the histories begin again.
   uint32_t history_valid;
@@ -145,10 +145,10 @@ typedef struct AlcoveWork {
 } AlcoveWork;
 
 // An image of the engine. All images of a view have the size of the depth image, except outputs
-// with half_size_outputs. A format of 0 means that there is no image.
+// with half_size_outputs or with areas. A format of 0 means that there is no image.
 typedef struct AlcoveWorkImage {
   uint32_t format;  // the number of its VkFormat
-  uint32_t width;   // in pixels: the part that is used, from the top left corner
+  uint32_t width;   // in pixels
   uint32_t height;
 } AlcoveWorkImage;
 
@@ -171,6 +171,10 @@ typedef struct AlcoveWorkInfo {
   uint32_t normals_forward_z;
   float motion_scale[2];
   float motion_offset[2];
+  AlcoveArea read_area;
+  AlcoveArea written_area;
+  uint32_t output_x;
+  uint32_t output_y;
   AlcoveChannel visibility_channel;
   uint32_t half_size_outputs;
   AlcoveWorkImage depth;

@@ -7,6 +7,7 @@
 #include "c/settings.h"
 #include "diagnose/pixel_observer.h"
 #include "graph/add_view.h"
+#include "work/areas.h"
 
 namespace alcove::passes {
 namespace {
@@ -198,6 +199,9 @@ tl::expected<SettledView, Failure> settle(const AlcoveView& view, const ImageImp
   if (!right) {
     return tl::unexpected(std::move(right.error()));
   }
+  if (auto good = check_areas(to_areas(view), {view.depth.width, view.depth.height}); !good) {
+    return tl::unexpected(failure_of(good.error(), view_name(view)));
+  }
   auto inputs = import_images(view, settings, importer);
   if (!inputs) {
     return tl::unexpected(std::move(inputs.error()));
@@ -221,7 +225,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   const auto settled = settle(
       view, {[](void* user, const ImageRole& role, const AlcoveImage& image, const AlcoveView& of) {
                const Import& to = *static_cast<Import*>(user);
-               return to.images.import(to.graph, role, image, of.depth, of.id);
+               return to.images.import(to.graph, role, image, of);
              },
              &target});
   if (!settled) {
@@ -238,6 +242,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
               to_view(view.previous_camera),
               reset ? 0 : view.static_frames};
   frame.prepare = prepare;
+  frame.areas = to_areas(view);
   frame.largest_size = {view.largest_width, view.largest_height};
   if (!reset) {
     frame.previous_size = {view.previous_width, view.previous_height};

@@ -5,6 +5,7 @@
 
 #include "c/context.h"
 #include "c/view.h"
+#include "work/areas.h"
 #include "work/shader_table.h"
 
 using namespace alcove;
@@ -37,6 +38,12 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
                   .normal_encoding = info.normal_encoding,
                   .normals_forward_z = info.normals_forward_z,
                   .settings = info.settings,
+                  .largest_width = info.largest_width,
+                  .largest_height = info.largest_height,
+                  .read_area = info.read_area,
+                  .written_area = info.written_area,
+                  .output_x = info.output_x,
+                  .output_y = info.output_y,
                   .depth = to_image(info.depth, 1),
                   .normals = to_image(info.normals, 2),
                   .motion = to_image(info.motion, 3),
@@ -76,17 +83,19 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
     frame.previous_size = {info.previous->width, info.previous->height};
   }
   passes::WorkList list(*work, info.previous);
-  work->camera = info.camera;
-  work->width = info.depth.width;
-  work->height = info.depth.height;
   const AlcoveView view = to_alcove_view(info);
+  frame.areas = passes::to_areas(view);
+  const VkExtent2D size = passes::read_size(frame, {info.depth.width, info.depth.height});
+  work->camera = info.camera;
+  work->width = size.width;
+  work->height = size.height;
   const auto settled = passes::settle(
       view, {[](void* user, const passes::ImageRole& role, const AlcoveImage& image,
                 const AlcoveView& of) -> tl::expected<framegraph::Texture, passes::Failure> {
                if (image.image == VK_NULL_HANDLE) {
                  return framegraph::Texture{};
                }
-               return passes::check_image(role, image, of.depth, of.id).map([&] {
+               return passes::check_image(role, image, of).map([&] {
                  return static_cast<passes::WorkList*>(user)->add(
                      role.output ? ALCOVE_RESOURCE_KIND_OUTPUT : ALCOVE_RESOURCE_KIND_INPUT,
                      role.name, image.format, {image.width, image.height});

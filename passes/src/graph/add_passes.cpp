@@ -161,8 +161,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
 
 tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBounceInputs& inputs,
                                               Precision precision) {
-  return add_described(frame, inputs, [&](WorkList& list, const WorkFrame&, const auto& listed) {
-    return describe_multi_bounce(list, listed, precision);
+  return add_described(frame, inputs, [&](WorkList& list, const WorkFrame& of, const auto& listed) {
+    return describe_multi_bounce(list, of, listed, precision);
   });
 }
 

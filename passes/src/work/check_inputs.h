@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "alcove/passes/work.h"
+#include "work/number_text.h"
 
 namespace alcove::passes {
 
@@ -18,9 +19,6 @@ struct NamedInput {
 // first input of the list.
 [[nodiscard]] inline tl::expected<void, Error> check_inputs(
     const WorkList& list, std::string_view pass, std::initializer_list<NamedInput> inputs) {
-  const auto size_text = [](VkExtent2D size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
-  };
   for (const NamedInput& input : inputs) {
     if (!input.texture) {
       return tl::unexpected(Error{"The pass " + std::string(pass) + " needs a texture of " +

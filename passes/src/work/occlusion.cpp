@@ -117,7 +117,7 @@ tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFr
   const VisibilityChannel channel = inputs.occlusion.into.visibility
                                         ? inputs.occlusion.visibility_channel
                                         : VisibilityChannel::all;
-  return describe_multi_bounce(list,
+  return describe_multi_bounce(list, frame,
                                {outputs->visibility, inputs.albedo, inputs.multi_bounce, channel},
                                settings.precision)
       .map([&](framegraph::Texture) { return *outputs; });

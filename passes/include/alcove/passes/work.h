@@ -110,6 +110,7 @@ struct WorkFrame {
   std::uint32_t static_frames = 0;
   VkExtent2D largest_size{};
   VkExtent2D previous_size{};
+  ImageAreas areas;
 };
 
 // Describe what the functions add_linear_depth and so on add, with the same inputs, results and
@@ -126,7 +127,8 @@ struct WorkFrame {
     WorkList& list, const WorkFrame& frame, const ReconstructInputs& inputs,
     const OcclusionSettings& settings);
 [[nodiscard]] tl::expected<framegraph::Texture, Error> describe_multi_bounce(
-    WorkList& list, const MultiBounceInputs& inputs, Precision precision = Precision::unorm8);
+    WorkList& list, const WorkFrame& frame, const MultiBounceInputs& inputs,
+    Precision precision = Precision::unorm8);
 [[nodiscard]] tl::expected<framegraph::Texture, Error> describe_gtso(
     WorkList& list, const WorkFrame& frame, const GtsoInputs& inputs,
     const OcclusionSettings& settings);
