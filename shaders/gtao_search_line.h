@@ -13,6 +13,7 @@
 #include "gtao_bindings.h"
 #include "gtao_surface.h"
 #include "maths/connected_samples.h"
+#include "maths/no_occluder.h"
 #include "maths/sampling.h"
 #include "maths/slice.h"
 #include "maths/slice_line.h"
@@ -281,9 +282,9 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   SamplePlace place = place_of(half_slice, offset);
   vec2 px = place.px;
   SliceSample found;
-  found.inverse_depth =
-      sample_inverse_depth(layer == 0u ? texelFetch(depth_image, place.texel, 0).r
-                                       : texelFetch(second_image, place.texel, 0).r);
+  float depth_ndc = layer == 0u ? texelFetch(depth_image, place.texel, 0).r
+                                : texelFetch(second_image, place.texel, 0).r;
+  found.inverse_depth = sample_inverse_depth(depth_ndc);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
   float y_of_texel = offset * search_line.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;
@@ -300,6 +301,12 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
     found.back = ends_occluder(found.inverse_depth, back, kPerspective)
                      ? vec2(offset, y + (end - found.inverse_depth) * search_line.y_per_depth)
                      : vec2(0.0, kNoBack);
+  }
+  if (kMask && layer == 0u && is_no_occluder(depth_ndc)) {
+    // Far in front of the surface and outside of every radius: such a foreground does not occlude,
+    // and what lies behind it is unobserved.
+    found.point = vec3(offset, 1e6, 0.0);
+    found.back = vec2(0.0, kNoBack);
   }
   return found;
 }

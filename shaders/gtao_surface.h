@@ -30,7 +30,10 @@ float fetch_roughness(ivec2 pixel) {
 
 #include "load_depth.h"
 
-float load_inverse_depth(ivec2 pixel) { return inverse_depth_of(fetch_depth(pixel)); }
+float load_inverse_depth(ivec2 pixel) {
+  return inverse_depth_of(kMask ? texelFetch(receiver_image, in_inputs(pixel), 0).r
+                                : fetch_depth(pixel));
+}
 
 #include "depth_normal.h"
 

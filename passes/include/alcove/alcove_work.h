@@ -81,7 +81,8 @@ typedef struct AlcoveWorkResource {
   uint32_t width;   // in texels
   uint32_t height;
   uint32_t mip_count;
-  uint32_t usage;  // a combination of AlcoveWorkUsage
+  uint32_t samples;  // per pixel: 1, except for depth of the engine; 0 for a table
+  uint32_t usage;    // a combination of AlcoveWorkUsage
   // The indices of the first and the last dispatch that bind the resource. Transients whose ranges
   // do not overlap may share memory. Both are ALCOVE_WORK_NONE if no dispatch binds it.
   uint32_t first_dispatch;
@@ -150,6 +151,7 @@ typedef struct AlcoveWorkImage {
   uint32_t format;  // the number of its VkFormat
   uint32_t width;   // in pixels
   uint32_t height;
+  uint32_t samples;  // per pixel; 0 means 1
 } AlcoveWorkImage;
 
 // Everything that the work of a view depends on. The fields that AlcoveView (alcove.h) has too are
@@ -184,6 +186,9 @@ typedef struct AlcoveWorkInfo {
   AlcoveWorkImage back_depth;
   AlcoveWorkImage second_depth;
   AlcoveWorkImage albedo;
+  AlcoveWorkImage mask;
+  uint32_t not_receiving;
+  uint32_t not_occluding;
   AlcoveWorkImage visibility;
   AlcoveWorkImage bent_normal;
   AlcoveWorkImage specular;
@@ -194,7 +199,7 @@ typedef struct AlcoveWorkInfo {
 // `message` is not null, it must have room for ALCOVE_MAX_MESSAGE bytes, and receives the sentence
 // of the error. Errors: those of alcoveRecordFrame that concern settings, cameras, sizes and
 // formats. Resources are named "depth", "normals", "motion vectors", "roughness", "back-face
-// depth", "second depth", "albedo", "visibility", "bent normals", "specular occlusion" and
+// depth", "second depth", "albedo", "mask", "visibility", "bent normals", "specular occlusion" and
 // "multi-bounce" if they are images of the engine, in this order and without those that are absent.
 AlcoveResult alcoveDescribeWork(const AlcoveWorkInfo* info, AlcoveWork* work, char* message);
 

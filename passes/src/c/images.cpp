@@ -1,6 +1,7 @@
 #include "c/images.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cstdio>
 #include <span>
@@ -69,6 +70,9 @@ bool suits(const ImageRole& role, VkFormat format) {
   if (role.kind == ImageRole::Kind::depth) {
     return std::ranges::find(kDepthFormats, format) != kDepthFormats.end();
   }
+  if (role.kind == ImageRole::Kind::mask) {
+    return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R8_UINT;
+  }
   const auto known = std::ranges::find(kColourFormats, format, &KnownFormat::format);
   return known != kColourFormats.end() && known->channels >= role.channels &&
          (known->is_signed || role.kind != ImageRole::Kind::signed_colour);
@@ -77,6 +81,9 @@ bool suits(const ImageRole& role, VkFormat format) {
 std::string wanted_format(const ImageRole& role) {
   if (role.kind == ImageRole::Kind::depth) {
     return "a depth format or VK_FORMAT_R32_SFLOAT";
+  }
+  if (role.kind == ImageRole::Kind::mask) {
+    return "VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT";
   }
   return std::string(role.kind == ImageRole::Kind::signed_colour ? "a signed normalised or float"
                                                                  : "a normalised or float") +
@@ -90,8 +97,8 @@ bool same_state(const AlcoveState& a, const AlcoveState& b) {
 
 bool same_description(const AlcoveImage& a, const AlcoveImage& b) {
   return a.view == b.view && a.format == b.format && a.width == b.width && a.height == b.height &&
-         a.usage == b.usage && same_state(a.initial_state, b.initial_state) &&
-         same_state(a.final_state, b.final_state);
+         a.usage == b.usage && a.samples == b.samples &&
+         same_state(a.initial_state, b.initial_state) && same_state(a.final_state, b.final_state);
 }
 
 framegraph::State to_state(const AlcoveState& state) {
@@ -153,10 +160,14 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
   if (const std::string problem = size_problem(role, image, view); !problem.empty()) {
     return fail(problem);
   }
-  if (image.samples > 1) {
+  if (image.samples > 1 && !role.may_have_samples) {
     return fail("has " + std::to_string(image.samples) +
                 " samples a pixel; resolve it first, depth and normals to sample 0 "
                 "(VK_RESOLVE_MODE_SAMPLE_ZERO_BIT).");
+  }
+  if (image.samples > 64 || !std::has_single_bit(std::max(image.samples, 1u))) {
+    return fail("has " + std::to_string(image.samples) +
+                " samples a pixel; it must be a power of two up to 64.");
   }
   if (role.keeps_channels && kept_channels(image.format) < role.channels) {
     return fail("has the format " + format_name(image.format) +
@@ -218,13 +229,16 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
   std::snprintf(name.data(), name.size(), "%s of view %u", role.name,
                 static_cast<unsigned>(view.id));
   const Texture texture = graph.import_texture(
-      name.data(), {.image = image.image,
-                    .view = image.view,
-                    .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
-                    .usage = image.usage,
-                    .first_layer = image.layer,
-                    .initial_state = to_state(image.initial_state),
-                    .final_state = to_state(image.final_state)});
+      name.data(),
+      {.image = image.image,
+       .view = image.view,
+       .desc = {.format = image.format,
+                .extent = framegraph::Extent::absolute(image.width, image.height),
+                .samples = static_cast<VkSampleCountFlagBits>(std::max(image.samples, 1u))},
+       .usage = image.usage,
+       .first_layer = image.layer,
+       .initial_state = to_state(image.initial_state),
+       .final_state = to_state(image.final_state)});
   assert(count_ < entries_.size());
   entries_[count_++] = {image, texture, role.output, view.id};
   return texture;

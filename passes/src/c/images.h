@@ -15,11 +15,12 @@ namespace alcove::passes {
 // The purpose of an image, and the formats that suit it.
 struct ImageRole {
   const char* name = "";
-  enum class Kind : std::uint8_t { depth, colour, signed_colour } kind = Kind::colour;
+  enum class Kind : std::uint8_t { depth, colour, signed_colour, mask } kind = Kind::colour;
   std::uint32_t channels = 1;  // that the format has at least
   bool output = false;
-  bool keeps_channels = false;  // one channel of the output is written, the others are kept
-  bool half_size = false;       // it has half of depth's size, rounded up
+  bool keeps_channels = false;    // one channel of the output is written, the others are kept
+  bool may_have_samples = false;  // more than one per pixel
+  bool half_size = false;         // it has half of depth's size, rounded up
 };
 
 // Converts the areas of a view. With dynamic resolution, images may be larger than the part that is
@@ -34,7 +35,7 @@ struct ImageRole {
 // The images of one frame. An image that serves as several inputs becomes one texture of the graph.
 class ImageTable {
  public:
-  static constexpr std::size_t kImagesOfAView = 11;
+  static constexpr std::size_t kImagesOfAView = 12;
 
   void reset() { count_ = 0; }
 

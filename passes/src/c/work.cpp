@@ -28,6 +28,7 @@ AlcoveImage to_image(const AlcoveWorkImage& image, std::uintptr_t number) {
           .width = image.width,
           .height = image.height,
           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+          .samples = image.samples,
           .initial_state = state,
           .final_state = state};
 }
@@ -51,6 +52,9 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
                   .back_depth = to_image(info.back_depth, 5),
                   .second_depth = to_image(info.second_depth, 6),
                   .albedo = to_image(info.albedo, 7),
+                  .mask = to_image(info.mask, 12),
+                  .not_receiving = info.not_receiving,
+                  .not_occluding = info.not_occluding,
                   .visibility = to_image(info.visibility, 8),
                   .visibility_channel = info.visibility_channel,
                   .half_size_outputs = info.half_size_outputs,
@@ -98,7 +102,8 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
                return passes::check_image(role, image, of).map([&] {
                  return static_cast<passes::WorkList*>(user)->add(
                      role.output ? ALCOVE_RESOURCE_KIND_OUTPUT : ALCOVE_RESOURCE_KIND_INPUT,
-                     role.name, image.format, {image.width, image.height});
+                     role.name, image.format, {image.width, image.height}, 1,
+                     std::max(image.samples, 1u));
                });
              },
              &list});

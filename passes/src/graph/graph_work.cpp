@@ -129,7 +129,8 @@ Texture GraphWork::import(Texture texture) {
   const Texture listed =
       list_.add(ALCOVE_RESOURCE_KIND_INPUT, "texture", frame_.graph.format(texture),
                 {size.width, size.height},
-                texture.index < resources.size() ? resources[texture.index].mips : 1u);
+                texture.index < resources.size() ? resources[texture.index].mips : 1u,
+                texture.index < resources.size() ? resources[texture.index].samples : 1u);
   if (listed) {
     textures_[listed.index] = texture;
   }

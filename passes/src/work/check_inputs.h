@@ -24,6 +24,11 @@ struct NamedInput {
       return tl::unexpected(Error{"The pass " + std::string(pass) + " needs a texture of " +
                                   std::string(input.name) + "; it was given none."});
     }
+    if (list.samples(input.texture) > 1) {
+      return tl::unexpected(Error{
+          "The pass " + std::string(pass) + " was given " + std::string(input.name) + " with " +
+          std::to_string(list.samples(input.texture)) + " samples per pixel; resolve it first."});
+    }
     const VkExtent2D size = list.size(input.texture);
     const VkExtent2D wanted = list.size(inputs.begin()->texture);
     if (size.width != wanted.width || size.height != wanted.height) {

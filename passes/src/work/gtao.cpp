@@ -43,7 +43,7 @@ bool of_distance(const OcclusionSettings& settings) {
          settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
-std::array<NamedConstant, 19> constants_of(const WorkFrame& frame, const GtaoInputs& inputs,
+std::array<NamedConstant, 20> constants_of(const WorkFrame& frame, const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   const AdvancedSettings& advanced = settings.advanced;
@@ -65,7 +65,8 @@ std::array<NamedConstant, 19> constants_of(const WorkFrame& frame, const GtaoInp
            {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
            {"kReversed", flag(is_reversed(projection))},
            {"kInfiniteFar", flag(has_infinite_far(projection))},
-           {"kAreas", flag(has_areas(frame))}}};
+           {"kAreas", flag(has_areas(frame))},
+           {"kMask", flag(bool(inputs.receiver_depth_ndc))}}};
 }
 
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
@@ -143,6 +144,7 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
   const Texture normals = or_else(inputs.normals, inputs.depth_ndc);
   const Texture roughness = optional(reads.roughness, inputs.roughness, inputs.depth_ndc);
   const Texture back = optional(reads.back_faces, inputs.back_depth_ndc, inputs.depth_ndc);
+  const Texture receiver = or_else(inputs.receiver_depth_ndc, inputs.depth_ndc);
   const Texture second = optional(reads.second_layer, inputs.second_depth_ndc, inputs.depth_ndc);
   auto good = validate(settings)
                   .and_then([&] { return check_areas(frame.areas, list.size(inputs.depth_ndc)); })
@@ -152,7 +154,8 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
                                          {"normals", normals},
                                          {"roughness", roughness},
                                          {"back-face depth", back},
-                                         {"second depth", second}});
+                                         {"second depth", second},
+                                         {"depth of receivers", receiver}});
                   });
   if (!good) {
     return tl::unexpected(std::move(good.error()));
@@ -179,6 +182,7 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
                                  {"bent_image", or_else(result.bent, result.raw_occlusion)},
                                  {"back_image", back},
                                  {"second_image", second},
+                                 {"receiver_image", receiver},
                                  {"roughness_image", roughness}};
   return list
       .dispatch({.label = "gtao",

@@ -225,7 +225,9 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   }
   const Past past = past_of(frame, *sizes, textures.valid, bool(inputs.motion));
   maths::ReconstructParameters parameters = reconstruct_parameters(
-      frame, *projection, *previous, inputs, settings, list.format(inputs.depth_ndc));
+      frame, *projection, *previous, inputs, settings,
+      inputs.depth_format != VK_FORMAT_UNDEFINED ? inputs.depth_format
+                                                 : list.format(inputs.depth_ndc));
   // In a static view all frames get the same weight in the history.
   if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;

@@ -100,7 +100,8 @@ class FrameRecorder {
   tl::expected<RecordedFrame, std::string> record(FrameState state);
 
  private:
-  Texture import(const char* name, VkFormat format);
+  Texture import(const char* name, VkFormat format,
+                 VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT);
   tl::expected<void, std::string> declare(FrameState state);
 
   RecordingDevice& device_;
@@ -111,10 +112,11 @@ class FrameRecorder {
   std::uint32_t frame_ = 0;
 };
 
-Texture FrameRecorder::import(const char* name, VkFormat format) {
+Texture FrameRecorder::import(const char* name, VkFormat format, VkSampleCountFlagBits samples) {
   framegraph::ImportedTexture image;
   image.image = device_.next_image();
   image.desc = {format, framegraph::Extent::absolute(inputs_.width, inputs_.height)};
+  image.desc.samples = samples;
   image.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   image.initial_state = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                          VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
@@ -153,7 +155,15 @@ tl::expected<void, std::string> FrameRecorder::declare(FrameState state) {
   }
   const passes::OcclusionSettings& settings = inputs_.settings;
   passes::OcclusionInputs inputs;
-  inputs.depth_ndc = import("depth", VK_FORMAT_D32_SFLOAT);
+  if (inputs_.area) {
+    frame.areas.read = {0, 0, inputs_.width, inputs_.height};
+  }
+  inputs.depth_ndc = import("depth", VK_FORMAT_D32_SFLOAT,
+                            inputs_.samples ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT);
+  if (inputs_.mask) {
+    inputs.mask = import("mask", VK_FORMAT_R8_UNORM);
+    inputs.not_receiving = inputs.not_occluding = 1;
+  }
   if (inputs_.normals) {
     inputs.normals = import("normals", VK_FORMAT_R16G16B16A16_SFLOAT);
     inputs.normal_encoding = inputs_.normal_encoding;
