@@ -1,10 +1,12 @@
-// Declarations that the examples of passes/INTEGRATION.md take from the engine.
+// Declarations that the examples of README.md and passes/INTEGRATION.md take from the engine.
 #include <alcove/alcove.h>
 
 extern VkInstance instance;
 extern VkPhysicalDevice physical_device;
 extern VkDevice device;
-extern uint32_t queue_family, frame_number;
+extern uint32_t queue_family, frame_number, width, height;
+extern VkImage depth_image, visibility_image;
+extern VkFormat depth_format;
 extern VkPhysicalDeviceFeatures2 features;
 extern AlcoveContext* context;
 extern AlcoveSettings settings;

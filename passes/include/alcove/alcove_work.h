@@ -115,11 +115,13 @@ typedef struct AlcoveWorkDispatch {
   const char* label;   // static, such as "gtao"
   const char* shader;  // static: the name for alcoveGetShader and of the file of the shader
   uint32_t groups[3];
-  uint32_t constant_count;  // all specialisation constants of the shader, ascending by id
-  AlcoveWorkConstant constants[ALCOVE_MAX_WORK_CONSTANTS];
-  uint32_t binding_count;  // all bindings of the shader, ascending by number
-  AlcoveWorkBinding bindings[ALCOVE_MAX_WORK_BINDINGS];
+  uint32_t constant_count;
+  uint32_t binding_count;
   uint32_t parameter_bytes;
+  // All specialisation constants of the shader, ascending by id.
+  AlcoveWorkConstant constants[ALCOVE_MAX_WORK_CONSTANTS];
+  // All bindings of the shader, ascending by number.
+  AlcoveWorkBinding bindings[ALCOVE_MAX_WORK_BINDINGS];
   unsigned char parameters[ALCOVE_MAX_WORK_PARAMETER_BYTES];
 } AlcoveWorkDispatch;
 
