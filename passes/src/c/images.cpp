@@ -162,8 +162,7 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
   }
   if (image.samples > 1 && !role.may_have_samples) {
     return fail("has " + std::to_string(image.samples) +
-                " samples a pixel; resolve it first, depth and normals to sample 0 "
-                "(VK_RESOLVE_MODE_SAMPLE_ZERO_BIT).");
+                " samples a pixel; resolve it first, depths and normals to sample 0.");
   }
   if (image.samples > 64 || !std::has_single_bit(std::max(image.samples, 1u))) {
     return fail("has " + std::to_string(image.samples) +
