@@ -2,6 +2,7 @@
 #ifndef ALCOVE_GTAO_SURFACE_H
 #define ALCOVE_GTAO_SURFACE_H
 
+#include "depth_normal.h"
 #include "gtao_bindings.h"
 #include "maths/normal_encoding.h"
 #include "maths/quantised_normal.h"
@@ -28,14 +29,15 @@ float fetch_roughness(ivec2 pixel) {
   return parameters.roughness;
 }
 
-#include "load_depth.h"
+float inverse_depth_of(float depth_ndc) {
+  return inverse_depth_of_ndc(parameters.inverse_depth_from_ndc, depth_ndc, kPerspective,
+                              kReversed);
+}
 
 float load_inverse_depth(ivec2 pixel) {
   return inverse_depth_of(kMask ? texelFetch(receiver_image, in_inputs(pixel), 0).r
                                 : fetch_depth(pixel));
 }
-
-#include "depth_normal.h"
 
 // The centre of the surface's pixel, in pixels from the image's corner.
 vec2 centre_of(Surface surface) { return vec2(surface.pixel) + 0.5; }
@@ -50,7 +52,20 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
       parameters.slope.zw + (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
   vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding);
-  surface.normal = seen_normal(pixel, mat3(parameters.view_from_normal) * given, surface.view);
+  vec3 given_vs = mat3(parameters.view_from_normal) * given;
+  vec3 of_depth = vec3(0.0);
+  if (needs_depth_normal(given_vs, surface.view)) {
+    ivec2 origin = in_inputs(ivec2(0));
+    DepthCross depths;
+    if (kMask) {
+      depths = fetch_depth_cross(receiver_image, pixel, origin, size_px());
+    } else {
+      depths = fetch_depth_cross(depth_image, pixel, origin, size_px());
+    }
+    of_depth = depth_buffer_normal(depths, pixel, size_px(), parameters.slope,
+                                   parameters.inverse_depth_from_ndc, kPerspective, kReversed);
+  }
+  surface.normal = seen_normal(given_vs, surface.view, of_depth);
   vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
   surface.lobe = LobeSurface(kLobe ? normalize(own) : own, fetch_roughness(pixel));
   return surface;

@@ -1,10 +1,12 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
 // Writes the results of the reconstruction at half resolution into images of half the depth
 // buffer's size, for engines that upsample these themselves. It runs instead of upsample.comp.
 
+#include "depth_normal.h"
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
 #include "maths/history.h"
@@ -12,6 +14,7 @@
 #include "maths/normal_encoding.h"
 #include "maths/raw_occlusion.h"
 #include "maths/slice_line.h"
+#include "store_visibility.h"
 #include "upsample_parameters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -47,12 +50,6 @@ layout(set = 0, binding = 9) uniform writeonly image2D specular_image;
 
 #define WRITES_OUTPUTS
 #include "areas.h"
-#include "load_depth.h"
-
-float load_inverse_depth(ivec2 pixel) { return inverse_depth_of(fetch_depth(pixel)); }
-
-#include "depth_normal.h"
-#include "store_visibility.h"
 
 // Returns the pixel that represents a texel, to whose surface the results belong.
 ivec2 pixel_of(ivec2 texel) {
@@ -75,7 +72,14 @@ vec3 unit_normal(ivec2 pixel) {
       parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
   vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
-  return seen_normal(pixel, given, normalize(vec3(-slope, 1.0)));
+  vec3 view = normalize(vec3(-slope, 1.0));
+  vec3 of_depth = vec3(0.0);
+  if (needs_depth_normal(given, view)) {
+    of_depth = depth_buffer_normal(
+        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
+        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
+  }
+  return seen_normal(given, view, of_depth);
 }
 
 void main() {
@@ -87,7 +91,9 @@ void main() {
   float visibility = saturate(1.0 - texelFetch(half_image, texel, 0).r);
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    store_visibility(in_outputs(texel), kShaped ? shaped : visibility);
+    imageStore(visibility_image, in_outputs(texel),
+               visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
+                                kept_image, in_outputs(texel)));
   }
   if (kBentNormal) {
     vec3 residual = unpack_half_residual(texelFetch(residual_image, texel, 0).xyz);

@@ -4,6 +4,9 @@
 #ifndef ALCOVE_RECONSTRUCT_HALF_SURFACE_H
 #define ALCOVE_RECONSTRUCT_HALF_SURFACE_H
 
+#include "maths/half_texel.h"
+#include "reconstruct_surface.h"
+
 // The largest tilt (tangent of an angle of about 70 degrees) at which a change of depth to a
 // neighbouring pixel is taken as the slope of the surface if the change on the other side of the
 // pixel has the opposite sign.
@@ -76,7 +79,7 @@ Surface fetch_surface(Place place) {
   surface.pixel = place.texel * 2 + ivec2(found.way.x < 0.0 ? 1 : 0, found.way.y < 0.0 ? 1 : 0);
   // The texel beyond the border has none of its own.
   surface.pixel = min(surface.pixel, size_px() - 1);
-  surface.sky = is_sky(found.depth_ndc);
+  surface.sky = is_sky_depth(found.depth_ndc, kReversed);
   float scale = kPerspective ? inverse_depth : 1.0;
   // The change of inverse depth per unit of raw depth.
   float per_ndc = is_counted_from_zero(kPerspective, kReversed)

@@ -3,8 +3,16 @@
 #ifndef ALCOVE_RECONSTRUCT_STORE_H
 #define ALCOVE_RECONSTRUCT_STORE_H
 
-#ifndef HALF
+#include "maths/bent_normal.h"
+#include "maths/half_texel.h"
+#include "maths/history.h"
+#include "maths/lobe_slice.h"
+#include "reconstruct_filter.h"
 #include "store_visibility.h"
+#ifdef HALF
+#include "reconstruct_half_surface.h"
+#else
+#include "reconstruct_pixel_surface.h"
 #endif
 
 // The results of a pixel or of a texel.
@@ -70,7 +78,9 @@ void store(Surface surface, Result result) {
   float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    store_visibility(texel, kShaped ? shaped : visibility);
+    imageStore(visibility_image, texel,
+               visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
+                                kept_image, texel));
   }
   if (kBentNormal) {
     vec3 residual = surface.sky ? vec3(0.0) : result.residual;

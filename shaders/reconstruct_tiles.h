@@ -3,6 +3,20 @@
 #ifndef ALCOVE_RECONSTRUCT_TILES_H
 #define ALCOVE_RECONSTRUCT_TILES_H
 
+#include "maths/bent_normal.h"
+#include "maths/lobe_slice.h"
+#include "maths/quantised_normal.h"
+#include "maths/raw_occlusion.h"
+#include "reconstruct_bindings.h"
+
+// Whether the weight of a traced pixel falls with the angle between its normal and the pixel's. At
+// half resolution such a weight raises the error by 1 %.
+#ifdef HALF
+const bool kByNormal = false;
+#else
+const bool kByNormal = (kFresh || kStatic) && kFilterRadius > 0;
+#endif
+
 // Whether a pixel averages the traced pixels around it. If not, either every pixel was traced
 // itself (kTileSize is 1), or a pixel takes the value of its tile (kFilterRadius is 0).
 const bool kBetween = kTileSize > 1 && kFilterRadius > 0;

@@ -13,12 +13,15 @@
 // One invocation computes the four pixels between the centres of four texels, so that the texels
 // are unpacked only once. The first invocation begins one pixel before the image.
 
+#include "depth_normal.h"
+#include "fetch_quad.h"
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
 #include "maths/history.h"
 #include "maths/normal_encoding.h"
 #include "maths/raw_occlusion.h"
 #include "maths/slice_line.h"
+#include "store_visibility.h"
 #include "upsample_parameters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -57,13 +60,6 @@ layout(set = 0, binding = 10) uniform writeonly image2D specular_image;
 #define GATHERS_DEPTH
 #define WRITES_OUTPUTS
 #include "areas.h"
-#include "load_depth.h"
-
-float load_inverse_depth(ivec2 pixel) { return inverse_depth_of(fetch_depth(pixel)); }
-
-#include "depth_normal.h"
-#include "fetch_quad.h"
-#include "store_visibility.h"
 
 // Texels and pixels are numbered in the order of textureGather: lower left, lower right, upper
 // right, upper left. right_of() is 1 for those on the right and -1 for the others; below_of() is 1
@@ -150,7 +146,14 @@ vec3 unit_normal(ivec2 pixel) {
       parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
   vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
-  return seen_normal(pixel, given, normalize(vec3(-slope, 1.0)));
+  vec3 view = normalize(vec3(-slope, 1.0));
+  vec3 of_depth = vec3(0.0);
+  if (needs_depth_normal(given, view)) {
+    of_depth = depth_buffer_normal(
+        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
+        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
+  }
+  return seen_normal(given, view, of_depth);
 }
 
 void main() {
@@ -175,21 +178,24 @@ void main() {
     ivec2 pixel = cell.first + ivec2(right_of(j) > 0.0 ? 1 : 0, below_of(j) > 0.0 ? 1 : 0);
     bool inside = kAreas ? is_written(pixel)
                          : all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
+    ivec2 output_pixel = in_outputs(pixel);
     vec4 weights = weights_of(cell, j);
     float inverse_sum = 1.0 / (weights.x + weights.y + weights.z + weights.w);
-    bool sky = is_sky(cell.depths_ndc[j]);
+    bool sky = is_sky_depth(cell.depths_ndc[j], kReversed);
     float occlusion = dot(weights, cell.occlusions) * inverse_sum;
     float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
     if (kVisibility && inside) {
       float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-      store_visibility(in_outputs(pixel), kShaped ? shaped : visibility);
+      imageStore(visibility_image, output_pixel,
+                 visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
+                                  kept_image, output_pixel));
     }
     if (kBentNormal && inside) {
       vec3 stored =
           vec3(dot(weights, residuals_x), dot(weights, residuals_y), dot(weights, residuals_z));
       vec3 residual = sky ? vec3(0.0) : unpack_half_residual(stored * inverse_sum);
       vec3 bent = finish_bent_normal(residual, visibility, unit_normal(pixel));
-      imageStore(bent_normal_image, in_outputs(pixel),
+      imageStore(bent_normal_image, output_pixel,
                  vec4(mat3(parameters.normal_from_view) * bent, 0.0));
     }
 #ifdef SPECULAR
@@ -200,7 +206,7 @@ void main() {
         sum += weights[i] * lobe.open * vec2(lobe.occlusion, 1.0);
       }
       float lobe_occlusion = sky ? 0.0 : saturate(sum.x / max(sum.y, 1e-37));
-      imageStore(specular_image, in_outputs(pixel), vec4(1.0 - lobe_occlusion));
+      imageStore(specular_image, output_pixel, vec4(1.0 - lobe_occlusion));
     }
 #endif
   }

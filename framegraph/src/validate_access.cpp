@@ -26,7 +26,9 @@ constexpr VkPipelineStageFlags2 kComputeStages =
 constexpr VkPipelineStageFlags2 kBlitStages =
     VK_PIPELINE_STAGE_2_BLIT_BIT | VK_PIPELINE_STAGE_2_RESOLVE_BIT;
 
-VkPipelineStageFlags2 forbidden(QueueClass queue) {
+}  // namespace
+
+VkPipelineStageFlags2 forbidden_stages(QueueClass queue) {
   switch (queue) {
     case QueueClass::graphics:
       return 0;
@@ -37,6 +39,8 @@ VkPipelineStageFlags2 forbidden(QueueClass queue) {
   }
   return 0;
 }
+
+namespace {
 
 struct Checker {
   Validation& v;
@@ -117,7 +121,7 @@ struct Checker {
       refuse_use(ErrorCode::bad_access,
                  " in layout undefined or preinitialised, in which nothing can be used: give the "
                  "layout of the use");
-    if (access.stages & forbidden(v.graph.passes[pass].queue))
+    if (access.stages & forbidden_stages(v.graph.passes[pass].queue))
       refuse_use(ErrorCode::bad_access,
                  " in a stage that its queue class cannot run: put the pass on "
                  "QueueClass::graphics");

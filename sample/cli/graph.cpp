@@ -75,7 +75,7 @@ tl::expected<void, std::string> print_work(const Session& session, const Options
   };
   const passes::OcclusionSettings& settings = session.settings;
   const HiddenDepths hidden = hidden_depths_of(settings);
-  const bool given_normals = options.occlusion.normals != NormalSource::kDepth;
+  const bool given_normals = options.occlusion.normals != NormalSource::depth;
   const passes::OcclusionInputs inputs{
       .depth_ndc = input(true, "depth", VK_FORMAT_R32_SFLOAT),
       .normals = input(given_normals, "normals", kNormalFormat),

@@ -86,7 +86,7 @@ Done recommend_by_clock(const Options& options, const Session& session) {
 CostInputs cost_inputs(const Options& options) {
   return {.width = options.target_width,
           .height = options.target_height,
-          .normals = options.occlusion.normals != NormalSource::kDepth};
+          .normals = options.occlusion.normals != NormalSource::depth};
 }
 
 SituationWeights weights_of(const Options& options) {

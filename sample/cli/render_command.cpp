@@ -112,7 +112,7 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   append_camera(shot.camera, arguments);
   arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", shot.width, shot.height)});
   append_settings(shot.settings, arguments);
-  if (options.occlusion.normals != NormalSource::kShading) {
+  if (options.occlusion.normals != NormalSource::shading) {
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
   }

@@ -203,7 +203,7 @@ tl::expected<std::unique_ptr<FrameRenderer>, std::string> FrameRenderer::create(
     Gpu& gpu, const Scene& scene, VkExtent2D size, NormalSource normals) {
   std::unique_ptr<FrameRenderer> made(new FrameRenderer(gpu, size, normals));
   auto done = assign(made->gbuffer_,
-                     GbufferRenderer::create(gpu, scene, normals == NormalSource::kGeometric));
+                     GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
   for (std::size_t i = 0; done && i < made->targets_.size(); ++i) {
     if (is_drawn(kGbufferTargets[i], {})) {
       done = made->create_target(i);
@@ -275,7 +275,7 @@ tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameR
     }
   }
   // Normals that are computed from depth are in view space, with their bent normals.
-  if (normals_ == NormalSource::kDepth) {
+  if (normals_ == NormalSource::depth) {
     const glm::mat3 world_from_view = glm::transpose(glm::mat3(request.view.view_from_world));
     for (Image<glm::vec3>* image : {&images.normal_ws, &images.bent_normal_ws}) {
       for (glm::vec3& normal : image->pixels) {

@@ -38,7 +38,7 @@ maths::GbufferMaterial parameters_of(const Material& material) {
   out.emissive = glm::vec4(material.emissive, 0.0f);
   out.metallic = material.metallic;
   out.roughness = material.roughness;
-  if (material.alpha_mode == AlphaMode::kMask) {
+  if (material.alpha_mode == AlphaMode::mask) {
     out.alpha_cutoff = material.alpha_cutoff;
   }
   out.has_normal_map = material.normal_texture.image >= 0 ? 1 : 0;

@@ -18,9 +18,9 @@ constexpr std::array<std::uint8_t, 4> kWhite{255, 255, 255, 255};
 
 VkSamplerAddressMode address_mode(Wrap wrap) {
   switch (wrap) {
-    case Wrap::kClamp:
+    case Wrap::clamp:
       return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    case Wrap::kMirror:
+    case Wrap::mirror:
       return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
     default:
       return VK_SAMPLER_ADDRESS_MODE_REPEAT;
@@ -28,7 +28,7 @@ VkSamplerAddressMode address_mode(Wrap wrap) {
 }
 
 VkFilter vulkan_filter(Filter filter) {
-  return filter == Filter::kNearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+  return filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
 }
 
 std::span<const std::uint8_t> texels_of(const Scene& scene, std::int32_t image) {
@@ -49,14 +49,14 @@ std::array<GpuTextures::Use, maths::kMaterialTextures> GpuTextures::uses_of(
   uses[maths::kMetallicRoughnessTexture] = use(material.metal_roughness_texture, false);
   uses[maths::kEmissiveTexture] = use(material.emissive_texture, true);
   uses[maths::kNormalTexture] = use(material.normal_texture, false);
-  if (material.alpha_mode == AlphaMode::kMask) {
+  if (material.alpha_mode == AlphaMode::mask) {
     // The alpha test reads the base colour from mip 0, like the ray tracer, so that both cut out
     // the same shapes and distant surfaces keep their coverage. It needs a separate sampler,
     // because some drivers ignore an explicit mip level with an anisotropic sampler.
     Use& mask = uses[maths::kMaskTexture];
     mask = uses[maths::kBaseColourTexture];
     mask.sampler.minify = mask.sampler.magnify;
-    mask.sampler.mips = MipFilter::kNone;
+    mask.sampler.mips = MipFilter::none;
   }
   return uses;
 }
@@ -97,15 +97,15 @@ tl::expected<VkImageView, std::string> GpuTextures::add_texture(const Scene& sce
 tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sampler) {
   constexpr float kMostAnisotropy = 8.0f;
   // Anisotropic filtering is used only if the file asks for linear filters and mips.
-  const bool smooth = sampler.magnify == Filter::kLinear && sampler.minify == Filter::kLinear &&
-                      sampler.mips == MipFilter::kLinear;
+  const bool smooth = sampler.magnify == Filter::linear && sampler.minify == Filter::linear &&
+                      sampler.mips == MipFilter::linear;
   const float anisotropy = smooth ? std::min(kMostAnisotropy, device_.max_anisotropy()) : 1.0f;
   const VkSamplerCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
       .magFilter = vulkan_filter(sampler.magnify),
       .minFilter = vulkan_filter(sampler.minify),
-      .mipmapMode = sampler.mips == MipFilter::kLinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR
-                                                       : VK_SAMPLER_MIPMAP_MODE_NEAREST,
+      .mipmapMode = sampler.mips == MipFilter::linear ? VK_SAMPLER_MIPMAP_MODE_LINEAR
+                                                      : VK_SAMPLER_MIPMAP_MODE_NEAREST,
       .addressModeU = address_mode(sampler.wrap_u),
       .addressModeV = address_mode(sampler.wrap_v),
       .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT,
@@ -113,7 +113,7 @@ tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sam
       .maxAnisotropy = anisotropy,
       // With a maxLod of 0.25, a level of detail from 0 to 0.25 is rounded to mip 0. A maxLod of 0
       // would disable the minification filter.
-      .maxLod = sampler.mips == MipFilter::kNone ? 0.25f : VK_LOD_CLAMP_NONE};
+      .maxLod = sampler.mips == MipFilter::none ? 0.25f : VK_LOD_CLAMP_NONE};
   VkSampler made = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &made);
       result != VK_SUCCESS) {

@@ -8,9 +8,9 @@
 namespace alcove::sample {
 
 enum class NormalSource {
-  kShading,    // The g-buffer's interpolated normals, with normal maps.
-  kGeometric,  // The g-buffer's flat triangle normals.
-  kDepth,      // None are given: the library reconstructs them from the depth buffer.
+  shading,    // The g-buffer's interpolated normals, with normal maps.
+  geometric,  // The g-buffer's flat triangle normals.
+  depth,      // None are given: the library reconstructs them from the depth buffer.
 };
 
 // Names of the enumerators, in their order.

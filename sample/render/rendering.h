@@ -46,7 +46,7 @@ struct RenderRequest {
   std::uint32_t frames = 1;
   float orbit = 0.0f;        // angle in radians by which the camera orbits its target per frame
   float orbit_start = 0.0f;  // angle of the first frame
-  NormalSource normals = NormalSource::kShading;
+  NormalSource normals = NormalSource::shading;
   IndirectRequest light;
 };
 

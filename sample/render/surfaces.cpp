@@ -48,7 +48,7 @@ tl::expected<passes::OcclusionOutputs, std::string> add_occlusion(
   passes::OcclusionInputs inputs{.depth_ndc = gbuffer.depth};
   inputs.back_depth_ndc = gbuffer.back_depth;
   inputs.second_depth_ndc = gbuffer.second_depth;
-  if (surfaces.normals != NormalSource::kDepth) {
+  if (surfaces.normals != NormalSource::depth) {
     inputs.normals = gbuffer.normal;
   }
   if (surfaces.motion_vectors) {
@@ -77,7 +77,7 @@ tl::expected<passes::AppliedLight, std::string> add_light(const passes::Frame& f
     inputs.roughness = surfaces.gbuffer.albedo;
   }
   inputs.metallic = surfaces.gbuffer.emissive;
-  inputs.normals_in_view_space = surfaces.normals == NormalSource::kDepth;
+  inputs.normals_in_view_space = surfaces.normals == NormalSource::depth;
   inputs.harmonics = probe.harmonics;
   inputs.map = probe.map;
   settings.roughness = surfaces.roughness.value_or(0.0f);

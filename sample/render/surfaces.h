@@ -17,7 +17,7 @@ namespace alcove::sample {
 // The g-buffer of a frame and the values that go with it.
 struct Surfaces {
   Gbuffer gbuffer;
-  NormalSource normals = NormalSource::kShading;
+  NormalSource normals = NormalSource::shading;
   // Perceptual, of every surface; null: the materials' own roughness.
   std::optional<float> roughness;
   bool motion_vectors = false;  // whether g-buffer motion is used; if not, only the camera moves

@@ -9,6 +9,7 @@
 
 #include "scene/gltf_camera.h"
 #include "scene/gltf_files.h"
+#include "scene/gltf_images.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_model.h"
@@ -25,21 +26,12 @@ namespace fs = std::filesystem;
 constexpr size_t kMostOfASentence = 200;  // bytes
 constexpr const char* kTooLittleMemory = "there is not enough memory for it";
 
-// Converts text to one line of at most `most` bytes, because names may be as long as the file.
-std::string readable(std::string text, size_t most) {
-  text = printable(text);
-  if (text.size() <= most) return text;
-  size_t end = most;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80) --end;  // UTF-8
-  return text.substr(0, end) + "...";
-}
-
 // Shortens names, so that a message has room for its reason, and so that a long name that many
 // nodes share does not exhaust memory.
 void make_names_readable(tinygltf::Model& model) {
   constexpr size_t kMost = 100;
   const auto each = [](auto& things) {
-    for (auto& thing : things) thing.name = readable(std::move(thing.name), kMost);
+    for (auto& thing : things) thing.name = shortened(thing.name, kMost);
   };
   each(model.nodes);
   each(model.meshes);
@@ -49,7 +41,7 @@ void make_names_readable(tinygltf::Model& model) {
 
 // Keeps each warning only once, even if it applies to many parts of the file.
 void tidy(std::vector<std::string>& warnings) {
-  for (std::string& warning : warnings) warning = readable(std::move(warning), kMostOfASentence);
+  for (std::string& warning : warnings) warning = shortened(warning, kMostOfASentence);
   std::sort(warnings.begin(), warnings.end());
   warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
 }
@@ -69,9 +61,7 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
   const tinygltf::Model& model = read.model;
   Scene scene;
   scene.warnings = std::move(read.warnings);
-  if (auto added = add_materials(model, read.files, limits.images, scene); !added) {
-    return Failure(added.error());
-  }
+  if (auto added = add_materials(model, scene); !added) return Failure(added.error());
   MeshBudget budget{limits.primitives, limits.vertices, limits.indices,
                     limits.instances,  limits.joints,   limits.drawn_triangles};
   std::vector<PlacedCamera> cameras;
@@ -80,17 +70,17 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
   if (scene.meshes.empty()) {
     return Failure(
         "it has no triangles to draw; points, lines, triangles without an area and materials with "
-        "an "
-        "alpha of 0 are not drawn");
+        "an alpha of 0 are not drawn");
   }
   if (!model.animations.empty()) {
     scene.warnings.push_back(
         "Animations are left out: nodes, joints and morph targets stand as the file places them.");
   }
-  // The vertices have been copied, so that the file's bytes can be freed.
-  read.model.buffers.clear();
+  // The vertices have been copied, so that only images can be in the file's bytes.
+  if (model.images.empty()) read.model.buffers.clear();
   scene.bounds_ws = bounds_of(scene.meshes);
   add_subject(scene);
+  add_images(model, read.files, limits.images, scene);
   for (const PlacedCamera& camera : cameras) {
     scene.cameras.push_back(aimed(camera, scene.subject.bounds_ws));
     scene.cameras.back().origin = scene.origin;
@@ -103,7 +93,7 @@ tl::expected<Scene, std::string> parse(std::vector<uint8_t> bytes, const std::st
                                        const fs::path& folder, const GltfLimits& limits,
                                        const Progress& progress) {
   const auto refuse = [&](const std::string& why) {
-    return Failure("cannot read " + name + ": " + readable(why, kMostOfASentence));
+    return Failure("cannot read " + name + ": " + shortened(why, kMostOfASentence));
   };
   try {
     auto model = read_gltf_model(std::move(bytes), folder);

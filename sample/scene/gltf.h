@@ -20,13 +20,13 @@ namespace alcove::sample {
 // indices, every accessor type (normalised, interleaved, sparse), embedded, binary and external
 // buffers and images, metallic-roughness materials and KHR_materials_pbrSpecularGlossiness with
 // normal maps and tangents, vertex colours, doubleSided, samplers, two sets of texture coordinates,
-// KHR_texture_transform, alpha masks, cameras, EXT_meshopt_compression and KHR_node_visibility.
-// Triangles without normals get their geometric normals. A mesh has the vertices that its indices
-// use.
+// KHR_texture_transform, alpha masks, cameras, EXT_meshopt_compression, KHR_draco_mesh_compression
+// and KHR_node_visibility. Triangles without normals get their geometric normals. A mesh has the
+// vertices that its indices use.
 //
 // It leaves out, with a warning in the scene, points and lines, animation, further sets of texture
 // coordinates and other extensions. It refuses a file that requires an extension that is known to
-// hold or place geometry, such as Draco compression. It leaves out baked occlusion without a
+// hold or place geometry, such as KHR_gaussian_splatting. It leaves out baked occlusion without a
 // warning, because Alcove computes occlusion. Alpha-blended materials are opaque; with an alpha of
 // 0 they are not drawn.
 //

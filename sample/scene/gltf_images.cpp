@@ -1,11 +1,18 @@
 #include "scene/gltf_images.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
 #include <new>
+#include <queue>
+#include <set>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
 #include <utility>
+#include <vector>
 
 #include "scene/gltf_accessor.h"
 #include "support/decode_image.h"
@@ -17,27 +24,103 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-uint64_t pixels_of(const ImageHeader& header, uint32_t reduction) {
-  const auto reduced = [&](uint32_t side) { return uint64_t{(side + reduction - 1) / reduction}; };
-  return reduced(header.width) * reduced(header.height);
-}
+// How large an image appears. Apparent areas are areas of surfaces, divided by the square of their
+// distance from the centre of the subject, which counts as at least the size of the subject.
+struct Appearance {
+  double all = 0.0;     // apparent area of all its surfaces
+  double repeat = 0.0;  // of one repetition of the image, on the mesh that shows it largest
+};
 
-// An image that is used and whose header is valid.
+// An image that is used.
 struct Entry {
   size_t index;  // in the model
   std::string name;
-  std::vector<uint8_t> file;       // empty if the bytes are in a buffer view
-  std::span<const uint8_t> bytes;  // of the image file
-  ImageHeader header;
+  std::vector<uint8_t> file = {};       // empty if the bytes are in a buffer view
+  std::span<const uint8_t> bytes = {};  // of the image file
+  Appearance appearance = {};
+  ImageHeader header = {};
+  uint32_t reduction = 1;  // every block of so many pixels a side becomes one
   tl::expected<DecodedImage, std::string> decoded = Failure("");
 
-  // Returns the factor that reduces the longer side to at most `side`.
-  uint32_t reduction(uint32_t side) const {
-    uint32_t factor = 1;
-    while (std::max(header.width, header.height) > uint64_t{side} * factor) factor *= 2;
-    return factor;
+  uint64_t pixels() const {
+    const auto reduced = [&](uint32_t side) {
+      return (uint64_t{side} + reduction - 1) / reduction;
+    };
+    return reduced(header.width) * reduced(header.height);
+  }
+  double texels_in_view() const {
+    return static_cast<double>(pixels()) / std::max(appearance.repeat, 1e-30);
   }
 };
+
+// Returns the images of the model that the materials of meshes use.
+std::set<size_t> used_images(const Scene& scene) {
+  std::set<size_t> out;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const TextureUse* use : scene.materials[mesh.material].textures()) {
+      if (use->image >= 0) out.insert(static_cast<size_t>(use->image));
+    }
+  }
+  return out;
+}
+
+// Returns the instance of each mesh that is nearest to a point.
+std::vector<MeshInstance> nearest_instances(const std::vector<Mesh>& meshes, const glm::dvec3& to) {
+  std::vector<MeshInstance> out;
+  double least = 0.0;
+  for (const MeshInstance& instance : instances_of(meshes)) {
+    const glm::dvec3 low(instance.bounds_ws.low), high(instance.bounds_ws.high);
+    const double distance = glm::distance(glm::clamp(to, low, high), to);
+    const bool is_new = out.empty() || out.back().mesh != instance.mesh;
+    if (!is_new && distance >= least) continue;
+    if (is_new) out.emplace_back();
+    out.back() = instance;
+    least = distance;
+  }
+  return out;
+}
+
+// Returns how large each image of the model appears that a mesh uses. Of the instances of a mesh,
+// the one nearest to the subject counts.
+std::map<size_t, Appearance> appearances(const Scene& scene) {
+  const glm::dvec3 low(scene.subject.bounds_ws.low), high(scene.subject.bounds_ws.high);
+  const glm::dvec3 centre = 0.5 * (low + high);
+  const double nearest = std::max(glm::distance(low, high), 1e-15);
+  std::map<size_t, Appearance> out;
+  for (const MeshInstance& instance : nearest_instances(scene.meshes, centre)) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const auto uses = scene.materials[mesh.material].textures();
+    if (std::ranges::all_of(uses, [](const TextureUse* use) { return use->image < 0; })) continue;
+    const glm::dmat4x3 world(world_from_mesh(mesh, instance.instance));
+    double apparent = 0.0;
+    std::array<double, 4> repeats{};  // by use: area in texture coordinates
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      std::array<glm::dvec3, 3> at;
+      std::array<MeshUvs, 3> uvs;
+      for (size_t c = 0; c < 3; ++c) {
+        at[c] = world * glm::dvec4(mesh.positions[mesh.indices[i + c]], 1.0);
+        uvs[c] = uvs_at(mesh, mesh.indices[i + c]);
+      }
+      const double distance =
+          std::max(glm::distance((at[0] + at[1] + at[2]) / 3.0, centre), nearest);
+      apparent += 0.5 * glm::length(glm::cross(at[1] - at[0], at[2] - at[0])) / distance / distance;
+      for (size_t u = 0; u < uses.size(); ++u) {
+        const glm::dvec2 origin = texture_uv(*uses[u], uvs[0]);
+        const glm::dvec2 a = glm::dvec2(texture_uv(*uses[u], uvs[1])) - origin;
+        const glm::dvec2 b = glm::dvec2(texture_uv(*uses[u], uvs[2])) - origin;
+        repeats[u] += 0.5 * std::abs(a.x * b.y - a.y * b.x);
+      }
+    }
+    for (size_t u = 0; u < uses.size(); ++u) {
+      if (uses[u]->image < 0) continue;
+      constexpr double kLeast = 1e-6;  // triangles of one colour each show a point of the image
+      Appearance& image = out[static_cast<size_t>(uses[u]->image)];
+      image.all += apparent;
+      image.repeat = std::max(image.repeat, apparent / std::max(repeats[u], kLeast));
+    }
+  }
+  return out;
+}
 
 // Finds the bytes of an image and reads its header. The error is the end of a sentence that begins
 // with the entry's name.
@@ -66,69 +149,99 @@ tl::expected<void, std::string> read_header(const tinygltf::Model& model, GltfFi
   return {};
 }
 
-// Returns the largest side that lets all images fit in memory.
-uint32_t largest_side(const std::vector<Entry>& entries, uint64_t most_pixels) {
-  uint32_t side = kLargestImageSide;
-  const auto pixels = [&] {
-    uint64_t sum = 0;
-    for (const Entry& entry : entries) sum += pixels_of(entry.header, entry.reduction(side));
-    return sum;
+// Sets how large each image appears, and sorts the images by it, the largest first.
+void sort_by_appearance(const Scene& scene, std::vector<Entry>& entries) {
+  const std::map<size_t, Appearance> known = appearances(scene);
+  for (Entry& entry : entries) entry.appearance = known.at(entry.index);
+  std::ranges::stable_sort(entries, std::greater<>(),
+                           [](const Entry& entry) { return entry.appearance.all; });
+}
+
+// Halves the image with the most texels for its size in view, until all fit in memory. Returns the
+// number of images that are reduced.
+size_t reduce(std::vector<Entry>& entries, uint64_t most_pixels) {
+  const auto coarser = [](const Entry* a, const Entry* b) {
+    return a->texels_in_view() < b->texels_in_view();
   };
-  while (side > 1 && pixels() > most_pixels) side /= 2;
-  return side;
+  std::priority_queue<Entry*, std::vector<Entry*>, decltype(coarser)> finest(coarser);
+  uint64_t pixels = 0;
+  for (Entry& entry : entries) {
+    pixels += entry.pixels();
+    finest.push(&entry);
+  }
+  while (pixels > most_pixels && !finest.empty()) {
+    Entry& entry = *finest.top();
+    finest.pop();
+    pixels -= entry.pixels();
+    entry.reduction *= 2;
+    pixels += entry.pixels();
+    if (entry.pixels() > 1) finest.push(&entry);
+  }
+  return static_cast<size_t>(
+      std::ranges::count_if(entries, [](const Entry& entry) { return entry.reduction > 1; }));
 }
 
 }  // namespace
 
-std::vector<int32_t> decode_images(const tinygltf::Model& model, const std::vector<char>& used,
-                                   GltfFiles& files, const ImageLimits& limits, Scene& scene) {
+void add_images(const tinygltf::Model& model, GltfFiles& files, const ImageLimits& limits,
+                Scene& scene) {
   const auto leave_out = [&](const std::string& name, const std::string& why) {
     scene.warnings.push_back(name + " " + why + " and is left out.");
   };
   std::vector<Entry> entries;
   uint64_t pixels = 0;
-  for (size_t i = 0; i < model.images.size(); ++i) {
-    if (!used[i]) continue;
-    const std::string& uri = model.images[i].uri;
-    const std::string name = "image " + std::to_string(i);
-    Entry entry{
-        i, uri.empty() ? name : name + " (" + printable(GltfFiles::shown(uri)) + ")", {}, {}, {}};
+  for (const size_t index : used_images(scene)) {
+    const std::string& uri = model.images[index].uri;
+    const std::string name = "image " + std::to_string(index);
+    Entry entry{.index = index,
+                .name = uri.empty() ? name : name + " (" + printable(GltfFiles::shown(uri)) + ")"};
     if (auto read = read_header(model, files, entry); !read) {
       leave_out(entry.name, read.error());
       continue;
     }
-    if (pixels + pixels_of(entry.header, 1) > limits.decoded) {
-      leave_out(entry.name, "takes the images of the scene past " +
-                                std::to_string(limits.decoded >> 20) + " million pixels");
-      continue;
-    }
-    pixels += pixels_of(entry.header, 1);
+    pixels += entry.pixels();
     entries.push_back(std::move(entry));
   }
-  const uint32_t side = largest_side(entries, limits.kept);
-  if (side < kLargestImageSide) {
-    scene.warnings.push_back("The images are large together: those of over " +
-                             std::to_string(side) + " pixels a side are reduced to that.");
+  if (pixels > std::min(limits.kept, limits.decoded)) sort_by_appearance(scene, entries);
+  pixels = 0;
+  std::erase_if(entries, [&](const Entry& entry) {
+    if (pixels + entry.pixels() <= limits.decoded) {
+      pixels += entry.pixels();
+      return false;
+    }
+    leave_out(entry.name, "takes the images of the scene past " +
+                              std::to_string(limits.decoded >> 20) + " million pixels");
+    return true;
+  });
+  if (const size_t reduced = reduce(entries, limits.kept); reduced > 0) {
+    scene.warnings.push_back("The images are large together: " + std::to_string(reduced) + " of " +
+                             std::to_string(entries.size()) +
+                             " are reduced, those with the most texels for their size in view.");
   }
   parallel_rows(static_cast<uint32_t>(entries.size()), [&](uint32_t i) {
+    Entry& entry = entries[i];
     try {
-      Entry& entry = entries[i];
-      entry.decoded = decode_image(entry.bytes, entry.header, entry.reduction(side));
+      entry.decoded = decode_image(entry.bytes, entry.header, entry.reduction);
     } catch (const std::bad_alloc&) {
-      entries[i].decoded = Failure("needs more memory than there is");
+      entry.decoded = Failure("needs more memory than there is");
     }
   });
-  std::vector<int32_t> out(model.images.size(), -1);
+  std::vector<int32_t> scene_image(model.images.size(), -1);
+  std::ranges::sort(entries, {}, &Entry::index);
   for (Entry& entry : entries) {
     if (!entry.decoded) {
       leave_out(entry.name, entry.decoded.error());
       continue;
     }
-    out[entry.index] = static_cast<int32_t>(scene.images.size());
+    scene_image[entry.index] = static_cast<int32_t>(scene.images.size());
     scene.images.push_back(
         {entry.name, entry.decoded->width, entry.decoded->height, std::move(entry.decoded->rgba)});
   }
-  return out;
+  for (Material& material : scene.materials) {
+    for (TextureUse* use : material.textures()) {
+      if (use->image >= 0) use->image = scene_image[static_cast<size_t>(use->image)];
+    }
+  }
 }
 
 }  // namespace alcove::sample

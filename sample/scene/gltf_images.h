@@ -3,7 +3,6 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
-#include <vector>
 
 #include "scene/gltf_files.h"
 #include "scene/scene.h"
@@ -17,14 +16,16 @@ struct ImageLimits {
       uint64_t{1} << 30;  // sum over all images before reduction: some seconds of decoding
 };
 
-// Decodes the images of a model that `used` marks into a scene. The headers of all of them are read
-// first. If the images together exceed the limit on memory, large images are reduced by powers of 2
-// until all fit. An image is left out if it cannot be read, if it has too many pixels a side, or if
-// the images before it reach the limit on decoding. The scene gets a warning about each of these.
+// Decodes the images that the materials of the scene's meshes use. Before the call,
+// TextureUse::image indexes the images of the model; afterwards it indexes Scene::images, or is -1
+// without an image.
 //
-// Returns for each image of the model its index in Scene::images, or -1 without one.
-[[nodiscard]] std::vector<int32_t> decode_images(const tinygltf::Model& model,
-                                                 const std::vector<char>& used, GltfFiles& files,
-                                                 const ImageLimits& limits, Scene& scene);
+// The headers are read first. If the images together exceed the limit on memory, the image with the
+// most texels for the size at which it appears is halved, until all fit. An image appears as large
+// as its surfaces do from around the subject of the scene, which has to be known. An image is left
+// out if it cannot be read, if it has too many pixels a side, or if those that appear larger reach
+// the limit on decoding. The scene gets a warning about each of these.
+void add_images(const tinygltf::Model& model, GltfFiles& files, const ImageLimits& limits,
+                Scene& scene);
 
 }  // namespace alcove::sample

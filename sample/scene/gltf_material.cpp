@@ -90,9 +90,7 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
 // Adds materials to a scene.
 class MaterialReader {
  public:
-  // `images` has the index in Scene::images for each image of the model.
-  MaterialReader(const tinygltf::Model& model, const std::vector<int32_t>& images, Scene& scene)
-      : model_(model), scene_(scene), images_(images) {}
+  MaterialReader(const tinygltf::Model& model, Scene& scene) : model_(model), scene_(scene) {}
 
   tl::expected<void, std::string> add(const tinygltf::Material& material);
 
@@ -102,7 +100,6 @@ class MaterialReader {
 
   const tinygltf::Model& model_;
   Scene& scene_;
-  const std::vector<int32_t>& images_;
 };
 
 float clamped(double value, double low, double high, double otherwise) {
@@ -121,9 +118,9 @@ tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in
   for (size_t c = 0; c < 3 && c < in.emissiveFactor.size(); ++c) {
     out.emissive[static_cast<int>(c)] = clamped(in.emissiveFactor[c], 0.0, 1e6, 0.0);
   }
-  out.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::kMask
-                   : in.alphaMode == "BLEND" ? AlphaMode::kBlend
-                                             : AlphaMode::kOpaque;
+  out.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::mask
+                   : in.alphaMode == "BLEND" ? AlphaMode::blend
+                                             : AlphaMode::opaque;
   out.double_sided = in.doubleSided;
   out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6, 0.5);
   if (auto added = add_textures(in, out); !added) {
@@ -136,8 +133,7 @@ tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in
 tl::expected<void, std::string> MaterialReader::add_textures(const tinygltf::Material& in,
                                                              Material& out) {
   const auto all = references(in);
-  const std::array<TextureUse*, 4> uses{&out.base_color_texture, &out.metal_roughness_texture,
-                                        &out.emissive_texture, &out.normal_texture};
+  const auto uses = out.textures();
   for (size_t i = 0; i < all.size(); ++i) {
     if (all[i].index < 0) continue;
     if (all[i].set != 0 && all[i].set != 1) {
@@ -190,49 +186,19 @@ tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureRefer
   if (static_cast<size_t>(texture.source) >= model_.images.size()) {
     return Failure("has a texture without its image " + std::to_string(texture.source));
   }
-  use.image = images_[static_cast<size_t>(texture.source)];
+  use.image = texture.source;
   return use;
-}
-
-// Marks the images that the materials of meshes of nodes use. Materials that no node draws need no
-// images.
-std::vector<char> used_images(const tinygltf::Model& model,
-                              const std::vector<tinygltf::Material>& materials) {
-  std::vector<char> meshes(model.meshes.size(), 0), drawn(materials.size(), 0),
-      images(model.images.size(), 0);
-  const auto mark = [](std::vector<char>& all, int index) {
-    if (index >= 0 && static_cast<size_t>(index) < all.size()) all[static_cast<size_t>(index)] = 1;
-  };
-  for (const tinygltf::Node& node : model.nodes) mark(meshes, node.mesh);
-  for (size_t i = 0; i < meshes.size(); ++i) {
-    for (const auto& primitive : model.meshes[i].primitives) {
-      if (meshes[i]) mark(drawn, primitive.material);
-    }
-  }
-  for (size_t i = 0; i < materials.size(); ++i) {
-    if (!drawn[i]) continue;
-    for (const TextureReference& reference : references(materials[i])) {
-      const auto index = static_cast<size_t>(reference.index);
-      if (index < model.textures.size()) mark(images, model.textures[index].source);
-    }
-  }
-  return images;
 }
 
 }  // namespace
 
-tl::expected<void, std::string> add_materials(const tinygltf::Model& model, GltfFiles& files,
-                                              const ImageLimits& limits, Scene& scene) {
-  std::vector<tinygltf::Material> materials;
+tl::expected<void, std::string> add_materials(const tinygltf::Model& model, Scene& scene) {
+  MaterialReader reader(model, scene);
   for (const tinygltf::Material& material : model.materials) {
     const tinygltf::Value* extension = specular_glossiness(material);
-    materials.push_back(extension == nullptr ? material
-                                             : as_metallic_roughness(material, *extension));
-  }
-  const auto images = decode_images(model, used_images(model, materials), files, limits, scene);
-  MaterialReader reader(model, images, scene);
-  for (const tinygltf::Material& material : materials) {
-    if (auto added = reader.add(material); !added) return added;
+    auto added =
+        reader.add(extension == nullptr ? material : as_metallic_roughness(material, *extension));
+    if (!added) return added;
   }
   scene.materials.emplace_back();
   scene.materials.back().double_sided = false;

@@ -129,9 +129,7 @@ void mend_normals(Mesh& mesh) {
 }
 
 bool reads_by(const Material& material, uint32_t uv_set) {
-  const auto uses = {&material.base_color_texture, &material.metal_roughness_texture,
-                     &material.emissive_texture, &material.normal_texture};
-  return std::any_of(uses.begin(), uses.end(), [&](const TextureUse* use) {
+  return std::ranges::any_of(material.textures(), [&](const TextureUse* use) {
     return use->image >= 0 && use->uv_set == uv_set;
   });
 }
@@ -139,7 +137,7 @@ bool reads_by(const Material& material, uint32_t uv_set) {
 void charge(uint64_t& budget, uint64_t count) { budget -= std::min(budget, count); }
 
 bool is_invisible(const Material& material) {
-  return material.alpha_mode == AlphaMode::kBlend && material.base_color.a == 0.0f;
+  return material.alpha_mode == AlphaMode::blend && material.base_color.a == 0.0f;
 }
 
 // Reads one primitive as a mesh. The steps are called in the order of their declaration.

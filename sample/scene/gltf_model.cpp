@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "scene/gltf_container.h"
+#include "scene/gltf_draco.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_properties.h"
 
@@ -86,18 +87,18 @@ bool is_one_of(std::span<const std::string_view> names, const std::string& name)
 // extensions, also unknown ones, change appearance, light, behaviour or metadata.
 tl::expected<std::vector<std::string>, std::string> check_extensions(const json& root) {
   static constexpr std::string_view kRead[] = {
-      "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_materials_pbrSpecularGlossiness",
-      "KHR_mesh_quantization",   "KHR_meshopt_compression", "KHR_node_visibility",
-      "KHR_texture_transform"};
+      "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",
+      "KHR_draco_mesh_compression", "KHR_materials_pbrSpecularGlossiness",
+      "KHR_mesh_quantization",      "KHR_meshopt_compression",
+      "KHR_node_visibility",        "KHR_texture_transform"};
   static constexpr std::string_view kGeometry[] = {
       "ALI_amc_mesh_compression",      "EXT_implicit_cylinder_region",
       "EXT_implicit_ellipsoid_region", "EXT_mesh_primitive_restart",
       "EXT_primitive_voxels",          "FB_ngon_encoding",
       "KHR_accessor_float64",          "KHR_binary_glTF",
-      "KHR_draco_mesh_compression",    "KHR_gaussian_splatting",
-      "KHR_implicit_shapes",           "KHR_mesh_primitive_restart",
-      "MPEG_accessor_timed",           "MPEG_buffer_circular",
-      "WEB3D_quantized_attributes"};
+      "KHR_gaussian_splatting",        "KHR_implicit_shapes",
+      "KHR_mesh_primitive_restart",    "MPEG_accessor_timed",
+      "MPEG_buffer_circular",          "WEB3D_quantized_attributes"};
   std::vector<std::string> notes;
   for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
     const bool required = std::string_view(list) == "extensionsRequired";
@@ -241,7 +242,8 @@ tl::expected<GltfModel, std::string> read_gltf_model(std::vector<uint8_t> file,
                           return fill_buffers(root->value("buffers", json::array()),
                                               std::move(file), *parts, out.files, out.model);
                         })
-                        .and_then([&] { return decompress_views(out.model); });
+                        .and_then([&] { return decompress_views(out.model); })
+                        .and_then([&] { return decompress_primitives(out.model); });
   if (!read) return Failure(read.error());
   return out;
 }

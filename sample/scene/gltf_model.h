@@ -15,8 +15,9 @@ namespace alcove::sample {
 // A glTF file as tinygltf's model, with its buffers.
 struct GltfModel {
   // The model. Only the properties that gltf_properties.h lists are filled in. A buffer without
-  // data, which the specification allows, is empty. Compressed buffer views are decompressed
-  // (gltf_meshopt.h). Images have their `uri` or `bufferView`, and no pixels.
+  // data, which the specification allows, is empty. Compressed buffer views and primitives are
+  // decompressed (gltf_meshopt.h, gltf_draco.h). Images have their `uri` or `bufferView`, and no
+  // pixels.
   tinygltf::Model model;
   GltfFiles files;                    // reads the files that URIs of images name
   std::vector<std::string> warnings;  // one sentence for each extension that is left out

@@ -16,14 +16,14 @@ using Failure = tl::unexpected<std::string>;
 using Checked = tl::expected<void, std::string>;
 
 enum class Type : uint8_t {
-  kObject,  // its members have rows of their own
-  kWhole,   // an integer from `low` to `high`
-  kNumber,  // a finite number from `low` to `high`
-  kBoolean,
-  kString,  // one of `choices`, which `|` separates; any where that is empty
+  object,  // its members have rows of their own
+  whole,   // an integer from `low` to `high`
+  number,  // a finite number from `low` to `high`
+  boolean,
+  string,  // one of `choices`, which `|` separates; any where that is empty
 };
 
-enum class Presence : uint8_t { kOptional, kRequired };
+enum class Presence : uint8_t { optional, required };
 
 constexpr size_t kSingle = 0;            // as `count`: one value and no array
 constexpr size_t kAnyNumber = SIZE_MAX;  // an array of any length
@@ -38,10 +38,10 @@ struct Property {
   double low = 0.0;
   double high = 0.0;
   std::string_view choices = {};
-  Presence presence = Presence::kOptional;
+  Presence presence = Presence::optional;
 };
 
-constexpr auto kRequired = Presence::kRequired;
+constexpr auto kRequired = Presence::required;
 constexpr double kLargestIndex = std::numeric_limits<int32_t>::max();
 constexpr double kLargestExact = 9007199254740992.0;  // 2^53: integers above it are not exact
 constexpr double kAny = std::numeric_limits<double>::max();
@@ -49,35 +49,35 @@ constexpr double kLargestColour = 1e6;  // 1 by the specification; exporters wri
 constexpr double kLargestStride = 252.0;
 constexpr double kLargestEnumerator = 65535.0;
 
-constexpr Property object(std::string_view path, Presence presence = Presence::kOptional) {
-  return {path, Type::kObject, kSingle, 0, 0, {}, presence};
+constexpr Property object(std::string_view path, Presence presence = Presence::optional) {
+  return {path, Type::object, kSingle, 0, 0, {}, presence};
 }
-constexpr Property objects(std::string_view path, Presence presence = Presence::kOptional) {
-  return {path, Type::kObject, kAnyNumber, 0, 0, {}, presence};
+constexpr Property objects(std::string_view path, Presence presence = Presence::optional) {
+  return {path, Type::object, kAnyNumber, 0, 0, {}, presence};
 }
 constexpr Property whole(std::string_view path, double low, double high,
-                         Presence presence = Presence::kOptional) {
-  return {path, Type::kWhole, kSingle, low, high, {}, presence};
+                         Presence presence = Presence::optional) {
+  return {path, Type::whole, kSingle, low, high, {}, presence};
 }
-constexpr Property index(std::string_view path, Presence presence = Presence::kOptional) {
+constexpr Property index(std::string_view path, Presence presence = Presence::optional) {
   return whole(path, 0, kLargestIndex, presence);
 }
-constexpr Property indices(std::string_view path, Presence presence = Presence::kOptional) {
-  return {path, Type::kWhole, kAnyNumber, 0, kLargestIndex, {}, presence};
+constexpr Property indices(std::string_view path, Presence presence = Presence::optional) {
+  return {path, Type::whole, kAnyNumber, 0, kLargestIndex, {}, presence};
 }
 constexpr Property number(std::string_view path, double low, double high,
-                          Presence presence = Presence::kOptional) {
-  return {path, Type::kNumber, kSingle, low, high, {}, presence};
+                          Presence presence = Presence::optional) {
+  return {path, Type::number, kSingle, low, high, {}, presence};
 }
 constexpr Property numbers(std::string_view path, size_t count, double low, double high) {
-  return {path, Type::kNumber, count, low, high};
+  return {path, Type::number, count, low, high};
 }
-constexpr Property boolean(std::string_view path) { return {path, Type::kBoolean}; }
+constexpr Property boolean(std::string_view path) { return {path, Type::boolean}; }
 constexpr Property text(std::string_view path, std::string_view choices = {},
-                        Presence presence = Presence::kOptional) {
-  return {path, Type::kString, kSingle, 0, 0, choices, presence};
+                        Presence presence = Presence::optional) {
+  return {path, Type::string, kSingle, 0, 0, choices, presence};
 }
-constexpr Property texts(std::string_view path) { return {path, Type::kString, kAnyNumber}; }
+constexpr Property texts(std::string_view path) { return {path, Type::string, kAnyNumber}; }
 
 // The rows of a material's texture reference, including the extension KHR_texture_transform.
 #define ALCOVE_TEXTURE_INFO(path)                                                   \
@@ -135,6 +135,11 @@ constexpr Property kProperties[] = {
     whole("meshes/*/primitives/*/mode", 0, 6),
     objects("meshes/*/primitives/*/targets"),
     index("meshes/*/primitives/*/targets/*/*"),
+    object("meshes/*/primitives/*/extensions"),
+    object("meshes/*/primitives/*/extensions/KHR_draco_mesh_compression"),
+    index("meshes/*/primitives/*/extensions/KHR_draco_mesh_compression/bufferView", kRequired),
+    object("meshes/*/primitives/*/extensions/KHR_draco_mesh_compression/attributes", kRequired),
+    index("meshes/*/primitives/*/extensions/KHR_draco_mesh_compression/attributes/*"),
     numbers("meshes/*/weights", kAnyNumber, -kAny, kAny),
 
     objects("skins"),
@@ -257,20 +262,20 @@ std::string expectation(const Property& property, bool one) {
     const std::string count =
         property.count == kAnyNumber ? "" : std::to_string(property.count) + " ";
     constexpr std::string_view kNames[] = {"objects", "whole numbers", "numbers", "", "strings"};
-    const bool ranged = property.type == Type::kWhole || property.type == Type::kNumber;
+    const bool ranged = property.type == Type::whole || property.type == Type::number;
     return "an array of " + count + std::string(kNames[static_cast<size_t>(property.type)]) +
            (ranged ? range : "");
   }
   switch (property.type) {
-    case Type::kObject:
+    case Type::object:
       return "an object";
-    case Type::kWhole:
+    case Type::whole:
       return "a whole number" + range;
-    case Type::kNumber:
+    case Type::number:
       return "a number" + range;
-    case Type::kBoolean:
+    case Type::boolean:
       return "true or false";
-    case Type::kString:
+    case Type::string:
       break;
   }
   if (property.choices.empty()) return "a string";
@@ -315,7 +320,7 @@ class Copier {
     place_.emplace_back(name);
     if (found != from.end()) {
       if (auto done = visit(last, rest, *found, last ? to[key] : to.at(key)); !done) return done;
-    } else if (last && property_->presence == Presence::kRequired) {
+    } else if (last && property_->presence == Presence::required) {
       return missing();
     }
     place_.pop_back();
@@ -362,9 +367,9 @@ class Copier {
 
   Checked take_value(json& from, json& to, bool of_array) {
     if (!fits(from)) return wrong(from, of_array);
-    if (property_->type == Type::kObject) {
+    if (property_->type == Type::object) {
       to = json::object();
-    } else if (property_->type == Type::kWhole && from.is_number_float()) {
+    } else if (property_->type == Type::whole && from.is_number_float()) {
       to = static_cast<uint64_t>(from.get<double>());
     } else {
       to = std::move(from);
@@ -374,21 +379,21 @@ class Copier {
 
   bool fits(const json& value) const {
     switch (property_->type) {
-      case Type::kObject:
+      case Type::object:
         return value.is_object();
-      case Type::kBoolean:
+      case Type::boolean:
         return value.is_boolean();
-      case Type::kString:
+      case Type::string:
         return value.is_string() &&
                (property_->choices.empty() || is_choice(value.get_ref<const std::string&>()));
-      case Type::kWhole:
-      case Type::kNumber:
+      case Type::whole:
+      case Type::number:
         break;
     }
     if (!value.is_number()) return false;
     const auto number = value.get<double>();
     return number >= property_->low && number <= property_->high &&
-           (property_->type == Type::kNumber || number == std::floor(number));
+           (property_->type == Type::number || number == std::floor(number));
   }
 
   bool is_choice(std::string_view value) const {

@@ -11,11 +11,11 @@ constexpr int kNotGiven = -1;
 std::optional<Wrap> wrap_of(int mode) {
   switch (mode) {
     case TINYGLTF_TEXTURE_WRAP_REPEAT:
-      return Wrap::kRepeat;
+      return Wrap::repeat;
     case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
-      return Wrap::kClamp;
+      return Wrap::clamp;
     case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
-      return Wrap::kMirror;
+      return Wrap::mirror;
     default:
       return std::nullopt;
   }
@@ -29,11 +29,11 @@ std::optional<Filter> filter_of(int filter) {
     case TINYGLTF_TEXTURE_FILTER_LINEAR:
     case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
     case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
-      return Filter::kLinear;
+      return Filter::linear;
     case TINYGLTF_TEXTURE_FILTER_NEAREST:
     case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
     case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
-      return Filter::kNearest;
+      return Filter::nearest;
     default:
       return std::nullopt;
   }
@@ -43,12 +43,12 @@ MipFilter mip_filter_of(int filter) {
   switch (filter) {
     case TINYGLTF_TEXTURE_FILTER_NEAREST:
     case TINYGLTF_TEXTURE_FILTER_LINEAR:
-      return MipFilter::kNone;
+      return MipFilter::none;
     case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
     case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
-      return MipFilter::kNearest;
+      return MipFilter::nearest;
     default:
-      return MipFilter::kLinear;
+      return MipFilter::linear;
   }
 }
 
@@ -82,7 +82,7 @@ tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
   const auto magnify = filter_of(in.magFilter), minify = filter_of(in.minFilter);
   // Magnification only reads mip level 0, so that a filter between mip levels is not valid for it.
   const bool magnifies =
-      in.magFilter == kNotGiven || mip_filter_of(in.magFilter) == MipFilter::kNone;
+      in.magFilter == kNotGiven || mip_filter_of(in.magFilter) == MipFilter::none;
   if (!magnify || !minify || !magnifies) {
     return tl::unexpected<std::string>("has a filter unknown to glTF");
   }

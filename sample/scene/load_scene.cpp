@@ -12,13 +12,13 @@ namespace {
 void treat_materials(Scene& scene, const MaterialTreatment& treatment) {
   for (Material& material : scene.materials) {
     if (treatment.both_sides) material.double_sided = true;
-    if (material.alpha_mode != AlphaMode::kBlend || material.base_color.a == 0.0f) continue;
+    if (material.alpha_mode != AlphaMode::blend || material.base_color.a == 0.0f) continue;
     scene.warnings.push_back(
         "Material \"" + material.name + "\" is alpha-blended: it is rendered " +
         (treatment.cut_blends ? "where its alpha is at least a half, and cut out elsewhere."
                               : "opaque (--cut-blends cuts it out)."));
     if (!treatment.cut_blends) continue;
-    material.alpha_mode = AlphaMode::kMask;
+    material.alpha_mode = AlphaMode::mask;
     material.alpha_cutoff = 0.5f;
   }
 }

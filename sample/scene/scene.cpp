@@ -9,8 +9,8 @@ namespace {
 // Returns the texel index within 0..size-1 to which the wrap mode maps an index.
 uint32_t wrapped(int64_t texel, uint32_t size, Wrap wrap) {
   const auto count = static_cast<int64_t>(size);
-  if (wrap == Wrap::kClamp) return static_cast<uint32_t>(std::clamp<int64_t>(texel, 0, count - 1));
-  const int64_t period = wrap == Wrap::kMirror ? 2 * count : count;
+  if (wrap == Wrap::clamp) return static_cast<uint32_t>(std::clamp<int64_t>(texel, 0, count - 1));
+  const int64_t period = wrap == Wrap::mirror ? 2 * count : count;
   int64_t rest = texel % period;
   if (rest < 0) rest += period;
   if (rest >= count) rest = period - 1 - rest;
@@ -85,7 +85,7 @@ glm::vec4 sample_texture(const Scene& scene, const TextureUse& use, const MeshUv
   if (use.image < 0) return glm::vec4(1.0f);
   const TextureImage& image = scene.images[static_cast<size_t>(use.image)];
   const Sampler& sampler = use.sampler;
-  const bool nearest = sampler.magnify == Filter::kNearest;
+  const bool nearest = sampler.magnify == Filter::nearest;
   const glm::vec2 uv = texture_uv(use, mesh_uvs);
   // The clamp keeps the cast below defined. At such coordinates a float has no fraction of a texel
   // anyway.

@@ -21,17 +21,17 @@ struct TextureImage {
   std::vector<uint8_t> rgba;  // 4 * width * height
 };
 
-enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };
-enum class Filter : uint8_t { kLinear, kNearest };
-enum class MipFilter : uint8_t { kLinear, kNearest, kNone };  // kNone: mip 0 alone is read
+enum class Wrap : uint8_t { repeat, clamp, mirror };
+enum class Filter : uint8_t { linear, nearest };
+enum class MipFilter : uint8_t { linear, nearest, none };  // none: mip 0 alone is read
 
 // How an image is read outside of 0..1, and between texels and mips.
 struct Sampler {
-  Wrap wrap_u = Wrap::kRepeat;
-  Wrap wrap_v = Wrap::kRepeat;
-  Filter magnify = Filter::kLinear;
-  Filter minify = Filter::kLinear;
-  MipFilter mips = MipFilter::kLinear;
+  Wrap wrap_u = Wrap::repeat;
+  Wrap wrap_v = Wrap::repeat;
+  Filter magnify = Filter::linear;
+  Filter minify = Filter::linear;
+  MipFilter mips = MipFilter::linear;
 
   bool operator==(const Sampler&) const = default;
 };
@@ -48,9 +48,9 @@ struct TextureUse {
 // How the alpha of a material is used. Alpha-blended materials are opaque in the rasteriser and in
 // the ray tracer, because a g-buffer holds one surface per pixel.
 enum class AlphaMode : uint8_t {
-  kOpaque,
-  kMask,   // cut out below alpha_cutoff
-  kBlend,  // drawn and traced as opaque
+  opaque,
+  mask,   // cut out below alpha_cutoff
+  blend,  // drawn and traced as opaque
 };
 
 // A metallic-roughness material after glTF 2.0 section 3.9. Factors are linear and multiply the
@@ -68,10 +68,18 @@ struct Material {
   // Without an image the mesh's normal is used.
   TextureUse normal_texture;
   float normal_scale = 1.0f;  // of x and y; -1e6..1e6
-  AlphaMode alpha_mode = AlphaMode::kOpaque;
-  float alpha_cutoff = 0.5f;  // for kMask: points with alpha >= cutoff are kept
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;  // for AlphaMode::mask: points with alpha >= cutoff are kept
   // If false, back faces are neither drawn nor hit by rays (glTF 2.0 section 3.9.6).
   bool double_sided = true;
+
+  // Returns base colour, metal and roughness, emission and normal map.
+  [[nodiscard]] std::array<TextureUse*, 4> textures() {
+    return {&base_color_texture, &metal_roughness_texture, &emissive_texture, &normal_texture};
+  }
+  [[nodiscard]] std::array<const TextureUse*, 4> textures() const {
+    return {&base_color_texture, &metal_roughness_texture, &emissive_texture, &normal_texture};
+  }
 };
 
 // Triangles of one material, counter-clockwise seen from the front. The arrays are in mesh space,

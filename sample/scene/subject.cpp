@@ -331,7 +331,7 @@ struct Enclosure {
   }
 };
 
-enum class Kind { kSubject, kSurroundings, kRoom };
+enum class Kind { subject, surroundings, room };
 
 // Judges the candidates, large parts that have been seen from the centre of the rest.
 Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidates,
@@ -343,7 +343,7 @@ Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidat
     const Bounds& bounds = parts[candidates[i]].bounds_ws;
     const bool flat = enclosures[i].is_plane_behind(centre, bounds);
     if (!flat && !(enclosures[i].is_sheet() && enclosures[i].directions(0, kDown) >= 2)) {
-      return Kind::kSubject;
+      return Kind::subject;
     }
     all_flat &= flat;
     all_behind &= flat || (contains(bounds, rest.low + 0.05f * (rest.high - rest.low)) &&
@@ -364,16 +364,16 @@ Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidat
     const auto fronts = std::count(all.shows_front.begin(), all.shows_front.begin() + kDown, true);
     // Without fronts inside, the candidates are a body with inner parts, or a sky turned outwards.
     if (2 * fronts < static_cast<ptrdiff_t>(kDown) && !(all.double_sided && ratio > 8.0)) {
-      return Kind::kSubject;
+      return Kind::subject;
     }
     const double floor = centre.y - rest.low.y + 0.1 * diagonal(rest);
     const bool stands = all.nearest[kDown] <= floor;
-    if (stands && all.upright_area > 0.6 * all.area && ratio < 64.0) return Kind::kRoom;
-    return Kind::kSurroundings;
+    if (stands && all.upright_area > 0.6 * all.area && ratio < 64.0) return Kind::room;
+    return Kind::surroundings;
   }
-  if (walled) return Kind::kSubject;  // a gallery or courtyard that is open above
+  if (walled) return Kind::subject;  // a gallery or courtyard that is open above
   const bool large = ratio > 3.0 && (all_flat || ratio < 30.0);
-  return large && all_behind ? Kind::kSurroundings : Kind::kSubject;
+  return large && all_behind ? Kind::surroundings : Kind::subject;
 }
 
 }  // namespace
@@ -420,16 +420,16 @@ Subject find_subject(const Scene& scene) {
                                                             directions);
     });
     const Kind kind = judge(parts, candidates, enclosures, bounds);
-    if (kind == Kind::kSubject) continue;
+    if (kind == Kind::subject) continue;
     // The eye stays inside of a sky, and of a room that hides its inside from eyes outside. A
     // ground or backdrop, which no ray up meets, hides nothing.
     shells.assign(parts.size(), 0);
     for (size_t i = 0; i < k; ++i) {
       shells[candidates[i]] = enclosures[i].is_sheet() &&
                               enclosures[i].directions(kSides, kUp) > 0 &&
-                              (kind == Kind::kSurroundings || enclosures[i].double_sided);
+                              (kind == Kind::surroundings || enclosures[i].double_sided);
     }
-    if (kind == Kind::kSurroundings) group = rest;
+    if (kind == Kind::surroundings) group = rest;
   }
   Subject out{empty_bounds()};
   std::vector<char> grouped(parts.size(), 0);

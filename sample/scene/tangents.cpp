@@ -14,14 +14,14 @@ namespace {
 
 // The orientation of a triangle in texture space.
 enum class Orientation : uint8_t {
-  kUnknown,  // its area in texture space is 0
-  kFront,
-  kMirrored,  // the texture is mirrored on the triangle
+  unknown,  // its area in texture space is 0
+  front,
+  mirrored,  // the texture is mirrored on the triangle
 };
 
 struct FaceTangent {
   glm::dvec3 along_u{0.0};  // unit; zero if the orientation is unknown
-  Orientation orientation = Orientation::kUnknown;
+  Orientation orientation = Orientation::unknown;
 };
 
 FaceTangent face_tangent(const std::array<glm::dvec3, 3>& corners,
@@ -33,7 +33,7 @@ FaceTangent face_tangent(const std::array<glm::dvec3, 3>& corners,
   // v increases downwards in an image, so that a counter-clockwise triangle has a negative area.
   const double sign = area < 0.0 ? -1.0 : 1.0;
   const glm::dvec3 u = (corners[1] - corners[0]) * c.y - (corners[2] - corners[0]) * b.y;
-  return {direction_of(sign * u), area > 0.0 ? Orientation::kMirrored : Orientation::kFront};
+  return {direction_of(sign * u), area > 0.0 ? Orientation::mirrored : Orientation::front};
 }
 
 glm::dvec3 in_plane(const glm::dvec3& v, const glm::dvec3& normal) {
@@ -150,8 +150,8 @@ void TangentBuilder::group_corners() {
       for (auto edge = first; edge != last; ++edge) {
         const Orientation here = faces_[i / 3].orientation;
         const Orientation there = faces_[edge->corner / 3].orientation;
-        const bool alike = known ? here == there && here != Orientation::kUnknown
-                                 : here == Orientation::kUnknown && there != here;
+        const bool alike = known ? here == there && here != Orientation::unknown
+                                 : here == Orientation::unknown && there != here;
         if (!alike) continue;
         // In the neighbouring triangle the edge has the opposite direction.
         join(i, next_corner(edge->corner));
@@ -167,14 +167,14 @@ std::vector<glm::vec4> TangentBuilder::build() {
   std::vector<float> sides(vertex_of_.size(), 1.0f);
   for (size_t i = 0; i < vertex_of_.size(); ++i) {
     const FaceTangent& face = faces_[i / 3];
-    if (face.orientation == Orientation::kUnknown) continue;
+    if (face.orientation == Orientation::unknown) continue;
     const glm::dvec3 normal(mesh_.normals[mesh_.indices[i]]);
     const glm::dvec3 a = in_plane(position(next_corner(i)) - position(i), normal);
     const glm::dvec3 b = in_plane(position(previous_corner(i)) - position(i), normal);
     const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
     const size_t group = group_of(i);
     sums[group] += in_plane(face.along_u, normal) * angle;
-    sides[group] = face.orientation == Orientation::kMirrored ? -1.0f : 1.0f;
+    sides[group] = face.orientation == Orientation::mirrored ? -1.0f : 1.0f;
   }
   std::vector<glm::vec4> out(vertex_of_.size());
   for (size_t i = 0; i < out.size(); ++i) {

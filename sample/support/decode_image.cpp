@@ -14,8 +14,8 @@ tl::expected<ImageHeader, std::string> read_image_header(std::span<const uint8_t
 tl::expected<DecodedImage, std::string> decode_image(std::span<const uint8_t> bytes,
                                                      const ImageHeader& header,
                                                      uint32_t reduction) {
-  return header.format == ImageFormat::kPng ? decode_png(bytes, reduction)
-                                            : decode_jpeg(bytes, reduction);
+  return header.format == ImageFormat::png ? decode_png(bytes, reduction)
+                                           : decode_jpeg(bytes, reduction);
 }
 
 }  // namespace alcove::sample

@@ -14,10 +14,10 @@ namespace alcove::sample {
 // anything is decoded. Error texts are the end of a sentence that begins with the image's name.
 // Thread-safe.
 
-enum class ImageFormat : uint8_t { kPng, kJpeg };
+enum class ImageFormat : uint8_t { png, jpeg };
 
 struct ImageHeader {
-  ImageFormat format = ImageFormat::kPng;
+  ImageFormat format = ImageFormat::png;
   uint32_t width = 0;   // pixels, at least 1
   uint32_t height = 0;  // pixels, at least 1
 };

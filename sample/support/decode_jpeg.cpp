@@ -154,7 +154,7 @@ tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
   if (uint64_t{reader.width()} * reader.height() / kMostPixelsPerByte > bytes.size()) {
     return Failure("is cut short");
   }
-  return ImageHeader{ImageFormat::kJpeg, reader.width(), reader.height()};
+  return ImageHeader{ImageFormat::jpeg, reader.width(), reader.height()};
 }
 
 tl::expected<DecodedImage, std::string> decode_jpeg(Bytes bytes, uint32_t reduction) {

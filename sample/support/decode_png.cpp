@@ -105,7 +105,7 @@ tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
                    " million of " + (reader.interlaced() ? "an interlaced PNG" : "so small a PNG") +
                    " that are decoded,");
   }
-  return ImageHeader{ImageFormat::kPng, reader.width(), reader.height()};
+  return ImageHeader{ImageFormat::png, reader.width(), reader.height()};
 }
 
 tl::expected<DecodedImage, std::string> decode_png(Bytes bytes, uint32_t reduction) {

@@ -14,9 +14,7 @@ struct FileCloser {
 using FilePointer = std::unique_ptr<std::FILE, FileCloser>;
 
 // Opens a regular file for reading. Other files are refused, because opening a named pipe or a
-// device could wait forever. The check is made on the opened file, so that the file cannot be
-// replaced between check and opening. The error completes a sentence that begins with the file's
-// name.
+// device could wait forever. The error completes a sentence that begins with the file's name.
 [[nodiscard]] tl::expected<FilePointer, std::string> open_regular_file(
     const std::filesystem::path& file);
 

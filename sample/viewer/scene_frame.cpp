@@ -48,7 +48,7 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
   std::unique_ptr<SceneFrame> made(new SceneFrame(gpu, normals));
   auto done =
       assign(made->gbuffer_,
-             GbufferRenderer::create(gpu, scene, normals == NormalSource::kGeometric))
+             GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric))
           .and_then([&] { return assign(made->probe_, Probe::create(gpu, environment)); })
           .and_then([&] { return assign(made->picture_, PicturePass::create(gpu, format)); });
   if (!done) {
@@ -101,7 +101,7 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
       hidden_depths_of(settings).with(compared ? hidden_depths_of(*compared) : HiddenDepths{});
   const bool wanted[kGbufferTargets.size()] = {
       true,
-      normals_ != NormalSource::kDepth,
+      normals_ != NormalSource::depth,
       reads_albedo(state.picture) || (specular && !state.roughness),
       state.picture == Picture::motion,
       state.picture == Picture::lit,
@@ -150,7 +150,7 @@ PictureInputs SceneFrame::picture_inputs(const ViewState& state) const {
     case Picture::bent_normal:
     case Picture::normals:
       inputs.show = maths::kShowDirection;
-      if (normals_ == NormalSource::kDepth) {
+      if (normals_ == NormalSource::depth) {
         inputs.world_from_shown = glm::transpose(glm::mat3(view_.view_from_world));
       }
       break;

@@ -26,7 +26,7 @@ struct SceneViewRequest {
   std::uint32_t height = 540;
   std::string title;
   float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
-  NormalSource normals = NormalSource::kShading;
+  NormalSource normals = NormalSource::shading;
   std::optional<float> roughness;  // perceptual roughness of every surface; null: of its material
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
   std::filesystem::path screenshots;  // folder for screenshots; empty: the current folder

@@ -95,7 +95,7 @@ Truth truth_of(const Scene& scene, const Camera& camera, float radius, const Fra
 TEST(StepLadder, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
   for (const Scene& scene : {builtin_scene(), fence_scene()}) {
     SCOPED_TRACE(scene.name);
-    const StaticSetup setup{scene.cameras.front(), 240, 135, 1, NormalSource::kGeometric};
+    const StaticSetup setup{scene.cameras.front(), 240, 135, 1, NormalSource::geometric};
     OcclusionSettings base = passes::quality_settings(Quality::medium, scene.suggested_radius);
     base.tile_size = 1;
     base.slices = 8;
@@ -129,7 +129,7 @@ class AblationTest : public testing::Test {
   }
 
   const Scene scene_ = builtin_scene();
-  const StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::kGeometric};
+  const StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::geometric};
   const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
 };
 

@@ -78,7 +78,7 @@ TEST(ExtremeViews, OutputsOfRandomExtremeViewsAreFiniteAndInRange) {
   ASSERT_TRUE(gpu);
   const Scene scene = builtin_scene();
   const VkExtent2D size{48, 27};
-  auto renderer = FrameRenderer::create(*gpu, scene, size, NormalSource::kShading);
+  auto renderer = FrameRenderer::create(*gpu, scene, size, NormalSource::shading);
   ASSERT_TRUE(renderer) << renderer.error();
   for (std::uint32_t seed = 1; seed <= view_count(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <random>
 
@@ -150,22 +151,123 @@ std::vector<Triangles> gallery() {
 
 const nlohmann::json kDoubleSided = {{"doubleSided", true}};
 
+// Makes a model of these meshes; those of `double_sided` have a double-sided material.
+auto model(std::vector<Triangles> meshes, std::vector<Triangles> double_sided = {}) {
+  return [=](ModelMaker& maker) {
+    for (const Triangles& mesh : meshes) maker.add(mesh);
+    for (const Triangles& mesh : double_sided) maker.add(mesh, kDoubleSided);
+  };
+}
+
+std::vector<Triangles> gallery_with_ball() {
+  std::vector<Triangles> out = gallery();
+  out.push_back(ball({0, 0.3f, 0}, 0.3f));
+  return out;
+}
+
+Triangles room() {
+  Triangles out;
+  out.add_box({-3, 0, -4}, {3, 2.6f, 4}, true);
+  return out;
+}
+
+Triangles cube_map() {
+  Triangles out;
+  out.add_box(glm::vec3(-50), glm::vec3(50), true);
+  return out;
+}
+
+std::vector<Triangles> faces_of_cube_map() {
+  const Triangles box = cube_map();
+  std::vector<Triangles> out(6);
+  for (size_t face = 0; face < 6; ++face) {
+    const auto first = box.positions.begin() + static_cast<ptrdiff_t>(4 * face);
+    out[face].positions.assign(first, first + 4);
+    out[face].indices = {0, 1, 2, 0, 2, 3};
+  }
+  return out;
+}
+
+Triangles flat_backdrop() {
+  Triangles out;
+  out.add_quad({-8, -0.5f, -1.5f}, {8, -0.5f, -1.5f}, {8, 7, -1.5f}, {-8, 7, -1.5f});
+  return out;
+}
+
+Triangles curved_backdrop() {
+  Triangles out;
+  float y = 0.0f, z = 5.0f;
+  for (const glm::vec2 next : {glm::vec2(0, -1), {0.2f, -2}, {1, -2.8f}, {2, -3}, {7, -3}}) {
+    out.add_quad({-6, y, z}, {6, y, z}, {6, next.x, next.y}, {-6, next.x, next.y});
+    y = next.x;
+    z = next.y;
+  }
+  return out;
+}
+
+std::vector<Triangles> solar_system() {
+  std::vector<Triangles> out = {ball({0, 0, 0}, 10.0f)};
+  float distance = 25.0f;
+  for (const float radius : {0.2f, 0.4f, 0.4f, 0.3f, 1.5f, 1.2f, 0.8f, 0.8f}) {
+    out.push_back(ball({distance, 0, 0.3f * distance}, radius));
+    distance *= 1.6f;
+  }
+  return out;
+}
+
+Triangles ground_slab() {
+  Triangles out;
+  out.add_box({-500, -0.1f, -500}, {500, 0, 500});
+  return out;
+}
+
+Triangles table() {
+  Triangles out;
+  out.add_box({-0.8f, 0.7f, -0.4f}, {0.8f, 0.75f, 0.4f});
+  for (const float x : {-0.75f, 0.7f}) {
+    for (const float z : {-0.38f, 0.33f}) out.add_box({x, 0, z}, {x + 0.05f, 0.7f, z + 0.05f});
+  }
+  return out;
+}
+
+Triangles half_of_desk() {
+  Triangles out;
+  out.add_box({0, 0.7f, -0.4f}, {0.8f, 0.75f, 0.4f});
+  out.add_box({0.5f, 0, -0.35f}, {0.75f, 0.7f, 0.35f});
+  out.add_box({0, 0.75f, -0.1f}, {0.25f, 1.1f, 0.0f});
+  return out;
+}
+
+Triangles house_among_strays() {
+  Triangles out = house(1.0f);
+  std::minstd_rand dice(3);
+  for (int i = 0; i < 500; ++i) {
+    const auto coordinate = [&] { return static_cast<float>(dice() % 20000) - 10000.0f; };
+    out = joined(out, moved(sliver(0), {coordinate(), coordinate(), coordinate()}));
+  }
+  return out;
+}
+
 struct Newcomer {
   const char* name;
-  void (*make)(ModelMaker&);
+  std::function<void(ModelMaker&)> make;
   // The size of the model without its surroundings, in units of the file: the diagonal of its box.
   float size;
-  bool drawn = true;  // also drawn on the device
+  bool drawn = false;  // also drawn on the device
 };
 std::ostream& operator<<(std::ostream& out, const Newcomer& file) { return out << file.name; }
 
+constexpr float kHouse = 13.35f, kCharacter = 2.1f, kGallery = 36.5f, kRoom = 10.3f;  // sizes
+constexpr bool kDrawn = true;
+const nlohmann::json kProjected = {691000.0, 120.0, -5335000.0};  // coordinates of a map
+
 const Newcomer kFiles[] = {
-    {"HouseInCentimetres", [](ModelMaker& m) { m.add(house(100.0f)); }, 1335.0f},
+    {"HouseInCentimetres", model({house(100.0f)}), 100.0f * kHouse, kDrawn},
     {"HouseInMillimetresUnderAScaledNode",
      [](ModelMaker& m) {
        m.node({{"mesh", m.mesh(house(1000.0f))}, {"scale", {0.001f, 0.001f, 0.001f}}});
      },
-     13.35f},
+     kHouse, kDrawn},
     {"ZUpTurnedByARootNode",
      [](ModelMaker& m) {
        Triangles turned = house(1.0f);
@@ -174,215 +276,54 @@ const Newcomer kFiles[] = {
        const int child = m.node({{"mesh", m.mesh(turned)}}, false);
        m.node({{"children", {child}}, {"rotation", {-h, 0, 0, h}}});
      },
-     13.35f},
-    {"HouseOnAHugeGroundPlane",
-     [](ModelMaker& m) {
-       m.add(house(1.0f));
-       m.add(flat(2000.0f));
-     },
-     13.35f},
-    {"CharacterInASkyDome",
-     [](ModelMaker& m) {
-       m.add(character());
-       m.add(ball({0, 0, 0}, 500.0f, true), kDoubleSided);
-     },
-     2.1f},
-    {"CityBlockOfAKilometre",
-     [](ModelMaker& m) {
-       m.add(city(80.0f));
-       m.add(flat(600.0f));
-     },
-     1700.0f},
-    {"SingleScrewInMetres", [](ModelMaker& m) { m.add(screw(0.001f)); }, 0.036f},
-    {"RoomSeenFromInside",
-     [](ModelMaker& m) {
-       Triangles walls;
-       walls.add_box({-3, 0, -4}, {3, 2.6f, 4}, true);
-       m.add(walls);
-       m.add(furniture());
-     },
-     10.3f},
+     kHouse, kDrawn},
+    {"HouseOnAHugeGroundPlane", model({house(1), flat(2000)}), kHouse, kDrawn},
+    {"CharacterInASkyDome", model({character()}, {ball({0, 0, 0}, 500, true)}), kCharacter, kDrawn},
+    {"CityBlockOfAKilometre", model({city(80), flat(600)}), 1700, kDrawn},
+    {"SingleScrewInMetres", model({screw(0.001f)}), 0.036f, kDrawn},
+    {"RoomSeenFromInside", model({room(), furniture()}), kRoom, kDrawn},
     {"ScanFarFromTheOriginWithStraySlivers",
-     [](ModelMaker& m) {
-       m.add(joined(joined(moved(house(1.0f), {350, 20, -800}), sliver(-9000)), sliver(7000)));
-     },
-     13.35f},
+     model({joined(joined(moved(house(1), {350, 20, -800}), sliver(-9000)), sliver(7000))}), kHouse,
+     kDrawn},
     {"MapInProjectedCoordinates",
      [](ModelMaker& m) {
-       m.node({{"mesh", m.mesh(city(40.0f))}, {"translation", {691000.0, 120.0, -5335000.0}}});
+       m.node({{"mesh", m.mesh(city(40))}, {"translation", kProjected}});
      },
-     680.0f},
+     680, kDrawn},
     {"MirroredHalvesOfADesk",
      [](ModelMaker& m) {
-       Triangles half;
-       half.add_box({0, 0.7f, -0.4f}, {0.8f, 0.75f, 0.4f});
-       half.add_box({0.5f, 0, -0.35f}, {0.75f, 0.7f, 0.35f});
-       half.add_box({0, 0.75f, -0.1f}, {0.25f, 1.1f, 0.0f});
-       const int mesh = m.mesh(half);
+       const int mesh = m.mesh(half_of_desk());
        m.node({{"mesh", mesh}});
        m.node({{"mesh", mesh}, {"scale", {-1, 1, 1}}});
      },
-     2.1f},
-    {"ScrewInMillimetres", [](ModelMaker& m) { m.add(screw(1.0f)); }, 36.0f, false},
-    {"CityInCentimetres", [](ModelMaker& m) { m.add(city(8000.0f)); }, 136000.0f, false},
-    {"CharacterInACubeMapBox",
-     [](ModelMaker& m) {
-       Triangles box;
-       box.add_box(glm::vec3(-50), glm::vec3(50), true);
-       m.add(box);
-       m.add(character());
-     },
-     2.1f, false},
-    {"CharacterInACubeMapOfSixMeshes",
-     [](ModelMaker& m) {
-       Triangles box;
-       box.add_box(glm::vec3(-50), glm::vec3(50), true);
-       for (size_t face = 0; face < 6; ++face) {
-         Triangles quad;
-         const auto first = box.positions.begin() + static_cast<ptrdiff_t>(4 * face);
-         quad.positions.assign(first, first + 4);
-         quad.indices = {0, 1, 2, 0, 2, 3};
-         m.add(quad, kDoubleSided);
-       }
-       m.add(character());
-     },
-     2.1f, false},
-    {"CharacterBeforeAFlatBackdrop",
-     [](ModelMaker& m) {
-       Triangles wall;
-       wall.add_quad({-8, -0.5f, -1.5f}, {8, -0.5f, -1.5f}, {8, 7, -1.5f}, {-8, 7, -1.5f});
-       m.add(wall);
-       m.add(character());
-     },
-     2.1f, false},
-    {"CharacterBeforeACurvedBackdrop",
-     [](ModelMaker& m) {
-       Triangles sweep;
-       float y = 0.0f, z = 5.0f;
-       for (const glm::vec2 next : {glm::vec2(0, -1), {0.2f, -2}, {1, -2.8f}, {2, -3}, {7, -3}}) {
-         sweep.add_quad({-6, y, z}, {6, y, z}, {6, next.x, next.y}, {-6, next.x, next.y});
-         y = next.x;
-         z = next.y;
-       }
-       m.add(sweep);
-       m.add(character());
-     },
-     2.1f, false},
+     2.1f, kDrawn},
+    {"ScrewInMillimetres", model({screw(1)}), 36},
+    {"CityInCentimetres", model({city(8000)}), 136000},
+    {"CharacterInACubeMapBox", model({cube_map(), character()}), kCharacter},
+    {"CharacterInACubeMapOfSixMeshes", model({character()}, faces_of_cube_map()), kCharacter},
+    {"CharacterBeforeAFlatBackdrop", model({flat_backdrop(), character()}), kCharacter},
+    {"CharacterBeforeACurvedBackdrop", model({curved_backdrop(), character()}), kCharacter},
     {"TerrainInProjectedCoordinates",
      [](ModelMaker& m) {
-       m.node({{"mesh", m.mesh(terrain(500.0f, 60.0f))},
-               {"translation", {691000.0, 120.0, -5335000.0}}});
+       m.node({{"mesh", m.mesh(terrain(500, 60))}, {"translation", kProjected}});
      },
-     1430.0f, false},
-    {"Gallery",
-     [](ModelMaker& m) {
-       for (const Triangles& slab : gallery()) m.add(slab);
-       m.add(ball({0, 0.3f, 0}, 0.3f));
-     },
-     36.5f, false},
-    {"TwoClustersFiveKilometresApart",
-     [](ModelMaker& m) {
-       m.add(house(1.0f));
-       m.add(moved(house(1.0f), {5000, 0, 0}));
-     },
-     13.35f, false},
-    {"SolarSystem",
-     [](ModelMaker& m) {
-       m.add(ball({0, 0, 0}, 10.0f));
-       float distance = 25.0f;
-       for (const float radius : {0.2f, 0.4f, 0.4f, 0.3f, 1.5f, 1.2f, 0.8f, 0.8f}) {
-         m.add(ball({distance, 0, 0.3f * distance}, radius));
-         distance *= 1.6f;
-       }
-     },
-     34.6f, false},
-    {"HouseJoinedWithItsGround",
-     [](ModelMaker& m) {
-       Triangles slab;
-       slab.add_box({-500, -0.1f, -500}, {500, 0, 500});
-       m.add(joined(slab, house(1.0f)));
-     },
-     13.35f, false},
-    {"HouseInALowPolygonSkyWithGround",
-     [](ModelMaker& m) {
-       m.add(house(1.0f));
-       m.add(hemisphere(300.0f), kDoubleSided);
-       m.add(flat(300.0f));
-     },
-     13.35f, false},
+     1430},
+    {"Gallery", model(gallery_with_ball()), kGallery},
+    {"TwoClustersFiveKilometresApart", model({house(1), moved(house(1), {5000, 0, 0})}), kHouse},
+    {"SolarSystem", model(solar_system()), 34.6f},
+    {"HouseJoinedWithItsGround", model({joined(ground_slab(), house(1))}), kHouse},
+    {"HouseInALowPolygonSkyWithGround", model({house(1), flat(300)}, {hemisphere(300)}), kHouse},
     {"HouseInAHemisphereJoinedWithItsGround",
-     [](ModelMaker& m) {
-       m.add(house(1.0f));
-       m.add(joined(hemisphere(150.0f), flat(150.0f)), kDoubleSided);
-     },
-     13.35f, false},
-    {"HouseInASmallSkyDome",
-     [](ModelMaker& m) {
-       m.add(house(1.0f));
-       m.add(ball({0, 0, 0}, 25.0f, true), kDoubleSided);
-     },
-     13.35f, false},
-    {"HouseInASkyDomeTurnedOutwards",
-     [](ModelMaker& m) {
-       m.add(house(1.0f));
-       m.add(ball({0, 0, 0}, 200.0f), kDoubleSided);
-     },
-     13.35f, false},
-    {"ClosedRoomOfDoubleSidedWalls",
-     [](ModelMaker& m) {
-       Triangles walls;
-       walls.add_box({-3, 0, -4}, {3, 2.6f, 4}, true);
-       m.add(walls, kDoubleSided);
-       m.add(furniture());
-     },
-     10.3f, false},
-    {"TableWithACup",
-     [](ModelMaker& m) {
-       Triangles table;
-       table.add_box({-0.8f, 0.7f, -0.4f}, {0.8f, 0.75f, 0.4f});
-       for (const float x : {-0.75f, 0.7f}) {
-         for (const float z : {-0.38f, 0.33f})
-           table.add_box({x, 0, z}, {x + 0.05f, 0.7f, z + 0.05f});
-       }
-       m.add(table);
-       m.add(ball({0.2f, 0.8f, 0}, 0.05f));
-     },
-     1.95f, false},
-    {"StrayAtTenMetres",
-     [](ModelMaker& m) {
-       m.add(house(1));
-       m.add(sliver(10));
-     },
-     13.35f, false},
-    {"StrayAtTwentyMetres",
-     [](ModelMaker& m) {
-       m.add(house(1));
-       m.add(sliver(20));
-     },
-     13.35f, false},
-    {"StrayAtFortyMetres",
-     [](ModelMaker& m) {
-       m.add(house(1));
-       m.add(sliver(40));
-     },
-     13.35f, false},
-    {"StrayAtAKilometre",
-     [](ModelMaker& m) {
-       m.add(house(1));
-       m.add(sliver(1000));
-     },
-     13.35f, false},
-    {"StraysAllAroundAtTenKilometres",
-     [](ModelMaker& m) {
-       Triangles all = house(1.0f);
-       std::minstd_rand dice(3);
-       for (int i = 0; i < 500; ++i) {
-         const auto coordinate = [&] { return static_cast<float>(dice() % 20000) - 10000.0f; };
-         all = joined(all, moved(sliver(0), {coordinate(), coordinate(), coordinate()}));
-       }
-       m.add(all);
-     },
-     13.35f, false},
+     model({house(1)}, {joined(hemisphere(150), flat(150))}), kHouse},
+    {"HouseInASmallSkyDome", model({house(1)}, {ball({0, 0, 0}, 25, true)}), kHouse},
+    {"HouseInASkyDomeTurnedOutwards", model({house(1)}, {ball({0, 0, 0}, 200)}), kHouse},
+    {"ClosedRoomOfDoubleSidedWalls", model({furniture()}, {room()}), kRoom},
+    {"TableWithACup", model({table(), ball({0.2f, 0.8f, 0}, 0.05f)}), 1.95f},
+    {"StrayAtTenMetres", model({house(1), sliver(10)}), kHouse},
+    {"StrayAtTwentyMetres", model({house(1), sliver(20)}), kHouse},
+    {"StrayAtFortyMetres", model({house(1), sliver(40)}), kHouse},
+    {"StrayAtAKilometre", model({house(1), sliver(1000)}), kHouse},
+    {"StraysAllAroundAtTenKilometres", model({house_among_strays()}), kHouse},
 };
 
 // The share of the rows of the image that show the subject of the scene.
@@ -431,7 +372,7 @@ INSTANTIATE_TEST_SUITE_P(Files, FirstPicture, testing::ValuesIn(kFiles),
 // A view that the user types, and the extent of what it shows.
 struct TypedView {
   const char* name;
-  void (*make)(ModelMaker&);
+  std::function<void(ModelMaker&)> make;
   glm::dvec3 eye, target;
   float extent;
 };
@@ -439,37 +380,13 @@ std::ostream& operator<<(std::ostream& out, const TypedView& view) { return out 
 
 const TypedView kTypedViews[] = {
     {"HouseWithAStrayTriangleBehindIt",
-     [](ModelMaker& m) {
-       m.add(house(1));
-       m.add(sliver(40));
-     },
+     model({house(1), sliver(40)}),
      {9, 6, 13},
      {0, 2, 0},
-     13.35f},
-    {"GalleryFromItsEntrance",
-     [](ModelMaker& m) {
-       for (const Triangles& slab : gallery()) m.add(slab);
-       m.add(ball({0, 0.3f, 0}, 0.3f));
-     },
-     {0, 1.6, 14},
-     {0, 1, -15},
-     36.5f},
-    {"BallInAGallery",
-     [](ModelMaker& m) {
-       for (const Triangles& slab : gallery()) m.add(slab);
-       m.add(ball({0, 0.3f, 0}, 0.3f));
-     },
-     {0, 0.6, 1.2},
-     {0, 0.2, 0},
-     6.0f},
-    {"HouseOnAHugeGroundPlaneFromAFar",
-     [](ModelMaker& m) {
-       m.add(house(1));
-       m.add(flat(2000.0f));
-     },
-     {0, 12, 40},
-     {0, 0, 0},
-     13.35f},
+     kHouse},
+    {"GalleryFromItsEntrance", model(gallery_with_ball()), {0, 1.6, 14}, {0, 1, -15}, kGallery},
+    {"BallInAGallery", model(gallery_with_ball()), {0, 0.6, 1.2}, {0, 0.2, 0}, 6},
+    {"HouseOnAHugeGroundPlaneFromAFar", model({house(1), flat(2000)}), {0, 12, 40}, {}, kHouse},
 };
 
 class TypedViews : public testing::TestWithParam<TypedView> {};

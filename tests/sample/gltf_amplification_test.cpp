@@ -3,14 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
-#include "cli/open_session.h"
-#include "cli/options.h"
 #include "gltf_maker.h"
-#include "temporary_folder.h"
 
 namespace alcove::sample {
 namespace {
@@ -137,26 +132,6 @@ TEST(GltfRepeatedData, ErrorForAnEmptyFileSaysThatTheFileIsEmpty) {
   const auto scene = parse_gltf({}, "empty.gltf", "");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error(), "cannot read empty.gltf: it is empty");
-}
-
-TEST(SceneNotes, OnlyTheFirstTwentyNotesOnASceneArePrinted) {
-  GltfMaker maker = GltfMaker::triangle();
-  for (int i = 100; i < 150; ++i)
-    maker.json["extensionsUsed"].push_back("EXT_" + std::to_string(i));
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path / "notes.gltf";
-  const std::vector<uint8_t> bytes = maker.gltf();
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  Options options;
-  options.scene = file.string();
-  testing::internal::CaptureStderr();
-  EXPECT_TRUE(load_session(options));
-  const std::string printed = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(printed, HasSubstr("EXT_119"));
-  EXPECT_THAT(printed, testing::Not(HasSubstr("EXT_120")));
-  EXPECT_THAT(printed, HasSubstr("note: There are 30 more notes on this scene.\n"));
 }
 
 }  // namespace

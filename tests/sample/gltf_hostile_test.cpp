@@ -72,8 +72,8 @@ const Fault kFaults[] = {
     {"ScalarPositions", [](GltfMaker& m) { m.json["accessors"][0]["type"] = "SCALAR"; },
      "components"},
     {"RequiredExtensionThatHoldsGeometry",
-     [](GltfMaker& m) { m.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-     "KHR_draco_mesh_compression"},
+     [](GltfMaker& m) { m.json["extensionsRequired"] = {"KHR_gaussian_splatting"}; },
+     "KHR_gaussian_splatting"},
     {"NormalScaleTooLargeForAFloat",
      [](GltfMaker& m) {
        m = textured({{"index", 0}}, {{"index", 0}, {"scale", 1e300}});
@@ -164,22 +164,61 @@ TEST(GltfLimits, EveryTruncationOfABinaryFileIsRefused) {
   }
 }
 
-TEST(GltfImage, ImagesThatTogetherExceedThePixelLimitAreReduced) {
-  GltfMaker maker = textured({{"index", 0}}, {{"index", 1}});
-  maker.json.erase("textures");
-  for (const uint32_t side : {64u, 16u}) {
-    maker.json["images"].push_back({{"bufferView", maker.view(make_plain_png(side, side, 200))}});
-    maker.json["textures"].push_back({{"source", maker.json["images"].size() - 1}});
-  }
+// A square with an image, at a height and of a size.
+void add_square(GltfMaker& maker, uint32_t image_side, float height, float size, float repeats) {
+  const std::vector<float> at = {0, 0, height, size, 0,    height, size, size, height,
+                                 0, 0, height, size, size, height, 0,    size, height};
+  const float r = repeats;
+  const std::vector<float> uvs = {0, 0, r, 0, r, r, 0, 0, r, r, 0, r};
+  auto& json = maker.json;
+  json["images"].push_back(
+      {{"bufferView", maker.view(make_plain_png(image_side, image_side, 200))}});
+  json["textures"].push_back({{"source", json["images"].size() - 1}});
+  json["materials"].push_back(
+      {{"emissiveTexture", {{"index", json["textures"].size() - 1}}}, {"doubleSided", true}});
+  json["meshes"][0]["primitives"].push_back(
+      {{"attributes",
+        {{"POSITION", maker.accessor(maker.view(at), 5126, "VEC3", 6)},
+         {"TEXCOORD_0", maker.accessor(maker.view(uvs), 5126, "VEC2", 6)}}},
+       {"material", json["materials"].size() - 1}});
+}
+
+// Squares of two sizes, one of which repeats its image, and one far away, which appears small. The
+// fifth image is small itself.
+GltfMaker squares() {
+  GltfMaker maker = GltfMaker::triangle();
+  add_square(maker, 64, 0.0f, 4.0f, 1.0f);
+  add_square(maker, 64, 0.1f, 1.0f, 1.0f);
+  add_square(maker, 64, 0.2f, 4.0f, 8.0f);
+  add_square(maker, 64, 400.0f, 4.0f, 1.0f);
+  add_square(maker, 4, 0.3f, 4.0f, 1.0f);
+  return maker;
+}
+
+TEST(GltfImage, ImagesBeyondTheMemoryLimitAreReducedToTheSizeAtWhichTheyAppear) {
   GltfLimits limits;
-  limits.images.kept = 1024;
-  const auto scene = parse_gltf(maker.gltf(), "large.gltf", "", limits);
+  limits.images.kept = 64 * 64 + 3 * 32 * 32 - 1;
+  const auto scene = parse_gltf(squares().gltf(), "large.gltf", "", limits);
   ASSERT_TRUE(scene) << scene.error();
-  ASSERT_EQ(scene->images.size(), 2u);
-  EXPECT_EQ(scene->images[0].width, 16u);
-  EXPECT_EQ(scene->images[1].width, 16u);
-  EXPECT_EQ(scene->images[0].rgba[0], 200);
-  EXPECT_THAT(scene->warnings, testing::Contains(HasSubstr("over 16 pixels a side are reduced")));
+  std::vector<uint32_t> sides;
+  for (const TextureImage& image : scene->images) sides.push_back(image.width);
+  EXPECT_EQ(sides[0], 64u);
+  EXPECT_EQ(sides[4], 4u);
+  EXPECT_EQ(scene->images[2].rgba[0], 200);
+  for (const size_t smaller : {1u, 2u, 3u}) EXPECT_LT(sides[smaller], 64u) << smaller;
+  EXPECT_LT(sides[3], sides[1]);
+  EXPECT_THAT(scene->warnings, testing::Contains(HasSubstr("3 of 5 are reduced")));
+}
+
+TEST(GltfImage, ImagesThatAppearSmallestAreLeftOutBeyondTheDecodingLimit) {
+  GltfLimits limits;
+  limits.images.decoded = 3 * 64 * 64;
+  const auto scene = parse_gltf(squares().gltf(), "large.gltf", "", limits);
+  ASSERT_TRUE(scene) << scene.error();
+  std::vector<int32_t> images;
+  for (const Material& material : scene->materials)
+    images.push_back(material.emissive_texture.image);
+  EXPECT_THAT(images, testing::ElementsAre(0, -1, 1, -1, 2, -1));
 }
 
 TEST(GltfImage, ImagesBeyondTheDecodingLimitAreLeftOutFromTheirHeaders) {

@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-#include "gltf_maker.h"
-#include "reference/truth.h"
+#include "draco_maker.h"
 #include "scene/area.h"
 
 namespace alcove::sample {
@@ -140,7 +139,7 @@ TEST(GltfNodes, OnlyRequiredExtensionsThatHoldGeometryAreRefused) {
     EXPECT_EQ(triangle_count(scene), 1u) << name;
     EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr(name)));
   }
-  for (const char* name : {"KHR_draco_mesh_compression", "MPEG_accessor_timed"}) {
+  for (const char* name : {"KHR_gaussian_splatting", "MPEG_accessor_timed"}) {
     maker.json["extensionsRequired"] = {name};
     EXPECT_THAT(refusal(maker.gltf()), HasSubstr(name));
   }
@@ -228,6 +227,39 @@ TEST(GltfCompression, MeshoptViewsAreDecompressed) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
+TEST(GltfCompression, DracoPrimitivesAreDecompressed) {
+  for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
+    const Scene scene = parsed(draco_square(method).gltf());
+    ASSERT_EQ(triangle_count(scene), 2u);
+    EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
+    EXPECT_GT(scene.meshes[0].normals.at(0).z, 0.99f);
+    EXPECT_THAT(scene.warnings, IsEmpty());
+  }
+}
+
+TEST(GltfCompression, DamagedDracoPrimitivesAreRefused) {
+  for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
+    const GltfMaker whole = draco_square(method);
+    const auto size = whole.json["bufferViews"][0]["byteLength"].get<size_t>();
+    for (size_t length = 0; length < size; ++length) {
+      GltfMaker maker = whole;
+      maker.json["bufferViews"][0]["byteLength"] = length;
+      EXPECT_THAT(refusal(maker.gltf()), testing::HasSubstr("is no Draco mesh")) << length;
+    }
+    // The number of triangles, as 2^28 - 1 in a variable number of bytes. It follows the header of
+    // 11 bytes, and with the edgebreaker algorithm a byte and the number of vertices.
+    GltfMaker maker = whole;
+    const bool sequential = method == draco::MESH_SEQUENTIAL_ENCODING;
+    const std::vector<uint8_t> many = {0xff, 0xff, 0xff, 0x7f};
+    std::copy(many.begin(), many.end(), maker.bytes.begin() + (sequential ? 11 : 13));
+    EXPECT_THAT(refusal(maker.gltf()), testing::HasSubstr("is no Draco mesh"));
+    maker = whole;
+    auto& extension = maker.primitive()["extensions"]["KHR_draco_mesh_compression"];
+    extension["attributes"]["NORMAL"] = 7;
+    EXPECT_THAT(refusal(maker.gltf()), testing::HasSubstr("a Draco mesh whose NORMAL is missing"));
+  }
+}
+
 // Ten triangles around the origin, and a camera, moved by `offset`.
 GltfMaker scene_at(const glm::dvec3& offset) {
   GltfMaker maker = GltfMaker::triangle();
@@ -290,28 +322,6 @@ TEST(GltfMaterial, SpecularGlossinessMaterialGivesBaseColourAlphaAndRoughness) {
   EXPECT_EQ(material.base_color_texture.uv_set, 1u);
   EXPECT_EQ(material.metallic, 0.0f);
   EXPECT_EQ(material.roughness, 0.75f);
-}
-
-// A masked triangle with vertex colours, and whether a ray meets it near its first corner.
-bool is_hit(const std::vector<uint8_t>& colors) {
-  GltfMaker maker = GltfMaker::triangle();
-  const int view = maker.view<uint8_t>(colors);
-  maker.primitive()["attributes"]["COLOR_0"] = maker.accessor(view, 5121, "VEC4", 3, true);
-  maker.json["materials"] = {{{"alphaMode", "MASK"}}};
-  maker.primitive()["material"] = 0;
-  const Scene scene = parsed(maker.gltf());
-  const auto rays = RayScene::create(scene);
-  EXPECT_TRUE(rays);
-  Camera camera;
-  camera.eye_ws = {0.1f, 0.1f, 1.0f};
-  camera.target_ws = {0.1f, 0.1f, 0.0f};
-  return cast_gbuffer(*rays, camera, 1, 1).material.pixels[0] == 0;
-}
-
-TEST(GltfMaterial, AlphaOfVertexColoursCutsHolesIntoMaskedMaterials) {
-  EXPECT_TRUE(is_hit({9, 9, 9, 255, 9, 9, 9, 255, 9, 9, 9, 255}));
-  EXPECT_FALSE(is_hit({9, 9, 9, 0, 9, 9, 9, 0, 9, 9, 9, 0}));
-  EXPECT_TRUE(is_hit({9, 9, 9, 255, 9, 9, 9, 0, 9, 9, 9, 0}));
 }
 
 TEST(GltfMaterial, BlendedMaterialWithAlphaZeroIsReportedAndNotDrawn) {

@@ -76,15 +76,15 @@ TEST(GltfTexture, SamplersAreReadAndMissingFiltersDefaultToLinear) {
   maker.json["textures"][0]["sampler"] = 0;
   maker.json["textures"][1]["sampler"] = 1;
   const Material material = parsed(maker.gltf()).materials[0];
-  EXPECT_EQ(material.base_color_texture.sampler,
-            (Sampler{Wrap::kClamp, Wrap::kMirror, Filter::kNearest, Filter::kLinear,
-                     MipFilter::kNearest}));
+  EXPECT_EQ(
+      material.base_color_texture.sampler,
+      (Sampler{Wrap::clamp, Wrap::mirror, Filter::nearest, Filter::linear, MipFilter::nearest}));
   EXPECT_EQ(material.normal_texture.sampler, Sampler{});
   const std::pair<int, Sampler> filters[] = {
-      {9728, {.minify = Filter::kNearest, .mips = MipFilter::kNone}},
-      {9729, {.mips = MipFilter::kNone}},
-      {9984, {.minify = Filter::kNearest, .mips = MipFilter::kNearest}},
-      {9986, {.minify = Filter::kNearest}},
+      {9728, {.minify = Filter::nearest, .mips = MipFilter::none}},
+      {9729, {.mips = MipFilter::none}},
+      {9984, {.minify = Filter::nearest, .mips = MipFilter::nearest}},
+      {9986, {.minify = Filter::nearest}},
       {9987, {}}};
   for (const auto& [filter, sampler] : filters) {
     maker.json["samplers"][1]["minFilter"] = filter;

@@ -120,7 +120,7 @@ TEST_F(GpuMeshesTest, TrianglesWithSharedVerticesKeepTheirOwnGeometricNormals) {
   const Scene scene = scene_of({cube()});
   Camera camera = camera_at(3.0f);
   camera.eye_ws = {2.0f, 1.5f, 3.0f};
-  const FrameImages images = draw(scene, 32, camera, NormalSource::kGeometric);
+  const FrameImages images = draw(scene, 32, camera, NormalSource::geometric);
   int faces = 0;
   for (const glm::vec3& n : images.normal_ws.pixels) {
     if (n == glm::vec3(0.0f)) continue;

@@ -15,7 +15,7 @@ class Motion : public GpuTest {
   static MotionSetup setup() {
     const float radius = default_radius(builtin_scene());
     return {.occlusion = passes::quality_settings(passes::Quality::medium, radius),
-            .normals = NormalSource::kGeometric,
+            .normals = NormalSource::geometric,
             .width = 240,
             .height = 135,
             .spp = 64};

@@ -39,7 +39,7 @@ Scene quad(const glm::vec3& normal = kTilt) {
 class NormalMap : public QuadTest {
  protected:
   FrameImages draw(const Scene& scene, const Camera& camera = camera_at(3.0f),
-                   NormalSource normals = NormalSource::kShading) {
+                   NormalSource normals = NormalSource::shading) {
     return QuadTest::draw(scene, kSize, camera, normals);
   }
 
@@ -130,7 +130,7 @@ TEST_F(NormalMap, OppositeNormalTiltsCancelWhereTexelsAreSmallerThanPixels) {
 }
 
 TEST_F(NormalMap, NormalMapAffectsShadingNormalsOnly) {
-  expect_normal(draw(quad(), camera_at(3.0f), NormalSource::kGeometric), {0.0f, 0.0f, 1.0f});
+  expect_normal(draw(quad(), camera_at(3.0f), NormalSource::geometric), {0.0f, 0.0f, 1.0f});
 }
 
 TEST_F(NormalMap, RayTracedTruthUsesTheMappedNormalsThatTheOcclusionPassIsGiven) {
@@ -150,7 +150,7 @@ TEST_F(NormalMap, AlphaMasksFollowTheirTextureTransformInRasteriserAndRayTracer)
   Scene scene = quad();
   Material& material = scene.materials[0];
   material.normal_texture = {};
-  material.alpha_mode = AlphaMode::kMask;
+  material.alpha_mode = AlphaMode::mask;
   // The mask is opaque left of the middle. The transform doubles the coordinates and rotates them
   // by 90 degrees, which gives strips.
   scene.images[0] = {"mask", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}};

@@ -69,7 +69,7 @@ TEST(Options, CommandLineWithManyOptionsIsParsed) {
   EXPECT_EQ(options->view.reversed_z, true);
   EXPECT_TRUE(std::isinf(*options->view.far_plane));
   EXPECT_EQ(options->occlusion.quality, passes::Quality::high);
-  EXPECT_EQ(options->occlusion.normals, NormalSource::kGeometric);
+  EXPECT_EQ(options->occlusion.normals, NormalSource::geometric);
   EXPECT_EQ(options->occlusion.set.size(), 2u);
   EXPECT_EQ(options->occlusion.set[1].second, "5");
   EXPECT_EQ(options->occlusion.roughness.size(), 3u);

@@ -39,7 +39,7 @@ inline Camera camera_at(float z) {
 class QuadTest : public GpuTest {
  protected:
   FrameImages draw(const Scene& scene, std::uint32_t size, const Camera& camera = camera_at(3.0f),
-                   NormalSource normals = NormalSource::kShading) {
+                   NormalSource normals = NormalSource::shading) {
     auto renderer = FrameRenderer::create(gpu(), scene, {size, size}, normals);
     EXPECT_TRUE(renderer) << renderer.error();
     const CameraMatrices matrices = camera_matrices(camera, size, size);

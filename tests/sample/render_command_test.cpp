@@ -108,7 +108,7 @@ TEST(PrintedRenderCommand, PrintedCommandKeepsTheSceneEnvironmentAndNormalsOptio
   Options options;
   options.scene = "a scene's file.glb";
   options.environment = "sky.hdr";
-  options.occlusion.normals = NormalSource::kGeometric;
+  options.occlusion.normals = NormalSource::geometric;
   expect_round_trip(options, some_shot());
 }
 

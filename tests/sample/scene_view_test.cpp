@@ -159,7 +159,7 @@ TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDept
 }
 
 TEST_F(ViewerWindowTest, ImagesAreDrawnWithAMovingCameraAndNormalsFromDepth) {
-  options_.occlusion.normals = NormalSource::kDepth;
+  options_.occlusion.normals = NormalSource::depth;
   options_.view.orbit = 0.02f;
   ASSERT_NO_FATAL_FAILURE(open());
   for (const Picture picture : {Picture::bent_normal, Picture::lit, Picture::motion}) {

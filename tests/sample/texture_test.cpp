@@ -110,7 +110,7 @@ TEST_F(TextureTest, CheckerboardWithMipsFinerThanPixelsIsDrawnGrey) {
 
 TEST_F(TextureTest, CheckerboardWithoutMipsFinerThanPixelsIsDrawnBlackOrWhite) {
   // A pixel covers eight and a third texels, so each pixel contains both colours.
-  const Sampler sampler{.minify = Filter::kNearest, .mips = MipFilter::kNone};
+  const Sampler sampler{.minify = Filter::nearest, .mips = MipFilter::none};
   const FrameImages images = drawn(quad_of(checkerboard(200), sampler));
   std::size_t white = 0;
   for (const glm::vec3& albedo : images.albedo.pixels) {
@@ -123,11 +123,11 @@ TEST_F(TextureTest, CheckerboardWithoutMipsFinerThanPixelsIsDrawnBlackOrWhite) {
 
 TEST_F(TextureTest, RasteriserAndRayTracerUseTheMagnificationFilterOfTheSampler) {
   const TextureImage image = image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; });
-  for (const Filter filter : {Filter::kNearest, Filter::kLinear}) {
-    const Scene scene = quad_of(image, {.wrap_u = Wrap::kClamp, .magnify = filter});
+  for (const Filter filter : {Filter::nearest, Filter::linear}) {
+    const Scene scene = quad_of(image, {.wrap_u = Wrap::clamp, .magnify = filter});
     const Image<glm::vec3> raster = drawn(scene).albedo, rays = traced(scene).albedo;
     for (std::uint32_t x = 0; x < kSize; ++x) {
-      if (filter == Filter::kNearest) {
+      if (filter == Filter::nearest) {
         EXPECT_NEAR(raster.at(x, 3).r, x < kSize / 2 ? 1.0f : 0.0f, kByte) << x;
         EXPECT_NEAR(rays.at(x, 3).r, x < kSize / 2 ? 1.0f : 0.0f, kByte) << x;
       } else if (x == kSize / 2) {
@@ -145,12 +145,12 @@ TEST_F(TextureTest, TextureWrapModesAgreeBetweenRasteriserAndRayTracer) {
   // The texture has two texels. These are the indices of the texels that are read at coordinates
   // from -1 to 2.
   const std::array<std::pair<Wrap, std::array<int, 6>>, 3> wraps{
-      {{Wrap::kRepeat, {0, 1, 0, 1, 0, 1}},
-       {Wrap::kMirror, {1, 0, 0, 1, 1, 0}},
-       {Wrap::kClamp, {0, 0, 0, 1, 1, 1}}}};
+      {{Wrap::repeat, {0, 1, 0, 1, 0, 1}},
+       {Wrap::mirror, {1, 0, 0, 1, 1, 0}},
+       {Wrap::clamp, {0, 0, 0, 1, 1, 1}}}};
   for (const auto& [wrap_u, across] : wraps) {
     for (const auto& [wrap_v, down] : wraps) {
-      Scene scene = quad_of(image, {wrap_u, wrap_v, Filter::kNearest});
+      Scene scene = quad_of(image, {wrap_u, wrap_v, Filter::nearest});
       for (glm::vec2& uv : scene.meshes[0].uvs) uv = 3.0f * uv - 1.0f;
       const Image<glm::vec3> raster = drawn(scene).albedo, rays = traced(scene).albedo;
       for (std::uint32_t y = 0; y < kSize; ++y) {
@@ -166,7 +166,7 @@ TEST_F(TextureTest, TextureWrapModesAgreeBetweenRasteriserAndRayTracer) {
 
 TEST_F(TextureTest, EachTextureIsReadWithItsOwnUvSet) {
   Scene scene = quad_of(image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; }),
-                        {.magnify = Filter::kNearest});
+                        {.magnify = Filter::nearest});
   Material& material = scene.materials[0];
   material.metallic = 1.0f;
   material.metal_roughness_texture = material.base_color_texture;
@@ -187,7 +187,7 @@ TEST_F(TextureTest, EachTextureIsReadWithItsOwnUvSet) {
 
 TEST_F(TextureTest, MissingUvSetReadsAsZero) {
   Scene scene = quad_of(image_of(2, 1, [](auto x, auto) { return x == 0 ? kRed : kGreen; }),
-                        {.magnify = Filter::kNearest});
+                        {.magnify = Filter::nearest});
   scene.materials[0].base_color_texture.uv_set = 1;
   const FrameImages raster = drawn(scene);
   const GBuffer rays = traced(scene);
@@ -234,7 +234,7 @@ TEST_F(TextureTest, AlphaMasksReadWithTheSecondUvSetAgreeWithTheRayTracerAndKeep
   // covers 1.618 periods.
   Scene scene = quad_of(
       image_of(256, 256, [](auto x, auto y) { return x % 2 + y % 2 == 0 ? kWhite : kHole; }));
-  scene.materials[0].alpha_mode = AlphaMode::kMask;
+  scene.materials[0].alpha_mode = AlphaMode::mask;
   scene.materials[0].base_color_texture.uv_set = 1;
   Mesh& mesh = scene.meshes[0];
   for (const glm::vec2& uv : mesh.uvs) mesh.second_uvs.push_back(0.3034f * uv + 0.003f);

@@ -120,7 +120,7 @@ TEST(TruthCache, CacheKeyChangesWithSceneAndCamera) {
   other.materials[0].base_color_texture.uv_set = 1;
   laid.add(other);
   other = scene;
-  other.materials[0].base_color_texture.sampler.magnify = Filter::kNearest;
+  other.materials[0].base_color_texture.sampler.magnify = Filter::nearest;
   blocky.add(other);
   turned.add(scene);
   turned.add(scene.cameras[0]);

@@ -173,8 +173,8 @@ TEST(RayTracedTruth, RaysPassThroughTexelsCutOutByAnAlphaMask) {
   auto analytic = analytic_scene("plane:0");
   Scene& scene = analytic->scene;
   scene.images.push_back({"holes", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
-  scene.materials[0].base_color_texture = {0, {Wrap::kClamp, Wrap::kClamp}};
-  scene.materials[0].alpha_mode = AlphaMode::kMask;
+  scene.materials[0].base_color_texture = {0, {Wrap::clamp, Wrap::clamp}};
+  scene.materials[0].alpha_mode = AlphaMode::mask;
   for (size_t i = 0; i < scene.meshes[0].uvs.size(); ++i) {
     scene.meshes[0].uvs[i] = {scene.meshes[0].positions[i].x > 0.0f ? 1.0f : 0.0f, 0.5f};
   }

@@ -102,7 +102,7 @@ Done model_times(const Options& options, std::vector<VariantErrors>& rows) {
       ModelledTimes::create(*options.gpu,
                             {.width = options.target_width,
                              .height = options.target_height,
-                             .normals = options.occlusion.normals != NormalSource::kDepth},
+                             .normals = options.occlusion.normals != NormalSource::depth},
                             options.use_cache);
   if (!times) {
     return Failure(times.error());

@@ -37,7 +37,7 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
   LabelledSettings given{std::string(passes::name_of(quality)),
                          {.width = options.view.width,
                           .height = options.view.height,
-                          .normals = options.occlusion.normals != NormalSource::kDepth,
+                          .normals = options.occlusion.normals != NormalSource::depth,
                           .motion = options.cost.motion_vectors,
                           .area = options.cost.area,
                           .mask = options.cost.mask,

@@ -187,7 +187,7 @@ tl::expected<void, std::string> run_report(const Options& options) {
       ModelledTimes::create(*options.gpu,
                             {.width = options.target_width,
                              .height = options.target_height,
-                             .normals = options.occlusion.normals != NormalSource::kDepth},
+                             .normals = options.occlusion.normals != NormalSource::depth},
                             options.use_cache);
   if (!times) {
     return Failure(times.error());

@@ -74,7 +74,7 @@ tl::expected<double, std::string> TradeClock::modelled_ms(
     const passes::OcclusionSettings& settings) const {
   CostInputs inputs{.width = setup_.width,
                     .height = setup_.height,
-                    .normals = setup_.normals != NormalSource::kDepth,
+                    .normals = setup_.normals != NormalSource::depth,
                     .settings = settings};
   // Variants are rendered with these settings too.
   inputs.settings.specular = passes::Specular::none;

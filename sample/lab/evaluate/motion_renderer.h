@@ -20,7 +20,7 @@ namespace alcove::sample {
 // The inputs of a run other than its path.
 struct MotionSetup {
   passes::OcclusionSettings occlusion;  // with a history
-  NormalSource normals = NormalSource::kShading;
+  NormalSource normals = NormalSource::shading;
   std::uint32_t width = 960;
   std::uint32_t height = 540;
   std::uint32_t spp = 256;                        // rays per pixel of the truth, at least 2

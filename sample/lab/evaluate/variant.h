@@ -31,7 +31,7 @@ struct StaticSetup {
   std::uint32_t width = 960;
   std::uint32_t height = 540;
   std::uint32_t frames = 32;  // at least 1; the last one is evaluated
-  NormalSource normals = NormalSource::kShading;
+  NormalSource normals = NormalSource::shading;
 };
 
 // Renders the frames of a static view and reads the last one back.

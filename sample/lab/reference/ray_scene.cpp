@@ -36,7 +36,7 @@ void reject_invisible(const RTCFilterFunctionNArguments* args) {
                         RTCRayN_dir_z(args->ray, count, i) * RTCHitN_Ng_z(args->hit, count, i);
     if (!material.double_sided && along > 0.0f) {
       args->valid[i] = 0;
-    } else if (material.alpha_mode == AlphaMode::kMask) {
+    } else if (material.alpha_mode == AlphaMode::mask) {
       const float alpha = alpha_at(*scene, *mesh, RTCHitN_primID(args->hit, count, i),
                                    RTCHitN_u(args->hit, count, i), RTCHitN_v(args->hit, count, i));
       if (alpha < material.alpha_cutoff) args->valid[i] = 0;
@@ -45,7 +45,7 @@ void reject_invisible(const RTCFilterFunctionNArguments* args) {
 }
 
 bool needs_filter(const Material& material) {
-  return !material.double_sided || material.alpha_mode == AlphaMode::kMask;
+  return !material.double_sided || material.alpha_mode == AlphaMode::mask;
 }
 
 // Returns the triangles of a mesh as a committed Embree geometry, or null if memory runs out. The

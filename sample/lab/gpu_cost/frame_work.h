@@ -1,4 +1,4 @@
-// The commands of the occlusion passes' frames, recorded without a device that executes them.
+// The work of the frames whose cost is modelled, as the passes describe it for any engine.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "cost/accesses.h"
-#include "gpu_cost/recording_device.h"
+#include "alcove/alcove_work.h"
+#include "cost/work.h"
 
 namespace alcove::sample {
 
@@ -32,22 +32,13 @@ struct CostInputs {
   passes::NormalEncoding normal_encoding = passes::NormalEncoding::signed_xyz;
 };
 
-struct RecordedPass {
-  std::string name;
-  std::vector<RecordedDispatch> dispatches;
-  std::vector<passes::cost::PassImage> images;
+// Returns the work of a frame of each FrameState, in their order, with the outputs that the
+// settings enable. Error: the passes reject the settings.
+[[nodiscard]] tl::expected<std::vector<AlcoveWork>, std::string> describe_frames(
+    const CostInputs& inputs);
 
-  bool operator==(const RecordedPass&) const = default;
-};
-
-struct RecordedFrame {
-  passes::cost::FrameState state = passes::cost::FrameState::first;
-  std::vector<RecordedPass> passes;
-};
-
-// Returns a recorded frame for each FrameState, in their order, with the outputs that `settings`
-// enable. Errors: the passes reject the settings, or the driver rejects a pipeline.
-[[nodiscard]] tl::expected<std::vector<RecordedFrame>, std::string> record_frames(
-    RecordingDevice& device, const CostInputs& inputs);
+// Returns the images that a dispatch of `work` reads and writes, in the order of its bindings.
+[[nodiscard]] std::vector<passes::cost::PassImage> images_of(const AlcoveWork& work,
+                                                             const AlcoveWorkDispatch& dispatch);
 
 }  // namespace alcove::sample

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <string>
+#include <tl/expected.hpp>
+
+namespace alcove::sample {
+
+// Decompresses the primitives that have the extension KHR_draco_mesh_compression, and gives them
+// new accessors. The extension's own properties are known to be of the right type
+// (gltf_properties.h). Together they may have at most 2^24 triangles and 1 GiB, and one at most 64
+// triangles for each byte. The error text is the end of a sentence whose beginning the caller adds.
+[[nodiscard]] tl::expected<void, std::string> decompress_primitives(tinygltf::Model& model);
+
+}  // namespace alcove::sample
