@@ -1,11 +1,32 @@
-// The parameters and images of reconstruct.comp. The variants of the shader are compiled with these
-// macros defined:
+// The constants, parameters and images of reconstruct.comp. The variants of the shader are compiled
+// with these macros defined:
 //   HALF      texels of 2x2 pixels are reconstructed, and upsample.comp computes the pixels
 //   HISTORY   there is a history
 //   SPECULAR  there is a GGX lobe for specular occlusion
 // The passes find bindings by name, so that binding numbers have no meaning outside this file.
 #ifndef ALCOVE_RECONSTRUCT_BINDINGS_H
 #define ALCOVE_RECONSTRUCT_BINDINGS_H
+
+#include "reconstruct_parameters.h"
+
+layout(constant_id = 0) const int kTileSize = 1;
+layout(constant_id = 1) const int kFilterRadius = 2;
+layout(constant_id = 2) const bool kBentNormal = false;
+layout(constant_id = 3) const bool kMotion = false;
+layout(constant_id = 4) const bool kPerspective = true;
+layout(constant_id = 5) const bool kClamp = false;
+layout(constant_id = 6) const bool kStatic = false;  // the previous frame shows the same
+layout(constant_id = 7) const bool kRoughnessTexture = false;
+layout(constant_id = 8) const int kRoughnessChannel = 0;
+layout(constant_id = 9) const bool kFresh = true;         // there is no history to read yet
+layout(constant_id = 10) const bool kVisibility = true;   // whether visibility_image is written
+layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
+layout(constant_id = 13) const bool kReversed = false;    // raw depth is 1 at the near plane
+// Writes visibility to the channel kVisibilityChannel alone and keeps the others.
+layout(constant_id = 14) const bool kKeepsChannels = false;
+layout(constant_id = 15) const int kVisibilityChannel = 0;
+layout(constant_id = 16) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -67,5 +88,16 @@ layout(set = 0, binding = 14) uniform utexture2D lobe_history_image;  // LobeTex
 layout(set = 0, binding = 15) uniform writeonly uimage2D next_lobe_history_image;
 #endif
 #endif
+
+// Width in pixels of the texels that are reconstructed.
+#ifdef HALF
+const int kTexelSize = 2;
+#else
+const int kTexelSize = 1;
+#endif
+
+#define GATHERS_DEPTH
+#define WRITES_OUTPUTS
+#include "areas.h"
 
 #endif

@@ -2,6 +2,11 @@
 #ifndef ALCOVE_RECONSTRUCT_FILTER_H
 #define ALCOVE_RECONSTRUCT_FILTER_H
 
+#include "maths/lobe_slice.h"
+#include "maths/quantised_normal.h"
+#include "reconstruct_surface.h"
+#include "reconstruct_tiles.h"
+
 // Upper bound of the squared angle between normals in a neighbour's weight. The factor of the
 // weight that depends on the angle is then at least 1 / (1 + 1.23)^2 = 0.2, because a neighbour
 // across a crease is better than none where a pixel has few other neighbours. Fitted to the error

@@ -3,6 +3,11 @@
 #ifndef ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 
+#include "maths/half_texel.h"
+#include "maths/history.h"
+#include "reconstruct_previous.h"
+#include "reconstruct_store.h"
+
 float history_slack(Surface surface) { return parameters.history_slack; }
 
 float moved_distance(Surface surface) {

@@ -3,6 +3,10 @@
 #ifndef ALCOVE_RECONSTRUCT_PIXEL_HISTORY_H
 #define ALCOVE_RECONSTRUCT_PIXEL_HISTORY_H
 
+#include "maths/history.h"
+#include "reconstruct_previous.h"
+#include "reconstruct_store.h"
+
 // Returns the change of a stored depth for a change of depth: per relative change in perspective
 // views, and per change of 1 in orthographic views. `scale` is the x or z of history_depth_scale.
 float stored_per_depth(float scale) { return kPerspective ? 1.442695 * scale : scale; }

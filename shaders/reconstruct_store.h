@@ -3,8 +3,16 @@
 #ifndef ALCOVE_RECONSTRUCT_STORE_H
 #define ALCOVE_RECONSTRUCT_STORE_H
 
-#ifndef HALF
+#include "maths/bent_normal.h"
+#include "maths/half_texel.h"
+#include "maths/history.h"
+#include "maths/lobe_slice.h"
+#include "reconstruct_filter.h"
 #include "store_visibility.h"
+#ifdef HALF
+#include "reconstruct_half_surface.h"
+#else
+#include "reconstruct_pixel_surface.h"
 #endif
 
 // The results of a pixel or of a texel.
@@ -63,20 +71,25 @@ void store_half(Surface surface, Result result, float weight, float recent) {
 
 // Stores the outputs of a pixel.
 void store(Surface surface, Result result) {
+  if (!is_written(surface.place.texel)) {
+    return;
+  }
+  ivec2 texel = in_outputs(surface.place.texel);
   float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    store_visibility(surface.place.texel, kShaped ? shaped : visibility);
+    imageStore(visibility_image, texel,
+               visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
+                                kept_image, texel));
   }
   if (kBentNormal) {
     vec3 residual = surface.sky ? vec3(0.0) : result.residual;
     vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
-    imageStore(bent_normal_image, surface.place.texel,
-               vec4(mat3(parameters.normal_from_view) * bent, 0.0));
+    imageStore(bent_normal_image, texel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
   }
 #ifdef SPECULAR
   float occlusion = surface.sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
-  imageStore(specular_image, surface.place.texel, vec4(1.0 - occlusion));
+  imageStore(specular_image, texel, vec4(1.0 - occlusion));
 #endif
 }
 

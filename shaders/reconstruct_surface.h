@@ -1,67 +1,120 @@
-// The surface of a pixel, the part of reconstruct.comp without HALF.
+// The place and the surface of a texel of reconstruct.comp. reconstruct_pixel_surface.h and, with
+// HALF, reconstruct_half_surface.h fetch the surface.
 #ifndef ALCOVE_RECONSTRUCT_SURFACE_H
 #define ALCOVE_RECONSTRUCT_SURFACE_H
 
-// Sets the tangent plane to that of a normal in the space of the normals.
-void set_plane_of_normal(inout Surface surface, vec3 normal) {
-  // `plane` is the normal of the tangent plane in the space of (x s, y s, depth): dot((x s, y s,
-  // depth), plane) is constant on the plane. x and y are in pixels; s is the depth in perspective
-  // and 1 otherwise.
-  vec3 plane = normal * mat3(parameters.plane_from_normal);
-  // How the distance from the plane grows with depth along the pixel's ray.
-  float along = plane.z + (kPerspective ? dot(surface.place.centre, plane.xy) : 0.0);
-  float per_length = inversesqrt(dot(normal, normal));
-  surface.n_dot_v = max(abs(along) * per_length, kLeastNDotV);
-  plane *= along < 0.0 ? per_length : -per_length;  // of the unit normal that faces the eye
-  surface.slope = kPerspective ? -plane.xy : plane.xy;
-  vec2 normal_xy = plane.xy * parameters.pixels_per_slope;
-  surface.stereographic = vec3(normal_xy, 1.0 + dot(normal_xy, parameters.slope.zw) - plane.z);
-  surface.lobe = fetch_lobe_surface(surface.pixel, normal);
+#include "depth_normal.h"
+#include "maths/history.h"
+#include "maths/normal_encoding.h"
+#include "maths/raw_occlusion.h"
+#include "maths/slice_line.h"
+#include "reconstruct_bindings.h"
+#include "reconstruct_tiles.h"
+
+// Lower bound of the cosine between the normal and the view direction. Without it, the tangent
+// plane of a surface that is seen edge-on would contain points at every depth.
+const float kLeastNDotV = 0.02;
+
+float inverse_depth_of(float depth_ndc) {
+  return inverse_depth_of_ndc(parameters.inverse_depth_from_ndc, depth_ndc, kPerspective,
+                              kReversed);
 }
 
-// Returns Surface::stereographic for a HalfTexel::tilt.
-vec3 stereographic_of_tilt(vec2 tilt, float n_dot_v) {
-  vec2 xy = tilt * n_dot_v;
-  return vec3(xy, 1.0 + sqrt(max(1.0 - dot(xy, xy), 0.0)));
+// The place of a texel, and values that depend on it alone. From block to block of a column each of
+// them changes by a constant.
+struct Place {
+  ivec2 texel;  // at which results are stored
+  vec2 centre;  // pixels
+  vec2 uv;      // of the upper left corner, on the depth buffer
+  TracedPixels around;
+  vec4 previous;  // of an inverse depth of 0, after ReconstructParameters::previous_from_pixel
+  float dither;   // for dither_of()
+};
+
+// Change of Place::dither from one pixel to the next [Jimenez 2014, interleaved gradient noise].
+const vec2 kDitherGradient = vec2(0.06711056, 0.00583715);
+
+Place first_place() {
+  Place place;
+  place.texel = first_texel() + ivec2(gl_LocalInvocationID.xy);
+  place.centre = (vec2(place.texel) + 0.5) * float(kTexelSize);
+  place.uv = vec2(place.texel * kTexelSize) * parameters.pixel_uv;
+  place.around = find_traced(place.texel * kTexelSize);
+  mat4 from_pixel = parameters.previous_from_pixel;
+  place.previous = from_pixel[0] * place.centre.x + from_pixel[1] * place.centre.y + from_pixel[2];
+  place.dither = dot(place.centre, kDitherGradient) + parameters.dither_offset;
+  return place;
 }
 
-Surface fetch_surface(Place place) {
-  Surface surface;
-  surface.place = place;
-  surface.pixel = place.texel;
-  // The pixel with its neighbours to the left and above, and with those to the right and below.
-  vec4 before = textureGather(depth_image, place.uv);
-  vec4 after = textureGather(depth_image, place.uv + parameters.pixel_uv);
-  float depth_ndc = after.w;
-  surface.sky = is_sky(depth_ndc);
-  surface.inverse_depth = inverse_depth_of(depth_ndc);
-  surface.depth = kPerspective ? 1.0 / surface.inverse_depth : 1.0;
-  // The plane comes from the depths where they are linear, because a normal has more bytes.
-  vec2 next = vec2(after.z, after.x);
-  vec2 last = vec2(before.x, before.z);
-  vec2 gradient = (next - last) * (parameters.half_inverse_depth_per_ndc * surface.depth);
-  vec2 tilt = gradient * parameters.pixels_per_slope * (kPerspective ? -1.0 : 1.0);
-  // The pixel's ray matters to angles, but hardly to the scale of distances.
-  float n_dot_v = kByNormal ? n_dot_v_of(tilt, place.centre) : inversesqrt(1.0 + dot(tilt, tilt));
-  surface.n_dot_v = max(n_dot_v, kLeastNDotV);
-  surface.slope = gradient * n_dot_v;
-  surface.stereographic = stereographic_of_tilt(tilt, n_dot_v);
-  vec2 bend = abs(next + last - 2.0 * depth_ndc);
-  float off_plane = (max(bend.x, bend.y) + parameters.depth_step) * surface.depth * surface.n_dot_v;
-  // The comparison is true for NaN.
-  if (kFresh || kLobe || !(off_plane <= parameters.largest_bend)) {
-    set_plane_of_normal(surface, fetch_normal(surface.pixel));
+void move_to_next_block(inout Place place) {
+  const float rows = float(kGroupPixels);
+  place.texel.y += 8;
+  place.centre.y += rows;
+  place.uv.y += rows * parameters.pixel_uv.y;
+  place.around.first_tile += kGroupPixels / kTileSize * kSpan;
+  place.previous += parameters.previous_from_pixel[1] * rows;
+  place.dither += rows * kDitherGradient.y;
+}
+
+// A pixel's surface, or that of a texel at half resolution.
+struct Surface {
+  Place place;
+  bool sky;
+  ivec2 pixel;          // at which its inputs are read
+  float inverse_depth;  // 1/depth in perspective, depth otherwise: linear along any plane's image
+  float depth;          // 1/inverse_depth in perspective, 1 otherwise
+  float n_dot_v;        // cosine between normal and view direction, on the camera's axis
+  // In perspective the relative change of 1/depth per pixel along the tangent plane, in
+  // orthographic views the change of the depth, both times n_dot_v.
+  vec2 slope;
+  vec3 stereographic;  // (x, y, 1 + z) of the unit normal in view space, for squared_angle()
+  LobeSurface lobe;    // normal as it was given
+  vec2 tilt;           // HalfTexel::tilt; only with HALF
+  // Coefficients of the distance of a neighbour from the tangent plane, in units of the tolerance:
+  // its inverse depth times per_inverse_depth, minus plane.xy times its offset in pixels, minus
+  // plane.z. They are set by set_plane().
+  float per_inverse_depth;
+  vec3 plane;
+};
+
+// Returns the cosine between normal and view direction, on the camera's axis, for a
+// HalfTexel::tilt.
+float n_dot_v_of(vec2 tilt, vec2 centre) {
+  vec2 ray = parameters.slope.zw + (kPerspective ? centre * parameters.slope.xy : vec2(0.0));
+  float z = 1.0 + dot(tilt, ray);
+  return inversesqrt(dot(tilt, tilt) + z * z);
+}
+
+void set_plane(inout Surface surface) {
+  float per_distance = surface.n_dot_v * parameters.tolerance;
+  surface.per_inverse_depth = per_distance * surface.depth;
+  surface.plane = vec3(surface.slope * parameters.tolerance,
+                       kPerspective ? per_distance : per_distance * surface.inverse_depth);
+}
+
+// Returns the pixel's normal in the space of the normals, with any length except 0. If the texture
+// has no valid normal, returns the direction to the eye instead. It is exact enough for the
+// filter's weights. A NaN would stay in the history.
+vec3 fetch_normal(ivec2 pixel) {
+  if (kNormalEncoding == kNoNormals) {
+    return depth_buffer_normal(
+        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
+        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
   }
-  return surface;
+  vec3 normal = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding);
+  return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
-// Returns the unit normal in view space, as the search uses it.
-vec3 traced_normal(Surface surface) {
-  vec2 slope =
-      parameters.slope.zw + (kPerspective ? surface.place.centre * parameters.slope.xy : vec2(0.0));
-  vec3 given = decode_normal(texelFetch(normal_image, surface.pixel, 0).xyz, kNormalEncoding) *
-               mat3(parameters.normal_from_view);
-  return seen_normal(surface.pixel, given, normalize(vec3(-slope, 1.0)));
+LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
+  LobeSurface surface = LobeSurface(normal, parameters.roughness);
+#ifdef SPECULAR
+  surface.normal = normalize(normal);
+  if (kRoughnessTexture) {
+    surface.roughness =
+        saturate(texelFetch(roughness_image, in_inputs(pixel), 0)[kRoughnessChannel]);
+  }
+#endif
+  return surface;
 }
 
 #endif

@@ -54,9 +54,8 @@ void Graph::reset() {
   histories_.begin_frame();
   block_ = 0;
   next_ = end_ = nullptr;
-  repeats_ = true;
   frame_ = next_frame();
-  tag_ = static_cast<std::uint32_t>(frame_);
+  tag_ = repeating_tag_ = static_cast<std::uint32_t>(frame_);
 }
 
 void Graph::destroy_callables() {
@@ -103,7 +102,8 @@ void Graph::grow_passes() {
 }
 
 ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
-  ResourceRecord record = absolute_record(desc);
+  ResourceRecord record;
+  fill_absolute(record, desc);
   const Extent& extent = desc.extent;
   const Texture& base = extent.relative_to;
   if (!base) return record;
@@ -118,14 +118,15 @@ ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
   return record;
 }
 
-std::uint32_t Graph::add_any_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
+std::uint32_t Graph::add_any_access(PassBuilder pass, std::uint32_t index, std::uint32_t version,
                                     std::uint32_t tag, const Access& access, Range range,
                                     std::uint32_t flags) {
+  if (!pass.is_current()) return version;
   if (range == Range{}) flags |= kWhole;
   AccessRecord record{access.stages, access.access, access.layout, access.usage,
                       index,         flags,         range,         version};
   std::uint32_t left = kNone;
-  if (pass + 1 != description_.passes.size()) record.flags |= kClosed;
+  if (pass.pass_ + 1 != description_.passes.size()) record.flags |= kClosed;
   if (tag != tag_ || index >= description_.resources.size()) {
     record.flags |= index == kNone ? kNull : kForeign;
     record.resource = kNone;

@@ -27,7 +27,10 @@ class Replay {
     begin();
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
       attachment_ = kNone;
-      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) visit(pass, access);
+      forbidden_ = forbidden_stages(v_.graph.passes[pass].queue);
+      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) {
+        if (!follow(pass, access)) visit(pass, access);
+      }
     }
     for (const OutputRecord& output : v_.graph.outputs) check_output(output);
   }
@@ -43,6 +46,33 @@ class Replay {
       if (external == kNone || !v_.graph.externals[external].has_contents) continue;
       for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) s_.touches[sub].written = true;
     }
+  }
+
+  // Follows a valid access of the usual kind: to all of a transient that has one subresource, once
+  // in the pass, and not as an attachment. Returns false, and does nothing, for any other access.
+  bool follow(std::uint32_t pass, const AccessRecord& access) {
+    constexpr std::uint32_t kProblems = kNull | kForeign | kClosed;
+    if ((access.flags & (kProblems | kWhole)) != kWhole || (access.access & kAttachmentBits) != 0)
+      return false;
+    const ResourceRecord& r = v_.graph.resources[access.resource];
+    const std::uint32_t* const subs = v_.workspace.first_sub.data() + access.resource;
+    const FormatOracle& formats = v_.limits.formats;
+    const bool writes = (access.flags & kWrite) != 0;
+    if (r.external != kNone || access.kind() != r.kind || subs[1] != subs[0] + 1 ||
+        access.stages == 0 || (access.stages & forbidden_) != 0 || access.access == 0 ||
+        ((access.access & kWriteBits) != 0) != writes ||
+        (r.kind == ResourceKind::texture &&
+         (!layout_is_usable(access.layout) ||
+          (formats.query && access.usage & ~formats.query(formats.context, r.format)))))
+      return false;
+    std::uint32_t& version = s_.versions[access.resource];
+    Workspace::Touch& touched = s_.touches[subs[0]];
+    if (access.version != version || touched.stamp == pass + 1 ||
+        !(touched.written || !reads_contents(access)))
+      return false;
+    version += writes;
+    touched = {pass + 1, access.layout, !writes, writes, true};
+    return true;
   }
 
   void visit(std::uint32_t pass, const AccessRecord& access) {
@@ -220,6 +250,7 @@ class Replay {
   Workspace::Validate& s_;
   bool unwritten_ = false;
   bool conflict_ = false;
+  VkPipelineStageFlags2 forbidden_ = 0;  // of this pass
   std::uint32_t attachment_ = kNone;  // the first attachment of this pass, and the size of its mip
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;

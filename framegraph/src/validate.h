@@ -32,6 +32,9 @@ struct Validation {
 // Checks descriptions, imports and histories, and numbers the subresources of valid resources.
 void validate_resources(Validation& validation);
 
+// Returns the pipeline stages that a queue class does not support.
+VkPipelineStageFlags2 forbidden_stages(QueueClass queue);
+
 // Checks the handle, range, usage and masks of one access. Returns false if the access names no
 // valid resource.
 bool validate_access(Validation& validation, std::uint32_t pass, const AccessRecord& access);

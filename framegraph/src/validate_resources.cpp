@@ -99,6 +99,14 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
            kNone, index);
 }
 
+// Returns whether the resource is a valid transient texture with one subresource and without flags.
+bool is_plain_texture(const ResourceRecord& r, std::uint32_t max_extent) {
+  return r.kind == ResourceKind::texture && r.external == kNone &&
+         (r.flags | r.create_flags) == 0 && r.format != VK_FORMAT_UNDEFINED && r.depth == 1 &&
+         r.mips == 1 && r.layers == 1 && r.planes == 1 && r.samples == 1 &&
+         r.width - 1 < max_extent && r.height - 1 < max_extent;
+}
+
 // Checks any resource. Returns the number of its subresources, 0 if its description is invalid.
 std::uint32_t subresources_of(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   const bool texture = r.kind == ResourceKind::texture;
@@ -118,7 +126,7 @@ void validate_resources(Validation& v) {
   std::uint32_t index = 0;
   for (const ResourceRecord& r : resources) {
     *first++ = next;
-    next += subresources_of(v, index, r);
+    next += is_plain_texture(r, v.limits.max_extent_2d) ? 1 : subresources_of(v, index, r);
     ++index;
   }
   *first = next;

@@ -38,13 +38,14 @@ ImageAccess depth_sample(const PassImage& image, const OcclusionSettings& settin
 }
 
 // gtao.comp: each traced pixel reads its inputs, then depth along its slices, and writes its tile.
-Accesses gtao_accesses(const OcclusionSettings& settings, std::span<const PassImage> images,
-                       float radius_px) {
+Accesses gtao_accesses(const PassWork& work) {
+  const OcclusionSettings& settings = work.settings;
+  const float radius_px = kRadius * static_cast<float>(work.height);
   const auto tile = static_cast<std::int32_t>(settings.tile_size);
   const Texel traced{tile / 2, tile / 4};
   Accesses accesses;
   std::vector<const PassImage*> depths;
-  for (const PassImage& image : images) {
+  for (const PassImage& image : work.images) {
     if (image.name.find("depth") != std::string::npos) {
       depths.push_back(&image);
     }
@@ -61,7 +62,7 @@ Accesses gtao_accesses(const OcclusionSettings& settings, std::span<const PassIm
       }
     }
   }
-  for (const PassImage& image : images) {
+  for (const PassImage& image : work.images) {
     if (image.direction == Direction::write) {
       accesses.push_back(at_invocation(image));
     }
@@ -112,18 +113,12 @@ void add_tiles(const PassImage& image, const PassWork& work, Accesses& accesses)
   }
 }
 
-// A texture has a history of its own if its name begins with the view's.
-bool is_history(const PassImage& image) { return image.name.starts_with("occlusion"); }
+bool is_history(const PassImage& image) { return image.name.starts_with("previous"); }
 
 // The gathers of an image: one for each channel that is read.
 std::uint32_t gathers_of(const PassImage& image, std::uint32_t channels) {
-  return image.name.ends_with("depth") || image.name.ends_with("specular") ? 1 : channels;
-}
-
-// Whether the tangent plane of most pixels comes from depth alone, so that few waves read normals.
-bool has_depth_planes(const PassWork& work) {
-  return !work.settings.half_resolution && work.settings.history_frames > 0 &&
-         work.state != FrameState::first && work.settings.specular != Specular::slices;
+  const auto has = [&](const char* part) { return image.name.find(part) != std::string::npos; };
+  return has("depth") || has("lobe") ? 1 : channels;
 }
 
 // Moves an access of the first of `blocks` blocks of a column to the block `block`.
@@ -174,20 +169,20 @@ Accesses block_accesses(const PassWork& work, const PassImage& image) {
 
 // reconstruct.comp, at full or at half resolution: the tiles around a column of blocks, then block
 // by block.
-Accesses reconstruct_accesses(const PassWork& work, std::span<const PassImage> images) {
+Accesses reconstruct_accesses(const PassWork& work) {
   const auto is_raw = [](const PassImage& image) {
     return image.direction == Direction::read &&
            (image.name == "raw occlusion" || image.name == "bent-normal residual");
   };
   Accesses accesses;
-  for (const PassImage& image : images) {
+  for (const PassImage& image : work.images) {
     if (is_raw(image)) {
       add_tiles(image, work, accesses);
     }
   }
   const std::int32_t blocks = blocks_of(work.settings);
   for (std::int32_t block = 0; block < blocks; ++block) {
-    for (const PassImage& image : images) {
+    for (const PassImage& image : work.images) {
       if (!is_raw(image)) {
         for (ImageAccess& access : block_accesses(work, image)) {
           accesses.push_back(in_block(std::move(access), block, blocks));
@@ -199,9 +194,9 @@ Accesses reconstruct_accesses(const PassWork& work, std::span<const PassImage> i
 }
 
 // upsample.comp: an invocation gathers four texels and computes four pixels.
-Accesses upsample_accesses(std::span<const PassImage> images) {
+Accesses upsample_accesses(const PassWork& work) {
   Accesses accesses;
-  for (const PassImage& image : images) {
+  for (const PassImage& image : work.images) {
     if (image.direction == Direction::read && image.name == "depth") {
       accesses.push_back(at_invocation(image, 2, {-1, -1}, 2));
     } else if (image.direction == Direction::read && image.name != "normals") {
@@ -217,9 +212,9 @@ Accesses upsample_accesses(std::span<const PassImage> images) {
 }
 
 // normals.comp: depth of the pixel and of two neighbours on each side along both axes.
-Accesses normals_accesses(std::span<const PassImage> images) {
+Accesses normals_accesses(const PassWork& work) {
   Accesses accesses;
-  for (const PassImage& image : images) {
+  for (const PassImage& image : work.images) {
     accesses.push_back(at_invocation(image));
     if (image.direction == Direction::read) {
       for (const std::int32_t distance : {-1, 1, -2, 2}) {
@@ -260,22 +255,20 @@ ImageAccess at_invocation(const PassImage& image, std::int32_t scale, Texel offs
           }};
 }
 
-DispatchAccesses accesses_of(const PassWork& work, std::span<const PassImage> images,
-                             std::uint32_t height, const Groups& groups) {
-  DispatchAccesses dispatch{groups.x, groups.y * groups.z, {}};
+DispatchAccesses accesses_of(const PassWork& work) {
+  DispatchAccesses dispatch{work.groups.x, work.groups.y * work.groups.z, {}};
   if (work.pass == "gtao") {
-    dispatch.accesses = gtao_accesses(work.settings, images, kRadius * static_cast<float>(height));
-    for (ImageAccess& access : dispatch.accesses) {
-      access = in_strips(std::move(access), groups);
+    for (ImageAccess& access : gtao_accesses(work)) {
+      dispatch.accesses.push_back(in_strips(std::move(access), work.groups));
     }
   } else if (work.pass == "reconstruct") {
-    dispatch.accesses = reconstruct_accesses(work, images);
+    dispatch.accesses = reconstruct_accesses(work);
   } else if (work.pass == "upsample") {
-    dispatch.accesses = upsample_accesses(images);
+    dispatch.accesses = upsample_accesses(work);
   } else if (work.pass == "normals") {
-    dispatch.accesses = normals_accesses(images);
+    dispatch.accesses = normals_accesses(work);
   } else {
-    for (const PassImage& image : images) {
+    for (const PassImage& image : work.images) {
       dispatch.accesses.push_back(at_invocation(image));
     }
   }

@@ -6,26 +6,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "work.h"
 
 namespace alcove::passes::cost {
-
-enum class Direction : std::uint8_t { read, write };
-
-// An image that a pass reads or writes, in the order of its declaration to the graph.
-struct PassImage {
-  std::string name;
-  Direction direction = Direction::read;
-  std::uint32_t texel_bytes = 4;
-  std::uint32_t width = 1;  // texels
-  std::uint32_t height = 1;
-
-  bool operator==(const PassImage&) const = default;
-};
 
 struct Texel {
   std::int32_t x = 0;
@@ -50,18 +35,9 @@ struct DispatchAccesses {
   std::vector<ImageAccess> accesses;
 };
 
-// The numbers of groups of a dispatch.
-struct Groups {
-  std::uint32_t x = 1;
-  std::uint32_t y = 1;
-  std::uint32_t z = 1;
-};
-
 // The image instructions of a pass whose pattern is not declared read or write one texel of each
-// image, that of the invocation. `height` is that of the full image, in pixels: the radius of the
-// search is 96 pixels of 1080.
-[[nodiscard]] DispatchAccesses accesses_of(const PassWork& work, std::span<const PassImage> images,
-                                           std::uint32_t height, const Groups& groups);
+// image, that of the invocation.
+[[nodiscard]] DispatchAccesses accesses_of(const PassWork& work);
 
 // The texel that is `distance` pixels from `from` in the direction `phi`, in radians, to within a
 // quarter of a pixel per hundred.

@@ -1,22 +1,115 @@
 #include "work.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
-
-#include "pass_work.h"
+#include <utility>
 
 namespace alcove::passes::cost {
 namespace {
 
-std::optional<double> known_iterations(const PassWork& work, const CompiledLoop& loop) {
-  if (work.pass == "gtao") {
-    return gtao_iterations(work, loop);
+using Loops = std::span<const CompiledLoop>;
+
+// Assumed number of ends of occluder runs in a half-slice, at each of which a GGX lobe is
+// integrated. The actual number depends on the scene.
+constexpr double kOccluderRuns = 2.5;
+
+// The numbers of depth samples that follow from the settings. A loop is identified by its number of
+// image loads, because compilers unroll some loops, so that the nesting depth of a loop does not
+// identify it.
+struct Samples {
+  std::uint32_t loads_per_step = 1;       // image loads of one step in one depth layer
+  std::uint32_t steps_per_iteration = 1;  // of the loop over steps, kUnrolled of gtao.comp
+  std::uint32_t iterations = 1;           // of the loop over steps
+  std::uint32_t half_slice = 1;           // image loads of a half-slice
+  // Image loads of a half-slice whose loops over steps are unrolled. A texel of back faces that
+  // both depth layers need is then loaded once.
+  std::uint32_t unrolled_half_slice = 1;
+};
+
+Samples samples_of(const OcclusionSettings& settings) {
+  const bool connected = settings.advanced.estimator == Estimator::connected;
+  Samples samples;
+  samples.loads_per_step = needs_back_depth(settings) ? 2 : 1;
+  samples.half_slice =
+      settings.steps * samples.loads_per_step * (needs_second_depth(settings) ? 2 : 1);
+  samples.unrolled_half_slice = settings.steps * ((needs_back_depth(settings) ? 1 : 0) +
+                                                  (needs_second_depth(settings) ? 2 : 1));
+  samples.steps_per_iteration = connected ? (settings.slices > 1 ? 2 : 4) : 1;
+  // With connected samples the first two steps, and a remainder, are outside of the loop.
+  samples.iterations =
+      connected ? (settings.steps - 2) / samples.steps_per_iteration : settings.steps;
+  return samples;
+}
+
+std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
+                                          std::uint32_t index);
+
+// Image loads in one iteration of a loop, those of its inner loops as often as they run.
+std::optional<double> loads_per_iteration(const OcclusionSettings& settings, Loops loops,
+                                          std::uint32_t index) {
+  const CompiledLoop& loop = loops[index];
+  double loads = loop.loads;
+  for (std::uint32_t i = index + 1; i < loops.size() && loops[i].depth > loop.depth; ++i) {
+    const CompiledLoop& inner = loops[i];
+    if (inner.depth != loop.depth + 1 || inner.loads == 0) {
+      continue;
+    }
+    const auto times = sampling_iterations(settings, loops, i);
+    const auto inside = times ? loads_per_iteration(settings, loops, i) : std::nullopt;
+    if (!inside) {
+      return std::nullopt;
+    }
+    loads += *times * *inside - inner.loads;
   }
-  if (work.pass == "reconstruct") {
-    return reconstruct_iterations(work, loop);
+  return loads;
+}
+
+// Returns how often a loop with image loads runs: once for each step of a half-slice, each of the
+// two half-slices of a slice, or each slice of a pixel. Its number of loads decides which of these
+// loops it is.
+std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
+                                          std::uint32_t index) {
+  const Samples samples = samples_of(settings);
+  const auto loads = loads_per_iteration(settings, loops, index);
+  if (!loads) {
+    return std::nullopt;
+  }
+  for (const std::uint32_t half_slice : {samples.half_slice, samples.unrolled_half_slice}) {
+    if (*loads == half_slice) {
+      return 2.0;
+    }
+    if (*loads == 2.0 * half_slice) {
+      return settings.slices;
+    }
+  }
+  if (*loads == samples.steps_per_iteration * samples.loads_per_step) {
+    return samples.iterations;
   }
   return std::nullopt;
+}
+
+// Whether a loop over the ends of occluder runs exists.
+bool integrates_runs(const OcclusionSettings& settings) {
+  return settings.advanced.estimator == Estimator::bitmask || needs_back_depth(settings);
+}
+
+// gtao.comp.
+std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops loops,
+                                      std::uint32_t index) {
+  if (loops[index].loads == 0) {
+    return integrates_runs(settings) ? std::optional(kOccluderRuns) : std::nullopt;
+  }
+  return sampling_iterations(settings, loops, index);
+}
+
+// reconstruct.comp. The outermost loop runs over the blocks of a column. The loops of sum_wide()
+// are counted as not run: pixels with a history run them only while it is less than two frames old,
+// which is rare.
+double reconstruct_iterations(const OcclusionSettings& settings, const CompiledLoop& loop) {
+  const bool column = settings.tile_size > (settings.half_resolution ? 2u : 1u);
+  return column && loop.depth == 1 ? 4.0 : 0.0;
 }
 
 }  // namespace
@@ -27,28 +120,57 @@ std::string_view name_of(FrameState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-tl::expected<double, std::string> iterations(const PassWork& work, const CompiledLoop& loop) {
-  if (const std::optional<double> known = known_iterations(work, loop)) {
-    return *known;
+tl::expected<std::vector<double>, std::string> iterations(const PassWork& work, Loops loops) {
+  std::vector<double> found;
+  for (std::uint32_t i = 0; i < loops.size(); ++i) {
+    const CompiledLoop& loop = loops[i];
+    const std::optional<double> known =
+        work.pass == "gtao"          ? gtao_iterations(work.settings, loops, i)
+        : work.pass == "reconstruct" ? std::optional(reconstruct_iterations(work.settings, loop))
+                                     : std::nullopt;
+    if (!known) {
+      std::string message = "The pass '" + std::string(work.pass) + "' (" +
+                            std::string(name_of(work.state)) +
+                            " frame) has a loop whose number of iterations is not declared: loop " +
+                            std::to_string(i) + "; declare it in passes/cost/work.cpp. Its loops:";
+      for (const CompiledLoop& each : loops) {
+        message += " depth " + std::to_string(each.depth) + " with " +
+                   std::to_string(each.instructions) + " instructions and " +
+                   std::to_string(each.loads) + " image loads;";
+      }
+      return tl::unexpected(std::move(message));
+    }
+    found.push_back(*known);
   }
-  return tl::unexpected("The pass '" + std::string(work.pass) + "' (" +
-                        std::string(name_of(work.state)) +
-                        " frame) has a loop whose number of iterations is not declared: loop " +
-                        std::to_string(loop.index) + " at depth " + std::to_string(loop.depth) +
-                        ", with " + std::to_string(loop.instructions) + " instructions, " +
-                        std::to_string(loop.loads) + " image loads and " +
-                        std::to_string(loop.stores) + " image stores; declare it in passes/cost.");
+  return found;
 }
 
-// seen_normal() computes a normal from depth if the given normal is missing or seems to face away
-// from the eye by a little. It loads the depth of a pixel and of its four neighbours.
-double branch_share(const PassWork& /*work*/, const CompiledBranch& branch) {
-  // An assumption about the share of the groups of 8x8 pixels with such a pixel; it is zero with
-  // the triangles' own normals, except at silhouettes.
+bool has_depth_planes(const PassWork& work) {
+  return !work.settings.half_resolution && work.settings.history_frames > 0 &&
+         work.state != FrameState::first && work.settings.specular != Specular::slices;
+}
+
+// The branches that read a normal or compute it from depth, which loads the depth of the pixel and
+// of eight neighbours.
+double branch_share(const PassWork& work, const CompiledBranch& branch) {
+  // seen_normal(): an assumption about the share of the groups of 8x8 pixels with a pixel whose
+  // given normal is missing or seems to face away from the eye by a little. It is zero with the
+  // triangles' own normals, except at silhouettes.
   constexpr double kNormalFromDepth = 0.02;
-  const bool normal_from_depth =
-      branch.stores == 0 && branch.loops == 0 && (branch.loads == 4 || branch.loads == 5);
-  return normal_from_depth ? kNormalFromDepth : 1.0;
+  // reconstruct.comp: the waves with a pixel whose tangent plane does not come from depth, as in
+  // accesses.cpp.
+  constexpr double kBentDepth = 0.22;
+  if (branch.stores > 0 || branch.loops > 0) {
+    return 1.0;
+  }
+  const bool from_depth = branch.loads == 8 || branch.loads == 9;
+  const bool given =
+      std::ranges::find(work.images, "normals", &PassImage::name) != work.images.end();
+  if (work.pass == "reconstruct" && has_depth_planes(work) &&
+      (given ? branch.loads == 1 : from_depth)) {
+    return kBentDepth;
+  }
+  return from_depth ? kNormalFromDepth : 1.0;
 }
 
 }  // namespace alcove::passes::cost

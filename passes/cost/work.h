@@ -2,8 +2,8 @@
 // runs, how rare a branch is, and (accesses.h) which texels a pass reads and writes. The GPU cost
 // model (sample/lab/gpu_cost) multiplies the instructions of each loop by these counts.
 //
-// A commit that changes a loop of a shader must also change gtao.cpp or reconstruct.cpp in this
-// folder. A loop without a count is an error that names the loop, so that no count is guessed.
+// A commit that changes a loop of a shader must also change work.cpp. A loop without a count is an
+// error that names the loop, so that no count is guessed.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "alcove/passes/occlusion.h"
 
@@ -36,19 +37,47 @@ struct CompiledLoop {
   std::uint32_t shared = 0;        // shared-memory operations among them
 };
 
-// A shader that a frame runs, with everything that decides how often its loops run.
-struct PassWork {
-  std::string_view pass;  // name of the pass in the graph
-  const OcclusionSettings& settings;
-  FrameState state = FrameState::first;
-  std::span<const CompiledLoop> loops;
+enum class Direction : std::uint8_t { read, write };
+
+// An image that a pass reads or writes, in the order of its bindings.
+struct PassImage {
+  std::string name;
+  Direction direction = Direction::read;
+  std::uint32_t texel_bytes = 4;
+  std::uint32_t width = 1;  // texels
+  std::uint32_t height = 1;
+
+  bool operator==(const PassImage&) const = default;
 };
 
-// Returns how often the body of `loop`, one of `work.loops`, runs each time that the loop is
-// entered. In a wave, that is the number of iterations of the lane that needs the most. It is an
-// error if no count is known for the loop.
-[[nodiscard]] tl::expected<double, std::string> iterations(const PassWork& work,
-                                                           const CompiledLoop& loop);
+// The numbers of groups of a dispatch.
+struct Groups {
+  std::uint32_t x = 1;
+  std::uint32_t y = 1;
+  std::uint32_t z = 1;
+};
+
+// A dispatch of a frame, with everything that decides how often its loops run and which texels it
+// reads and writes.
+struct PassWork {
+  std::string_view pass;  // AlcoveWorkDispatch::label
+  const OcclusionSettings& settings;
+  FrameState state = FrameState::first;
+  std::span<const PassImage> images;
+  Groups groups;
+  // Of the full image, in pixels. The radius of the search is 96 pixels of 1080.
+  std::uint32_t height = 1080;
+};
+
+// Returns how often the body of each loop of a shader runs each time that the loop is entered. In a
+// wave, that is the number of iterations of the lane that needs the most. It is an error if no
+// count is known for a loop.
+[[nodiscard]] tl::expected<std::vector<double>, std::string> iterations(
+    const PassWork& work, std::span<const CompiledLoop> loops);
+
+// Whether reconstruct.comp computes the tangent planes of most pixels from depth alone, so that few
+// waves read normals.
+[[nodiscard]] bool has_depth_planes(const PassWork& work);
 
 // One side of a divergent branch of the compiled shader.
 struct CompiledBranch {

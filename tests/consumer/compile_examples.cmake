@@ -1,13 +1,14 @@
 # Compiles the examples of GUIDE, a Markdown file, as C99 and as C++17. An example is a block that is
-# indented by four spaces and contains "alcove/" or "Alcove"; each becomes a function.
-# cmake -D GUIDE=... -D PREAMBLE=... -D CC=... -D CXX=... -D INCLUDE=... -P compile_examples.cmake
+# indented by four spaces or fenced as C, and declares a struct of Alcove; each becomes a function.
+# cmake -D GUIDE=... -D PREAMBLE=... -D CC=... -D CXX=... -D INCLUDE=... -D LEAST=... -P compile_examples.cmake
 # PREAMBLE is a file of C with the declarations that the examples use.
 file(READ ${GUIDE} text)
 # A list of CMake is a text with semicolons, and brackets keep its elements together.
 string(REPLACE ";" "<semicolon>" text "${text}")
 string(REPLACE "[" "<open>" text "${text}")
 string(REPLACE "]" "<close>" text "${text}")
-string(REGEX MATCHALL "\n\n(    [^\n]*\n|\n    [^\n]*\n)+" blocks "${text}")
+string(REGEX MATCHALL "\n\n(    [^\n]*\n|\n    [^\n]*\n)+|```c\n[^`]*" blocks "${text}")
+string(REPLACE "```c" "" blocks "${blocks}")
 set(includes "")
 set(functions "")
 set(count 0)
@@ -16,14 +17,14 @@ foreach(block IN LISTS blocks)
     continue()
   endif()
   math(EXPR count "${count} + 1")
-  string(REGEX MATCHALL "    #include[^\n]*\n" lines "${block}")
+  string(REGEX MATCHALL " *#include[^\n]*\n" lines "${block}")
   string(REPLACE ";" "" lines "${lines}")
   string(APPEND includes "${lines}")
-  string(REGEX REPLACE "    #include[^\n]*\n" "" block "${block}")
+  string(REGEX REPLACE " *#include[^\n]*\n" "" block "${block}")
   string(APPEND functions "void example_${count}(void) {${block}}\n")
 endforeach()
-if(count LESS 3)
-  message(FATAL_ERROR "only ${count} examples in ${GUIDE}")
+if(count LESS ${LEAST})
+  message(FATAL_ERROR "${count} examples in ${GUIDE}, at least ${LEAST} are expected")
 endif()
 file(READ ${PREAMBLE} preamble)
 foreach(placeholder "<semicolon>=;" "<open>=[" "<close>=]")

@@ -1,10 +1,12 @@
-// Declarations that the examples of passes/INTEGRATION.md take from the engine.
+// Declarations that the examples of README.md and passes/INTEGRATION.md take from the engine.
 #include <alcove/alcove.h>
 
 extern VkInstance instance;
 extern VkPhysicalDevice physical_device;
 extern VkDevice device;
-extern uint32_t queue_family, frame_number;
+extern uint32_t queue_family, frame_number, width, height;
+extern VkImage depth_image, visibility_image;
+extern VkFormat depth_format;
 extern VkPhysicalDeviceFeatures2 features;
 extern AlcoveContext* context;
 extern AlcoveSettings settings;
@@ -12,5 +14,11 @@ extern AlcoveCamera camera, previous_camera;
 extern AlcoveImage depth, normals, visibility;
 extern VkCommandBuffer commands;
 extern float radius;
+extern const char* text;
+extern size_t length;
+extern char message[ALCOVE_MAX_MESSAGE];
+extern double milliseconds[32];
+extern uint32_t time_count;
 void write_log(void* user, AlcoveSeverity severity, const char* sentence);
 void fail(const char* sentence);
+void submit_and_wait_for_slot(uint32_t slot);

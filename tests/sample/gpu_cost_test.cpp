@@ -21,7 +21,6 @@ namespace {
 
 using passes::cost::CompiledLoop;
 using passes::cost::FrameState;
-using passes::cost::PassWork;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -109,19 +108,10 @@ TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
   EXPECT_FALSE(blocks_of(shader_of("no blocks here")));
 }
 
-// The number of times that each loop of the search runs; -1 for one that is not known.
+// The number of times that each loop of the search runs; empty if one is not known.
 std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
-                                      std::vector<CompiledLoop> loops) {
-  std::vector<double> found;
-  found.reserve(loops.size());
-  for (std::uint32_t i = 0; i < loops.size(); ++i) {
-    loops[i].index = i;
-  }
-  const PassWork work{"gtao", settings, FrameState::moving, loops};
-  for (const CompiledLoop& loop : loops) {
-    found.push_back(passes::cost::iterations(work, loop).value_or(-1.0));
-  }
-  return found;
+                                      const std::vector<CompiledLoop>& loops) {
+  return passes::cost::iterations({"gtao", settings}, loops).value_or(std::vector<double>{});
 }
 
 TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
@@ -141,17 +131,21 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
       << "the loop over half-slices is unrolled";
   EXPECT_THAT(search_iterations(settings, {loop(1, 16), loop(1, 16)}), ElementsAre(2, 2))
       << "the loop over slices is unrolled";
-  EXPECT_THAT(search_iterations(settings, {loop(1, 5), loop(2, 5)}), ElementsAre(-1, -1))
+  EXPECT_THAT(search_iterations(settings, {loop(1, 5), loop(2, 5)}), IsEmpty())
       << "no number of steps has five fetches";
-  EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), ElementsAre(-1))
+  EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), IsEmpty())
       << "visibility has no loop over occluder runs";
+  settings.depth_layers = 2;
+  settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  EXPECT_THAT(search_iterations(settings, {loop(1, 48), loop(2, 48)}), ElementsAre(2, 2))
+      << "both depth layers share the loads of back faces";
 }
 
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
   const passes::OcclusionSettings settings;
-  const CompiledLoop loop{.index = 0, .depth = 1, .instructions = 7};
-  const PassWork work{"normals", settings, FrameState::moving, {&loop, 1}};
-  const auto iterations = passes::cost::iterations(work, loop);
+  const CompiledLoop loop{.depth = 1, .instructions = 7};
+  const auto iterations =
+      passes::cost::iterations({"normals", settings, FrameState::moving}, {&loop, 1});
   ASSERT_FALSE(iterations);
   EXPECT_THAT(iterations.error(), HasSubstr("'normals' (moving frame)"));
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
@@ -276,11 +270,12 @@ TEST(CacheTraffic, TrafficOfTheSearchAgreesWithAnotherModel) {
   const std::vector<PassImage> images{{"depth", Direction::read, 4, 1920, 1080},
                                       {"normals", Direction::read, 8, 1920, 1080},
                                       {"raw occlusion", Direction::write, 8, 480, 270}};
-  const PassWork work{"gtao", settings, FrameState::moving, {}};
   for (std::size_t i = 0; i < kGpuParts.size(); ++i) {
     const Expected& expected = kExpected[i];
     const CacheTraffic found = cache_traffic(
-        kGpuParts[i], passes::cost::accesses_of(work, images, 1080, {1, 60, 34}), expected.waves);
+        kGpuParts[i],
+        passes::cost::accesses_of({"gtao", settings, FrameState::moving, images, {1, 60, 34}}),
+        expected.waves);
     EXPECT_NEAR(found.lines_per_load / expected.lines, 1, 0.1) << kGpuParts[i].family;
     EXPECT_NEAR(found.l2_bytes / kPixels / expected.l2_bytes_per_pixel, 1, 0.1)
         << kGpuParts[i].family;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "gpu_cost/cache_traffic.h"
 
 namespace alcove::sample {
 namespace {
 
-using passes::cost::CompiledBranch;
 using passes::cost::CompiledLoop;
 using passes::cost::FrameState;
 using passes::cost::PassWork;
@@ -70,45 +70,48 @@ double waves_held(const GpuPart& part, const Statistics& statistics, double wave
                    : statistics.subgroups_per_simd;
 }
 
-struct Model {
-  const GpuPart& part;
-  const RecordingDevice& device;
-  const CostInputs& inputs;
+// Whether two dispatches do the same work, because they run the same pipeline on the same images.
+bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const AlcoveWork& work_b,
+             const AlcoveWorkDispatch& b) {
+  return std::string_view(a.shader) == b.shader && std::ranges::equal(a.groups, b.groups) &&
+         std::ranges::equal(std::span(a.constants).first(a.constant_count),
+                            std::span(b.constants).first(b.constant_count), {},
+                            &AlcoveWorkConstant::value, &AlcoveWorkConstant::value) &&
+         images_of(work_a, a) == images_of(work_b, b);
+}
 
-  double pixels() const { return static_cast<double>(inputs.width) * inputs.height; }
-  double milliseconds(double cycles) const { return cycles / part.hertz * 1e3; }
-  tl::expected<ModelledPass, std::string> cost(const RecordedPass& pass, FrameState state) const;
-  tl::expected<void, std::string> add_dispatch(const RecordedDispatch& dispatch,
-                                               std::span<const passes::cost::PassImage> images,
-                                               FrameState state, ModelledPass& cost) const;
-};
-
-tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& dispatch,
-                                                    std::span<const passes::cost::PassImage> images,
-                                                    FrameState state, ModelledPass& cost) const {
-  const CompiledShader* shader = device.compiled(dispatch.pipeline);
-  if (shader == nullptr) {
-    return Failure("The pass '" + cost.pass + "' runs a pipeline that was not recorded.");
+tl::expected<ModelledPass, std::string> model(const GpuPart& part, const NullDevice& device,
+                                              const CostInputs& inputs, const AlcoveWork& frame,
+                                              const AlcoveWorkDispatch& dispatch,
+                                              FrameState state) {
+  const auto compiled = compile_dispatch(device, dispatch);
+  if (!compiled) {
+    return Failure(compiled.error());
   }
-  const auto statistics = statistics_of(*shader);
-  const auto blocks = blocks_of(*shader);
+  const CompiledShader& shader = **compiled;
+  const auto statistics = statistics_of(shader);
+  const auto blocks = blocks_of(shader);
   if (!statistics || !blocks) {
     return Failure(statistics ? blocks.error() : statistics.error());
   }
+  const auto images = images_of(frame, dispatch);
+  const auto& groups = dispatch.groups;
+  const PassWork work{
+      dispatch.label, inputs.settings, state, images, {groups[0], groups[1], groups[2]},
+      inputs.height};
   const std::vector<Loop> loops = loops_of(*blocks);
   std::vector<CompiledLoop> summaries;
   for (const Loop& loop : loops) {
     summaries.push_back(loop.summary);
   }
-  const PassWork work{cost.pass, inputs.settings, state, summaries};
-  std::vector<double> iterations;
-  for (const CompiledLoop& loop : summaries) {
-    const auto count = passes::cost::iterations(work, loop);
-    if (!count) {
-      return Failure(count.error());
-    }
-    iterations.push_back(*count);
-    cost.loops.push_back({loop, *count});
+  const auto iterations = passes::cost::iterations(work, summaries);
+  if (!iterations) {
+    return Failure(iterations.error());
+  }
+  ModelledPass cost;
+  cost.pass = dispatch.label;
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    cost.loops.push_back({summaries[i], (*iterations)[i]});
   }
   std::vector<Branch> branches = branches_of(*blocks);
   for (Branch& branch : branches) {
@@ -121,69 +124,42 @@ tl::expected<void, std::string> Model::add_dispatch(const RecordedDispatch& disp
       cost.branches.push_back({branch.summary, branch.share});
     }
   }
-  const double wave = shader->wave;
-  cost.wave = wave_work(*blocks, loops, iterations, branches, part.rdna, shader->wave);
-  const double waves = static_cast<double>(dispatch.groups_x) * dispatch.groups_y *
-                       dispatch.groups_z * std::ceil(shader->group / wave);
-  cost.waves += waves;
-  cost.vector_registers = std::max(cost.vector_registers, statistics->vector_registers);
-  cost.scalar_registers = std::max(cost.scalar_registers, statistics->scalar_registers);
-  cost.spills += statistics->spills;
-  cost.scratch_bytes += statistics->scratch_bytes;
-  cost.code_bytes += statistics->code_bytes;
-  cost.shared_bytes = std::max(cost.shared_bytes, statistics->shared_bytes);
-  const double held = waves_held(part, *statistics, wave);
-  cost.waves_per_simd = cost.waves_per_simd == 0 ? held : std::min(cost.waves_per_simd, held);
-  const double lanes = waves * wave;
-  cost.instructions_per_pixel += cost.wave.instructions * lanes / pixels();
-  cost.fetches_per_pixel += cost.wave.loads * lanes / pixels();
-  cost.stores_per_pixel += cost.wave.stores * lanes / pixels();
+  const double wave = shader.wave;
+  constexpr double kGroup = 64;  // invocations, as alcove_work.h says
+  const double pixels = static_cast<double>(inputs.width) * inputs.height;
+  const auto milliseconds = [&](double cycles) { return cycles / part.hertz * 1e3; };
+  cost.wave = wave_work(*blocks, loops, *iterations, branches, part.rdna, shader.wave);
+  cost.waves = static_cast<double>(groups[0]) * groups[1] * groups[2] * std::ceil(kGroup / wave);
+  cost.vector_registers = statistics->vector_registers;
+  cost.scalar_registers = statistics->scalar_registers;
+  cost.spills = statistics->spills;
+  cost.scratch_bytes = statistics->scratch_bytes;
+  cost.code_bytes = statistics->code_bytes;
+  cost.shared_bytes = statistics->shared_bytes;
+  cost.waves_per_simd = waves_held(part, *statistics, wave);
+  const double lanes = cost.waves * wave;
+  cost.instructions_per_pixel = cost.wave.instructions * lanes / pixels;
+  cost.fetches_per_pixel = cost.wave.loads * lanes / pixels;
+  cost.stores_per_pixel = cost.wave.stores * lanes / pixels;
   // A SIMD executes whole waves, so that some SIMDs may execute one more than others.
-  cost.alu_ms += milliseconds(std::ceil(waves / part.simds) * cost.wave.busiest());
-  cost.latency_ms +=
-      milliseconds(std::ceil(waves / part.simds / std::max(held, 1.0)) *
-                   wave_latency(*statistics, cost.wave, held, shader->wave, !loops.empty()));
-  const double per_unit = std::ceil(waves / part.compute_units);
+  cost.alu_ms = milliseconds(std::ceil(cost.waves / part.simds) * cost.wave.busiest());
+  cost.latency_ms = milliseconds(
+      std::ceil(cost.waves / part.simds / std::max(cost.waves_per_simd, 1.0)) *
+      wave_latency(*statistics, cost.wave, cost.waves_per_simd, shader.wave, !loops.empty()));
+  const double per_unit = std::ceil(cost.waves / part.compute_units);
   // A compute unit's shared memory moves 32 words a cycle.
-  cost.shared_ms += milliseconds(per_unit * cost.wave.shared_words * wave / 32);
-  const CacheTraffic traffic = cache_traffic(
-      part,
-      passes::cost::accesses_of(work, images, inputs.height,
-                                {dispatch.groups_x, dispatch.groups_y, dispatch.groups_z}),
-      held);
-  cost.texture_ms +=
+  cost.shared_ms = milliseconds(per_unit * cost.wave.shared_words * wave / 32);
+  const CacheTraffic traffic =
+      cache_traffic(part, passes::cost::accesses_of(work), cost.waves_per_simd);
+  cost.texture_ms =
       milliseconds(std::max(per_unit * cost.wave.texture_cycles, traffic.texture_cycles));
-  cost.l2_bytes_per_pixel += traffic.l2_bytes / pixels();
-  cost.bytes_per_pixel += traffic.memory_bytes / pixels();
-  cost.l2_ms += l2_ms(part, traffic);
-  cost.memory_ms += memory_ms(part, traffic);
-  cost.cache_lines_per_load = std::max(cost.cache_lines_per_load, traffic.lines_per_load);
-  cost.dispatch_ms += 1e3 * part.dispatch_seconds;
-  return {};
-}
-
-tl::expected<ModelledPass, std::string> Model::cost(const RecordedPass& pass,
-                                                    FrameState state) const {
-  ModelledPass cost;
-  cost.pass = pass.name;
-  for (const RecordedDispatch& dispatch : pass.dispatches) {
-    if (auto added = add_dispatch(dispatch, pass.images, state, cost); !added) {
-      return Failure(std::move(added.error()));
-    }
-  }
+  cost.l2_bytes_per_pixel = traffic.l2_bytes / pixels;
+  cost.bytes_per_pixel = traffic.memory_bytes / pixels;
+  cost.l2_ms = l2_ms(part, traffic);
+  cost.memory_ms = memory_ms(part, traffic);
+  cost.cache_lines_per_load = traffic.lines_per_load;
+  cost.dispatch_ms = 1e3 * part.dispatch_seconds;
   return cost;
-}
-
-// Returns the modelled cost of a pass of an earlier frame that equals `pass`, or null.
-const ModelledPass* find_same(const std::vector<RecordedFrame>& frames,
-                              const std::vector<ModelledFrame>& costs, const RecordedPass& pass) {
-  for (std::size_t i = 0; i < costs.size(); ++i) {
-    const auto same = std::ranges::find(frames[i].passes, pass);
-    if (same != frames[i].passes.end()) {
-      return &costs[i].passes[static_cast<std::size_t>(same - frames[i].passes.begin())];
-    }
-  }
-  return nullptr;
 }
 
 }  // namespace
@@ -213,22 +189,30 @@ double ModelledFrame::milliseconds() const {
 tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(const GpuPart& part,
                                                                       const NullDevice& device,
                                                                       const CostInputs& inputs) {
-  RecordingDevice recording(device);
-  const auto frames = record_frames(recording, inputs);
+  const auto frames = describe_frames(inputs);
   if (!frames) {
     return Failure(frames.error());
   }
-  const Model model{part, recording, inputs};
   std::vector<ModelledFrame> costs;
-  for (const RecordedFrame& frame : *frames) {
-    ModelledFrame cost{frame.state, {}};
-    for (const RecordedPass& pass : frame.passes) {
-      // Frames that run the same pipelines on the same images do the same work.
-      if (const ModelledPass* same = find_same(*frames, costs, pass)) {
-        cost.passes.push_back(*same);
-        continue;
+  // Returns the cost of a dispatch of an earlier frame that does the same work, or null.
+  const auto find_same = [&](const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch) {
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+      for (std::size_t j = 0; j < costs[i].passes.size(); ++j) {
+        if (is_same((*frames)[i], (*frames)[i].dispatches[j], frame, dispatch)) {
+          return &costs[i].passes[j];
+        }
       }
-      auto modelled = model.cost(pass, frame.state);
+    }
+    return static_cast<ModelledPass*>(nullptr);
+  };
+  for (std::size_t i = 0; i < frames->size(); ++i) {
+    const AlcoveWork& frame = (*frames)[i];
+    ModelledFrame cost{static_cast<FrameState>(i), {}};
+    for (const AlcoveWorkDispatch& dispatch :
+         std::span(frame.dispatches).first(frame.dispatch_count)) {
+      const ModelledPass* const same = find_same(frame, dispatch);
+      auto modelled =
+          same != nullptr ? *same : model(part, device, inputs, frame, dispatch, cost.state);
       if (!modelled) {
         return Failure(std::move(modelled.error()));
       }
@@ -245,30 +229,31 @@ tl::expected<std::vector<Occupancy>, std::string> occupancies(const GpuPart& par
   std::vector<Occupancy> found;
   for (std::size_t kind = 0; kind < kProjectionNames.size(); ++kind) {
     inputs.projection = static_cast<ProjectionKind>(kind);
-    RecordingDevice recording(device);
-    const auto frames = record_frames(recording, inputs);
+    const auto frames = describe_frames(inputs);
     if (!frames) {
       return Failure(frames.error());
     }
-    for (const RecordedFrame& frame : *frames) {
-      for (const RecordedPass& pass : frame.passes) {
-        auto own = std::ranges::find(found, pass.name, &Occupancy::pass);
+    for (const AlcoveWork& frame : *frames) {
+      for (const AlcoveWorkDispatch& dispatch :
+           std::span(frame.dispatches).first(frame.dispatch_count)) {
+        const auto shader = compile_dispatch(device, dispatch);
+        if (!shader) {
+          return Failure(shader.error());
+        }
+        const auto statistics = statistics_of(**shader);
+        if (!statistics) {
+          return Failure(statistics.error());
+        }
+        auto own = std::ranges::find(found, std::string_view(dispatch.label), &Occupancy::pass);
         if (own == found.end()) {
-          own = found.insert(own, Occupancy{pass.name});
+          own = found.insert(own, Occupancy{dispatch.label});
         }
-        for (const RecordedDispatch& dispatch : pass.dispatches) {
-          const CompiledShader& shader = *recording.compiled(dispatch.pipeline);
-          const auto statistics = statistics_of(shader);
-          if (!statistics) {
-            return Failure(statistics.error());
-          }
-          const double held = waves_held(part, *statistics, shader.wave);
-          double& waves = own->waves_per_simd[kind];
-          waves = waves == 0 ? held : std::min(waves, held);
-          double& registers = own->vector_registers[kind];
-          registers = std::max(registers, statistics->vector_registers);
-          own->spills[kind] = std::max(own->spills[kind], statistics->spills);
-        }
+        const double held = waves_held(part, *statistics, (*shader)->wave);
+        double& waves = own->waves_per_simd[kind];
+        waves = waves == 0 ? held : std::min(waves, held);
+        double& registers = own->vector_registers[kind];
+        registers = std::max(registers, statistics->vector_registers);
+        own->spills[kind] = std::max(own->spills[kind], statistics->spills);
       }
     }
   }

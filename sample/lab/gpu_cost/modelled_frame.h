@@ -16,8 +16,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
-#include "gpu_cost/recorded_frame.h"
 #include "gpu_cost/wave.h"
 
 namespace alcove::sample {
@@ -72,8 +72,8 @@ struct ModelledFrame {
 };
 
 // Returns the modelled time of one frame of each FrameState on one GPU. Errors: those of
-// record_frames(), the driver's text cannot be parsed, or the iterations of a loop are not
-// declared.
+// describe_frames() and compile_dispatch(), the driver's text cannot be parsed, or the iterations
+// of a loop are not declared.
 [[nodiscard]] tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(
     const GpuPart& part, const NullDevice& device, const CostInputs& inputs);
 

@@ -1,13 +1,18 @@
 #include "gpu_cost/null_device.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
-
-#include "gpu_cost/silent_standard_error.h"
 
 namespace alcove::sample {
 namespace {
@@ -33,6 +38,28 @@ std::optional<std::string> radv_manifest() {
   }
   return std::nullopt;
 }
+
+// Discards the output on standard error during the object's lifetime, for drivers that print to it.
+class SilentStandardError {
+ public:
+  SilentStandardError() : before_(dup(STDERR_FILENO)) {
+    if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) {
+      dup2(nowhere, STDERR_FILENO);
+      close(nowhere);
+    }
+  }
+  ~SilentStandardError() {
+    if (before_ >= 0) {
+      dup2(before_, STDERR_FILENO);
+      close(before_);
+    }
+  }
+  SilentStandardError(const SilentStandardError&) = delete;
+  SilentStandardError& operator=(const SilentStandardError&) = delete;
+
+ private:
+  int before_;
+};
 
 // Sets an environment variable during the object's lifetime.
 class ScopedVariable {
@@ -89,6 +116,111 @@ VkResult create_device(NullDevice& made) {
   return vkCreateDevice(made.physical_device, &info, nullptr, &made.device);
 }
 
+double value_of(const VkPipelineExecutableStatisticKHR& statistic) {
+  switch (statistic.format) {
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR:
+      return statistic.value.b32 != 0 ? 1.0 : 0.0;
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_INT64_KHR:
+      return static_cast<double>(statistic.value.i64);
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_UINT64_KHR:
+      return static_cast<double>(statistic.value.u64);
+    default:
+      return statistic.value.f64;
+  }
+}
+
+VkDescriptorType descriptor_type(AlcoveBindingType type) {
+  switch (type) {
+    case ALCOVE_BINDING_TYPE_PARAMETERS:
+      return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case ALCOVE_BINDING_TYPE_TABLE:
+      return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    case ALCOVE_BINDING_TYPE_SAMPLED_IMAGE:
+      return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case ALCOVE_BINDING_TYPE_FETCHED_IMAGE:
+      return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    default:
+      return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  }
+}
+
+// Creates the layout of a dispatch's bindings. Samplers are part of it, as alcove_work.h says:
+// nearest and clamped.
+VkResult create_layout(VkDevice device, const AlcoveWorkDispatch& dispatch,
+                       VkPipelineLayout& layout) {
+  const VkSamplerCreateInfo sampler_info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                         .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                         .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                         .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+  VkSampler sampler = VK_NULL_HANDLE;
+  if (const VkResult result = vkCreateSampler(device, &sampler_info, nullptr, &sampler);
+      result != VK_SUCCESS) {
+    return result;
+  }
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (const AlcoveWorkBinding& binding :
+       std::span(dispatch.bindings).first(dispatch.binding_count)) {
+    const bool sampled = binding.type == ALCOVE_BINDING_TYPE_SAMPLED_IMAGE;
+    bindings.push_back({binding.number, descriptor_type(binding.type), 1,
+                        VK_SHADER_STAGE_COMPUTE_BIT, sampled ? &sampler : nullptr});
+  }
+  const VkDescriptorSetLayoutCreateInfo set_info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+      .bindingCount = dispatch.binding_count,
+      .pBindings = bindings.data()};
+  VkDescriptorSetLayout set = VK_NULL_HANDLE;
+  if (const VkResult result = vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set);
+      result != VK_SUCCESS) {
+    return result;
+  }
+  const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                        .setLayoutCount = 1,
+                                        .pSetLayouts = &set};
+  return vkCreatePipelineLayout(device, &info, nullptr, &layout);
+}
+
+// Creates the pipeline of a dispatch. Its objects live as long as the device, until the process
+// ends.
+VkResult create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch,
+                         VkPipeline& pipeline) {
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  AlcoveShader shader{};
+  if (alcoveGetShader(dispatch.shader, &shader) != ALCOVE_SUCCESS ||
+      create_layout(device, dispatch, layout) != VK_SUCCESS) {
+    return VK_ERROR_INITIALIZATION_FAILED;
+  }
+  const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                             .codeSize = shader.code_size,
+                                             .pCode = shader.code};
+  VkShaderModule module = VK_NULL_HANDLE;
+  if (const VkResult result = vkCreateShaderModule(device, &module_info, nullptr, &module);
+      result != VK_SUCCESS) {
+    return result;
+  }
+  std::vector<VkSpecializationMapEntry> entries;
+  for (std::uint32_t i = 0; i < dispatch.constant_count; ++i) {
+    entries.push_back({dispatch.constants[i].id,
+                       static_cast<std::uint32_t>(i * sizeof(AlcoveWorkConstant) +
+                                                  offsetof(AlcoveWorkConstant, value)),
+                       sizeof dispatch.constants[i].value});
+  }
+  const VkSpecializationInfo constants{dispatch.constant_count, entries.data(),
+                                       dispatch.constant_count * sizeof(AlcoveWorkConstant),
+                                       dispatch.constants};
+  const VkComputePipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+      .flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR |
+               VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR,
+      .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                .module = module,
+                .pName = "main",
+                .pSpecializationInfo = &constants},
+      .layout = layout};
+  const SilentStandardError silent;  // ACO warns if it finds no disassembler for old GPUs
+  return vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);
+}
+
 }  // namespace
 
 tl::expected<NullDevice, std::string> create_null_device(std::string_view family) {
@@ -121,6 +253,77 @@ tl::expected<NullDevice, std::string> create_null_device(std::string_view family
   vkGetPhysicalDeviceProperties(made.physical_device, &properties);
   made.name = properties.deviceName;
   return made;
+}
+
+tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
+                                                               VkPipeline pipeline) {
+  const auto load = [device](const char* name) { return vkGetDeviceProcAddr(device, name); };
+  const auto get_properties = reinterpret_cast<PFN_vkGetPipelineExecutablePropertiesKHR>(
+      load("vkGetPipelineExecutablePropertiesKHR"));
+  const auto get_statistics = reinterpret_cast<PFN_vkGetPipelineExecutableStatisticsKHR>(
+      load("vkGetPipelineExecutableStatisticsKHR"));
+  const auto get_texts = reinterpret_cast<PFN_vkGetPipelineExecutableInternalRepresentationsKHR>(
+      load("vkGetPipelineExecutableInternalRepresentationsKHR"));
+  if (get_properties == nullptr || get_statistics == nullptr || get_texts == nullptr) {
+    return Failure("The device lacks VK_KHR_pipeline_executable_properties.");
+  }
+  const VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
+  std::uint32_t count = 1;
+  VkPipelineExecutablePropertiesKHR properties{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR};
+  if (get_properties(device, &info, &count, &properties) < VK_SUCCESS || count == 0) {
+    return Failure("The driver reports no executable for a pipeline that it compiled.");
+  }
+  CompiledShader shader;
+  shader.wave = properties.subgroupSize;
+  const VkPipelineExecutableInfoKHR executable{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, .pipeline = pipeline};
+  get_statistics(device, &executable, &count, nullptr);
+  std::vector<VkPipelineExecutableStatisticKHR> statistics(
+      count, {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
+  get_statistics(device, &executable, &count, statistics.data());
+  for (const VkPipelineExecutableStatisticKHR& statistic : statistics) {
+    shader.statistics[statistic.name] = value_of(statistic);
+  }
+  get_texts(device, &executable, &count, nullptr);
+  std::vector<VkPipelineExecutableInternalRepresentationKHR> texts(
+      count, {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR});
+  get_texts(device, &executable, &count, texts.data());
+  std::vector<std::string> contents(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    contents[i].resize(texts[i].dataSize);
+    texts[i].pData = contents[i].data();
+  }
+  get_texts(device, &executable, &count, texts.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    shader.texts[texts[i].name] = contents[i].c_str();  // up to the null terminator
+  }
+  return shader;
+}
+
+tl::expected<const CompiledShader*, std::string> compile_dispatch(
+    const NullDevice& device, const AlcoveWorkDispatch& dispatch) {
+  // The states of a frame, and settings that differ little, have most pipelines in common.
+  static std::map<std::tuple<VkDevice, std::string, std::vector<std::uint32_t>>, CompiledShader>
+      known;
+  std::vector<std::uint32_t> constants;
+  for (std::uint32_t i = 0; i < dispatch.constant_count; ++i) {
+    constants.push_back(dispatch.constants[i].value);
+  }
+  const std::tuple key{device.device, std::string(dispatch.shader), std::move(constants)};
+  if (const auto found = known.find(key); found != known.end()) {
+    return &found->second;
+  }
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  if (create_pipeline(device.device, dispatch, pipeline) != VK_SUCCESS) {
+    return Failure("Mesa's AMD driver could not compile the shader '" +
+                   std::string(dispatch.shader) + "'.");
+  }
+  auto shader = read_compiled_shader(device.device, pipeline);
+  if (!shader) {
+    return Failure(std::move(shader.error()));
+  }
+  return &known.emplace(key, std::move(*shader)).first->second;
 }
 
 }  // namespace alcove::sample

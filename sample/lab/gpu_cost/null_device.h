@@ -1,11 +1,16 @@
-// A Vulkan device without a GPU: Mesa's RADV driver compiles pipelines for any AMD GPU.
+// A Vulkan device without a GPU: Mesa's RADV driver compiles pipelines for any AMD GPU, and reports
+// their statistics and code (VK_KHR_pipeline_executable_properties).
 #pragma once
 
 #include <vulkan/vulkan.h>
 
+#include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+
+#include "alcove/alcove_work.h"
 
 namespace alcove::sample {
 
@@ -23,5 +28,23 @@ struct NullDevice {
 // thread may read them meanwhile. Errors: the driver is not installed, or does not support the
 // family.
 [[nodiscard]] tl::expected<NullDevice, std::string> create_null_device(std::string_view family);
+
+struct CompiledShader {
+  std::uint32_t wave = 64;                   // invocations in a wave
+  std::map<std::string, double> statistics;  // by the names that the driver gives
+  std::map<std::string, std::string> texts;  // the compiler's representations, by name
+};
+
+// Reads what the compiler kept of a pipeline that was created with
+// VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR and
+// VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR, on any device with
+// VK_KHR_pipeline_executable_properties.
+[[nodiscard]] tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
+                                                                             VkPipeline pipeline);
+
+// Compiles the pipeline of a dispatch. The result is kept until the process ends. Error: the driver
+// rejects the pipeline, or reports nothing about it.
+[[nodiscard]] tl::expected<const CompiledShader*, std::string> compile_dispatch(
+    const NullDevice& device, const AlcoveWorkDispatch& dispatch);
 
 }  // namespace alcove::sample

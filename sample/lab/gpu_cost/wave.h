@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cost/work.h"
-#include "gpu_cost/compiled_shader.h"
+#include "gpu_cost/null_device.h"
 
 namespace alcove::sample {
 

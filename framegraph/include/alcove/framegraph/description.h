@@ -25,13 +25,13 @@ struct ResourceRecord {
   std::uint32_t mips = 1;
   std::uint32_t layers = 1;
   std::uint32_t samples = 1;
+  VkFlags create_flags = 0;  // of a texture, TextureDesc::flags; of a buffer, BufferDesc::usage
   std::uint32_t external = kNone;  // of an import or a history slot: index into externals
   ResourceKind kind = ResourceKind::texture;
   Origin origin = Origin::transient;
   std::uint8_t slot = 0;     // of a history: its age in frames; 0 is this frame's slot
   std::uint8_t slots = 1;    // of a history: the number of its slots
   std::uint32_t flags = 0;   // ResourceFlags
-  VkFlags create_flags = 0;  // of a texture, TextureDesc::flags; of a buffer, BufferDesc::usage
   std::uint32_t planes = 1;  // aspects with separate states: 2 if the format has depth and stencil
   bool operator==(const ResourceRecord&) const = default;
 };

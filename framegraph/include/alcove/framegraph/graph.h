@@ -78,7 +78,7 @@ class PassBuilder {
       : graph_(graph), pass_(pass), tag_(tag) {}
   // Returns whether the frame to which this builder belongs is still being declared. If it is not,
   // because reset() was called, adds an error to the new frame.
-  bool is_current();
+  bool is_current() const;
 
   Graph& graph_;
   std::uint32_t pass_;
@@ -151,6 +151,12 @@ class Graph {
 
   PassBuilder add_pass(std::string_view name, QueueClass queue = QueueClass::graphics);
 
+  // Returns the handle of the latest version of a texture of this frame.
+  Texture latest(Texture texture) const {
+    texture.version = texture.index < versions_.size() ? versions_[texture.index] : texture.version;
+    return texture;
+  }
+
   // Marks this version as an output of the frame, so that the passes that produce it are not
   // culled. The contents of a transient can be read after the frame, until the next frame reuses
   // its memory.
@@ -207,12 +213,13 @@ class Graph {
   }
   void change() {
     description_.edition = frame_;
-    repeats_ = false;
+    repeating_tag_ = 0;
   }
   std::string_view keep_name(std::string_view name);
   void grow_passes();
   std::uint32_t add_resource(std::string_view name, const ResourceRecord& record);
-  static ResourceRecord absolute_record(const TextureDesc& desc);
+  static void fill_absolute(ResourceRecord& record, const TextureDesc& desc);
+  static bool is_absolute(const ResourceRecord& record, const TextureDesc& desc);
   ResourceRecord texture_record(const TextureDesc& desc) const;
   static ResourceRecord buffer_record(const BufferDesc& desc);
   template <ResourceKind kKind>
@@ -223,9 +230,9 @@ class Graph {
   std::uint32_t find_same(std::uint32_t import);
   static Range resolved_range(Range range, const ResourceRecord& resource);
   template <ResourceKind kKind>
-  std::uint32_t add_access(std::uint32_t pass, const Handle<kKind>& handle, const Access& access,
+  std::uint32_t add_access(PassBuilder pass, const Handle<kKind>& handle, const Access& access,
                            Range range, std::uint32_t flags);
-  std::uint32_t add_any_access(std::uint32_t pass, std::uint32_t index, std::uint32_t version,
+  std::uint32_t add_any_access(PassBuilder pass, std::uint32_t index, std::uint32_t version,
                                std::uint32_t tag, const Access& access, Range range,
                                std::uint32_t flags);
   void add_output(std::uint32_t index, std::uint32_t version, std::uint32_t tag);
@@ -247,8 +254,9 @@ class Graph {
   std::byte* next_ = nullptr;  // the free bytes of the current block: [next_, end_)
   std::byte* end_ = nullptr;
   std::uint64_t frame_ = 0;  // number of the frame, unique among all graphs
-  bool repeats_ = true;      // all records so far equal those of the previous frame
   std::uint32_t tag_ = 0;    // lower half of frame_; handles of this frame carry it
+  // It is tag_ while all records so far equal those of the previous frame, and then 0.
+  std::uint32_t repeating_tag_ = 0;
   HistoryTable histories_;
   std::weak_ptr<const char> executor_;  // Tells which executor the graph was last recorded by.
 };

@@ -50,9 +50,9 @@ inline std::string_view Graph::keep_name(std::string_view name) {
   return {static_cast<const char*>(place), name.size()};
 }
 
-// Returns the record of a texture whose extent is absolute.
-inline ResourceRecord Graph::absolute_record(const TextureDesc& desc) {
-  ResourceRecord record;
+// Fills in the record of a transient texture whose extent is absolute.
+inline void Graph::fill_absolute(ResourceRecord& record, const TextureDesc& desc) {
+  record = {};
   record.format = desc.format;
   record.width = desc.extent.width;
   record.height = desc.extent.height;
@@ -62,16 +62,33 @@ inline ResourceRecord Graph::absolute_record(const TextureDesc& desc) {
   record.samples = desc.samples;
   record.create_flags = desc.flags;
   record.planes = has_depth_and_stencil(desc.format) ? 2 : 1;
-  return record;
+}
+
+// Returns whether a record is the one that fill_absolute() makes. It combines the differences of
+// all fields, so that there is one branch.
+inline bool Graph::is_absolute(const ResourceRecord& record, const TextureDesc& desc) {
+  const auto pair = [](std::uint32_t low, std::uint32_t high) {
+    return low | std::uint64_t{high} << 32;
+  };
+  return ((pair(record.format, record.width) ^ pair(desc.format, desc.extent.width)) |
+          (pair(record.height, record.depth) ^ pair(desc.extent.height, desc.extent.depth)) |
+          (pair(record.mips, record.layers) ^ pair(desc.mips, desc.layers)) |
+          (pair(record.samples, record.create_flags) ^ pair(desc.samples, desc.flags)) |
+          static_cast<std::uint32_t>(record.origin) | static_cast<std::uint32_t>(record.kind) |
+          record.flags) == 0;
 }
 
 // The usual frame repeats the previous one. Its records are only compared, which costs less than
 // writing them.
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
   const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  if (desc.extent.relative_to || index >= versions_.size() ||
-      !(description_.resources.next() == absolute_record(desc))) [[unlikely]]
+  if (desc.extent.relative_to || index >= versions_.size()) [[unlikely]]
     return {add_resource(name, texture_record(desc)), 0, tag_};
+  ResourceRecord& next = description_.resources.next();
+  if (!is_absolute(next, desc)) [[unlikely]] {
+    fill_absolute(next, desc);
+    change();
+  }
   description_.resources.repeat();
   description_.resource_names[index] = keep_name(name);
   versions_[index] = 0;
@@ -87,7 +104,7 @@ inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
   return {*this, static_cast<std::uint32_t>(index), tag_};
 }
 
-inline bool PassBuilder::is_current() {
+inline bool PassBuilder::is_current() const {
   if (tag_ == graph_.tag_) [[likely]]
     return true;
   graph_.add_stale_builder();
@@ -96,27 +113,30 @@ inline bool PassBuilder::is_current() {
 
 // Adds an access and returns the version after it.
 template <ResourceKind kKind>
-inline std::uint32_t Graph::add_access(std::uint32_t pass, const Handle<kKind>& handle,
+inline std::uint32_t Graph::add_access(PassBuilder pass, const Handle<kKind>& handle,
                                        const Access& access, Range range, std::uint32_t flags) {
   if (kKind == ResourceKind::buffer) flags |= kOnBuffer;
-  if (!(range == Range{} && handle.graph == tag_ && handle.index < description_.resources.size() &&
-        pass + 1 == description_.passes.size() && !description_.accesses.is_full())) [[unlikely]]
-    return add_any_access(pass, handle.index, handle.version, handle.graph, access, range, flags);
-  flags |= kWhole;
+  const auto is_whole = [&](std::uint32_t tag) {
+    return range == Range{} && handle.graph == tag && pass.tag_ == tag &&
+           handle.index < description_.resources.size() &&
+           pass.pass_ + 1 == description_.passes.size();
+  };
   AccessRecord& next = description_.accesses.next();
   // The range need not be compared, because a frame that repeats the one before has the same
   // resources.
-  if (!(repeats_ && next.stages == access.stages && next.access == access.access &&
+  if (!(is_whole(repeating_tag_) && next.stages == access.stages && next.access == access.access &&
         next.layout == access.layout && next.usage == access.usage &&
-        next.resource == handle.index && next.flags == flags && next.version == handle.version))
-      [[unlikely]] {
+        next.resource == handle.index && next.flags == (flags | kWhole) &&
+        next.version == handle.version)) [[unlikely]] {
+    if (!is_whole(tag_) || description_.accesses.is_full()) [[unlikely]]
+      return add_any_access(pass, handle.index, handle.version, handle.graph, access, range, flags);
     const ResourceRecord& resource = description_.resources[handle.index];
     next.stages = access.stages;
     next.access = access.access;
     next.layout = access.layout;
     next.usage = access.usage;
     next.resource = handle.index;
-    next.flags = flags;
+    next.flags = flags | kWhole;
     next.range = {0, static_cast<std::uint16_t>(resource.mips), 0,
                   static_cast<std::uint16_t>(resource.layers)};
     next.version = handle.version;
@@ -133,24 +153,22 @@ constexpr std::uint32_t write_flags(Contents contents, Need need) {
 }
 
 inline void PassBuilder::read(Texture texture, const Access& access, Range range) {
-  if (is_current()) graph_.add_access(pass_, texture, access, range, 0);
+  graph_.add_access(*this, texture, access, range, 0);
 }
 
 inline void PassBuilder::read(Buffer buffer, const Access& access) {
-  if (is_current()) graph_.add_access(pass_, buffer, access, {}, 0);
+  graph_.add_access(*this, buffer, access, {}, 0);
 }
 
 inline Texture PassBuilder::write(Texture texture, const Access& access, Range range,
                                   Contents contents, Need need) {
-  if (is_current())
-    texture.version = graph_.add_access(pass_, texture, access, range, write_flags(contents, need));
+  texture.version = graph_.add_access(*this, texture, access, range, write_flags(contents, need));
   return texture;
 }
 
 inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents contents,
                                  Need need) {
-  if (is_current())
-    buffer.version = graph_.add_access(pass_, buffer, access, {}, write_flags(contents, need));
+  buffer.version = graph_.add_access(*this, buffer, access, {}, write_flags(contents, need));
   return buffer;
 }
 
