@@ -213,12 +213,14 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
 // together and share what caches hold.
 ivec2 tile_of_invocation() {
   uint row = gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  return ivec2(uvec2(gl_WorkGroupID.y, row) * 8u + gl_LocalInvocationID.xy);
+  ivec2 tile = ivec2(uvec2(gl_WorkGroupID.y, row) * 8u + gl_LocalInvocationID.xy);
+  return kAreas ? tile + parameters.written.xy : tile;
 }
 
 void main() {
   ivec2 tile = tile_of_invocation();
-  if (any(greaterThanEqual(tile * kTileSize, size_px()))) {
+  if (any(kAreas ? greaterThan(tile, parameters.written.zw)
+                 : greaterThanEqual(tile * kTileSize, size_px()))) {
     return;
   }
   ivec2 pixel = min(tile * kTileSize + ivec2(parameters.interleave_offset), size_px() - 1);

@@ -13,6 +13,7 @@
 #include "gtao_bindings.h"
 #include "gtao_surface.h"
 #include "maths/connected_samples.h"
+#include "maths/no_occluder.h"
 #include "maths/sampling.h"
 #include "maths/slice.h"
 #include "maths/slice_line.h"
@@ -124,7 +125,7 @@ struct HalfSlice {
                          // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
   vec2 border;           // offset of the image's border in this direction (x) and the other (y)
-  ivec2 texel_bias;      // the shaded pixel minus kRoundingBits
+  ivec2 texel_bias;      // the shaded pixel in depth_image, minus kRoundingBits
   float inverse_depth;   // of the shaded point
   vec2 height;           // gradient of the height over the tangent plane in the slice's plane
   float tangent_cosine;  // cosine of the tangent plane's horizon
@@ -222,7 +223,7 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.growth = empty ? 0.0 : reach * (1.0 / (steps * steps));
   half_slice.border = border;
   half_slice.step_offset = step_offset;
-  half_slice.texel_bias = surface.pixel - kRoundingBits;
+  half_slice.texel_bias = in_inputs(surface.pixel) - kRoundingBits;
   half_slice.inverse_depth = surface.inverse_depth;
   return half_slice;
 }
@@ -289,9 +290,9 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   SamplePlace place = place_of(half_slice, offset);
   vec2 px = place.px;
   SliceSample found;
-  found.inverse_depth =
-      sample_inverse_depth(layer == 0u ? texelFetch(depth_image, place.texel, 0).r
-                                       : texelFetch(second_image, place.texel, 0).r);
+  float depth_ndc = layer == 0u ? texelFetch(depth_image, place.texel, 0).r
+                                : texelFetch(second_image, place.texel, 0).r;
+  found.inverse_depth = sample_inverse_depth(depth_ndc);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
   float y_of_texel = offset * search_line.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;
@@ -308,6 +309,12 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
     found.back = ends_occluder(found.inverse_depth, back, kPerspective)
                      ? vec2(offset, y + (end - found.inverse_depth) * search_line.y_per_depth)
                      : vec2(0.0, kNoBack);
+  }
+  if (kMask && layer == 0u && is_no_occluder(depth_ndc)) {
+    // Far in front of the surface and outside of every radius: such a foreground does not occlude,
+    // and what lies behind it is unobserved.
+    found.point = vec3(offset, 1e6, 0.0);
+    found.back = vec2(0.0, kNoBack);
   }
   return found;
 }

@@ -24,7 +24,7 @@ struct Surface {
 float fetch_roughness(ivec2 pixel) {
 #ifdef SPECULAR
   if (kRoughnessTexture) {
-    return saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
+    return saturate(texelFetch(roughness_image, in_inputs(pixel), 0)[kRoughnessChannel]);
   }
 #endif
   return parameters.roughness;
@@ -36,7 +36,8 @@ float inverse_depth_of(float depth_ndc) {
 }
 
 float load_inverse_depth(ivec2 pixel) {
-  return inverse_depth_of(texelFetch(depth_image, pixel, 0).r);
+  return inverse_depth_of(kMask ? texelFetch(receiver_image, in_inputs(pixel), 0).r
+                                : fetch_depth(pixel));
 }
 
 // The centre of the surface's pixel, in pixels from the image's corner.
@@ -51,13 +52,19 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));
   surface.view = normalize(vec3(-slope, 1.0));
-  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
+  vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding);
   vec3 given_vs = mat3(parameters.view_from_normal) * given;
   vec3 of_depth = vec3(0.0);
   if (needs_depth_normal(given_vs, surface.view)) {
-    of_depth = depth_buffer_normal(fetch_depth_cross(depth_image, pixel), pixel, size_px(),
-                                   parameters.slope, parameters.inverse_depth_from_ndc,
-                                   kPerspective, kReversed);
+    ivec2 origin = in_inputs(ivec2(0));
+    DepthCross depths;
+    if (kMask) {
+      depths = fetch_depth_cross(receiver_image, pixel, origin, size_px());
+    } else {
+      depths = fetch_depth_cross(depth_image, pixel, origin, size_px());
+    }
+    of_depth = depth_buffer_normal(depths, pixel, size_px(), parameters.slope,
+                                   parameters.inverse_depth_from_ndc, kPerspective, kReversed);
   }
   surface.normal = seen_normal(given_vs, surface.view, of_depth);
   vec3 own = has_direction(given) ? given : surface.normal * mat3(parameters.view_from_normal);
