@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/report.h"
+#include "evaluate/error_split.h"
 #include "evaluate/indirect_errors.h"
 #include "evaluate/indirect_truths.h"
 #include "evaluate/lit_errors.h"
@@ -95,6 +96,26 @@ tl::expected<void, std::string> write_truths(const Rendering& rendering, const T
       .and_then([&] { return write_png(folder / "error.png", error_colours(result, scene)); });
 }
 
+// Splits the error, writes its pictures and returns its table. Adds it to `report`.
+tl::expected<std::string, std::string> split_table(const Options& options,
+                                                   const Rendering& rendering, const Truths& truths,
+                                                   nlohmann::ordered_json& report) {
+  const auto gpu = open_gpu({options.device, options.validation});
+  if (!gpu) {
+    return tl::unexpected(gpu.error());
+  }
+  const auto split =
+      split_error(**gpu, rendering.scene, static_setup(options, rendering.camera),
+                  rendering.settings, truths.scene.visibility, truths.surfaces);
+  if (!split) {
+    return tl::unexpected(split.error());
+  }
+  report["split"] = to_json(*split);
+  return check_validation(**gpu)
+      .and_then([&] { return write_pictures(*split, options.out); })
+      .map([&] { return table_of(*split); });
+}
+
 }  // namespace
 
 tl::expected<void, std::string> run_compare(const Options& options) {
@@ -137,6 +158,14 @@ tl::expected<void, std::string> run_compare(const Options& options) {
     report["errors"].update(to_json(lit_errors));
     lit_table = lit_error_table(lit_errors);
   }
+  std::string causes;
+  if (options.split) {
+    auto table = split_table(options, *rendering, *truths, report);
+    if (!table) {
+      return tl::unexpected(std::move(table.error()));
+    }
+    causes = std::move(*table);
+  }
   return write_images(*rendering, options.out)
       .and_then([&] { return write_truths(*rendering, *truths, options.out); })
       .and_then([&] {
@@ -146,7 +175,7 @@ tl::expected<void, std::string> run_compare(const Options& options) {
       .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
       .map([&] {
         std::cout << time_table(*rendering) << error_table(errors)
-                  << indirect_error_table(indirect_errors) << lit_table
+                  << indirect_error_table(indirect_errors) << lit_table << causes
                   << "Images and report.json are in " << options.out.string()
                   << "; in error.png red is too dark and blue too bright\n";
       });

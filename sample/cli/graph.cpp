@@ -107,7 +107,7 @@ tl::expected<std::string, std::string> plan_text(const Session& session, const O
   if (!plan) {
     return tl::unexpected(framegraph::to_string(plan.error()));
   }
-  const bool dot = options.graph_format == GraphFormat::kDot;
+  const bool dot = options.graph_format == GraphFormat::dot;
   return dot ? framegraph::print_dot(description, *plan)
              : framegraph::print_text(description, *plan);
 }
@@ -117,7 +117,7 @@ tl::expected<void, std::string> run_graph(const Options& options) {
   if (!session) {
     return tl::unexpected(session.error());
   }
-  if (options.graph_format == GraphFormat::kWork) {
+  if (options.graph_format == GraphFormat::work) {
     return print_work(*session, options);
   }
   return plan_text(*session, options).map([](const std::string& text) { std::cout << text; });

@@ -18,29 +18,29 @@ using alcove::sample::Stop;
 
 tl::expected<void, std::string> run(const Options& options) {
   switch (options.command) {
-    case Command::kRender:
+    case Command::render:
       return alcove::sample::run_render(options);
-    case Command::kView:
+    case Command::view:
       return alcove::sample::run_view(options);
-    case Command::kCompare:
+    case Command::compare:
       return alcove::sample::run_compare(options);
-    case Command::kRecommend:
+    case Command::recommend:
       return alcove::sample::run_recommend(options);
-    case Command::kGraph:
+    case Command::graph:
       return alcove::sample::run_graph(options);
-    case Command::kDoctor:
+    case Command::doctor:
       return alcove::sample::run_doctor(options);
-    case Command::kMotion:
+    case Command::motion:
       return alcove::sample::run_motion(options);
-    case Command::kAblate:
+    case Command::ablate:
       return alcove::sample::run_ablate(options);
-    case Command::kBench:
+    case Command::bench:
       return alcove::sample::run_bench(options);
-    case Command::kCost:
+    case Command::cost:
       return alcove::sample::run_cost(options);
-    case Command::kMeasure:
+    case Command::measure:
       return alcove::sample::run_measure(options);
-    case Command::kReport:
+    case Command::report:
       return alcove::sample::run_report(options);
   }
   return {};  // not reached: a missing command does not compile

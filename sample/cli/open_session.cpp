@@ -106,6 +106,14 @@ StaticSetup static_setup(const Options& options, const Camera& camera) {
           options.occlusion.normals};
 }
 
+tl::expected<ModelledTimes, std::string> modelled_times(const Options& options) {
+  return ModelledTimes::create(*options.gpu,
+                               {.width = options.target_width,
+                                .height = options.target_height,
+                                .normals = options.occlusion.normals != NormalSource::depth},
+                               options.use_cache);
+}
+
 TruthOptions truth_options(const Options& options) {
   return {options.occlusion.spp, options.lit_points, options.use_cache};
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "evaluate/situations.h"
 #include "evaluate/truths.h"
 #include "evaluate/variant.h"
 #include "render/rendering.h"
@@ -28,6 +29,9 @@ namespace alcove::sample {
 
 // The static view of `camera` with the options' size, frames and normals.
 [[nodiscard]] StaticSetup static_setup(const Options& options, const Camera& camera);
+
+// The modelled times on the options' GPU at the size for which they are wanted.
+[[nodiscard]] tl::expected<ModelledTimes, std::string> modelled_times(const Options& options);
 
 [[nodiscard]] TruthOptions truth_options(const Options& options);
 

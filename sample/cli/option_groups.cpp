@@ -274,8 +274,9 @@ void add_roughness(CLI::App& app, OcclusionOptions& occlusion) {
 void add_rays(CLI::App& app, OcclusionOptions& occlusion) {
   Group(app, "Occlusion")
       .add("--spp", "N",
-           "rays per pixel of the ray-traced truth. No effect on commands without a truth. "
-           "Default: 256",
+           fmt::format("rays per pixel of the ray-traced truth. No effect on commands without a "
+                       "truth. Default: {}",
+                       occlusion.spp),
            [&](const OptionValue& given) {
              occlusion.spp = static_cast<std::uint32_t>(
                  given.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
@@ -308,6 +309,10 @@ void add_limits(CLI::App& app, Options& options) {
                                       ? std::optional(static_cast<Situation>(which))
                                       : std::nullopt;
             });
+  group.add_flag("--exhaustive",
+                 "also measure each number of samples with and without a second depth layer, and "
+                 "compare the best of them with the result. Takes minutes",
+                 options.exhaustive);
   group.add("--out", "FILE", "also write the settings, for --settings",
             [&](const OptionValue& given) { options.settings_out = given.text; });
   group.add(
@@ -363,6 +368,11 @@ void add_cost(CLI::App& app, Options& options) {
   group.add_flag("--motion-vectors",
                  "model the passes with motion vectors as an input, which moving objects need",
                  options.cost.motion_vectors);
+  group.add_flag("--area", "model the passes for images that are read and written in part",
+                 options.cost.area);
+  group.add_flag("--mask", "model the passes with a mask of surfaces", options.cost.mask);
+  group.add_flag("--samples", "model the passes with depth of four samples per pixel",
+                 options.cost.samples);
   group.add_flag("--outputs",
                  "also model the settings with bent normals and with specular occlusion, and print "
                  "the ratio of each frame's time to its time without this output",
@@ -431,6 +441,15 @@ void add_materials(CLI::App& app, MaterialTreatment& materials) {
                  materials.both_sides);
 }
 
+void add_split(CLI::App& app, bool& split) {
+  Group(app).add_flag(
+      "--split",
+      "also render the view without each cause of the error, and print and draw the part of the "
+      "squared error that is noise, filter and tiles, hidden surfaces, unknown thickness, occluders "
+      "outside the image, and the rest",
+      split);
+}
+
 void add_lit(CLI::App& app, bool& lit, std::uint32_t& points) {
   Group(app).add_flag(
       "--lit",
@@ -480,7 +499,10 @@ void add_out(CLI::App& app, Options& options, const std::string& help) {
 
 void check_together(const Options& options) {
   check_view(options.view);
-  if (options.command == Command::kRecommend &&
+  if (options.split && options.view.orbit != 0.0f) {
+    throw Mistake{"--split and --orbit: give one, the error is split for a static camera"};
+  }
+  if (options.command == Command::recommend &&
       options.budget_ms.has_value() == options.tolerance.has_value()) {
     throw Mistake{"recommend: give either --budget-ms or --tolerance"};
   }

@@ -48,6 +48,7 @@ void add_grid(CLI::App& app, bool& grid);
 void add_doctor(CLI::App& app, Options& options);
 void add_light(CLI::App& app, Options& options);
 void add_materials(CLI::App& app, MaterialTreatment& materials);
+void add_split(CLI::App& app, bool& split);
 void add_lit(CLI::App& app, bool& lit, std::uint32_t& points);
 void add_format(CLI::App& app, GraphFormat& format);
 void add_device(CLI::App& app, Options& options);

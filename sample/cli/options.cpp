@@ -31,6 +31,7 @@ void add_render(CLI::App& app, Options& options) {
 
 void add_compare(CLI::App& app, Options& options) {
   add_render(app, options);
+  add_split(app, options.split);
   add_lit(app, options.lit, options.lit_points);
   add_no_cache(app, options.use_cache);
 }
@@ -73,6 +74,9 @@ void add_bench(CLI::App& app, Options& options) {
 }
 
 void add_recommend(CLI::App& app, Options& options) {
+  options.view.width = 480;
+  options.view.height = 270;
+  options.occlusion.spp = 64;
   add_scene(app, options.scene);
   add_materials(app, options.materials);
   add_limits(app, options);
@@ -159,33 +163,33 @@ struct Entry {
   void (*add_options)(CLI::App& app, Options& options);
 };
 constexpr std::array<Entry, 12> kCommands{{
-    {Command::kRender, kUse, "render", "render a scene to occlusion images and print timings",
+    {Command::render, kUse, "render", "render a scene to occlusion images and print timings",
      add_render},
-    {Command::kView, kUse, "view",
+    {Command::view, kUse, "view",
      "open a window to orbit a scene, change settings and see their cost", add_window},
-    {Command::kCompare, kUse, "compare",
+    {Command::compare, kUse, "compare",
      "render a scene and print the errors against ray-traced and height-field truth", add_compare},
-    {Command::kRecommend, kUse, "recommend",
+    {Command::recommend, kUse, "recommend",
      "find the most accurate setting within a time, or the fastest within an error", add_recommend},
-    {Command::kGraph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory",
+    {Command::graph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory",
      add_graph},
-    {Command::kDoctor, kUse, "doctor",
+    {Command::doctor, kUse, "doctor",
      "list the Vulkan devices and the features that they lack, or check a scene with "
      "alcoveDiagnose",
      add_doctor_command},
-    {Command::kMotion, kLaboratory, "motion",
+    {Command::motion, kLaboratory, "motion",
      "measure errors and flicker while the camera or an object moves", add_motion_command},
-    {Command::kAblate, kLaboratory, "ablate",
+    {Command::ablate, kLaboratory, "ablate",
      "change one part of the occlusion at a time and print its cost and error", add_ablate},
-    {Command::kBench, kLaboratory, "bench",
+    {Command::bench, kLaboratory, "bench",
      "measure time and error of many settings, and write a table, a plot and JSON", add_bench},
-    {Command::kCost, kLaboratory, "cost",
+    {Command::cost, kLaboratory, "cost",
      "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
      add_cost_command},
-    {Command::kMeasure, kLaboratory, "measure",
+    {Command::measure, kLaboratory, "measure",
      "time each pass on the device, beside the times that the model of `cost` predicts",
      add_measure},
-    {Command::kReport, kLaboratory, "report",
+    {Command::report, kLaboratory, "report",
      "write a web page: error against time, pictures beside the truth, and what a scene requires",
      add_report},
 }};

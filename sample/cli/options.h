@@ -24,22 +24,22 @@ namespace alcove::sample {
 
 enum class Command {
   // For users.
-  kRender,
-  kView,
-  kCompare,
-  kRecommend,
-  kGraph,
-  kDoctor,
+  render,
+  view,
+  compare,
+  recommend,
+  graph,
+  doctor,
   // The laboratory.
-  kMotion,
-  kAblate,
-  kBench,
-  kCost,
-  kMeasure,
-  kReport
+  motion,
+  ablate,
+  bench,
+  cost,
+  measure,
+  report
 };
 // Names are in the order of the enumerators.
-enum class GraphFormat { kText, kDot, kWork };
+enum class GraphFormat { text, dot, work };
 inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "dot", "work"};
 
 // The options of the view. Optional members are empty if the option was not given: camera_of() then
@@ -74,6 +74,9 @@ struct OcclusionOptions {
 struct CostOptions {
   std::string family;            // of the modelled GPU; empty for all that the model knows
   bool motion_vectors = false;   // gives motion vectors to the passes
+  bool area = false;             // the images are read and written in part
+  bool mask = false;             // gives a mask of surfaces
+  bool samples = false;          // depth has four samples per pixel
   bool loops = false;            // also prints the loops of the shaders
   bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none
@@ -82,11 +85,12 @@ struct CostOptions {
 };
 
 struct Options {
-  Command command = Command::kRender;
+  Command command = Command::render;
   std::string scene;                // empty: the built-in one
   std::vector<std::string> scenes;  // bench: any number, each as `scene`
   MaterialTreatment materials;
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
+  bool split = false;                 // compare: also splits the error into its causes
   bool lit = false;                   // compare: also traces the lit picture
   uint32_t lit_points = 32'000;       // compare: approximate number of pixels with traced light
   ViewOptions view;
@@ -99,6 +103,7 @@ struct Options {
   uint32_t target_width = 1920;        // recommend: of the image whose time is modelled, pixels
   uint32_t target_height = 1080;
   const GpuPart* gpu = &kGpuParts[1];  // recommend: the modelled one
+  bool exhaustive = false;             // recommend: also measures all settings of measure_all()
   std::filesystem::path settings_out;  // recommend: empty for none
   std::optional<Clock> clock;          // bench, recommend: empty for the clock that fits the device
   std::optional<MotionKind> path;      // motion: empty for all paths
@@ -108,7 +113,7 @@ struct Options {
   bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes
   std::filesystem::path pictures;  // doctor: folder for pictures of the mistakes; empty for none
   bool grid = false;  // bench: measures the grid of steps and slices instead of the presets
-  GraphFormat graph_format = GraphFormat::kText;
+  GraphFormat graph_format = GraphFormat::text;
   int device = -1;
   bool validation = false;
   bool use_cache = true;

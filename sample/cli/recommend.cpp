@@ -82,13 +82,6 @@ Done recommend_by_clock(const Options& options, const Session& session) {
   return {};
 }
 
-// The cost model's inputs for the view at the size for which the settings are wanted.
-CostInputs cost_inputs(const Options& options) {
-  return {.width = options.target_width,
-          .height = options.target_height,
-          .normals = options.occlusion.normals != NormalSource::depth};
-}
-
 SituationWeights weights_of(const Options& options) {
   if (!options.situation) {
     return kMixedWeights;
@@ -181,6 +174,29 @@ std::string unmet_message(const RecommendationGoal& goal, const Achievement& clo
                    *goal.tolerance, shown);
 }
 
+// Measures all settings of measure_all(), and prints them and the best of them.
+Done compare_with_all(const passes::OcclusionSettings& base, const RecommendationGoal& goal,
+                      const RecommendationWorld& world, const Achievement& chosen) {
+  const auto all = measure_all(base, world);
+  if (!all) {
+    return Failure(all.error());
+  }
+  const Achievement* best = nullptr;
+  std::cout << fmt::format("  all settings: {:47}RMSE       ms\n", "");
+  for (const Achievement& one : *all) {
+    std::cout << fmt::format("    {:56} {:.4f} {:.4f}\n", samples_text(one.settings),
+                             goal.rmse(one), goal.ms(one));
+    best = best == nullptr || goal.prefers(one, *best) ? &one : best;
+  }
+  std::cout << fmt::format(
+      "  the best of them: {}: RMSE {:.4f} in {:.4f} ms; the search's has {:+.1f} % error and "
+      "{:+.1f} % time\n",
+      samples_text(best->settings), goal.rmse(*best), goal.ms(*best),
+      100.0 * (goal.rmse(chosen) / goal.rmse(*best) - 1.0),
+      100.0 * (goal.ms(chosen) / goal.ms(*best) - 1.0));
+  return {};
+}
+
 Done recommend_by_model(const Options& options, const Session& session,
                         const ModelledTimes& times) {
   const RecommendationGoal goal{options.budget_ms, options.tolerance, weights_of(options)};
@@ -231,6 +247,11 @@ Done recommend_by_model(const Options& options, const Session& session,
   if (auto checked = check_other_views(options, session, goal, chosen); !checked) {
     return checked;
   }
+  if (options.exhaustive) {
+    if (auto compared = compare_with_all(session.settings, goal, world, chosen); !compared) {
+      return compared;
+    }
+  }
   const Shot shot{session.camera,     chosen.settings,     std::nullopt,
                   options.view.width, options.view.height, options.view.frames};
   std::cout << fmt::format(
@@ -250,7 +271,7 @@ Done run_recommend(const Options& options) {
   if (options.clock.value_or(Clock::modelled) != Clock::modelled) {
     return recommend_by_clock(options, *session);
   }
-  const auto times = ModelledTimes::create(*options.gpu, cost_inputs(options), options.use_cache);
+  const auto times = modelled_times(options);
   if (times) {
     return recommend_by_model(options, *session, *times);
   }

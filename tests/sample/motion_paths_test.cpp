@@ -46,7 +46,7 @@ TEST(MotionPaths, MeshesThatACameraPathAddsAreCompleteInTinyScenes) {
     start.depth *= scale;
     start.radius *= scale;
     std::vector<uint64_t> counts;
-    for (const MotionKind kind : {MotionKind::kStrafe, MotionKind::kObject}) {
+    for (const MotionKind kind : {MotionKind::strafe, MotionKind::object}) {
       Scene scene;
       MotionPath(kind, start, kFrames).add_to(scene);
       counts.push_back(triangle_count(scene));
@@ -64,7 +64,7 @@ TEST(MotionPaths, CameraStepsAreSmallExceptAtTheCut) {
   for (const MotionKind kind : kMotionKinds) {
     SCOPED_TRACE(name_of(kind));
     const MotionPath path(kind, start, kFrames);
-    EXPECT_EQ(path.cut().has_value(), kind == MotionKind::kCut);
+    EXPECT_EQ(path.cut().has_value(), kind == MotionKind::cut);
     for (std::uint32_t frame = 1; frame < kFrames; ++frame) {
       const float step =
           glm::distance(path.camera(frame).eye_ws, path.camera(frame - 1).eye_ws) / start.depth;
@@ -79,7 +79,7 @@ TEST(MotionPaths, CameraStepsAreSmallExceptAtTheCut) {
 
 TEST(MotionPaths, OrbitingCameraKeepsItsDistanceToTheMiddleOfTheView) {
   const MotionStart start = builtin_start();
-  const MotionPath path(MotionKind::kOrbit, start, kFrames);
+  const MotionPath path(MotionKind::orbit, start, kFrames);
   const Camera first = path.camera(0);
   const Camera last = path.camera(kFrames - 1);
   EXPECT_LT(glm::distance(first.target_ws, last.target_ws), 1e-5f);
@@ -89,7 +89,7 @@ TEST(MotionPaths, OrbitingCameraKeepsItsDistanceToTheMiddleOfTheView) {
 
 TEST(MotionPaths, ColumnAddedForTheStrafingCameraCrossesTheImage) {
   const MotionStart start = builtin_start();
-  const MotionPath path(MotionKind::kStrafe, start, kFrames);
+  const MotionPath path(MotionKind::strafe, start, kFrames);
   Scene scene = builtin_scene();
   const std::size_t before = scene.meshes.size();
   path.add_to(scene);
@@ -105,7 +105,7 @@ TEST(MotionPaths, ColumnAddedForTheStrafingCameraCrossesTheImage) {
 
 TEST(MotionPaths, MovingBlockStaysAboveTheGroundWithoutTouchingIt) {
   const MotionStart start = builtin_start();
-  const MotionPath path(MotionKind::kObject, start, kFrames);
+  const MotionPath path(MotionKind::object, start, kFrames);
   Scene scene = builtin_scene();
   path.add_to(scene);
   EXPECT_TRUE(scene.meshes.back().moves);
@@ -127,7 +127,7 @@ TEST(MotionPaths, MovingBlockStaysAboveTheGroundWithoutTouchingIt) {
 }
 
 TEST(MotionPaths, OnlyPointsOfTheMovingBlockHaveAnotherPreviousPosition) {
-  const MotionPath path(MotionKind::kObject, builtin_start(), kFrames);
+  const MotionPath path(MotionKind::object, builtin_start(), kFrames);
   Scene then = builtin_scene();
   path.add_to(then);
   Scene now = then;

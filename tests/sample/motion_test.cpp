@@ -36,14 +36,14 @@ class Motion : public GpuTest {
 };
 
 TEST_F(Motion, CameraMotionIncreasesTheErrorByLessThan15Percent) {
-  for (const MotionKind kind : {MotionKind::kOrbit, MotionKind::kDolly, MotionKind::kStrafe}) {
+  for (const MotionKind kind : {MotionKind::orbit, MotionKind::dolly, MotionKind::strafe}) {
     SCOPED_TRACE(name_of(kind));
     const MotionReport report = run(kind);
     EXPECT_GT(report.speed.mean, 0.2);
     EXPECT_GT(report.all.static_camera, 0.01);
     EXPECT_LT(report.all.ratio(), 1.15);
     // The column uncovers many pixels; the other paths uncover thin lines along silhouettes.
-    EXPECT_GT(report.uncovered.pixels, kind == MotionKind::kStrafe ? 500u : 50u);
+    EXPECT_GT(report.uncovered.pixels, kind == MotionKind::strafe ? 500u : 50u);
     EXPECT_LT(report.uncovered.ratio(), 1.5);
     EXPECT_GT(report.bent_normals.static_camera, glm::radians(1.0));
     EXPECT_LT(report.bent_normals.ratio(), 1.15);
@@ -53,7 +53,7 @@ TEST_F(Motion, CameraMotionIncreasesTheErrorByLessThan15Percent) {
 }
 
 TEST_F(Motion, OcclusionOfAMovingObjectLeavesNoLongTrail) {
-  const MotionReport report = run(MotionKind::kObject);
+  const MotionReport report = run(MotionKind::object);
   EXPECT_GT(report.near_object.pixels, 500u);
   // The error that motion adds to that of the static image.
   const double added = std::sqrt(std::pow(report.near_object.moving, 2.0) -
@@ -63,7 +63,7 @@ TEST_F(Motion, OcclusionOfAMovingObjectLeavesNoLongTrail) {
 }
 
 TEST_F(Motion, HistoryFromBeforeACameraCutIsRejected) {
-  const auto report = run_cut(gpu(), builtin_scene(), path_of(MotionKind::kCut, 32), setup());
+  const auto report = run_cut(gpu(), builtin_scene(), path_of(MotionKind::cut, 32), setup());
   ASSERT_TRUE(report) << report.error();
   ASSERT_GE(report->after.size(), 4u);
   for (const CutErrors& errors : report->after) {

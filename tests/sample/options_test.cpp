@@ -19,7 +19,7 @@ tl::expected<Options, Stop> parse(std::vector<const char*> arguments) {
 TEST(Options, RenderCommandWithoutOptionsUsesTheBuiltInSceneAt960By540) {
   const auto options = parse({"render"});
   ASSERT_TRUE(options);
-  EXPECT_EQ(options->command, Command::kRender);
+  EXPECT_EQ(options->command, Command::render);
   EXPECT_TRUE(options->scene.empty());
   EXPECT_EQ(options->view.width, 960u);
   EXPECT_EQ(options->view.height, 540u);
@@ -28,7 +28,7 @@ TEST(Options, RenderCommandWithoutOptionsUsesTheBuiltInSceneAt960By540) {
 TEST(Options, ViewCommandByDefaultHasNoFrameLimitAndNoOutputFolder) {
   const auto plain = parse({"view", "scene.glb"});
   ASSERT_TRUE(plain) << plain.error().text;
-  EXPECT_EQ(plain->command, Command::kView);
+  EXPECT_EQ(plain->command, Command::view);
   EXPECT_EQ(plain->view.frames, 0u);
   EXPECT_TRUE(plain->out.empty());
   const auto told = parse({"view", "--frames", "3", "--out", "x", "--quality", "low"});
@@ -102,12 +102,12 @@ TEST(Options, InvalidOptionValuesAreRefusedInASentenceThatNamesTheOption) {
 TEST(Options, MotionCommandAcceptsACameraPathAndRefusesTooFewFrames) {
   const auto all = parse({"motion"});
   ASSERT_TRUE(all);
-  EXPECT_EQ(all->command, Command::kMotion);
+  EXPECT_EQ(all->command, Command::motion);
   EXPECT_FALSE(all->path);
   EXPECT_EQ(all->view.frames, 48u);
   const auto one = parse({"motion", "--path", "strafe", "--frames", "24"});
   ASSERT_TRUE(one) << one.error().text;
-  EXPECT_EQ(one->path, MotionKind::kStrafe);
+  EXPECT_EQ(one->path, MotionKind::strafe);
   EXPECT_EQ(one->view.frames, 24u);
   EXPECT_EQ(parse({"render"})->view.frames, 1u);
   for (const auto& wrong : std::vector<std::vector<const char*>>{{"motion", "--path", "spiral"},
@@ -122,7 +122,7 @@ TEST(Options, MotionCommandAcceptsACameraPathAndRefusesTooFewFrames) {
 TEST(Options, BenchCommandAcceptsAnyNumberOfScenes) {
   const auto none = parse({"bench"});
   ASSERT_TRUE(none) << none.error().text;
-  EXPECT_EQ(none->command, Command::kBench);
+  EXPECT_EQ(none->command, Command::bench);
   EXPECT_TRUE(none->scenes.empty());
   EXPECT_EQ(none->view.frames, 32u);
   const auto two = parse({"bench", "step", "corner", "--size", "64x64"});

@@ -45,7 +45,7 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   SCOPED_TRACE(shell_line(arguments));
   const auto read = parse(arguments);
   ASSERT_TRUE(read) << read.error().text;
-  EXPECT_EQ(read->command, Command::kRender);
+  EXPECT_EQ(read->command, Command::render);
   EXPECT_EQ(read->scene, options.scene);
   EXPECT_EQ(read->environment, options.environment);
   EXPECT_EQ(read->occlusion.normals, options.occlusion.normals);

@@ -49,6 +49,7 @@ DATA = {
                    point("recommended", .19, .045, False, True), point("other", .4, .044)],
         "pictures": [{"name": "truth", "image": png(200)}, {"name": "medium", "image": png(90)}],
         "errors": [{"name": "medium", "image": png(120)}],
+        "causes": [{"name": "noise: 10.0 %", "image": png(150)}],
         "summary": "A sentence.", "requirements": ["a second depth layer: 20 % less error"],
         "plan": "pass gtao\n  reads depth",
     }],

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 class ViewerWindowTest : public testing::Test {
  protected:
   void SetUp() override {
-    options_.command = Command::kView;
+    options_.command = Command::view;
     options_.view.width = 96;
     options_.view.height = 54;
     options_.validation = true;

@@ -81,29 +81,9 @@ tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const
                                 common_surfaces(pair, *images, *others))};
 }
 
-// Returns the clock for the times of the device, as add_clock() says.
-tl::expected<Clock, std::string> clock_of(const Options& options, const Session& session) {
-  const bool software =
-      session.gpu->device().properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const Clock wanted = options.clock.value_or(software ? Clock::modelled : Clock::timestamps);
-  if (wanted != Clock::modelled) {
-    return wanted;
-  }
-  const auto device = create_null_device(options.gpu->family);
-  if (!device && options.clock) {
-    return Failure(device.error());
-  }
-  return device ? Clock::modelled : Clock::processor;
-}
-
 // Replaces the ratios of device timestamps by those of the modelled times of a moving frame.
 Done model_times(const Options& options, std::vector<VariantErrors>& rows) {
-  const auto times =
-      ModelledTimes::create(*options.gpu,
-                            {.width = options.target_width,
-                             .height = options.target_height,
-                             .normals = options.occlusion.normals != NormalSource::depth},
-                            options.use_cache);
+  const auto times = modelled_times(options);
   if (!times) {
     return Failure(times.error());
   }
@@ -170,7 +150,8 @@ Done run_ablate(const Options& options) {
   if (!folder) {
     return tl::unexpected(folder.error());
   }
-  const auto clock = clock_of(options, *session);
+  const auto clock =
+      choose_clock(session->gpu->device().properties(), *options.gpu, options.clock);
   if (!clock) {
     return Failure(clock.error());
   }

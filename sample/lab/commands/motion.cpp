@@ -165,7 +165,7 @@ Done run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Jso
   const MotionPath path(kind, inputs.start, options.view.frames);
   std::vector<MotionPicture> pictures;
   std::string table;
-  if (kind == MotionKind::kCut) {
+  if (kind == MotionKind::cut) {
     auto made = run_cut(*inputs.session.gpu, inputs.session.scene, path, inputs.setup);
     if (!made) {
       return Failure(std::move(made.error()));

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/render_command.h"
+#include "evaluate/error_split.h"
 #include "evaluate/errors.h"
 #include "evaluate/situations.h"
 #include "evaluate/trade.h"
@@ -24,8 +25,6 @@ using Json = nlohmann::ordered_json;
 using passes::OcclusionSettings;
 using passes::Quality;
 
-constexpr std::array<Quality, 4> kPresets{Quality::console, Quality::low, Quality::medium,
-                                          Quality::high};
 constexpr auto kFirst = static_cast<std::size_t>(Situation::first);
 constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
 constexpr auto kStanding = static_cast<std::size_t>(Situation::standing);
@@ -41,6 +40,7 @@ class ScenePage {
     auto done = add_points()
                     .and_then([&] { return add_requirements(); })
                     .and_then([&] { return add_pictures(); })
+                    .and_then([&] { return add_split(); })
                     .and_then([&] { return add_plan(); });
     if (!done) {
       return Failure(std::move(done.error()));
@@ -88,7 +88,7 @@ class ScenePage {
         return Failure(found.error());
       }
       const bool preset = std::ranges::any_of(
-          kPresets, [&](Quality quality) { return variants[i].name == passes::name_of(quality); });
+          presets(), [&](Quality quality) { return variants[i].name == passes::name_of(quality); });
       add_point(variants[i].name, *found, preset, false);
       progress(static_cast<double>(i + 1) / static_cast<double>(variants.size()));
     }
@@ -125,32 +125,48 @@ class ScenePage {
     return {};
   }
 
-  Done add_picture(const char* list, const std::string& name,
-                   const tl::expected<std::string, std::string>& uri) {
-    if (!uri) {
-      return Failure(uri.error());
-    }
-    json_[list].push_back({{"name", name}, {"image", *uri}});
-    return {};
+  template <typename Picture>
+  Done add_picture(const char* list, const std::string& name, const Picture& picture) {
+    return data_uri(picture, options_.out).map([&](std::string uri) {
+      json_[list].push_back({{"name", name}, {"image", std::move(uri)}});
+    });
   }
 
   Done add_pictures() {
     const Image<float>& truth = errors_.truths().scene.visibility;
-    Image<float> open(truth.width, truth.height, 1.0f);
-    auto done = add_picture("pictures", "truth", data_uri(truth, options_.out)).and_then([&] {
-      return add_picture("pictures", "no occlusion", data_uri(open, options_.out));
+    const Image<float> open(truth.width, truth.height, 1.0f);
+    Done done = add_picture("pictures", "truth", truth).and_then([&] {
+      return add_picture("pictures", "no occlusion", open);
     });
-    for (std::size_t i = 0; i < kPresets.size() && done; ++i) {
-      const std::string name(passes::name_of(kPresets[i]));
+    for (const Quality quality : presets()) {
+      const std::string name(passes::name_of(quality));
       const auto visibility = errors_.draw(
-          passes::quality_settings(kPresets[i], session_.settings.radius), options_.view.frames, 0);
+          passes::quality_settings(quality, session_.settings.radius), options_.view.frames, 0);
       if (!visibility) {
         return Failure(visibility.error());
       }
-      done = add_picture("pictures", name, data_uri(*visibility, options_.out)).and_then([&] {
-        return add_picture("errors", name,
-                           data_uri(error_colours(*visibility, truth), options_.out));
-      });
+      done = done.and_then([&] { return add_picture("pictures", name, *visibility); })
+                 .and_then([&] {
+                   return add_picture("errors", name, error_colours(*visibility, truth));
+                 });
+    }
+    return done;
+  }
+
+  // The causes of the error of `medium`.
+  Done add_split() {
+    const auto split = split_error(
+        *session_.gpu, session_.scene, static_setup(options_, session_.camera),
+        passes::quality_settings(Quality::medium, session_.settings.radius),
+        errors_.truths().scene.visibility, errors_.truths().surfaces);
+    if (!split) {
+      return Failure(split.error());
+    }
+    json_["split"] = to_json(*split);
+    Done done;
+    for (const ErrorCause& cause : split->causes) {
+      const std::string name = fmt::format("{}: {:.1f} %", cause.name, 100.0 * cause.share);
+      done = done.and_then([&] { return add_picture("causes", name, picture_of(cause)); });
     }
     return done;
   }
@@ -183,12 +199,7 @@ tl::expected<void, std::string> run_report(const Options& options) {
   if (const auto page = report_page({}); !page) {
     return Failure(page.error());
   }
-  const auto times =
-      ModelledTimes::create(*options.gpu,
-                            {.width = options.target_width,
-                             .height = options.target_height,
-                             .normals = options.occlusion.normals != NormalSource::depth},
-                            options.use_cache);
+  const auto times = modelled_times(options);
   if (!times) {
     return Failure(times.error());
   }

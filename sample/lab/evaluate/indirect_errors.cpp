@@ -113,16 +113,12 @@ IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& trut
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   for (std::size_t i = 0; i < roughness.size(); ++i) {
     const Image<float>& truth = light.specular[i];
-    const SpecularBaselines& baselines = light.specular_baselines[i];
     errors.specular.push_back(
         {roughness_name(rendering.light, i),
          compare_images(images.specular_occlusion[i], truth, light.sampled),
          compare_images(specular_of_truth(rendering, truths.scene, light, roughness[i]), truth,
                         light.sampled),
-         compare_images(open, truth, light.sampled),
-         compare_images(baselines.polynomials, truth, light.sampled),
-         compare_images(baselines.depth, truth, light.sampled),
-         compare_images(baselines.depth_polynomials, truth, light.sampled)});
+         compare_images(open, truth, light.sampled)});
   }
   return errors;
 }
@@ -137,9 +133,6 @@ nlohmann::ordered_json to_json(const IndirectErrors& errors) {
     json["specular_occlusion"][one.name] = {
         {"pipeline", to_json(one.pipeline)},
         {"true_inputs", to_json(one.true_inputs)},
-        {"true_polynomials", to_json(one.polynomials)},
-        {"height_field", to_json(one.depth)},
-        {"height_field_polynomials", to_json(one.depth_polynomials)},
         {"none", to_json(one.none)}};
   }
   return json;
@@ -154,11 +147,8 @@ std::string indirect_error_table(const IndirectErrors& errors) {
   for (const SpecularErrors& one : errors.specular) {
     text += fmt::format(
         "RMSE of specular occlusion, {:10}{:.4f} (with true visibility and bent normal {:.4f}, "
-        "without occlusion {:.4f})\n"
-        "  fifteen polynomials of the true visibility {:.4f}, of the height field's {:.4f}; the "
-        "lobe itself in the height field {:.4f}\n",
-        one.name, one.pipeline.rmse, one.true_inputs.rmse, one.none.rmse, one.polynomials.rmse,
-        one.depth_polynomials.rmse, one.depth.rmse);
+        "without occlusion {:.4f})\n",
+        one.name, one.pipeline.rmse, one.true_inputs.rmse, one.none.rmse);
   }
   return text;
 }

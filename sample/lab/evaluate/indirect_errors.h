@@ -16,10 +16,6 @@ struct SpecularErrors {
   ErrorSummary pipeline;     // rendered specular occlusion
   ErrorSummary true_inputs;  // the rendering's model with the true visibility and bent normal
   ErrorSummary none;         // specular occlusion of 1 everywhere
-  // Errors of the members of SpecularBaselines.
-  ErrorSummary polynomials;
-  ErrorSummary depth;
-  ErrorSummary depth_polynomials;
 };
 
 // Errors of the multi-bounce and the specular occlusion of a rendering.

@@ -76,40 +76,6 @@ class CachedTracer {
     return truth;
   }
 
-  std::vector<SpecularBaselines> specular_baselines(const std::vector<Image<float>>& roughness,
-                                                    const Image<float>& depth) const {
-    const auto key_of = [&](const Image<float>& one, const char* part) {
-      CacheKey key = key_;
-      key.add(part, one, depth);
-      return key;
-    };
-    // Calls `part(key, image)` for every image until one call returns false.
-    const auto all_parts = [&](std::vector<SpecularBaselines>& baselines, const auto& part) {
-      for (std::size_t i = 0; i < baselines.size(); ++i) {
-        if (!part(key_of(roughness[i], "polynomials"), baselines[i].polynomials) ||
-            !part(key_of(roughness[i], "depth"), baselines[i].depth) ||
-            !part(key_of(roughness[i], "depth polynomials"), baselines[i].depth_polynomials)) {
-          return false;
-        }
-      }
-      return true;
-    };
-    const Image<float> empty(depth.width, depth.height);
-    std::vector<SpecularBaselines> baselines(roughness.size(), {empty, empty, empty});
-    if (!all_parts(baselines, [&](const CacheKey& key, Image<float>& image) {
-          return cache_.read(key, image);
-        })) {
-      baselines =
-          sample::specular_baselines(rays_, points_, depth, rendering_.camera, roughness, settings_,
-                                     print_progress("baselines of specular occlusion"));
-      all_parts(baselines, [&](const CacheKey& key, const Image<float>& image) {
-        cache_.write(key, image);
-        return true;
-      });
-    }
-    return baselines;
-  }
-
   LitTruth lit(const Image<float>& roughness) const {
     const SurfaceMaterials materials{rendering_.images.albedo, roughness,
                                      rendering_.images.metallic};
@@ -185,7 +151,6 @@ tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& re
   for (const Image<float>& roughness : roughness_images(rendering)) {
     truths.specular.push_back(tracer.specular(roughness));
   }
-  truths.specular_baselines = tracer.specular_baselines(roughness_images(rendering), depth);
   if (rendering.light.lit_steps) {
     truths.lit = tracer.lit(roughness_images(rendering).front());
   }

@@ -7,7 +7,6 @@
 
 #include "evaluate/truths.h"
 #include "reference/lit_truth.h"
-#include "reference/specular_baselines.h"
 #include "reference/truth.h"
 #include "render/rendering.h"
 #include "support/image.h"
@@ -21,8 +20,7 @@ struct IndirectTruths {
   Mask sampled;             // the traced pixels
   SurfacePoints points;
   Image<glm::vec3> interreflection;
-  std::vector<Image<float>> specular;                 // for each of roughness_images()
-  std::vector<SpecularBaselines> specular_baselines;  // for each of roughness_images()
+  std::vector<Image<float>> specular;  // for each of roughness_images()
   std::optional<LitTruth> lit;  // for the first roughness, if IndirectRequest::lit_steps is set
 };
 

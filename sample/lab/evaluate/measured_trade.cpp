@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "evaluate/situations.h"
 #include "evaluate/variant_errors.h"
-#include "gpu_cost/modelled_frame.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 
@@ -19,48 +20,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr const GpuPart& kModelledPart = kGpuParts[1];
 
-// Gives the times of variants by one clock.
-class TradeClock {
- public:
-  // Without `wanted`, the clock depends on the device, as measure_trade() says.
-  static tl::expected<TradeClock, std::string> create(const VkPhysicalDeviceProperties& device,
-                                                      const StaticSetup& setup,
-                                                      std::optional<Clock> wanted);
-
-  Clock clock() const { return clock_; }
-  std::string title() const;
-  tl::expected<TradePoint, std::string> point_of(const VariantErrors& errors,
-                                                 const BaseTimes& base) const;
-
- private:
-  explicit TradeClock(const StaticSetup& setup) : setup_(setup) {}
-  tl::expected<double, std::string> modelled_ms(const passes::OcclusionSettings& settings) const;
-
-  StaticSetup setup_;
-  Clock clock_ = Clock::processor;
-  NullDevice null_device_;
-};
-
-tl::expected<TradeClock, std::string> TradeClock::create(const VkPhysicalDeviceProperties& device,
-                                                         const StaticSetup& setup,
-                                                         std::optional<Clock> wanted) {
-  const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  TradeClock made(setup);
-  made.clock_ = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
-  if (made.clock_ == Clock::modelled) {
-    if (auto null_device = create_null_device(kModelledPart.family)) {
-      made.null_device_ = *null_device;
-    } else if (wanted) {
-      return Failure(std::move(null_device.error()));
-    } else {
-      made.clock_ = Clock::processor;
-    }
-  }
-  return made;
-}
-
-std::string TradeClock::title() const {
-  switch (clock_) {
+std::string title_of(Clock clock) {
+  switch (clock) {
     case Clock::modelled:
       return "modelled time of a frame with a moving camera on " + std::string(kModelledPart.title);
     case Clock::timestamps:
@@ -70,35 +31,20 @@ std::string TradeClock::title() const {
   }
 }
 
-tl::expected<double, std::string> TradeClock::modelled_ms(
-    const passes::OcclusionSettings& settings) const {
-  CostInputs inputs{.width = setup_.width,
-                    .height = setup_.height,
-                    .normals = setup_.normals != NormalSource::depth,
-                    .settings = settings};
-  // Variants are rendered with these settings too.
-  inputs.settings.specular = passes::Specular::none;
-  inputs.settings.bent_normal = false;
-  const auto frames = modelled_frames(kModelledPart, null_device_, inputs);
-  if (!frames) {
-    return Failure(frames.error());
-  }
-  return (*frames)[static_cast<std::size_t>(passes::cost::FrameState::moving)].milliseconds();
-}
-
-tl::expected<TradePoint, std::string> TradeClock::point_of(const VariantErrors& errors,
-                                                           const BaseTimes& base) const {
+// The point of a variant. `times` is null unless they are modelled.
+tl::expected<TradePoint, std::string> point_of(const VariantErrors& errors, const BaseTimes& base,
+                                               Clock clock, const ModelledTimes* times) {
   TradePoint point{errors.variant.name, errors.variant.settings, errors.scene.rmse,
                    errors.height_field.rmse};
   point.processor_ms = errors.cost.processor * base.processor_ms;
   point.bytes = errors.cost.bytes;
-  if (clock_ == Clock::modelled) {
-    const auto modelled = modelled_ms(point.settings);
-    if (!modelled) {
-      return Failure(modelled.error());
+  if (clock == Clock::modelled) {
+    const auto ms = times->measure(point.settings);
+    if (!ms) {
+      return Failure(ms.error());
     }
-    point.time_ms = *modelled;
-  } else if (clock_ == Clock::timestamps) {
+    point.time_ms = (*ms)[static_cast<std::size_t>(Situation::moving)];
+  } else if (clock == Clock::timestamps) {
     point.time_ms = errors.cost.gpu * base.gpu_ms;
     point.spread_ms = errors.cost.gpu_spread * base.gpu_ms;
   } else {
@@ -138,12 +84,24 @@ tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
     own_name = own->name;
     variants.erase(own);
   }
-  const auto clock = TradeClock::create(device.properties(), setup, wanted);
+  const auto clock = choose_clock(device.properties(), kModelledPart, wanted);
   if (!clock) {
     return Failure(clock.error());
   }
-  trade.clock = clock->clock();
-  trade.clock_title = clock->title();
+  trade.clock = *clock;
+  trade.clock_title = title_of(*clock);
+  std::optional<ModelledTimes> times;
+  if (*clock == Clock::modelled) {
+    auto created = ModelledTimes::create(kModelledPart,
+                                         {.width = setup.width,
+                                          .height = setup.height,
+                                          .normals = setup.normals != NormalSource::depth},
+                                         truth_options.use_cache);
+    if (!created) {
+      return Failure(std::move(created.error()));
+    }
+    times = std::move(*created);
+  }
   const auto report =
       run_variants(session, setup, truth_options, variants, "trade",
                    trade.clock == Clock::modelled ? kInformativePairs : kDecidingPairs);
@@ -151,7 +109,7 @@ tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
     return tl::unexpected(report.error());
   }
   for (const VariantErrors& errors : report->rows) {
-    auto point = clock->point_of(errors, report->base_times);
+    auto point = point_of(errors, report->base_times, *clock, times ? &*times : nullptr);
     if (!point) {
       return Failure(std::move(point.error()));
     }

@@ -9,16 +9,16 @@
 namespace alcove::sample {
 
 enum class MotionKind : std::uint8_t {
-  kOrbit,   // The camera orbits a point in the middle of the view at the median surface depth.
-  kDolly,   // The camera moves towards that point.
-  kStrafe,  // The camera moves to the right, past a column that is added near the eye.
-  kObject,  // The camera is static and an added object slides over the ground.
-  kCut,     // The camera is static and jumps to another place in the middle of the path.
+  orbit,   // The camera orbits a point in the middle of the view at the median surface depth.
+  dolly,   // The camera moves towards that point.
+  strafe,  // The camera moves to the right, past a column that is added near the eye.
+  object,  // The camera is static and an added object slides over the ground.
+  cut,     // The camera is static and jumps to another place in the middle of the path.
 };
 
-inline constexpr std::array kMotionKinds{MotionKind::kOrbit, MotionKind::kDolly,
-                                         MotionKind::kStrafe, MotionKind::kObject,
-                                         MotionKind::kCut};
+inline constexpr std::array kMotionKinds{MotionKind::orbit, MotionKind::dolly,
+                                         MotionKind::strafe, MotionKind::object,
+                                         MotionKind::cut};
 
 // Names in the order of the enumerators.
 inline constexpr std::array<std::string_view, 5> kMotionKindNames{"orbit", "dolly", "strafe",

@@ -155,16 +155,16 @@ Camera MotionPath::camera(std::uint32_t frame) const {
   const Axes axes = axes_of(start_.camera);
   const auto steps = static_cast<float>(frame);
   switch (kind_) {
-    case MotionKind::kOrbit:
+    case MotionKind::orbit:
       return orbited(start_.camera, kOrbitAngle * steps);
-    case MotionKind::kDolly:
+    case MotionKind::dolly:
       return moved(start_.camera, axes.forward * (kDollyStep * start_.depth * steps));
-    case MotionKind::kStrafe:
+    case MotionKind::strafe:
       return moved(start_.camera,
                    axes.right * (kStrafeStep * height_at(start_.camera, start_.depth) * steps));
-    case MotionKind::kObject:
+    case MotionKind::object:
       return start_.camera;
-    case MotionKind::kCut:
+    case MotionKind::cut:
       break;
   }
   if (frame < frames_ / 2) {
@@ -177,7 +177,7 @@ Camera MotionPath::camera(std::uint32_t frame) const {
 }
 
 glm::mat4 MotionPath::world_from_moving(std::uint32_t frame) const {
-  if (kind_ != MotionKind::kObject) {
+  if (kind_ != MotionKind::object) {
     return glm::mat4(1.0f);
   }
   const Axes axes = axes_of(start_.camera);
@@ -195,23 +195,23 @@ glm::mat4 MotionPath::world_from_moving(std::uint32_t frame) const {
 }
 
 std::optional<std::uint32_t> MotionPath::cut() const {
-  return kind_ == MotionKind::kCut ? std::optional(frames_ / 2) : std::nullopt;
+  return kind_ == MotionKind::cut ? std::optional(frames_ / 2) : std::nullopt;
 }
 
 void MotionPath::add_to(Scene& scene) const {
-  if (kind_ != MotionKind::kStrafe && kind_ != MotionKind::kObject) {
+  if (kind_ != MotionKind::strafe && kind_ != MotionKind::object) {
     return;
   }
-  Mesh mesh = kind_ == MotionKind::kStrafe ? column_mesh(start_, frames_)
+  Mesh mesh = kind_ == MotionKind::strafe ? column_mesh(start_, frames_)
                                            : block_mesh(object_half_width(start_));
   mesh.material = static_cast<std::uint32_t>(scene.materials.size());
-  mesh.moves = kind_ == MotionKind::kObject;
+  mesh.moves = kind_ == MotionKind::object;
   scene.materials.push_back({.name = mesh.name, .roughness = 0.6f});
   scene.meshes.push_back(std::move(mesh));
 }
 
 void MotionPath::pose(Scene& scene, std::uint32_t frame) const {
-  if (kind_ != MotionKind::kObject) {
+  if (kind_ != MotionKind::object) {
     return;
   }
   const glm::mat4 placed = world_from_moving(frame);
@@ -225,7 +225,7 @@ void MotionPath::pose(Scene& scene, std::uint32_t frame) const {
 
 bool MotionPath::is_near_object(const glm::vec3& position_ws, std::uint32_t frame,
                                 std::uint32_t frames) const {
-  if (kind_ != MotionKind::kObject) {
+  if (kind_ != MotionKind::object) {
     return false;
   }
   const float half = object_half_width(start_);
@@ -243,7 +243,7 @@ bool MotionPath::is_near_object(const glm::vec3& position_ws, std::uint32_t fram
 }
 
 glm::vec3 MotionPath::position_before(const glm::vec3& position_ws, std::uint32_t frame) const {
-  if (kind_ != MotionKind::kObject) {
+  if (kind_ != MotionKind::object) {
     return position_ws;
   }
   const glm::vec4 position(position_ws, 1.0f);

@@ -77,6 +77,7 @@ class Search {
     if (goal_.tolerance && goal_.met(found_.chosen)) {
       try_with_fewer_samples(found_.chosen.settings, 1.0);
     }
+    refine();
     return std::move(found_);
   }
 
@@ -176,8 +177,7 @@ class Search {
   }
 
   // Tries `with` at numbers of samples that take less time. `ratio` is the time with the feature
-  // over that without. Settings that fail are left out, because the feature itself has been
-  // measured.
+  // over that without.
   void try_with_fewer_samples(const OcclusionSettings& with, double ratio) {
     const std::size_t most = goal_.budget_ms ? 4 : 8;
     std::size_t tried = 0;
@@ -189,9 +189,47 @@ class Search {
       }
       OcclusionSettings fewer = with;
       use_samples_of(rung->settings, fewer);
-      if (passes::validate(fewer) && measured(fewer) == nullptr) {
-        ++tried;
-        (void)consider(fewer);
+      ++tried;
+      consider_if_promising(fewer);
+    }
+  }
+
+  // Measures settings only if their time does not rule them out. Settings that fail are left out.
+  void consider_if_promising(const OcclusionSettings& settings) {
+    if (!passes::validate(settings) || measured(settings) != nullptr) {
+      return;
+    }
+    const auto times = world_.time(settings);
+    if (!times) {
+      return;
+    }
+    const double ms = weighted(*times, goal_.weights);
+    const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen);
+    if (!goal_.met(found_.chosen) || ms <= limit) {
+      (void)consider(settings);
+    }
+  }
+
+  // Changes one number of samples at a time, as long as that helps.
+  void refine() {
+    constexpr int kRounds = 3;
+    for (int round = 0; round < kRounds; ++round) {
+      const OcclusionSettings from = found_.chosen.settings;
+      const auto change = [&](auto OcclusionSettings::*field, auto value) {
+        OcclusionSettings changed = from;
+        changed.*field = value;
+        consider_if_promising(changed);
+      };
+      for (const std::uint32_t steps : {from.steps * 3 / 4, from.steps - 1, from.steps + 1,
+                                        (from.steps * 4 + 2) / 3}) {
+        change(&OcclusionSettings::steps, steps);
+      }
+      change(&OcclusionSettings::slices, from.slices - 1);
+      change(&OcclusionSettings::slices, from.slices + 1);
+      change(&OcclusionSettings::tile_size, from.tile_size / 2);
+      change(&OcclusionSettings::tile_size, from.tile_size * 2);
+      if (found_.chosen.settings == from) {
+        return;
       }
     }
   }
@@ -237,6 +275,23 @@ tl::expected<Recommendation, std::string> recommend(const OcclusionSettings& bas
                                                     const RecommendationGoal& goal,
                                                     const RecommendationWorld& world) {
   return Search(base, goal, world).run();
+}
+
+tl::expected<std::vector<Achievement>, std::string> measure_all(const OcclusionSettings& base,
+                                                                const RecommendationWorld& world) {
+  std::vector<Achievement> all;
+  for (const Variant& variant : preset_sweep(base)) {
+    for (const std::uint32_t layers : {1u, 2u}) {
+      OcclusionSettings settings = variant.settings;
+      settings.depth_layers = layers;
+      const auto measured = world.measure(settings);
+      if (!measured) {
+        return Failure(measured.error());
+      }
+      all.push_back(*measured);
+    }
+  }
+  return all;
 }
 
 }  // namespace alcove::sample

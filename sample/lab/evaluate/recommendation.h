@@ -67,10 +67,16 @@ struct RecommendationWorld {
 
 // Searches from `base`, whose settings beyond those that the search changes are kept. First it
 // measures numbers of samples near the limit, then each feature with the best of them; a feature
-// that lowers the error is also tried with fewer samples. If nothing meets the goal, the result is
+// that lowers the error is also tried with fewer samples. Last it changes slices, steps and tile
+// size a little, one at a time. If nothing meets the goal, the result is
 // the closest. Errors: those of `measure` and `time` for numbers of samples.
 [[nodiscard]] tl::expected<Recommendation, std::string> recommend(
     const passes::OcclusionSettings& base, const RecommendationGoal& goal,
     const RecommendationWorld& world);
+
+// Measures each number of samples with and without a second depth layer: what a search is compared
+// with.
+[[nodiscard]] tl::expected<std::vector<Achievement>, std::string> measure_all(
+    const passes::OcclusionSettings& base, const RecommendationWorld& world);
 
 }  // namespace alcove::sample

@@ -32,6 +32,38 @@ std::string program_hash() {
   return hash;
 }
 
+// The settings that determine the time. Radius, thickness and hidden occlusion are parameters of the
+// shaders; the model's searches have a fixed length.
+OcclusionSettings timed_settings(OcclusionSettings settings) {
+  const OcclusionSettings defaults;
+  settings.specular = passes::Specular::none;
+  settings.bent_normal = false;
+  settings.radius = defaults.radius;
+  settings.thickness = defaults.thickness;
+  settings.hidden_occlusion = defaults.hidden_occlusion;
+  return settings;
+}
+
+// Reads three values from the cache, or computes and writes them.
+template <typename Compute>
+tl::expected<std::array<double, 3>, std::string> cached(const TruthCache& cache,
+                                                        const CacheKey& key,
+                                                        const Compute& compute) {
+  std::array<double, 3> values{};
+  if (const auto known = cache.read(key, values.size())) {
+    std::ranges::copy(*known, values.begin());
+    return values;
+  }
+  const tl::expected<std::array<double, 3>, std::string> computed = compute();
+  if (computed) {
+    const std::vector<float> floats(computed->begin(), computed->end());
+    cache.write(key, floats);
+    std::ranges::copy(floats, values.begin());  // as a later run reads them
+    return values;
+  }
+  return computed;
+}
+
 }  // namespace
 
 tl::expected<SituationErrors, std::string> SituationErrors::create(
@@ -54,40 +86,35 @@ tl::expected<SituationErrors, std::string> SituationErrors::create(
     return Failure(std::move(truths.error()));
   }
   made.truths_ = std::move(*truths);
+  if (truth_options.use_cache && !program_hash().empty()) {
+    made.cache_ = TruthCache(TruthCache::default_folder());
+  }
+  const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
+  made.key_.add(std::string_view("situation errors"), std::string_view(program_hash()),
+                std::string_view(device.deviceName), device.driverVersion, session.scene,
+                setup.camera, setup.width, setup.height, setup.frames,
+                static_cast<std::uint8_t>(setup.normals), truth_options.spp);
   return made;
 }
 
 tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSettings& settings,
                                                               std::uint32_t frames, float orbit) {
-  const auto matrices = [&](std::uint32_t frame) {
-    const float angle = orbit * (static_cast<float>(frame) - static_cast<float>(frames - 1));
-    return camera_matrices(orbited(setup_.camera, angle), setup_.width, setup_.height);
-  };
-  FrameRequest request;
-  request.occlusion = settings;
-  request.occlusion.specular = passes::Specular::none;
-  request.occlusion.bent_normal = false;
-  for (std::uint32_t i = 0; i < frames; ++i) {
-    const CameraMatrices now = matrices(i);
-    const CameraMatrices before = matrices(i == 0 ? 0 : i - 1);
-    request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
-                    before.clip_from_view, setup_.camera.reversed_z};
-    request.index = i;
-    request.static_frames = orbit == 0.0f ? i : 0;
-    if (i + 1 < frames) {
-      if (auto cost = renderer_->draw(request); !cost) {
-        return Failure(std::move(cost.error()));
-      }
-    }
-  }
-  auto images = renderer_->draw_and_read(request);
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
-  return std::move(images->visibility);
+  StaticSetup setup = setup_;
+  setup.frames = frames;
+  setup.orbit = orbit;
+  return draw_frames(*renderer_, setup, settings).map([](FrameImages images) {
+    return std::move(images.visibility);
+  });
 }
 
 tl::expected<std::array<double, 3>, std::string> SituationErrors::measure(
+    const OcclusionSettings& settings) {
+  CacheKey key = key_;
+  key.add(std::string_view(to_json(settings).dump()));
+  return cached(cache_, key, [&] { return compute(settings); });
+}
+
+tl::expected<std::array<double, 3>, std::string> SituationErrors::compute(
     const OcclusionSettings& settings) {
   struct Course {
     std::uint32_t frames;
@@ -120,30 +147,38 @@ tl::expected<ModelledTimes, std::string> ModelledTimes::create(const GpuPart& pa
 tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
     const OcclusionSettings& settings) const {
   CostInputs inputs = inputs_;
-  inputs.settings = settings;
-  inputs.settings.specular = passes::Specular::none;
-  inputs.settings.bent_normal = false;
+  inputs.settings = timed_settings(settings);
   CacheKey key;
   key.add(std::string_view("modelled times"), std::string_view(program_hash()), part_->family,
           inputs.width, inputs.height, inputs.normals, inputs.motion,
           std::string_view(to_json(inputs.settings).dump()));
-  std::array<double, 3> ms{};
-  if (const auto known = cache_.read(key, ms.size())) {
-    std::ranges::copy(*known, ms.begin());
+  return cached(cache_, key, [&]() -> tl::expected<std::array<double, 3>, std::string> {
+    const auto frames = modelled_frames(*part_, device_, inputs);
+    if (!frames) {
+      return Failure(frames.error());
+    }
+    constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
+                                                FrameState::converged};
+    std::array<double, 3> ms{};
+    for (std::size_t i = 0; i < kStates.size(); ++i) {
+      ms[i] = std::ranges::find(*frames, kStates[i], &ModelledFrame::state)->milliseconds();
+    }
     return ms;
+  });
+}
+
+tl::expected<Clock, std::string> choose_clock(const VkPhysicalDeviceProperties& device,
+                                              const GpuPart& part, std::optional<Clock> wanted) {
+  const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const Clock clock = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
+  if (clock != Clock::modelled) {
+    return clock;
   }
-  const auto frames = modelled_frames(*part_, device_, inputs);
-  if (!frames) {
-    return Failure(frames.error());
+  const auto driver = create_null_device(part.family);
+  if (!driver && wanted) {
+    return Failure(driver.error());
   }
-  constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
-                                              FrameState::converged};
-  for (std::size_t i = 0; i < kStates.size(); ++i) {
-    ms[i] = std::ranges::find(*frames, kStates[i], &ModelledFrame::state)->milliseconds();
-  }
-  const std::vector<float> kept(ms.begin(), ms.end());
-  cache_.write(key, kept);
-  return ms;
+  return driver ? Clock::modelled : Clock::processor;
 }
 
 }  // namespace alcove::sample

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
+#include "evaluate/clock.h"
 #include "evaluate/recommendation.h"
 #include "evaluate/truths.h"
 #include "evaluate/variant.h"
@@ -22,7 +24,8 @@ class SituationErrors {
   [[nodiscard]] static tl::expected<SituationErrors, std::string> create(
       const Session& session, const StaticSetup& setup, const TruthOptions& truth_options);
 
-  // The errors in the order of Situation.
+  // The errors in the order of Situation. They are kept in the cache on disk, if TruthOptions allow
+  // it, for this build of the program and this device.
   [[nodiscard]] tl::expected<std::array<double, 3>, std::string> measure(
       const passes::OcclusionSettings& settings);
 
@@ -35,9 +38,14 @@ class SituationErrors {
  private:
   explicit SituationErrors(const StaticSetup& setup) : setup_(setup) {}
 
+  tl::expected<std::array<double, 3>, std::string> compute(
+      const passes::OcclusionSettings& settings);
+
   StaticSetup setup_;
   std::unique_ptr<FrameRenderer> renderer_;
   Truths truths_;
+  TruthCache cache_{{}};
+  CacheKey key_;
 };
 
 // Models the times of settings on a GPU, and keeps them in the cache on disk for this build of the
@@ -64,5 +72,11 @@ class ModelledTimes {
   NullDevice device_;
   TruthCache cache_;
 };
+
+// Returns the clock for times on a device. Without `wanted`, it is `timestamps` on a GPU; on a
+// software device, whose timestamps are noise, it is `modelled`, or `processor` if Mesa's AMD driver
+// is not installed. Error: `wanted` is `modelled` and the driver is not installed.
+[[nodiscard]] tl::expected<Clock, std::string> choose_clock(
+    const VkPhysicalDeviceProperties& device, const GpuPart& part, std::optional<Clock> wanted);
 
 }  // namespace alcove::sample

@@ -20,9 +20,10 @@ struct SweepPoint {
   std::uint32_t slices;
   std::uint32_t steps;
   bool half_resolution = false;
+  std::uint32_t depth_layers = 1;
 };
 
-constexpr std::array<SweepPoint, 19> kSweepPoints{{{8, 1, 4, true},
+constexpr std::array<SweepPoint, 21> kSweepPoints{{{8, 1, 4, true},
                                                    {8, 1, 16, true},
                                                    {4, 1, 8, true},
                                                    {4, 1, 16, true},
@@ -33,6 +34,8 @@ constexpr std::array<SweepPoint, 19> kSweepPoints{{{8, 1, 4, true},
                                                    {4, 1, 24},
                                                    {2, 1, 4},
                                                    {2, 1, 6},
+                                                   {2, 1, 10},
+                                                   {4, 3, 12},
                                                    {2, 1, 16},
                                                    {2, 1, 24},
                                                    {2, 3, 16},
@@ -59,6 +62,7 @@ class SweepList {
     settings.slices = point.slices;
     settings.steps = point.steps;
     settings.half_resolution = point.half_resolution;
+    settings.depth_layers = std::max(base_.depth_layers, point.depth_layers);
     const bool known = std::ranges::any_of(
         variants_, [&](const Variant& variant) { return variant.settings == settings; });
     if (!known) {
@@ -86,12 +90,23 @@ const TradePoint* smallest_within(std::span<const TradePoint> points, double Tra
 
 }  // namespace
 
+std::vector<Quality> presets() {
+  std::vector<Quality> all;
+  for (std::size_t i = 0; i < passes::kNames<Quality>.size(); ++i) {
+    if (const auto quality = static_cast<Quality>(i); quality != Quality::reference) {
+      all.push_back(quality);
+    }
+  }
+  return all;
+}
+
 std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   SweepList list(base);
-  for (const Quality quality : {Quality::console, Quality::low, Quality::medium, Quality::high}) {
+  for (const Quality quality : presets()) {
     const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
     list.add(std::string(passes::name_of(quality)),
-             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution});
+             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution,
+              preset.depth_layers});
   }
   for (const SweepPoint& point : kSweepPoints) {
     list.add(name_of(point), point);

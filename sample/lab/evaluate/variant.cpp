@@ -1,5 +1,6 @@
 #include "evaluate/variant.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "support/median.h"
@@ -12,17 +13,30 @@ using passes::OcclusionSettings;
 
 FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& settings,
                         std::uint32_t frame) {
-  const CameraMatrices m = camera_matrices(setup.camera, setup.width, setup.height);
+  const auto matrices = [&](std::uint32_t at) {
+    const float angle = setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1));
+    return camera_matrices(orbited(setup.camera, angle), setup.width, setup.height);
+  };
+  const CameraMatrices now = matrices(frame);
+  const CameraMatrices before = setup.orbit == 0.0f ? now : matrices(std::max(frame, 1u) - 1);
   FrameRequest request;
-  request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view,
-                  setup.camera.reversed_z};
-  request.index = frame;
-  request.static_frames = frame;
+  request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
+                  before.clip_from_view, setup.camera.reversed_z};
+  request.index = setup.first_frame + frame;
+  request.restart = frame == 0;
+  request.static_frames = setup.orbit == 0.0f ? frame : 0;
   request.occlusion = settings;
   request.occlusion.specular = passes::Specular::none;
   request.occlusion.bent_normal = false;
   return request;
 }
+
+std::uint64_t bytes_of(const FrameRenderer& renderer) {
+  const framegraph::MemoryStatistics& memory = renderer.memory();
+  return memory.aliased + memory.history;
+}
+
+}  // namespace
 
 tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer,
                                                    const StaticSetup& setup,
@@ -34,13 +48,6 @@ tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer,
   }
   return renderer.draw_and_read(request_of(setup, settings, setup.frames - 1));
 }
-
-std::uint64_t bytes_of(const FrameRenderer& renderer) {
-  const framegraph::MemoryStatistics& memory = renderer.memory();
-  return memory.aliased + memory.history;
-}
-
-}  // namespace
 
 VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes) {
   VariantCost cost{.bytes = bytes};

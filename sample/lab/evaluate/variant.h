@@ -25,16 +25,20 @@ struct Variant {
   passes::OcclusionSettings settings;
 };
 
-// A static view and how it is rendered.
+// A view and how it is rendered.
 struct StaticSetup {
   Camera camera;
   std::uint32_t width = 960;
   std::uint32_t height = 540;
   std::uint32_t frames = 32;  // at least 1; the last one is evaluated
   NormalSource normals = NormalSource::shading;
+  std::uint32_t first_frame = 0;  // number of the first frame; others have another noise
+  float orbit = 0;                // radians per frame, of an orbit that ends at the camera
 };
 
-// Renders the frames of a static view and reads the last one back.
+// Renders the frames of a view and reads the last one back.
+[[nodiscard]] tl::expected<FrameImages, std::string> draw_frames(
+    FrameRenderer& renderer, const StaticSetup& setup, const passes::OcclusionSettings& settings);
 [[nodiscard]] tl::expected<FrameImages, std::string> draw_static(
     Gpu& gpu, const Scene& scene, const StaticSetup& setup,
     const passes::OcclusionSettings& settings);

@@ -1,0 +1,218 @@
+#include "evaluate/error_split.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "evaluate/errors.h"
+#include "support/image_io.h"
+#include "support/progress.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+using passes::OcclusionSettings;
+
+double mean_squared_error(const Image<float>& image, const Image<float>& truth, const Mask& mask) {
+  const double rmse = compare_images(image, truth, mask).rmse;
+  return rmse * rmse;
+}
+
+// The view with a border of half its width and height on each side. Its middle has the same pixels.
+StaticSetup widened(StaticSetup setup) {
+  const glm::vec2 size(setup.width, setup.height);
+  setup.width += 2 * (setup.width / 2);
+  setup.height += 2 * (setup.height / 2);
+  const glm::vec2 scale = glm::vec2(setup.width, setup.height) / size;
+  Camera& camera = setup.camera;
+  camera.fov_y = 2.0f * std::atan(scale.y * std::tan(0.5f * camera.fov_y));
+  camera.ortho_height *= scale.y;
+  camera.offset_ndc /= scale;
+  return setup;
+}
+
+// The image of widened() without the border.
+Image<float> middle_of(const Image<float>& wide, std::uint32_t width, std::uint32_t height) {
+  Image<float> middle(width, height);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    std::copy_n(&wide.at(width / 2, y + height / 2), width, &middle.at(0, y));
+  }
+  return middle;
+}
+
+// The error's limit for the given model of occluders: nothing is interpolated, and samples are many.
+OcclusionSettings sampled_fully(OcclusionSettings settings) {
+  settings.tile_size = 1;
+  settings.half_resolution = false;
+  settings.slices = std::max(settings.slices, 8u);
+  settings.steps = std::max(settings.steps, 16u);
+  settings.advanced.filter_radius = 0;
+  settings.history_frames = std::max(settings.history_frames, 32u);
+  return settings;
+}
+constexpr std::uint32_t kAveragedFrames = 8;
+
+// Applies one remedy after the other.
+class Splitter {
+ public:
+  Splitter(Gpu& gpu, const Scene& scene, const Image<float>& truth, const Mask& surfaces)
+      : gpu_(gpu), scene_(scene), truth_(truth), surfaces_(surfaces) {}
+
+  tl::expected<ErrorSplit, std::string> split(const StaticSetup& setup,
+                                              const OcclusionSettings& settings);
+
+ private:
+  using Done = tl::expected<void, std::string>;
+  using Picture = tl::expected<Image<float>, std::string>;
+
+  Picture draw(const StaticSetup& setup, const OcclusionSettings& settings);
+  Done add_noise(const StaticSetup& setup, const OcclusionSettings& settings);
+  // Adds a cause whose remedy changes the current visibility to `after`. Returns whether it lowers
+  // the error.
+  bool add(const char* name, Image<float> after);
+
+  Gpu& gpu_;
+  const Scene& scene_;
+  const Image<float>& truth_;
+  const Mask& surfaces_;
+  ErrorSplit split_;
+  Image<float> current_;
+  double current_error_ = 0;  // mean squared
+  double whole_error_ = 0;    // mean squared, of the given settings
+  int drawn_ = 0;
+  Progress progress_ = print_progress("causes of the error");
+};
+
+Splitter::Picture Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings) {
+  constexpr int kDrawings = 6;
+  progress_(static_cast<double>(drawn_++) / kDrawings);
+  return draw_static(gpu_, scene_, setup, settings).map([](FrameImages images) {
+    return std::move(images.visibility);
+  });
+}
+
+Splitter::Done Splitter::add_noise(const StaticSetup& setup, const OcclusionSettings& settings) {
+  const Picture own = draw(setup, settings);
+  if (!own) {
+    return Failure(own.error());
+  }
+  StaticSetup other_setup = setup;
+  other_setup.first_frame += 1001;  // any odd number of frames later
+  Picture other = draw(other_setup, settings);
+  if (!other) {
+    return Failure(std::move(other.error()));
+  }
+  const double noise = 0.5 * mean_squared_error(*own, *other, surfaces_);
+  whole_error_ = std::max(mean_squared_error(*own, truth_, surfaces_), 1e-12);
+  split_.rmse = std::sqrt(whole_error_);
+  current_error_ = whole_error_ - noise;
+  current_ = std::move(*other);
+  for (std::size_t i = 0; i < current_.pixels.size(); ++i) {
+    current_.pixels[i] = 0.5f * (current_.pixels[i] + own->pixels[i]);
+  }
+  split_.causes.push_back({"noise", noise / whole_error_, *own, current_});
+  return {};
+}
+
+bool Splitter::add(const char* name, Image<float> after) {
+  const double error = mean_squared_error(after, truth_, surfaces_);
+  const bool lowers = error < current_error_;
+  split_.causes.push_back({name, (current_error_ - error) / whole_error_, current_, after});
+  if (lowers) {
+    current_error_ = error;
+    current_ = std::move(after);
+  }
+  return lowers;
+}
+
+tl::expected<ErrorSplit, std::string> Splitter::split(const StaticSetup& setup,
+                                                      const OcclusionSettings& settings) {
+  if (auto added = add_noise(setup, settings); !added) {
+    return Failure(std::move(added.error()));
+  }
+  StaticSetup averaged = setup;
+  averaged.frames = kAveragedFrames;
+  OcclusionSettings best = sampled_fully(settings);
+  const auto try_settings = [&](const char* name, const OcclusionSettings& changed) -> Done {
+    if (!passes::validate(changed)) {  // an estimator without thickness
+      split_.causes.push_back({name, 0.0, current_, current_});
+      return {};
+    }
+    Picture drawn = draw(averaged, changed);
+    if (!drawn) {
+      return Failure(std::move(drawn.error()));
+    }
+    best = add(name, std::move(*drawn)) ? changed : best;
+    return {};
+  };
+  if (auto tried = try_settings("filter, tiles and few steps", best); !tried) {
+    return Failure(std::move(tried.error()));
+  }
+  OcclusionSettings layers = best;
+  layers.depth_layers = 2;
+  if (auto tried = try_settings("hidden surfaces, which a second layer shows", layers); !tried) {
+    return Failure(std::move(tried.error()));
+  }
+  OcclusionSettings back_faces = best;
+  back_faces.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  if (auto tried = try_settings("thickness, which back faces tell", back_faces); !tried) {
+    return Failure(std::move(tried.error()));
+  }
+  const Picture wide = draw(widened(averaged), best);
+  if (!wide) {
+    return Failure(wide.error());
+  }
+  add("occluders outside the image", middle_of(*wide, setup.width, setup.height));
+  split_.causes.push_back({"the rest", current_error_ / whole_error_, current_, truth_});
+  return std::move(split_);
+}
+
+std::string file_name(const ErrorCause& cause) {
+  return "split_" + cause.name.substr(cause.name.rfind(' ') + 1) + ".png";
+}
+
+}  // namespace
+
+tl::expected<ErrorSplit, std::string> split_error(Gpu& gpu, const Scene& scene,
+                                                  const StaticSetup& setup,
+                                                  const OcclusionSettings& settings,
+                                                  const Image<float>& truth,
+                                                  const Mask& surfaces) {
+  return Splitter(gpu, scene, truth, surfaces).split(setup, settings);
+}
+
+std::string table_of(const ErrorSplit& split) {
+  std::string out = fmt::format("Causes of the squared error, RMSE {:.4f}\n", split.rmse);
+  for (const ErrorCause& cause : split.causes) {
+    out += fmt::format("  {:46}{:7.1f} %{}\n", cause.name, 100.0 * cause.share,
+                       cause.share < 0 ? ": more error, so it is not used below" : "");
+  }
+  return out;
+}
+
+nlohmann::ordered_json to_json(const ErrorSplit& split) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const ErrorCause& cause : split.causes) {
+    list.push_back({{"cause", cause.name}, {"share", cause.share}});
+  }
+  return list;
+}
+
+Image<glm::vec3> picture_of(const ErrorCause& cause) {
+  return error_colours(cause.before, cause.after);
+}
+
+tl::expected<void, std::string> write_pictures(const ErrorSplit& split,
+                                               const std::filesystem::path& folder) {
+  for (const ErrorCause& cause : split.causes) {
+    if (auto written = write_png(folder / file_name(cause), picture_of(cause)); !written) {
+      return written;
+    }
+  }
+  return {};
+}
+
+}  // namespace alcove::sample

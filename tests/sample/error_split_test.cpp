@@ -1,0 +1,116 @@
+// Checks `alcove compare --split` on views in which one cause of the error is known to dominate.
+#include "evaluate/error_split.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu_test.h"
+#include "reference/ray_scene.h"
+#include "reference/surface_points.h"
+#include "reference/truth.h"
+#include "scene/builtin_scene.h"
+#include "scene/shapes.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::OcclusionSettings;
+
+class ErrorSplitTest : public GpuTest {
+ protected:
+  // Splits the error of `settings` in the scene's first camera.
+  ErrorSplit split(const Scene& scene, const OcclusionSettings& settings, std::uint32_t frames) {
+    const StaticSetup setup{scene.cameras.front(), 160, 90, frames, NormalSource::geometric};
+    const auto images = draw_static(gpu(), scene, setup, settings);
+    const auto rays = RayScene::create(scene);
+    EXPECT_TRUE(images && rays);
+    const Image<float> depth = linear_depth(setup.camera, images->depth_ndc);
+    Mask surfaces(depth.width, depth.height);
+    std::ranges::transform(depth.pixels, surfaces.pixels.begin(),
+                           [](float z) { return std::isfinite(z) ? 1 : 0; });
+    const Image<float> truth =
+        occlusion_truth(*rays, surface_points(*rays, setup.camera, images->normal_ws, depth),
+                        {.radius = settings.radius, .spp = 64}, nullptr)
+            .visibility;
+    const auto found = split_error(gpu(), scene, setup, settings, truth, surfaces);
+    EXPECT_TRUE(found) << found.error();
+    double sum = 0;
+    for (const ErrorCause& cause : found->causes) {
+      sum += std::max(cause.share, 0.0);
+    }
+    EXPECT_EQ(found->causes.size(), 6u);
+    EXPECT_NEAR(sum, 1.0, 1e-6);
+    return *found;
+  }
+
+  // Expects that the cause with this number has the largest share.
+  static void expect_largest(const ErrorSplit& split, std::size_t expected) {
+    const auto largest = std::ranges::max_element(split.causes, {}, &ErrorCause::share);
+    EXPECT_EQ(static_cast<std::size_t>(largest - split.causes.begin()), expected)
+        << table_of(split);
+  }
+};
+
+OcclusionSettings settings_of(float radius) {
+  return passes::quality_settings(passes::Quality::medium, radius);
+}
+
+Scene scene_of(SceneBuilder& builder, const Camera& camera) {
+  Scene scene = builder.finish("split");
+  scene.cameras = {camera};
+  return scene;
+}
+
+TEST_F(ErrorSplitTest, SingleSliceInEachPixelWithoutHistoryIsMostlyNoise) {
+  OcclusionSettings settings = settings_of(0.5f);
+  settings.tile_size = 1;
+  settings.slices = 1;
+  settings.history_frames = 0;
+  settings.advanced.filter_radius = 0;
+  expect_largest(split(builtin_scene(), settings, 1), 0);
+}
+
+TEST_F(ErrorSplitTest, OnePixelInSixtyFourOfThinBarsIsMostlyFilterAndTiles) {
+  SceneBuilder builder;
+  builder.use(builder.add_material("wood", glm::vec3(0.6f), 0.8f));
+  builder.box({-3.0f, -0.1f, -3.0f}, {3.0f, 0.0f, 3.0f});
+  for (int i = -30; i <= 30; ++i) {
+    const float x = 0.08f * static_cast<float>(i);
+    builder.box({x, 0.0f, -1.0f}, {x + 0.04f, 0.04f, 1.5f});
+  }
+  OcclusionSettings settings = settings_of(0.15f);
+  settings.tile_size = 8;
+  settings.half_resolution = true;
+  settings.slices = 16;
+  settings.history_frames = 64;
+  const Camera camera{.eye_ws = {0.1f, 1.6f, 0.6f}, .target_ws = {0.0f, 0.0f, 0.2f}};
+  expect_largest(split(scene_of(builder, camera), settings, 64), 1);
+}
+
+// A plate near the eye covers the image of a wall, beside which the floor is visible.
+TEST_F(ErrorSplitTest, WallBehindAPlateIsMostlyAHiddenSurface) {
+  SceneBuilder builder;
+  builder.use(builder.add_material("stone", glm::vec3(0.6f), 0.8f));
+  builder.box({-5.0f, -0.1f, -2.0f}, {5.0f, 0.0f, 3.0f});
+  builder.box({-5.0f, 0.0f, -0.3f}, {5.0f, 1.5f, -0.2f});
+  builder.box({-2.0f, 0.965f, 2.39f}, {2.0f, 2.0f, 2.4f});
+  const Camera camera{.eye_ws = {0.0f, 1.2f, 3.0f}, .target_ws = {0.0f, 0.0f, 0.2f}, .fov_y = 0.8f};
+  expect_largest(split(scene_of(builder, camera), settings_of(0.5f), 16), 2);
+}
+
+// The eye looks down at a floor; the wall beside it begins just outside the image.
+TEST_F(ErrorSplitTest, WallBesideTheImageIsMostlyOutside) {
+  SceneBuilder builder;
+  builder.use(builder.add_material("stone", glm::vec3(0.6f), 0.8f));
+  builder.box({-5.0f, -0.1f, -5.0f}, {5.0f, 0.0f, 5.0f});
+  builder.box({1.1f, 0.0f, -5.0f}, {1.2f, 0.6f, 5.0f});
+  const Camera camera{.eye_ws = {0.0f, 1.0f, 0.0f},
+                      .target_ws = {0.0f, 0.0f, 0.0f},
+                      .up_ws = {0.0f, 0.0f, -1.0f}};
+  expect_largest(split(scene_of(builder, camera), settings_of(0.6f), 16), 4);
+}
+
+}  // namespace
+}  // namespace alcove::sample
