@@ -18,24 +18,27 @@ int neighbour_place(int place, int i, int size) {
   return i < 2 ? max(place + i - 2, 0) : min(place + i - 1, size - 1);
 }
 
-DepthCross fetch_depth_cross(texture2D image, ivec2 pixel) {
-  ivec2 size = textureSize(image, 0);
+// Fetches the depths around a pixel of the area of `size` pixels that begins at `origin`.
+DepthCross fetch_depth_cross(texture2D image, ivec2 pixel, ivec2 origin, ivec2 size) {
   DepthCross found;
-  found.here = texelFetch(image, pixel, 0).r;
+  found.here = texelFetch(image, origin + pixel, 0).r;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    found.row[i] = texelFetch(image, ivec2(neighbour_place(pixel.x, i, size.x), pixel.y), 0).r;
-    found.column[i] = texelFetch(image, ivec2(pixel.x, neighbour_place(pixel.y, i, size.y)), 0).r;
+    ivec2 in_row = ivec2(neighbour_place(pixel.x, i, size.x), pixel.y);
+    ivec2 in_column = ivec2(pixel.x, neighbour_place(pixel.y, i, size.y));
+    found.row[i] = texelFetch(image, origin + in_row, 0).r;
+    found.column[i] = texelFetch(image, origin + in_column, 0).r;
   }
   return found;
 }
 
-DepthCross fetch_depth_cross(sampler2D image, ivec2 pixel) {
-  ivec2 size = textureSize(image, 0);
+DepthCross fetch_depth_cross(sampler2D image, ivec2 pixel, ivec2 origin, ivec2 size) {
   DepthCross found;
-  found.here = texelFetch(image, pixel, 0).r;
+  found.here = texelFetch(image, origin + pixel, 0).r;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    found.row[i] = texelFetch(image, ivec2(neighbour_place(pixel.x, i, size.x), pixel.y), 0).r;
-    found.column[i] = texelFetch(image, ivec2(pixel.x, neighbour_place(pixel.y, i, size.y)), 0).r;
+    ivec2 in_row = ivec2(neighbour_place(pixel.x, i, size.x), pixel.y);
+    ivec2 in_column = ivec2(pixel.x, neighbour_place(pixel.y, i, size.y));
+    found.row[i] = texelFetch(image, origin + in_row, 0).r;
+    found.column[i] = texelFetch(image, origin + in_column, 0).r;
   }
   return found;
 }

@@ -61,9 +61,8 @@ void add_half_slice(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   }
 }
 
-// Subtracts a part from the visible and from the open sum.
-RawOcclusion leave_out(RawOcclusion sum, float part) {
-  return RawOcclusion(max(sum.visible - part, 0.0), sum.open - part);
+RawOcclusion not_negative(RawOcclusion sum) {
+  return RawOcclusion(max(sum.visible, 0.0), sum.open);
 }
 
 // Searches both half-slices of a slice, and integrates their visible parts: the inner integral of
@@ -72,22 +71,18 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   Slice slice = make_slice(surface.normal, direction, surface.view);
   SearchLine search_line = make_search_line(surface, direction);
   vec2 border = border_offsets(centre_of(surface), search_line);
-  vec2 open_arcs = tangent_arcs(slice);
   SliceSum sum = no_sum(surface);
   uint i = 0u;
   [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
-    HalfSlice half_slice =
-        make_half_slice(surface, search_line, slice, side, open_arcs.x, border, step_offset);
+    HalfSlice half_slice = make_half_slice(surface, search_line, slice, side, border, step_offset);
     add_half_slice(sum, half_slice, slice);
     search_line = opposite(search_line);
-    open_arcs = open_arcs.yx;
     border = border.yx;
     ++i;
   }
   while (i < 2u)
     ;
-  float open = open_arcs.x + open_arcs.y;
   SliceResult result;
   result.residual = vec3(0.0);
   result.expected_residual = vec3(0.0);
@@ -95,19 +90,19 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
     vec3 part = direction * sum.bent.x + surface.view * sum.bent.y;
     result.residual = residual_of(part, sum.visible, surface.normal);
     result.expected_residual =
-        expected_residual(slice, direction, surface.view, surface.normal, open);
+        expected_residual(slice, direction, surface.view, surface.normal, open_slice(slice));
   }
-  result.raw_occlusion = leave_out(RawOcclusion(sum.visible, open), sum.left_out);
-  result.lobe = kLobe ? leave_out(sum.lobe, sum.lobe_left_out) : RawOcclusion(0.0, 0.0);
+  result.raw_occlusion = not_negative(sum.raw_occlusion);
+  result.lobe = kLobe ? not_negative(sum.lobe) : RawOcclusion(0.0, 0.0);
   return result;
 }
 
 // Packs the sums of a lobe, scaled so that sums of narrow and of wide lobes have about the same
 // size. Neighbours of different roughness can then be averaged.
-uvec2 pack_scaled_lobe(LobeSurface surface, RawOcclusion lobe) {
+uvec2 pack_scaled_lobe(Surface surface, RawOcclusion lobe) {
   float scale = max(surface.roughness * surface.roughness, kSmallestLobe);
   lobe = RawOcclusion(lobe.visible * scale, lobe.open * scale);
-  return uvec2(pack_lobe(lobe), pack_lobe_surface(surface));
+  return uvec2(pack_lobe(lobe), surface.lobe_surface);
 }
 
 // `to_open` is 0 for the sums as they are and 1 for those of an unoccluded surface.
@@ -144,7 +139,7 @@ SliceResult weighted_slice(Surface surface, SliceNoise noise, uint i) {
   ViewBasis basis = make_view_basis(surface.view);
   WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
   if (kLobe) {
-    angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.lobe.roughness);
+    angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.roughness);
   }
   vec3 direction = slice_direction(basis, angle.phi);
   SliceResult result = search_slice(surface, direction, noise.offset);
@@ -175,8 +170,9 @@ SliceResult sum_of(SliceResult a, SliceResult b) {
 float depth_step_length(Surface surface) {
   float constant = parameters.depth_step;
   float per_inverse_depth = parameters.depth_step_per_inverse_depth;
-  return kPerspective ? max((constant * surface.depth + per_inverse_depth) * surface.depth, 0.0)
-                      : max(constant + per_inverse_depth * surface.depth, 0.0);
+  float depth = kPerspective ? 1.0 / surface.inverse_depth : surface.inverse_depth;
+  return kPerspective ? max((constant * depth + per_inverse_depth) * depth, 0.0)
+                      : max(constant + per_inverse_depth * depth, 0.0);
 }
 
 // Searches all slices of a pixel that is not the sky: the outer integral of section 4.1, a mean
@@ -200,9 +196,9 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   }
   sum = fade_unresolved(sum, unresolved_occlusion(depth_step_length(surface), parameters.radius));
   float mean = 1.0 / float(kSliceCount);
-  uvec2 lobe = kLobe ? pack_scaled_lobe(surface.lobe,
-                                        RawOcclusion(sum.lobe.visible * mean, sum.lobe.open * mean))
-                     : uvec2(0u);
+  uvec2 lobe =
+      kLobe ? pack_scaled_lobe(surface, RawOcclusion(sum.lobe.visible * mean, sum.lobe.open * mean))
+            : uvec2(0u);
   RawOcclusion raw_occlusion =
       RawOcclusion(sum.raw_occlusion.visible * mean, sum.raw_occlusion.open * mean);
   uint normal = quantise_normal(surface.normal);
@@ -218,12 +214,14 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
 // together and share what caches hold.
 ivec2 tile_of_invocation() {
   uint row = gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  return ivec2(uvec2(gl_WorkGroupID.y, row) * 8u + gl_LocalInvocationID.xy);
+  ivec2 tile = ivec2(uvec2(gl_WorkGroupID.y, row) * 8u + gl_LocalInvocationID.xy);
+  return kAreas ? tile + parameters.written.xy : tile;
 }
 
 void main() {
   ivec2 tile = tile_of_invocation();
-  if (any(greaterThanEqual(tile * kTileSize, size_px()))) {
+  if (any(kAreas ? greaterThan(tile, parameters.written.zw)
+                 : greaterThanEqual(tile * kTileSize, size_px()))) {
     return;
   }
   ivec2 pixel = min(tile * kTileSize + ivec2(parameters.interleave_offset), size_px() - 1);
@@ -233,8 +231,10 @@ void main() {
     result = search_pixel(pixel, inverse_depth,
                           golden_pattern(uvec2(tile), parameters.frame, kTileSize > 1));
   }
-  imageStore(raw_image, tile, result.raw_occlusion);
+  // The tile is computed anew, because it would hold registers during the search.
+  ivec2 written = ivec2(uvec2(pixel) / uint(kTileSize));
+  imageStore(raw_image, written, result.raw_occlusion);
   if (kBentNormal) {
-    imageStore(bent_image, tile, uvec4(result.bent, 0u, 0u));
+    imageStore(bent_image, written, uvec4(result.bent, 0u, 0u));
   }
 }

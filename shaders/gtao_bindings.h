@@ -22,6 +22,8 @@ layout(constant_id = 14) const bool kUnobserved = true;     // excludes unobserv
 layout(constant_id = 15) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
 layout(constant_id = 16) const bool kReversed = false;      // raw depth is 1 at the near plane
 layout(constant_id = 17) const bool kInfiniteFar = false;   // the far plane is infinitely far away
+layout(constant_id = 18) const bool kAreas = false;         // images are read in part (areas.h)
+layout(constant_id = 19) const bool kMask = false;          // depth_image has kNoOccluder
 
 const uint kBitmask = 1;
 const uint kConnected = 2;
@@ -40,6 +42,9 @@ layout(set = 0, binding = 5) uniform texture2D back_image;
 // The second depth layer. Without kSecondLayer it is never read, and another image is bound in its
 // place.
 layout(set = 0, binding = 6) uniform texture2D second_image;
+// Depth with sky in the place of surfaces that do not receive occlusion. Without kMask it is never
+// read, and another image is bound in its place.
+layout(set = 0, binding = 8) uniform texture2D receiver_image;
 #ifdef SPECULAR
 layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;
@@ -47,6 +52,6 @@ const bool kLobe = true;
 const bool kLobe = false;
 #endif
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
+#include "areas.h"
 
 #endif

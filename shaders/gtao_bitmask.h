@@ -5,6 +5,7 @@
 #define ALCOVE_GTAO_BITMASK_H
 
 #include "gtao_search_line.h"
+#include "maths/gtao.h"
 #include "maths/lobe_slice.h"
 #include "maths/visibility_bitmask.h"
 
@@ -57,10 +58,10 @@ void add_bitmask(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
       runs.width_px / max(runs.count, 1.0), runs.before_first_px, last, parameters.hidden_exponent);
   VisiblePart part = visible_part(slice, half_slice.side, per_diamond_angle, occluded,
                                   hidden_occlusion, kBentNormal);
-  sum.visible += part.arc;
+  add_arc(sum, part.arc, open_arc(slice, half_slice.side), 0.0);
   sum.bent += part.bent;
   if (kLobe) {
-    HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.lobe_width);
+    HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.roughness * sum.roughness);
     sum.lobe.open += lobe.whole;
     sum.lobe.visible += visible_lobe(lobe, per_diamond_angle, occluded, hidden_occlusion);
   }

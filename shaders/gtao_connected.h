@@ -9,6 +9,7 @@
 
 #include "gtao_search_line.h"
 #include "maths/connected_samples.h"
+#include "maths/gtao.h"
 #include "maths/lobe_slice.h"
 #include "maths/unobserved.h"
 #include "maths/visibility_bitmask.h"
@@ -262,9 +263,9 @@ Occluders find_occluders(HalfSlice half_slice, float sectors) {
 UnobservedArc find_unobserved(HalfSlice half_slice, vec2 first_light, Occluders found) {
   float radius = half_slice.search_line.radius;
   vec2 outside = outside_parts(half_slice);
-  Unobserved unobserved =
-      add_beyond_border(mean_row(found.unobserved), found.border, outside.x * radius,
-                        border_share(outside.y, half_slice.nearness));
+  float nearness = kPerspective ? parameters.radius * half_slice.inverse_depth : 0.0;
+  Unobserved unobserved = add_beyond_border(mean_row(found.unobserved), found.border,
+                                            outside.x * radius, border_share(outside.y, nearness));
   return make_unobserved_arc(first_light, unobserved, radius);
 }
 
@@ -296,7 +297,7 @@ SearchedPart search_half_slice(HalfSlice half_slice, Slice slice) {
 // Adds the visible part of the GGX lobe. The lobe is made after the search, during which it would
 // hold registers.
 void add_connected_lobe(inout SliceSum sum, HalfSlice half_slice, Slice slice, SearchedPart part) {
-  HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.lobe_width);
+  HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.roughness * sum.roughness);
   float arc = part.found.occluded == 0u ? lobe.whole : lobe_light_arc(lobe, part.first_light);
   sum.lobe.open += lobe.whole;
   if (kBackFaces && part.found.known_back) {
@@ -306,35 +307,40 @@ void add_connected_lobe(inout SliceSum sum, HalfSlice half_slice, Slice slice, S
     sum.lobe.visible += arc + part.beyond * (lobe.whole - arc);
   }
   if (kLeaveOutUnobserved) {
-    sum.lobe_left_out += unobserved_lobe(part.unobserved, lobe, arc);
+    float left_out = unobserved_lobe(part.unobserved, lobe, arc);
+    sum.lobe.visible -= left_out;
+    sum.lobe.open -= left_out;
   }
 }
 
 // Adds the visible part of a half-slice. A share of its unobserved directions is left out.
 void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   SearchedPart part = search_half_slice(half_slice, slice);
-  float arc = part.found.occluded == 0u ? half_slice.open_arc
-                                        : light_arc(slice, half_slice.side, part.first_light);
+  float open = open_arc(slice, half_slice.side);
+  float arc =
+      part.found.occluded == 0u ? open : light_arc(slice, half_slice.side, part.first_light);
+  float left_out = 0.0;
+  if (kLeaveOutUnobserved) {
+    left_out =
+        part.unobserved.share * (arc - light_arc(slice, half_slice.side, part.unobserved.from));
+  }
   if (kBackFaces && part.found.known_back) {
     // Back faces show which directions behind an occluder are visible. They are integrated exactly.
     VisiblePart visible =
         visible_part(slice, half_slice.side, part.sectors, repeat_last_sector(part.found.occluded),
                      part.found.hidden_occlusion, kBentNormal);
-    sum.visible += visible.arc;
+    add_arc(sum, visible.arc, open, left_out);
     sum.bent += visible.bent;
   } else {
     // The arc up to the first occluder is visible. The visible sectors beyond it count as a share
     // of the rest of the open arc, reduced by the hidden occlusion.
-    sum.visible += arc + part.beyond * (half_slice.open_arc - arc);
+    add_arc(sum, arc + part.beyond * (open - arc), open, left_out);
     if (kBentNormal) {
       vec2 bent = bent_light_arc(slice, half_slice.side, part.first_light);
-      vec2 open = bent_light_arc(slice, half_slice.side, tangent_light(slice, half_slice.side));
-      sum.bent += bent + part.beyond * (open - bent);
+      vec2 unoccluded =
+          bent_light_arc(slice, half_slice.side, tangent_light(slice, half_slice.side));
+      sum.bent += bent + part.beyond * (unoccluded - bent);
     }
-  }
-  if (kLeaveOutUnobserved) {
-    sum.left_out +=
-        part.unobserved.share * (arc - light_arc(slice, half_slice.side, part.unobserved.from));
   }
   if (kLobe) add_connected_lobe(sum, half_slice, slice, part);
 }

@@ -26,10 +26,10 @@ float sample_cosine(HalfSlice half_slice, vec3 point) {
 // Adds the part of a half-slice between the view direction and a horizon, given by its cosine.
 void add_up_to_horizon(inout SliceSum sum, HalfSlice half_slice, Slice slice, float horizon) {
   vec2 light = horizon_light(slice, half_slice.side, horizon);
-  sum.visible += light_arc(slice, half_slice.side, light);
+  add_arc(sum, light_arc(slice, half_slice.side, light), open_arc(slice, half_slice.side), 0.0);
   if (kBentNormal) sum.bent += bent_light_arc(slice, half_slice.side, light);
   if (kLobe) {
-    HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.lobe_width);
+    HalfLobe lobe = make_half_lobe(slice, half_slice.side, sum.roughness * sum.roughness);
     sum.lobe.open += lobe.whole;
     sum.lobe.visible += lobe_light_arc(lobe, light);
   }

@@ -6,6 +6,9 @@
 ALCOVE_MATHS_BEGIN
 
 struct GtaoParameters {
+  // Areas for areas.h, read only with kAreas.
+  ivec4 area;             // that is read: its position in the inputs (xy) and its size (zw)
+  ivec4 written;          // the first tile that is traced (xy), and the last (zw)
   mat4 view_from_normal;  // rotation from the space of the normals to view space
   vec4 slope;             // xy: ray_per_px(); zw: of the ray at the image's corner; view space
   vec2 inverse_depth_from_ndc;  // scale and offset of inverse_depth_of_ndc()

@@ -13,23 +13,34 @@
 #include "gtao_bindings.h"
 #include "gtao_surface.h"
 #include "maths/connected_samples.h"
+#include "maths/no_occluder.h"
 #include "maths/sampling.h"
 #include "maths/slice.h"
 #include "maths/slice_line.h"
 
 // Sums over the two half-slices of a slice.
 struct SliceSum {
-  float visible;        // visible part, weighted by the cosine of the normal
-  float left_out;       // the part of `visible` and of the open slice that is unobserved
-  vec2 bent;            // sum of visible directions: along the slice's direction, along the view's
-  RawOcclusion lobe;    // visible part of the GGX lobe, and the whole lobe
-  float lobe_left_out;  // the part of the lobe that is unobserved
-  float lobe_width;     // GGX width of the surface: perceptual roughness squared
+  RawOcclusion raw_occlusion;  // visible and open part, weighted by the cosine of the normal,
+                               // without what is unobserved
+  float visible;               // visible part with what is unobserved; only with kBentNormal
+  vec2 bent;          // sum of visible directions: along the slice's direction, along the view's
+  RawOcclusion lobe;  // visible part of the GGX lobe and the whole lobe, without what is unobserved
+  float roughness;    // of the surface, perceptual
 };
 
 SliceSum no_sum(Surface surface) {
-  return SliceSum(0.0, 0.0, vec2(0.0), RawOcclusion(0.0, 0.0), 0.0,
-                  surface.lobe.roughness * surface.lobe.roughness);
+  return SliceSum(RawOcclusion(0.0, 0.0), 0.0, vec2(0.0), RawOcclusion(0.0, 0.0),
+                  surface.roughness);
+}
+
+// Adds the visible part of a half-slice and the part without occluders, of both of which `left_out`
+// is unobserved.
+void add_arc(inout SliceSum sum, float visible, float open, float left_out) {
+  sum.raw_occlusion.visible += visible - left_out;
+  sum.raw_occlusion.open += open - left_out;
+  if (kBentNormal) {
+    sum.visible += visible;
+  }
 }
 
 // A float of this size has no fraction bits, so that adding it rounds to the nearest integer, which
@@ -56,13 +67,14 @@ SearchLine make_search_line(Surface surface, vec3 direction) {
   SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
   // The tangent plane is computed anew for each slice, because it would hold registers through all
   // slices.
-  TangentPlane tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
-                                            surface.depth, kPerspective);
+  float distance = depth_again(surface);
+  TangentPlane tangent =
+      make_tangent_plane(parameters.slope.xy, surface.normal, surface.view, distance, kPerspective);
   DepthStep depth_step = DepthStep(parameters.depth_step, parameters.depth_step_per_inverse_depth);
   float step = depth_step_at(depth_step, surface.inverse_depth);
   float per_radius = 1.0 / parameters.radius;
   float px_per_length = 1.0 / max(slice_line.x_per_step, 1e-30);
-  float depth = kPerspective ? surface.depth : -1.0;
+  float depth = kPerspective ? distance : -1.0;
   float y_per_depth = slice_line.y_per_depth * depth;
   SearchLine search_line;
   search_line.px_per_offset = slice_line.direction_px * (parameters.radius * px_per_length);
@@ -97,11 +109,11 @@ SearchLine opposite(SearchLine search_line) {
 // direction. Slices need no search then.
 bool reaches_samples(Surface surface) {
   vec2 per_px = abs(parameters.slope.xy);
-  // The least length of a pixel on the surface. The factor allows for the part of the sphere that
-  // is nearer to the eye.
-  float length_per_px =
-      0.9 * min(per_px.x, per_px.y) * surface.view.z * (kPerspective ? surface.depth : 1.0);
-  return parameters.radius >= kNearestStep * length_per_px;
+  // The least length of a pixel on the surface, times its inverse depth. The factor allows for the
+  // part of the sphere that is nearer to the eye.
+  float length_per_px = 0.9 * min(per_px.x, per_px.y) * surface.view.z;
+  float radius = parameters.radius * (kPerspective ? surface.inverse_depth : 1.0);
+  return radius >= kNearestStep * length_per_px;
 }
 
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded
@@ -109,14 +121,13 @@ bool reaches_samples(Surface surface) {
 struct HalfSlice {
   SearchLine search_line;
   float side;            // +1 along the slice's direction, -1 against it
-  float open_arc;        // the half-slice's part of the integral without occluders
   uint steps;            // number of samples, at most kStepCount
   float growth;          // by this much, half the interval between samples grows per sample; zero
                          // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
   vec2 border;           // offset of the image's border in this direction (x) and the other (y)
-  ivec2 texel_bias;      // the shaded pixel minus kRoundingBits
-  float nearness;        // the radius divided by the distance in perspective, else 0
+  ivec2 texel_bias;      // the shaded pixel in depth_image, minus kRoundingBits
+  float inverse_depth;   // of the shaded point
   vec2 height;           // gradient of the height over the tangent plane in the slice's plane
   float tangent_cosine;  // cosine of the tangent plane's horizon
   float slice_cosine;    // cos(gamma), Slice::cosine
@@ -191,11 +202,10 @@ vec2 outside_parts(HalfSlice half_slice) {
 // `border` is the offset of the image's border in the half-slice's direction (x) and in the other
 // one (y).
 HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, float side,
-                          float open_arc, vec2 border, float step_offset) {
+                          vec2 border, float step_offset) {
   HalfSlice half_slice;
   half_slice.search_line = search_line;
   half_slice.side = side;
-  half_slice.open_arc = open_arc;
   half_slice.tangent_cosine = tangent_horizon(slice, side);
   half_slice.height = vec2(side * slice.along, slice.toward);
   float nearest = nearest_offset(half_slice);
@@ -214,8 +224,8 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.growth = empty ? 0.0 : reach * (1.0 / (steps * steps));
   half_slice.border = border;
   half_slice.step_offset = step_offset;
-  half_slice.texel_bias = surface.pixel - kRoundingBits;
-  half_slice.nearness = kPerspective ? parameters.radius * surface.inverse_depth : 0.0;
+  half_slice.texel_bias = in_inputs(surface.pixel) - kRoundingBits;
+  half_slice.inverse_depth = surface.inverse_depth;
   return half_slice;
 }
 
@@ -281,9 +291,9 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   SamplePlace place = place_of(half_slice, offset);
   vec2 px = place.px;
   SliceSample found;
-  found.inverse_depth =
-      sample_inverse_depth(layer == 0u ? texelFetch(depth_image, place.texel, 0).r
-                                       : texelFetch(second_image, place.texel, 0).r);
+  float depth_ndc = layer == 0u ? texelFetch(depth_image, place.texel, 0).r
+                                : texelFetch(second_image, place.texel, 0).r;
+  found.inverse_depth = sample_inverse_depth(depth_ndc);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
   float y_of_texel = offset * search_line.level_rise + y;
   y = px.y * search_line.y_per_px.y + y;
@@ -300,6 +310,12 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
     found.back = ends_occluder(found.inverse_depth, back, kPerspective)
                      ? vec2(offset, y + (end - found.inverse_depth) * search_line.y_per_depth)
                      : vec2(0.0, kNoBack);
+  }
+  if (kMask && layer == 0u && is_no_occluder(depth_ndc)) {
+    // Far in front of the surface and outside of every radius: such a foreground does not occlude,
+    // and what lies behind it is unobserved.
+    found.point = vec3(offset, 1e6, 0.0);
+    found.back = vec2(0.0, kNoBack);
   }
   return found;
 }

@@ -18,6 +18,7 @@ layout(constant_id = 0) const bool kRoughnessTexture = false;
 layout(constant_id = 1) const int kRoughnessChannel = 0;
 layout(constant_id = 2) const uint kNormalEncoding = 0;  // NormalEncoding of normal_image
 layout(constant_id = 3) const int kVisibilityChannel = 0;
+layout(constant_id = 4) const bool kAreas = false;  // images are read or written in part
 
 layout(set = 0, binding = 0) uniform Parameters { GtsoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D visibility_image;
@@ -33,13 +34,18 @@ layout(set = 0, binding = 6) uniform writeonly image2D result_image;
 layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
 #endif
 
+// A pixel's position in the images of visibility, bent normals and the result. Pixels count from
+// the corner of the area that is read.
+ivec2 in_outputs(ivec2 pixel) { return kAreas ? pixel + parameters.written.zw : pixel; }
+
 vec3 fetch_direction(texture2D image, ivec2 pixel, uint encoding, vec3 instead) {
   vec3 given = decode_normal(texelFetch(image, pixel, 0).xyz, encoding);
   return has_direction(given) ? normalize(mat3(parameters.view_from_normal) * given) : instead;
 }
 
 float fetch_roughness(ivec2 pixel) {
-  return kRoughnessTexture ? saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel])
+  ivec2 texel = kAreas ? pixel + parameters.origins.zw : pixel;
+  return kRoughnessTexture ? saturate(texelFetch(roughness_image, texel, 0)[kRoughnessChannel])
                            : parameters.roughness;
 }
 
@@ -69,10 +75,10 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
 
 float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   float visibility =
-      converged_visibility(texelFetch(visibility_image, pixel, 0)[kVisibilityChannel]);
+      converged_visibility(texelFetch(visibility_image, in_outputs(pixel), 0)[kVisibilityChannel]);
   float roughness = fetch_roughness(pixel);
-  vec3 bent =
-      raised_bent_normal(fetch_direction(bent_normal_image, pixel, 0u, normal), normal, visibility);
+  vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, in_outputs(pixel), 0u, normal),
+                                 normal, visibility);
   vec3 reflection = mirror_direction(normal, view);
 #ifdef TABLE
   return occlusion_by_table(visibility, bent, normal, reflection, roughness);
@@ -83,17 +89,21 @@ float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(parameters.projection.size_px)))) {
+  if (any(greaterThanEqual(pixel, parameters.size_px))) {
     return;
   }
+  pixel = kAreas ? pixel + parameters.written.xy : pixel;
   float depth = texelFetch(depth_image, pixel, 0).r;
   float result = 1.0;
   if (!is_sky_depth(depth)) {
     vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
     vec3 view =
         view_direction(parameters.projection, position_vs(parameters.projection, uv, depth));
-    vec3 normal = facing_normal(fetch_direction(normal_image, pixel, kNormalEncoding, view), view);
+    vec3 normal =
+        facing_normal(fetch_direction(normal_image, kAreas ? pixel + parameters.origins.xy : pixel,
+                                      kNormalEncoding, view),
+                      view);
     result = occlusion_of(pixel, normal, view);
   }
-  imageStore(result_image, pixel, vec4(result));
+  imageStore(result_image, in_outputs(pixel), vec4(result));
 }

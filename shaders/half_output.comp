@@ -28,6 +28,7 @@ layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at th
 // Writes visibility to the channel kVisibilityChannel alone and keeps the others.
 layout(constant_id = 6) const bool kKeepsChannels = false;
 layout(constant_id = 7) const int kVisibilityChannel = 0;
+layout(constant_id = 8) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D half_image;    // pack_half_texel()
@@ -47,7 +48,8 @@ layout(set = 0, binding = 8) uniform utexture2D lobe_image;  // LobeTexel
 layout(set = 0, binding = 9) uniform writeonly image2D specular_image;
 #endif
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
+#define WRITES_OUTPUTS
+#include "areas.h"
 
 // Returns the pixel that represents a texel, to whose surface the results belong.
 ivec2 pixel_of(ivec2 texel) {
@@ -56,7 +58,7 @@ ivec2 pixel_of(ivec2 texel) {
   ivec2 pixels[4] = ivec2[](first, ivec2(first.x, last.y), ivec2(last.x, first.y), last);
   vec4 depths;
   for (int i = 0; i < 4; ++i) {
-    depths[i] = texelFetch(depth_image, pixels[i], 0).r;
+    depths[i] = fetch_depth(pixels[i]);
   }
   float chosen = representative_depth(texel, depths, kReversed);
   return depths.x == chosen   ? pixels[0]
@@ -68,38 +70,39 @@ ivec2 pixel_of(ivec2 texel) {
 vec3 unit_normal(ivec2 pixel) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding) *
+  vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
   vec3 view = normalize(vec3(-slope, 1.0));
   vec3 of_depth = vec3(0.0);
   if (needs_depth_normal(given, view)) {
-    of_depth = depth_buffer_normal(fetch_depth_cross(depth_image, pixel), pixel, size_px(),
-                                   parameters.slope, parameters.inverse_depth_from_ndc,
-                                   kPerspective, kReversed);
+    of_depth = depth_buffer_normal(
+        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
+        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
   }
   return seen_normal(given, view, of_depth);
 }
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(texel * 2, size_px()))) {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + first_written() / 2;
+  if (any(greaterThan(texel * 2, last_written()))) {
     return;
   }
   // The sky has no occlusion, no residual and no occluded lobe.
   float visibility = saturate(1.0 - texelFetch(half_image, texel, 0).r);
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    imageStore(visibility_image, texel,
+    imageStore(visibility_image, in_outputs(texel),
                visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
-                                kept_image, texel));
+                                kept_image, in_outputs(texel)));
   }
   if (kBentNormal) {
     vec3 residual = unpack_half_residual(texelFetch(residual_image, texel, 0).xyz);
     vec3 bent = finish_bent_normal(residual, visibility, unit_normal(pixel_of(texel)));
-    imageStore(bent_normal_image, texel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
+    imageStore(bent_normal_image, in_outputs(texel),
+               vec4(mat3(parameters.normal_from_view) * bent, 0.0));
   }
 #ifdef SPECULAR
   LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_image, texel, 0).r);
-  imageStore(specular_image, texel, vec4(1.0 - lobe.occlusion));
+  imageStore(specular_image, in_outputs(texel), vec4(1.0 - lobe.occlusion));
 #endif
 }

@@ -19,17 +19,23 @@ layout(set = 0, binding = 2) uniform texture2D normal_image;
 layout(set = 0, binding = 3) uniform texture2D motion_image;
 layout(set = 0, binding = 4) uniform writeonly image2D sample_image;
 
+// The part of an image from parameters.origin on. An image that is smaller than the view says is
+// not read beyond its edge.
+ivec2 rest_of(texture2D image) { return textureSize(image, 0) - ivec2(parameters.origin); }
+ivec2 place_in(texture2D image, ivec2 pixel) {
+  ivec2 last = min(ivec2(parameters.size_px), rest_of(image)) - 1;
+  return clamp(pixel, ivec2(0), max(last, ivec2(0))) + ivec2(parameters.origin);
+}
+
 float fetch_depth(ivec2 pixel) {
-  // An image that is smaller than the view says is not read beyond its edge.
-  ivec2 last = min(ivec2(parameters.size_px), textureSize(depth_image, 0)) - 1;
-  return texelFetch(depth_image, clamp(pixel, ivec2(0), last), 0).r;
+  return texelFetch(depth_image, place_in(depth_image, pixel), 0).r;
 }
 
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (cell == ivec2(0, kInspectRows)) {
     imageStore(sample_image, ivec2(0, 3 * int(kInspectRows)),
-               vec4(textureSize(depth_image, 0), textureSize(normal_image, 0)));
+               vec4(rest_of(depth_image), rest_of(normal_image)));
   }
   if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) {
     return;
@@ -38,11 +44,11 @@ void main() {
   ivec2 pixel = ivec2(position * vec2(parameters.size_px));
   vec3 normal = vec3(0.0);
   if (parameters.has_normals != 0u) {
-    normal = texelFetch(normal_image, min(pixel, textureSize(normal_image, 0) - 1), 0).xyz;
+    normal = texelFetch(normal_image, place_in(normal_image, pixel), 0).xyz;
   }
   vec2 motion = vec2(0.0);
   if (parameters.has_motion != 0u) {
-    motion = texelFetch(motion_image, min(pixel, textureSize(motion_image, 0) - 1), 0).xy;
+    motion = texelFetch(motion_image, place_in(motion_image, pixel), 0).xy;
   }
   imageStore(sample_image, ivec2(cell.x, 3 * cell.y),
              vec4(fetch_depth(pixel), fetch_depth(pixel - ivec2(1, 0)),

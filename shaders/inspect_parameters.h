@@ -12,6 +12,7 @@ const uint kInspectColumns = 64;
 const uint kInspectRows = 48;
 
 struct InspectParameters {
+  uvec2 origin;   // position of the part of the images that is in use
   uvec2 size_px;  // size of the part of the image that is in use
   uint has_normals;
   uint has_motion;

@@ -6,6 +6,7 @@
 ALCOVE_MATHS_BEGIN
 
 struct MultiBounceParameters {
+  ivec4 positions;  // of the first pixel: xy in albedo_image, zw in the other images; with kAreas
   vec2 size_px;
 };
 

@@ -28,7 +28,7 @@ void main() {
   if (any(greaterThanEqual(pixel, size))) {
     return;
   }
-  DepthCross depth = fetch_depth_cross(depth_image, pixel);
+  DepthCross depth = fetch_depth_cross(depth_image, pixel, ivec2(0), textureSize(depth_image, 0));
   depth.here = inverse_depth(depth.here);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     depth.row[i] = inverse_depth(depth.row[i]);

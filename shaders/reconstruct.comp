@@ -49,7 +49,7 @@ void reconstruct(Surface surface) {
 void main() {
   load_tiles();
   // At half resolution one texel beyond the border too, which upsampling reads.
-  ivec2 last = (size_px() + (2 * kTexelSize - 3)) / kTexelSize;
+  ivec2 last = (last_written() + (2 * kTexelSize - 2)) / kTexelSize;
   Place place = first_place();
   [[dont_unroll]] for (int block = 0; block < kBlocks; ++block) {
     if (place.texel.x <= last.x && place.texel.y <= last.y) {

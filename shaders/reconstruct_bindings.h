@@ -26,6 +26,7 @@ layout(constant_id = 13) const bool kReversed = false;    // raw depth is 1 at t
 // Writes visibility to the channel kVisibilityChannel alone and keeps the others.
 layout(constant_id = 14) const bool kKeepsChannels = false;
 layout(constant_id = 15) const int kVisibilityChannel = 0;
+layout(constant_id = 16) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -95,6 +96,8 @@ const int kTexelSize = 2;
 const int kTexelSize = 1;
 #endif
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
+#define GATHERS_DEPTH
+#define WRITES_OUTPUTS
+#include "areas.h"
 
 #endif

@@ -37,12 +37,13 @@ float gradient_of(float inner_change, float outer_change, float plausible) {
 // Returns the pixel that represents the texel, as representative_depth() chooses it.
 TexelPixel representative(Place place) {
   vec2 uv = place.uv;
+  ivec2 corner = place.texel * 2;
   vec2 step = 2.0 * parameters.pixel_uv;
   // Blocks of 2x2 pixels around the corners of the texel: each has one of its pixels.
-  vec4 upper_left = textureGather(depth_image, uv);
-  vec4 upper_right = textureGather(depth_image, uv + vec2(step.x, 0.0));
-  vec4 lower_left = textureGather(depth_image, uv + vec2(0.0, step.y));
-  vec4 lower_right = textureGather(depth_image, uv + step);
+  vec4 upper_left = gather_depth(corner, uv);
+  vec4 upper_right = gather_depth(corner + ivec2(2, 0), uv + vec2(step.x, 0.0));
+  vec4 lower_left = gather_depth(corner + ivec2(0, 2), uv + vec2(0.0, step.y));
+  vec4 lower_right = gather_depth(corner + 2, uv + step);
   // In the order of textureGather: lower left, lower right, upper right, upper left.
   vec4 inside = vec4(lower_left.z, lower_right.w, upper_right.x, upper_left.y);
   vec4 outer_x = vec4(lower_left.w, lower_right.z, upper_right.y, upper_left.x);
@@ -76,6 +77,8 @@ Surface fetch_surface(Place place) {
   Surface surface;
   surface.place = place;
   surface.pixel = place.texel * 2 + ivec2(found.way.x < 0.0 ? 1 : 0, found.way.y < 0.0 ? 1 : 0);
+  // The texel beyond the border has none of its own.
+  surface.pixel = min(surface.pixel, size_px() - 1);
   surface.sky = is_sky_depth(found.depth_ndc, kReversed);
   float scale = kPerspective ? inverse_depth : 1.0;
   // The change of inverse depth per unit of raw depth.

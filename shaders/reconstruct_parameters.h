@@ -6,6 +6,9 @@
 ALCOVE_MATHS_BEGIN
 
 struct ReconstructParameters {
+  // Areas for areas.h, read only with kAreas.
+  ivec4 area;     // that is read: its position in the inputs (xy) and its size (zw)
+  ivec4 written;  // the first pixel that is written (xy), and the last (zw)
   // Converts a position in this frame to a position in the previous frame. The position is (x, y,
   // 1, inverse depth) with x and y in pixels. The result is (x w, y w, w, depth) with x and y in
   // texels of the history, from the centre of the first one. In perspective its depth is divided by
@@ -28,6 +31,7 @@ struct ReconstructParameters {
   vec2 pixel_uv;             // 1 over the size of the depth buffer
   vec2 inverse_depth_from_ndc;  // of inverse_depth_of_ndc()
   vec2 pixels_per_slope;        // 1 over ray_per_px()
+  ivec2 to_outputs;             // from pixels to the outputs, for areas.h
   ivec2 interleave_pixel;       // pixel of each tile that was traced this frame
   // 1 over the largest Window::sharpness: x at the centre of a texel of the history, and y what the
   // distance from centres adds per unit of History::between.

@@ -32,8 +32,8 @@ Surface fetch_surface(Place place) {
   surface.place = place;
   surface.pixel = place.texel;
   // The pixel with its neighbours to the left and above, and with those to the right and below.
-  vec4 before = textureGather(depth_image, place.uv);
-  vec4 after = textureGather(depth_image, place.uv + parameters.pixel_uv);
+  vec4 before = gather_depth(place.texel, place.uv);
+  vec4 after = gather_depth(place.texel + 1, place.uv + parameters.pixel_uv);
   float depth_ndc = after.w;
   surface.sky = is_sky_depth(depth_ndc, kReversed);
   surface.inverse_depth = inverse_depth_of(depth_ndc);
@@ -61,14 +61,16 @@ Surface fetch_surface(Place place) {
 vec3 traced_normal(Surface surface) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? surface.place.centre * parameters.slope.xy : vec2(0.0));
-  vec3 given = decode_normal(texelFetch(normal_image, surface.pixel, 0).xyz, kNormalEncoding) *
-               mat3(parameters.normal_from_view);
+  vec3 given =
+      decode_normal(texelFetch(normal_image, in_inputs(surface.pixel), 0).xyz, kNormalEncoding) *
+      mat3(parameters.normal_from_view);
   vec3 view = normalize(vec3(-slope, 1.0));
   vec3 of_depth = vec3(0.0);
   if (needs_depth_normal(given, view)) {
-    of_depth = depth_buffer_normal(fetch_depth_cross(depth_image, surface.pixel), surface.pixel,
-                                   size_px(), parameters.slope, parameters.inverse_depth_from_ndc,
-                                   kPerspective, kReversed);
+    of_depth = depth_buffer_normal(
+        fetch_depth_cross(depth_image, surface.pixel, in_inputs(ivec2(0)), size_px()),
+        surface.pixel, size_px(), parameters.slope, parameters.inverse_depth_from_ndc, kPerspective,
+        kReversed);
   }
   return seen_normal(given, view, of_depth);
 }

@@ -41,7 +41,7 @@ Previous reproject(Surface surface) {
   previous.depth = kPerspective ? max(to.w, 1e-30) : to.w;
   previous.moves = false;
   if (kMotion) {
-    vec2 motion = texelFetch(motion_image, surface.pixel, 0).rg * parameters.motion.xy;
+    vec2 motion = texelFetch(motion_image, in_inputs(surface.pixel), 0).rg * parameters.motion.xy;
     vec2 moved =
         surface.place.centre * parameters.previous_extent.zw - parameters.motion.zw - motion;
     // More than the rounding of motion vectors, which is 2^-11 in half precision.
@@ -50,7 +50,8 @@ Previous reproject(Surface surface) {
     // A NaN would stay in the history.
     position = moved == moved ? moved : vec2(-1e6);
   }
-  previous.position = clamp(position, vec2(0.0), parameters.previous_extent.xy);
+  vec2 first = vec2(first_written() / kTexelSize);
+  previous.position = clamp(position, first, parameters.previous_extent.xy);
   vec2 outside = abs(position - previous.position);
   previous.seen = to.z > 0.0 && max(outside.x, outside.y) <= 0.5;
   return previous;

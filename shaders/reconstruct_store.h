@@ -71,22 +71,25 @@ void store_half(Surface surface, Result result, float weight, float recent) {
 
 // Stores the outputs of a pixel.
 void store(Surface surface, Result result) {
+  if (!is_written(surface.place.texel)) {
+    return;
+  }
+  ivec2 texel = in_outputs(surface.place.texel);
   float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    imageStore(visibility_image, surface.place.texel,
+    imageStore(visibility_image, texel,
                visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
-                                kept_image, surface.place.texel));
+                                kept_image, texel));
   }
   if (kBentNormal) {
     vec3 residual = surface.sky ? vec3(0.0) : result.residual;
     vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
-    imageStore(bent_normal_image, surface.place.texel,
-               vec4(mat3(parameters.normal_from_view) * bent, 0.0));
+    imageStore(bent_normal_image, texel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
   }
 #ifdef SPECULAR
   float occlusion = surface.sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
-  imageStore(specular_image, surface.place.texel, vec4(1.0 - occlusion));
+  imageStore(specular_image, texel, vec4(1.0 - occlusion));
 #endif
 }
 

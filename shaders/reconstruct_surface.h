@@ -36,7 +36,7 @@ const vec2 kDitherGradient = vec2(0.06711056, 0.00583715);
 
 Place first_place() {
   Place place;
-  place.texel = ivec2(gl_WorkGroupID.xy) * ivec2(8, 8 * kBlocks) + ivec2(gl_LocalInvocationID.xy);
+  place.texel = first_texel() + ivec2(gl_LocalInvocationID.xy);
   place.centre = (vec2(place.texel) + 0.5) * float(kTexelSize);
   place.uv = vec2(place.texel * kTexelSize) * parameters.pixel_uv;
   place.around = find_traced(place.texel * kTexelSize);
@@ -97,11 +97,11 @@ void set_plane(inout Surface surface) {
 // filter's weights. A NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
   if (kNormalEncoding == kNoNormals) {
-    return depth_buffer_normal(fetch_depth_cross(depth_image, pixel), pixel, size_px(),
-                               parameters.slope, parameters.inverse_depth_from_ndc, kPerspective,
-                               kReversed);
+    return depth_buffer_normal(
+        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
+        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
   }
-  vec3 normal = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding);
+  vec3 normal = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
@@ -110,7 +110,8 @@ LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
 #ifdef SPECULAR
   surface.normal = normalize(normal);
   if (kRoughnessTexture) {
-    surface.roughness = saturate(texelFetch(roughness_image, pixel, 0)[kRoughnessChannel]);
+    surface.roughness =
+        saturate(texelFetch(roughness_image, in_inputs(pixel), 0)[kRoughnessChannel]);
   }
 #endif
   return surface;

@@ -67,10 +67,16 @@ ivec2 cell_of(ivec2 pixel) {
   return kBetween ? (pixel - parameters.interleave_pixel) >> kShift : pixel >> kShift;
 }
 
+// Returns the first texel of the group. The first group begins at a multiple of 8 texels; at half
+// resolution it contains one texel before the first that is written, which upsampling reads.
+ivec2 first_texel() {
+  ivec2 first = ivec2(gl_WorkGroupID.xy) * ivec2(8, 8 * kBlocks);
+  return kAreas ? first + (max(first_written() / kTexelSize - (kTexelSize - 1), 0) & ~7) : first;
+}
+
 // Returns the tile to the upper left of all tiles in shared memory.
 ivec2 first_shared_tile() {
-  ivec2 first = ivec2(gl_WorkGroupID.xy) * ivec2(kGroupPixels, kBlocks * kGroupPixels);
-  return cell_of(first) - (kBetween ? kSharedRadius - 1 : kSharedRadius);
+  return cell_of(first_texel() * kTexelSize) - (kBetween ? kSharedRadius - 1 : kSharedRadius);
 }
 
 // Reads the traced pixel of a tile from the image.

@@ -35,6 +35,7 @@ layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at th
 // Writes visibility to the channel kVisibilityChannel alone and keeps the others.
 layout(constant_id = 6) const bool kKeepsChannels = false;
 layout(constant_id = 7) const int kVisibilityChannel = 0;
+layout(constant_id = 8) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
 // The samplers are nearest and clamp to the edge.
@@ -56,7 +57,9 @@ layout(set = 0, binding = 9) uniform utexture2D lobe_image;  // LobeTexel
 layout(set = 0, binding = 10) uniform writeonly image2D specular_image;
 #endif
 
-ivec2 size_px() { return textureSize(depth_image, 0); }
+#define GATHERS_DEPTH
+#define WRITES_OUTPUTS
+#include "areas.h"
 
 // Texels and pixels are numbered in the order of textureGather: lower left, lower right, upper
 // right, upper left. right_of() is 1 for those on the right and -1 for the others; below_of() is 1
@@ -84,7 +87,7 @@ struct Cell {
 Cell fetch_cell(ivec2 index) {
   Cell cell;
   cell.first = index * 2 - 1;
-  cell.depths_ndc = textureGather(depth_image, vec2(index * 2) * parameters.pixel_uv);
+  cell.depths_ndc = gather_depth(index * 2, vec2(index * 2) * parameters.pixel_uv);
   vec2 uv = vec2(index) * parameters.texel_uv;
   vec4 texel_depths = textureGather(half_depth_image, uv);
   cell.occlusions = textureGather(half_image, uv, 0);
@@ -141,22 +144,23 @@ vec4 weights_of(Cell cell, int j) {
 vec3 unit_normal(ivec2 pixel) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 given = decode_normal(texelFetch(normal_image, pixel, 0).xyz, kNormalEncoding) *
+  vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding) *
                mat3(parameters.normal_from_view);
   vec3 view = normalize(vec3(-slope, 1.0));
   vec3 of_depth = vec3(0.0);
   if (needs_depth_normal(given, view)) {
-    of_depth = depth_buffer_normal(fetch_depth_cross(depth_image, pixel), pixel, size_px(),
-                                   parameters.slope, parameters.inverse_depth_from_ndc,
-                                   kPerspective, kReversed);
+    of_depth = depth_buffer_normal(
+        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
+        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
   }
   return seen_normal(given, view, of_depth);
 }
 
 void main() {
-  ivec2 index = ivec2(gl_GlobalInvocationID.xy);
+  // The cell with the first pixel that is written, and those after it.
+  ivec2 index = ivec2(gl_GlobalInvocationID.xy) + (first_written() + 1) / 2;
   ivec2 size = size_px();
-  if (any(greaterThan(index * 2, size))) {
+  if (any(greaterThan(index * 2, last_written() + 1))) {
     return;
   }
   Cell cell = fetch_cell(index);
@@ -172,7 +176,9 @@ void main() {
 #endif
   [[unroll]] for (int j = 0; j < 4; ++j) {
     ivec2 pixel = cell.first + ivec2(right_of(j) > 0.0 ? 1 : 0, below_of(j) > 0.0 ? 1 : 0);
-    bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
+    bool inside = kAreas ? is_written(pixel)
+                         : all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
+    ivec2 output_pixel = in_outputs(pixel);
     vec4 weights = weights_of(cell, j);
     float inverse_sum = 1.0 / (weights.x + weights.y + weights.z + weights.w);
     bool sky = is_sky_depth(cell.depths_ndc[j], kReversed);
@@ -180,16 +186,17 @@ void main() {
     float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
     if (kVisibility && inside) {
       float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-      imageStore(visibility_image, pixel,
+      imageStore(visibility_image, output_pixel,
                  visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
-                                  kept_image, pixel));
+                                  kept_image, output_pixel));
     }
     if (kBentNormal && inside) {
       vec3 stored =
           vec3(dot(weights, residuals_x), dot(weights, residuals_y), dot(weights, residuals_z));
       vec3 residual = sky ? vec3(0.0) : unpack_half_residual(stored * inverse_sum);
       vec3 bent = finish_bent_normal(residual, visibility, unit_normal(pixel));
-      imageStore(bent_normal_image, pixel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
+      imageStore(bent_normal_image, output_pixel,
+                 vec4(mat3(parameters.normal_from_view) * bent, 0.0));
     }
 #ifdef SPECULAR
     if (inside) {
@@ -199,7 +206,7 @@ void main() {
         sum += weights[i] * lobe.open * vec2(lobe.occlusion, 1.0);
       }
       float lobe_occlusion = sky ? 0.0 : saturate(sum.x / max(sum.y, 1e-37));
-      imageStore(specular_image, pixel, vec4(1.0 - lobe_occlusion));
+      imageStore(specular_image, output_pixel, vec4(1.0 - lobe_occlusion));
     }
 #endif
   }

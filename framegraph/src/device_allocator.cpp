@@ -25,7 +25,7 @@ VkResult DeviceAllocator::allocate(const MemoryRequest& request, MemoryRange& ra
     } else if (from_block) {
       result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
       VkDeviceSize used = 0;
-      for (const Used& part : used_) used += part.end - part.begin;
+      for (const BlockRange& part : used_) used += part.end - part.begin;
       reason_ = "because the caller's block of " + std::to_string(host.block.size) +
                 " bytes, of which " + std::to_string(used) + " are in use, has no room for " +
                 std::to_string(request.requirements.size) + " more: give a larger one";
@@ -46,8 +46,9 @@ void DeviceAllocator::free(const MemoryRange& range) {
   if (range.memory == VK_NULL_HANDLE) return;
   const HostServices& host = device_.handles.host;
   if (range.memory == host.block.memory) {
-    const auto found = std::find_if(used_.begin(), used_.end(),
-                                    [&](const Used& used) { return used.begin == range.offset; });
+    const auto found = std::find_if(used_.begin(), used_.end(), [&](const BlockRange& used) {
+      return used.begin == range.offset;
+    });
     if (found != used_.end()) {
       used_.erase(found);
       return;

@@ -25,7 +25,7 @@ class DeviceAllocator {
   std::string take_reason() { return std::exchange(reason_, {}); }
 
  private:
-  struct Used {
+  struct BlockRange {
     VkDeviceSize begin = 0;
     VkDeviceSize end = 0;
   };
@@ -35,7 +35,7 @@ class DeviceAllocator {
   VkResult allocate_from_vulkan(const MemoryRequest& request, MemoryRange& range);
 
   const DeviceContext& device_;
-  std::vector<Used> used_;  // ranges of the block in use, ascending
+  std::vector<BlockRange> used_;  // ranges of the block in use, ascending
   std::string reason_;
 };
 

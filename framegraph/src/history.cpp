@@ -1,17 +1,9 @@
 #include "alcove/framegraph/history.h"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 
 namespace alcove::framegraph {
-namespace {
-
-bool same(const ResourceRecord& a, const ResourceRecord& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
-}  // namespace
 
 std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord& record) {
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
@@ -20,7 +12,7 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
     if (entry.declared || entry.dropped || entry.name != name) continue;
     remember(i);
     entry.declared = true;
-    if (same(entry.record, record)) return i;
+    if (entry.record == record) return i;
     entry.record = record;
     entry.head = 0;
     entry.generation = ++entry.newest;

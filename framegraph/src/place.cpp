@@ -7,6 +7,7 @@
 // changed a few times: the resource whose bytes end at the peak is placed first.
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "workspace.h"
 
@@ -132,14 +133,14 @@ class Placer {
   // offset. A range whose lifetime has ended is removed when the search next comes across it.
   VkDeviceSize fit_by_time() {
     VkDeviceSize peak = 0;
-    std::vector<Workspace::Taken>& taken = s_.taken;
+    std::vector<Workspace::UsedRange>& taken = s_.taken;
     taken.clear();
     for (PlaceItem& item : s_.items) {
       VkDeviceSize offset = 0;
       std::size_t kept = 0;
       std::size_t next = 0;
       for (; next < taken.size(); ++next) {
-        const Workspace::Taken& other = taken[next];
+        const Workspace::UsedRange& other = taken[next];
         if (other.last < item.first) continue;
         if (offset + item.size <= other.begin) break;
         offset = std::max(offset, align_up(other.end, item.alignment));
@@ -147,7 +148,7 @@ class Placer {
         ++kept;
       }
       item.offset = offset;
-      const Workspace::Taken own{offset, offset + item.size, item.last};
+      const Workspace::UsedRange own{offset, offset + item.size, item.last};
       peak = std::max(peak, own.end);
       // The new range takes the place of the first ended range in the array.
       if (kept == next) {
@@ -189,24 +190,12 @@ class Placer {
       }
     }
     const auto distance = [&](const PlaceItem& item) {
-      if (item.first > peak) return item.first - peak;
-      return item.last < peak ? peak - item.last : 0u;
+      const std::uint32_t positions = item.first > peak ? item.first - peak : peak - item.last;
+      return item.first <= peak && peak <= item.last ? 0 : static_cast<std::int64_t>(positions);
     };
-    s_.order.resize(s_.items.size());
-    s_.offsets.resize(s_.items.size());
-    std::iota(s_.order.begin(), s_.order.end(), 0u);
-    std::sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      const PlaceItem& x = s_.items[a];
-      const PlaceItem& y = s_.items[b];
-      const std::uint32_t dx = distance(x);
-      const std::uint32_t dy = distance(y);
-      if (dx != dy) return dx < dy;
-      const std::uint32_t span_x = x.last - x.first;
-      const std::uint32_t span_y = y.last - y.first;
-      if (span_x != span_y) return span_x > span_y;
-      return x.size != y.size ? x.size > y.size : a < b;
+    try_falling([&](const PlaceItem& item) {
+      return std::tuple(-distance(item), item.last - item.first, item.size);
     });
-    try_order();
   }
 
   // Places by first fit in s_.order, and keeps the result if its peak is lower than the best so

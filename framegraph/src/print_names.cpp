@@ -36,31 +36,6 @@ constexpr Bit kStages[] = {
     {VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, "bottom"},
 };
 
-constexpr Bit kAccesses[] = {
-    {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, "indirect read"},
-    {VK_ACCESS_2_INDEX_READ_BIT, "index read"},
-    {VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT, "attribute read"},
-    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
-    {VK_ACCESS_2_SHADER_READ_BIT, "shader read"},
-    {VK_ACCESS_2_SHADER_WRITE_BIT, "shader write"},
-    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"},
-    {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"},
-    {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
-    {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, "color read"},
-    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "color write"},
-    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "depth read"},
-    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
-    {VK_ACCESS_2_TRANSFER_READ_BIT, "transfer read"},
-    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "transfer write"},
-    {VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT, "input attachment read"},
-    {VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR, "acceleration structure read"},
-    {VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, "acceleration structure write"},
-    {VK_ACCESS_2_HOST_READ_BIT, "host read"},
-    {VK_ACCESS_2_HOST_WRITE_BIT, "host write"},
-    {VK_ACCESS_2_MEMORY_READ_BIT, "memory read"},
-    {VK_ACCESS_2_MEMORY_WRITE_BIT, "memory write"},
-};
-
 // Vulkan's names without their common prefix and suffix, for example TRANSFER_SRC.
 constexpr Bit kImageUsages[] = {
     {VK_IMAGE_USAGE_TRANSFER_SRC_BIT, "TRANSFER_SRC"},
@@ -109,8 +84,6 @@ std::string join(std::uint64_t bits, const Bit (&names)[kCount]) {
 }  // namespace
 
 std::string stage_names(VkPipelineStageFlags2 stages) { return join(stages, kStages); }
-
-std::string access_names(VkAccessFlags2 accesses) { return join(accesses, kAccesses); }
 
 std::string usage_names(ResourceKind kind, VkFlags usage) {
   return kind == ResourceKind::texture ? join(usage, kImageUsages) : join(usage, kBufferUsages);

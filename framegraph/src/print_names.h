@@ -12,7 +12,6 @@ namespace alcove::framegraph {
 
 // Returns the names of the bits, joined by '|', or "none" if no bit is set.
 std::string stage_names(VkPipelineStageFlags2 stages);
-std::string access_names(VkAccessFlags2 accesses);
 std::string usage_names(ResourceKind kind, VkFlags usage);
 std::string layout_name(VkImageLayout layout);
 std::string queue_name(QueueClass queue);

@@ -69,8 +69,8 @@ VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted,
   return info;
 }
 
-bool RecordContext::begin_rendering(std::span<const Attachment> colors,
-                                    const Attachment& depth) const {
+bool RecordContext::begin_rendering(std::span<const Attachment> colors, const Attachment& depth,
+                                    const Rendering& rendering) const {
   constexpr std::size_t kMost = 8;
   const auto refuse = [this](ErrorCode code, const char* why) {
     recorder_.errors_.push_back({code, std::string("pass '").append(pass_name()).append("' ") + why,
@@ -135,6 +135,18 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors,
         ErrorCode::attachment_mismatch,
         "begins a rendering whose attachments differ in size, layers or samples: give them "
         "one of each");
+  const VkRect2D& area = rendering.area;
+  const VkExtent2D& whole = info.renderArea.extent;
+  const bool is_inside = area.offset.x >= 0 && area.offset.y >= 0 &&
+                         std::int64_t{area.offset.x} + area.extent.width <= whole.width &&
+                         std::int64_t{area.offset.y} + area.extent.height <= whole.height;
+  if (!is_inside || (info.layerCount < 32 && rendering.view_mask >> info.layerCount != 0))
+    return refuse(ErrorCode::misuse,
+                  "begins a rendering over texels or views that its attachments do not have: give "
+                  "an area and a view mask within them");
+  info.flags = rendering.flags;
+  info.viewMask = rendering.view_mask;
+  if (area.extent.width != 0) info.renderArea = area;
   vk.vkCmdBeginRendering(commands, &info);
   return true;
 }

@@ -76,8 +76,8 @@ VkResult Submitter::submit(const Plan& plan, const FrameInfo& info) {
       std::any_of(plan.submissions.begin(), plan.submissions.end(),
                   [](const Submission& s) { return s.queue != QueueClass::graphics; });
   std::copy(std::begin(values_), std::end(values_), std::begin(before_));
-  std::copy(std::begin(values_), std::end(values_), std::begin(described_values_));
-  described_.clear();
+  std::copy(std::begin(values_), std::end(values_), std::begin(next_values_));
+  submissions_.clear();
   semaphore_infos_.clear();
   bool begun[kQueueClasses] = {};
   VkResult result = VK_SUCCESS;
@@ -85,20 +85,21 @@ VkResult Submitter::submit(const Plan& plan, const FrameInfo& info) {
     const Submission& submission = plan.submissions[i];
     // Work that another queue waits for is submitted before that queue is given the wait.
     for (std::uint32_t w = 0; w < submission.wait_count && result == VK_SUCCESS; ++w) {
-      const Described& awaited = described_[plan.waits[submission.first_wait + w].submission];
+      const SubmissionInfo& awaited =
+          submissions_[plan.waits[submission.first_wait + w].submission];
       if (awaited.pending && awaited.queue != queue_of(submission)) result = flush(awaited.queue);
     }
     bool& own = begun[static_cast<std::size_t>(submission.queue)];
-    described_.push_back({});
-    described_.back().first_semaphore = static_cast<std::uint32_t>(semaphore_infos_.size());
+    submissions_.push_back({});
+    submissions_.back().first_semaphore = static_cast<std::uint32_t>(semaphore_infos_.size());
     // If the previous frame had another plan, this frame begins after that frame is done.
     const bool joins = full_barrier_ && !own && (several || several_before_);
     add_waits(plan, i, joins ? kEveryQueue : submission.frame_before);
     describe(plan, i, info);
     own = true;
   }
-  for (std::size_t i = 0; i < described_.size() && result == VK_SUCCESS; ++i) {
-    if (described_[i].pending) result = flush(described_[i].queue);
+  for (std::size_t i = 0; i < submissions_.size() && result == VK_SUCCESS; ++i) {
+    if (submissions_[i].pending) result = flush(submissions_[i].queue);
   }
   several_before_ = several;
   for (std::size_t q = 0; q < kQueueClasses; ++q) slots_[info.slot].queues[q].value = values_[q];
@@ -146,7 +147,7 @@ void Submitter::add_waits(const Plan& plan, std::uint32_t index, std::uint8_t qu
   }
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait = plan.waits[submission.first_wait + w];
-    const Described& awaited = described_[wait.submission];
+    const SubmissionInfo& awaited = submissions_[wait.submission];
     add(static_cast<std::size_t>(awaited.queue_class), awaited.value, wait.stages);
   }
 }
@@ -154,7 +155,7 @@ void Submitter::add_waits(const Plan& plan, std::uint32_t index, std::uint8_t qu
 void Submitter::describe(const Plan& plan, std::uint32_t index, const FrameInfo& info) {
   const Submission& submission = plan.submissions[index];
   const auto own = static_cast<std::size_t>(submission.queue);
-  Described& described = described_[index];
+  SubmissionInfo& described = submissions_[index];
   const auto add_external = [&](std::span<const QueueSemaphore> semaphores, bool first) {
     for (const QueueSemaphore& s : semaphores) {
       if (outermost(plan, s.queue, first) != index) continue;
@@ -166,7 +167,7 @@ void Submitter::describe(const Plan& plan, std::uint32_t index, const FrameInfo&
   described.waits = add_external(info.waits, true);
   // Earlier submissions of this queue that are described but not yet passed to vkQueueSubmit2 will
   // also raise the semaphore's value.
-  described.value = ++described_values_[own];
+  described.value = ++next_values_[own];
   semaphore_infos_.push_back({VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, semaphores_[own],
                               described.value, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0});
   described.signals = add_external(info.signals, false) - described.waits;
@@ -178,8 +179,8 @@ void Submitter::describe(const Plan& plan, std::uint32_t index, const FrameInfo&
 
 VkResult Submitter::flush(VkQueue queue) {
   infos_.clear();
-  const auto is_ready = [queue](const Described& d) { return d.pending && d.queue == queue; };
-  for (const Described& d : described_) {
+  const auto is_ready = [queue](const SubmissionInfo& d) { return d.pending && d.queue == queue; };
+  for (const SubmissionInfo& d : submissions_) {
     if (!is_ready(d)) continue;
     const VkSemaphoreSubmitInfo* const semaphores = semaphore_infos_.data() + d.first_semaphore;
     VkSubmitInfo2 info{};
@@ -195,7 +196,7 @@ VkResult Submitter::flush(VkQueue queue) {
   const VkResult result = device_.vk.vkQueueSubmit2(
       queue, static_cast<std::uint32_t>(infos_.size()), infos_.data(), VK_NULL_HANDLE);
   if (result != VK_SUCCESS) return result;
-  for (Described& d : described_) {
+  for (SubmissionInfo& d : submissions_) {
     if (!is_ready(d)) continue;
     d.pending = false;
     values_[static_cast<std::size_t>(d.queue_class)] = d.value;

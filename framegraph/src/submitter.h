@@ -51,7 +51,7 @@ class Submitter {
   }
 
   // A submission that is described and not yet submitted.
-  struct Described {
+  struct SubmissionInfo {
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t first_semaphore = 0;  // into semaphore_infos_: waits, then signals
     std::uint32_t waits = 0;
@@ -65,12 +65,12 @@ class Submitter {
   const DeviceContext& device_;
   std::vector<Slot> slots_;
   VkSemaphore semaphores_[kQueueClasses] = {};
-  std::uint64_t values_[kQueueClasses] = {};            // last value that will be signalled
-  std::uint64_t described_values_[kQueueClasses] = {};  // with the described submissions
-  std::uint64_t before_[kQueueClasses] = {};            // values_ at the end of the previous frame
-  std::vector<VkCommandBuffer> recorded_;               // by submission of this frame
-  std::uint32_t submitted_ = 0;                         // submissions of this frame handed over
-  std::vector<Described> described_;                    // by submission of this frame
+  std::uint64_t values_[kQueueClasses] = {};       // last value that will be signalled
+  std::uint64_t next_values_[kQueueClasses] = {};  // with the described submissions
+  std::uint64_t before_[kQueueClasses] = {};       // values_ at the end of the previous frame
+  std::vector<VkCommandBuffer> recorded_;          // by submission of this frame
+  std::uint32_t submitted_ = 0;                    // submissions of this frame handed over
+  std::vector<SubmissionInfo> submissions_;        // by submission of this frame
   std::vector<VkSemaphoreSubmitInfo> semaphore_infos_;
   std::vector<VkSubmitInfo2> infos_;  // of one vkQueueSubmit2
   bool several_before_ = false;

@@ -47,9 +47,7 @@ struct Checker {
   std::uint32_t pass;
   const AccessRecord& access;
 
-  // Adds an error about the access and returns false. Error sentences are composed in separate
-  // functions such as this one, because nearly all accesses are valid and the usual path should
-  // stay short.
+  // Adds an error about the access and returns false.
   bool refuse(ErrorCode code, const std::string& sentence) {
     v.fail(code, v.pass_text(pass) + " " + sentence, pass, access.resource, access.version);
     return false;
@@ -62,9 +60,6 @@ struct Checker {
     if ((access.flags & (kNull | kForeign | kClosed)) == 0 &&
         access.kind() == v.graph.resources[access.resource].kind)
       return true;
-    return refuse_handle();
-  }
-  bool refuse_handle() {
     const std::string kind = std::string(verb()).append("a ").append(
         access.kind() == ResourceKind::texture ? "texture" : "buffer");
     if (access.flags & kNull)
@@ -97,10 +92,6 @@ struct Checker {
     if (range.mips != 0 && range.layers != 0 && range.base_mip + range.mips <= r.mips &&
         range.base_layer + range.layers <= r.layers)
       return true;
-    return refuse_range(r);
-  }
-  bool refuse_range(const ResourceRecord& r) {
-    const Range& range = access.range;
     return refuse(ErrorCode::bad_range,
                   subject() + " from mip " + std::to_string(range.base_mip) + " and layer " +
                       std::to_string(range.base_layer) + " on (" + std::to_string(range.mips) +

@@ -116,7 +116,7 @@ struct Workspace {
     std::uint32_t opening[kQueueClasses] = {kNone, kNone, kNone};  // submission before the passes
   } queues;
   // A range of bytes of a heap that is in use up to and including a position.
-  struct Taken {
+  struct UsedRange {
     VkDeviceSize begin = 0;
     VkDeviceSize end = 0;
     std::uint32_t last = 0;
@@ -124,7 +124,7 @@ struct Workspace {
   struct Place {
     std::vector<PlaceItem> items;                // in order of first use
     std::vector<std::vector<PlaceItem>> blocks;  // by block of positions, in order of offset
-    std::vector<Taken> taken;                    // in order of offset
+    std::vector<UsedRange> taken;                // in order of offset
     std::vector<std::int64_t> change;
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;

@@ -215,7 +215,8 @@ void add_motion(CLI::App& app, Options& options) {
 
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
-  group.add("--quality", "NAME", "preset: console, low, medium, high or reference. Default: medium",
+  group.add("--quality", "NAME",
+            "preset: console, low, medium, high, ultra or reference. Default: medium",
             [&](const OptionValue& given) {
               occlusion.quality_given = true;
               occlusion.quality =
@@ -367,6 +368,11 @@ void add_cost(CLI::App& app, Options& options) {
   group.add_flag("--motion-vectors",
                  "model the passes with motion vectors as an input, which moving objects need",
                  options.cost.motion_vectors);
+  group.add_flag("--area", "model the passes for images that are read and written in part",
+                 options.cost.area);
+  group.add_flag("--mask", "model the passes with a mask of surfaces", options.cost.mask);
+  group.add_flag("--samples", "model the passes with depth of four samples per pixel",
+                 options.cost.samples);
   group.add_flag("--outputs",
                  "also model the settings with bent normals and with specular occlusion, and print "
                  "the ratio of each frame's time to its time without this output",

@@ -74,6 +74,9 @@ struct OcclusionOptions {
 struct CostOptions {
   std::string family;            // of the modelled GPU; empty for all that the model knows
   bool motion_vectors = false;   // gives motion vectors to the passes
+  bool area = false;             // the images are read and written in part
+  bool mask = false;             // gives a mask of surfaces
+  bool samples = false;          // depth has four samples per pixel
   bool loops = false;            // also prints the loops of the shaders
   bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none

@@ -47,24 +47,22 @@ class LimitedDecoder : public Decoder {
     if (counts_before_faces_ > 0 && !ahead.Decode(&attribute_sets)) return false;
     constexpr uint64_t kMostFacesPerByte = 64;
     const auto bytes = static_cast<uint64_t>(ahead.remaining_size());
-    if (uint64_t{faces} * (uint64_t{attribute_sets} + 1) >
-        std::min(budget_.faces, kMostFacesPerByte * bytes)) {
-      return false;
-    }
-    return Decoder::DecodeConnectivity();
+    const uint64_t most = std::min(budget_.faces, kMostFacesPerByte * bytes);
+    // A mesh without triangles is refused too, because decoders are rarely tested with it.
+    return faces > 0 && faces * (uint64_t{attribute_sets} + 1) <= most &&
+           Decoder::DecodeConnectivity();
   }
 
   bool DecodeAllAttributes() override {
     constexpr uint64_t kOverhead = 8;  // bytes a value, for maps and quantised values
     const draco::PointCloud& points = *this->point_cloud();
     uint64_t size = 0;
-    for (int i = 0; i < points.num_attributes(); ++i) {
+    for (int i = 0; size <= budget_.bytes && i < points.num_attributes(); ++i) {
       const auto& attribute = *points.attribute(i);
       size += points.num_points() * (static_cast<uint64_t>(attribute.byte_stride()) +
                                      kOverhead * attribute.num_components());
-      if (size > budget_.bytes) return false;
     }
-    return Decoder::DecodeAllAttributes();
+    return size > 0 && size <= budget_.bytes && Decoder::DecodeAllAttributes();
   }
 
  private:

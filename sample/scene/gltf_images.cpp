@@ -151,8 +151,8 @@ tl::expected<void, std::string> read_header(const tinygltf::Model& model, GltfFi
 
 // Sets how large each image appears, and sorts the images by it, the largest first.
 void sort_by_appearance(const Scene& scene, std::vector<Entry>& entries) {
-  const std::map<size_t, Appearance> known = appearances(scene);
-  for (Entry& entry : entries) entry.appearance = known.at(entry.index);
+  std::map<size_t, Appearance> known = appearances(scene);
+  for (Entry& entry : entries) entry.appearance = known[entry.index];
   std::ranges::stable_sort(entries, std::greater<>(),
                            [](const Entry& entry) { return entry.appearance.all; });
 }

@@ -133,16 +133,29 @@ void lay_out_settings(OcclusionSettings& settings, float radius) {
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
   for (std::size_t i = 0; i < passes::kNames<passes::Quality>.size(); ++i) {
-    if (i > 0) {
+    const auto quality = static_cast<passes::Quality>(i);
+    const char* const name = passes::name_of(quality).data();
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize(name).x + 2.0f * style.FramePadding.x;
+    const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) {
       ImGui::SameLine();
     }
-    const auto quality = static_cast<passes::Quality>(i);
-    if (ImGui::Button(passes::name_of(quality).data())) {
+    if (ImGui::Button(name)) {
       state.settings = passes::quality_settings(quality, state.settings.radius);
     }
   }
   if (ImGui::Button("reset settings (R)")) {
     state.settings = facts.first_settings;
+  }
+}
+
+// Lays out the time that slices and steps are fitted to.
+void lay_out_budget(ViewState& state) {
+  ImGui::Checkbox("fit slices and steps to a time", &state.fits_budget);
+  if (state.fits_budget) {
+    ImGui::SliderFloat("target ms", &state.target_ms, 0.05f, 200.0f, "%.2f",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
   }
 }
 
@@ -216,6 +229,7 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts, bool narrow) {
     }
     if (section("occlusion")) {
       lay_out_qualities(state, facts);
+      lay_out_budget(state);
       lay_out_settings(state.settings, facts.first_settings.radius);
       lay_out_roughness(state);
     }

@@ -65,6 +65,9 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
            matrices.clip_from_view, state.camera.reversed_z};
   ray_from_ndc_ = ray_from_ndc(state.camera, matrices);
   choices_ = {state.settings, compared_settings(state), state.roughness};
+  if (state.fits_budget) {  // the history goes on when the number of samples changes
+    choices_.settings.slices = choices_.settings.steps = 0;
+  }
   const HistoryFormat format{with_outputs(state.settings, state.picture), size.width, size.height};
   const bool same_kind = std::exchange(format_, format) == format;
   if (previous_choices_ != choices_) {

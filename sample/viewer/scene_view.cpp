@@ -174,6 +174,10 @@ void SceneView::lay_out() {
   facts_.width = presenter_->size().width;
   facts_.height = presenter_->size().height;
   facts_.times.add(presenter_->timings());
+  if (state_.fits_budget && facts_.refusal.empty()) {
+    state_.settings =
+        fitter_.fit({.target_ms = state_.target_ms}, presenter_->timings(), state_.settings);
+  }
   if (panel_shown_ && lay_out_panel(state_, facts_)) {
     take_screenshot();
   }

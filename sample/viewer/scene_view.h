@@ -11,6 +11,7 @@
 
 #include "render/read_back.h"
 #include "render/session.h"
+#include "viewer/budget_fitter.h"
 #include "viewer/gui.h"
 #include "viewer/panel.h"
 #include "viewer/presenter.h"
@@ -104,6 +105,7 @@ class SceneView {
   Choice good_;                    // the last choice that could be drawn
   std::optional<Choice> refused_;  // the choice that the passes refuse; null if they accept it
   PanelFacts facts_;
+  BudgetFitter fitter_;
   bool panel_shown_ = true;
   bool wanted_ = false;  // whether the next frame is a screenshot
   Image<glm::vec3> screenshot_;

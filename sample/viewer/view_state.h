@@ -39,6 +39,8 @@ struct ViewState {
   Picture picture = Picture::visibility;
   Comparison comparison = Comparison::none;
   passes::OcclusionSettings saved;  // the settings of Comparison::saved
+  bool fits_budget = false;         // whether slices and steps follow the measured times
+  float target_ms = 2.0f;           // of the occlusion passes, if fits_budget
   float split = 0.5f;               // position of the right part's left edge, 0..1 of the width
 };
 

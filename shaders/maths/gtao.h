@@ -43,12 +43,9 @@ ALCOVE_INLINE float slice_visibility(Slice s, float ahead, float behind) {
 // mean over uniformly spaced slices is exactly 1, so it serves as the weight of a slice.
 ALCOVE_INLINE float open_slice(Slice s) { return s.toward + slice_gamma(s) * s.along; }
 
-// Returns light_arc() of both half-slices up to the tangent plane, x for the positive and y for the
-// negative one, with a single arc cosine. Their sum is open_slice().
-ALCOVE_INLINE vec2 tangent_arcs(Slice s) {
-  float level = s.cosine * s.cosine * s.toward;
-  float swell = arc_cosine(-s.sine) + s.sine * s.cosine;
-  return vec2(0.5f * (level + swell * s.along), 0.5f * (level - (kPi - swell) * s.along));
+// Returns light_arc() of a half-slice up to the tangent plane. The sum of both is open_slice().
+ALCOVE_INLINE float open_arc(Slice s, float side) {
+  return light_arc(s, side, vec2(s.cosine, tangent_horizon(s, side)));
 }
 
 // Returns the weight of an occluder at a distance, [0,1]. It falls linearly from 1 to 0 over the

@@ -184,7 +184,7 @@ ALCOVE_INLINE bool lies_on_tangent_plane(float fading, float off_plane, float of
 // of a disc.
 ALCOVE_INLINE float sphere_reach(SliceLine slice_line, float radius, float inverse_depth,
                                  bool perspective) {
-  float nearness = perspective ? radius * inverse_depth / slice_line.y_per_depth : 0.0f;
+  float nearness = perspective ? radius * (inverse_depth / slice_line.y_per_depth) : 0.0f;
   return (perspective ? inverse_depth : 1.0f) * inversesqrt(max(1.0f - nearness * nearness, 1e-6f));
 }
 

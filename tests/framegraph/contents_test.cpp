@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -26,7 +27,7 @@ std::uint32_t frame_count() {
 constexpr VkDeviceSize kHostWords = 1 << 16;
 
 // A resource and the words that it must hold.
-struct Modelled {
+struct ResourceModel {
   bool texture = true;
   Texture handle;
   Buffer buffer;
@@ -34,11 +35,11 @@ struct Modelled {
   std::uint32_t height = 1;
   std::vector<std::uint32_t> words;
   bool read_only = false;  // an older history slot
-  struct Kept* kept = nullptr;
+  struct HistoryModel* history = nullptr;
 };
 
 // Contents that a history or persistent texture must hold in the next frame, if it is valid then.
-struct Kept {
+struct HistoryModel {
   const char* name = "history";
   bool persistent = false;
   bool valid = false;
@@ -46,9 +47,7 @@ struct Kept {
   std::uint32_t side = 8;
   std::vector<std::uint32_t> words;
 };
-struct Histories {
-  Kept kept[2] = {{"history", false}, {"persistent", true}};
-};
+using Histories = std::array<HistoryModel, 2>;
 
 class FrameMaker {
  public:
@@ -62,7 +61,7 @@ class FrameMaker {
     clear();
     fill();
     clear();
-    for (Kept& kept : histories_.kept) declare_kept(kept);
+    for (HistoryModel& history : histories_) declare_history(history);
     const std::uint32_t passes = 4 + dice_.roll(20);
     for (std::uint32_t i = 0; i < passes; ++i) {
       switch (dice_.roll(10)) {
@@ -85,18 +84,18 @@ class FrameMaker {
       }
     }
     Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
-    for (const Modelled& modelled : all_) {
-      if (dice_.chance(90)) out = copy_out(modelled, out);
+    for (const ResourceModel& model : all_) {
+      if (dice_.chance(90)) out = copy_out(model, out);
     }
     out = copy_out(all_.back(), out);
   }
 
   // Moves the model of the histories on to the next frame, after this one has run.
   void finish() {
-    for (const Modelled& modelled : all_) {
-      if (modelled.kept == nullptr || !(modelled.kept->ran || modelled.kept->persistent)) continue;
-      modelled.kept->valid = true;
-      modelled.kept->words = modelled.words;
+    for (const ResourceModel& model : all_) {
+      if (model.history == nullptr || !(model.history->ran || model.history->persistent)) continue;
+      model.history->valid = true;
+      model.history->words = model.words;
     }
   }
 
@@ -105,59 +104,58 @@ class FrameMaker {
  private:
   // Declares a history or persistent texture, whose validity must be that of the model. A pass may
   // write it, and other passes may read its older slot. It may be reset or change its size.
-  void declare_kept(Kept& kept) {
-    kept.ran = false;
+  void declare_history(HistoryModel& history) {
+    history.ran = false;
     if (dice_.chance(20)) {
-      kept.valid = false;
-      graph_.reset_history(kept.name);
+      history.valid = false;
+      graph_.reset_history(history.name);
     }
     if (dice_.chance(20)) {
       const std::uint32_t side = 1 + dice_.roll(30);
-      if (side != kept.side) kept.valid = false;
-      kept.side = side;
+      if (side != history.side) history.valid = false;
+      history.side = side;
     }
-    const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(kept.side, kept.side)};
-    const TextureHistory history = kept.persistent
-                                       ? graph_.create_persistent_texture(kept.name, desc)
-                                       : graph_.create_texture_history(kept.name, desc);
-    EXPECT_EQ(history.validity == HistoryValidity::valid, kept.valid) << kept.name;
-    Modelled modelled;
-    modelled.width = modelled.height = kept.side;
-    modelled.words = kept.words;
-    modelled.words.resize(std::size_t{kept.side} * kept.side);
-    if (kept.valid && dice_.chance(200)) {
-      modelled.read_only = !kept.persistent;
-      modelled.handle = kept.persistent ? history.current : history.previous();
-      modelled.kept = kept.persistent ? &kept : nullptr;
-      all_.push_back(modelled);
-      if (kept.persistent) return;
+    const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(history.side, history.side)};
+    const TextureHistory slots = history.persistent
+                                     ? graph_.create_persistent_texture(history.name, desc)
+                                     : graph_.create_texture_history(history.name, desc);
+    EXPECT_EQ(slots.validity == HistoryValidity::valid, history.valid) << history.name;
+    ResourceModel model;
+    model.width = model.height = history.side;
+    model.words = history.words;
+    model.words.resize(std::size_t{history.side} * history.side);
+    if (history.valid && dice_.chance(200)) {
+      model.read_only = !history.persistent;
+      model.handle = history.persistent ? slots.current : slots.previous();
+      model.history = history.persistent ? &history : nullptr;
+      all_.push_back(model);
+      if (history.persistent) return;
     }
-    if (kept.valid && (kept.persistent || dice_.chance(60))) return;
-    const Modelled sampled = all_[dice_.roll(1)];
-    const Modelled storage = all_[2];
+    if (history.valid && (history.persistent || dice_.chance(60))) return;
+    const ResourceModel sampled = all_[dice_.roll(1)];
+    const ResourceModel storage = all_[2];
     const std::uint32_t seed = any();
-    modelled.read_only = false;
-    modelled.kept = &kept;
-    mix(modelled, seed, sampled, storage, false);
+    model.read_only = false;
+    model.history = &history;
+    mix(model, seed, sampled, storage, false);
     PassBuilder pass = graph_.add_pass("write history", queue());
     pass.read(sampled.handle, access::sampled_compute);
     pass.read(storage.handle, access::storage_read_compute);
-    modelled.handle =
-        pass.write(history.current, access::storage_write_compute, {}, Contents::discard);
-    pass.record([=, this, &kept, from = sampled.handle, and_from = storage.handle,
-                 to = modelled.handle](RecordContext& c) {
-      kept.ran = true;
+    model.handle = pass.write(slots.current, access::storage_write_compute, {}, Contents::discard);
+    pass.record([=, this, &history, from = sampled.handle, and_from = storage.handle,
+                 to = model.handle](RecordContext& c) {
+      history.ran = true;
       kernels_.mix_texture(c, c.view(from), c.view(and_from), c.view(to), c.extent(to), seed,
                            false);
     });
-    all_.push_back(std::move(modelled));
+    all_.push_back(std::move(model));
   }
 
   std::uint32_t any() { return static_cast<std::uint32_t>(dice_.roll(1u << 30)); }
-  Modelled* choose(bool texture) {
-    std::vector<Modelled*> fitting;
-    for (Modelled& modelled : all_) {
-      if (modelled.texture == texture) fitting.push_back(&modelled);
+  ResourceModel* choose(bool texture) {
+    std::vector<ResourceModel*> fitting;
+    for (ResourceModel& model : all_) {
+      if (model.texture == texture) fitting.push_back(&model);
     }
     const auto count = static_cast<std::uint32_t>(fitting.size());
     return fitting[count - 1 - dice_.roll(std::min(count, 5u))];
@@ -165,56 +163,56 @@ class FrameMaker {
 
   QueueClass queue() { return dice_.chance(128) ? QueueClass::compute : QueueClass::graphics; }
 
-  Modelled new_texture() {
-    Modelled made;
-    made.width = 1 + dice_.roll(40);
-    made.height = 1 + dice_.roll(40);
-    made.handle = graph_.create_texture(
-        "texture", {VK_FORMAT_R32_UINT, Extent::absolute(made.width, made.height)});
-    made.words.resize(std::size_t{made.width} * made.height);
-    return made;
+  ResourceModel new_texture() {
+    ResourceModel model;
+    model.width = 1 + dice_.roll(40);
+    model.height = 1 + dice_.roll(40);
+    model.handle = graph_.create_texture(
+        "texture", {VK_FORMAT_R32_UINT, Extent::absolute(model.width, model.height)});
+    model.words.resize(std::size_t{model.width} * model.height);
+    return model;
   }
 
-  Modelled new_buffer() {
-    Modelled made;
-    made.texture = false;
-    made.width = 1 + dice_.roll(2000);
-    made.buffer = graph_.create_buffer("buffer", {4 * VkDeviceSize{made.width}});
-    made.words.resize(made.width);
-    return made;
+  ResourceModel new_buffer() {
+    ResourceModel model;
+    model.texture = false;
+    model.width = 1 + dice_.roll(2000);
+    model.buffer = graph_.create_buffer("buffer", {4 * VkDeviceSize{model.width}});
+    model.words.resize(model.width);
+    return model;
   }
 
   void clear() {
-    Modelled made = new_texture();
+    ResourceModel model = new_texture();
     const std::uint32_t value = any();
-    std::fill(made.words.begin(), made.words.end(), value);
+    std::fill(model.words.begin(), model.words.end(), value);
     PassBuilder pass = graph_.add_pass("clear");
-    made.handle = pass.write(made.handle, access::clear, {}, Contents::discard);
-    pass.record([handle = made.handle, value](RecordContext& c) {
+    model.handle = pass.write(model.handle, access::clear, {}, Contents::discard);
+    pass.record([handle = model.handle, value](RecordContext& c) {
       clear_image(c, c.image(handle), value);
     });
-    all_.push_back(std::move(made));
+    all_.push_back(std::move(model));
   }
 
   void fill() {
-    Modelled made = new_buffer();
+    ResourceModel model = new_buffer();
     const std::uint32_t value = any();
-    std::fill(made.words.begin(), made.words.end(), value);
+    std::fill(model.words.begin(), model.words.end(), value);
     PassBuilder pass = graph_.add_pass("fill");
-    made.buffer = pass.write(made.buffer, buffer_access::fill, Contents::discard);
-    pass.record([handle = made.buffer, value](RecordContext& c) {
+    model.buffer = pass.write(model.buffer, buffer_access::fill, Contents::discard);
+    pass.record([handle = model.buffer, value](RecordContext& c) {
       vkCmdFillBuffer(c.commands, c.buffer(handle), 0, VK_WHOLE_SIZE, value);
     });
-    all_.push_back(std::move(made));
+    all_.push_back(std::move(model));
   }
 
   // Mixes two textures into a new texture, or into an existing one whose contents are then part of
   // the result.
   void mix_texture() {
-    const Modelled sampled = *choose(true);
-    const Modelled storage = *choose(true);
+    const ResourceModel sampled = *choose(true);
+    const ResourceModel storage = *choose(true);
     const bool keep = dice_.chance(100);
-    Modelled result = keep ? *choose(true) : new_texture();
+    ResourceModel result = keep ? *choose(true) : new_texture();
     if (sampled.handle == storage.handle || result.handle == sampled.handle ||
         result.handle == storage.handle || result.read_only)
       return;
@@ -234,28 +232,28 @@ class FrameMaker {
     replace(std::move(result), before.index);
   }
 
-  // Adds a pass with two outputs: a new texture made from the contents of an old one, and the
+  // Adds a pass with two outputs: a new texture model from the contents of an old one, and the
   // updated old one. A reader of the new texture alone still needs the contents of the old one.
   void update_and_mix() {
-    const Modelled sampled = *choose(true);
-    const Modelled storage = *choose(true);
-    Modelled updated = *choose(true);
+    const ResourceModel sampled = *choose(true);
+    const ResourceModel storage = *choose(true);
+    ResourceModel updated = *choose(true);
     if (sampled.handle == storage.handle || updated.handle == sampled.handle ||
         updated.handle == storage.handle || updated.read_only)
       return;
     const std::uint32_t seed = any();
-    Modelled made = new_texture();
-    mix(made, seed, sampled, updated, false);
+    ResourceModel model = new_texture();
+    mix(model, seed, sampled, updated, false);
     mix(updated, ~seed, sampled, storage, true);
     PassBuilder pass = graph_.add_pass("update and mix", queue());
     pass.read(sampled.handle, access::sampled_compute);
     pass.read(storage.handle, access::storage_read_compute);
     const std::uint32_t index = updated.handle.index;
     updated.handle = pass.write(updated.handle, access::storage_read_write_compute);
-    made.handle = pass.write(made.handle, access::storage_write_compute, {}, Contents::discard,
-                             dice_.chance(100) ? Need::optional : Need::required);
+    model.handle = pass.write(model.handle, access::storage_write_compute, {}, Contents::discard,
+                              dice_.chance(100) ? Need::optional : Need::required);
     pass.record([=, this, from = sampled.handle, and_from = storage.handle, old = updated.handle,
-                 to = made.handle](RecordContext& c) {
+                 to = model.handle](RecordContext& c) {
       if (c.is_used(to)) {
         kernels_.mix_texture(c, c.view(from), c.view(old), c.view(to), c.extent(to), seed, false);
         VkMemoryBarrier2 barrier{};
@@ -271,12 +269,12 @@ class FrameMaker {
                            true);
     });
     replace(std::move(updated), index);
-    all_.push_back(std::move(made));
+    all_.push_back(std::move(model));
   }
 
   // Computes the result of the kernel that mixes textures.
-  static void mix(Modelled& result, std::uint32_t seed, const Modelled& sampled,
-                  const Modelled& storage, bool keep) {
+  static void mix(ResourceModel& result, std::uint32_t seed, const ResourceModel& sampled,
+                  const ResourceModel& storage, bool keep) {
     for (std::uint32_t y = 0; y < result.height; ++y) {
       for (std::uint32_t x = 0; x < result.width; ++x) {
         std::uint32_t& word = result.words[y * result.width + x];
@@ -289,10 +287,10 @@ class FrameMaker {
   }
 
   void mix_buffer() {
-    const Modelled sampled = *choose(true);
-    const Modelled from = *choose(false);
+    const ResourceModel sampled = *choose(true);
+    const ResourceModel from = *choose(false);
     const bool keep = dice_.chance(100);
-    Modelled result = keep ? *choose(false) : new_buffer();
+    ResourceModel result = keep ? *choose(false) : new_buffer();
     if (result.buffer == from.buffer) return;
     const std::uint32_t seed = any();
     for (std::uint32_t i = 0; i < result.width; ++i) {
@@ -316,33 +314,33 @@ class FrameMaker {
     replace(std::move(result), before.index);
   }
 
-  static std::uint32_t at(const Modelled& m, std::uint32_t x, std::uint32_t y) {
+  static std::uint32_t at(const ResourceModel& m, std::uint32_t x, std::uint32_t y) {
     return m.words[(y % m.height) * m.width + x % m.width];
   }
 
-  void replace(Modelled modelled, std::uint32_t index) {
-    for (Modelled& there : all_) {
+  void replace(ResourceModel model, std::uint32_t index) {
+    for (ResourceModel& there : all_) {
       const std::uint32_t its = there.texture ? there.handle.index : there.buffer.index;
       if (its != index) continue;
-      there = std::move(modelled);
+      there = std::move(model);
       return;
     }
-    all_.push_back(std::move(modelled));
+    all_.push_back(std::move(model));
   }
 
-  Buffer copy_out(const Modelled& modelled, Buffer out) {
+  Buffer copy_out(const ResourceModel& model, Buffer out) {
     const VkDeviceSize offset = 4 * expected.size();
-    if (expected.size() + modelled.words.size() > kHostWords) return out;
-    expected.insert(expected.end(), modelled.words.begin(), modelled.words.end());
+    if (expected.size() + model.words.size() > kHostWords) return out;
+    expected.insert(expected.end(), model.words.begin(), model.words.end());
     PassBuilder pass =
         graph_.add_pass("copy out", dice_.chance(60) ? QueueClass::transfer : QueueClass::graphics);
-    if (modelled.texture)
-      pass.read(modelled.handle, access::transfer_source);
+    if (model.texture)
+      pass.read(model.handle, access::transfer_source);
     else
-      pass.read(modelled.buffer, buffer_access::transfer_source);
+      pass.read(model.buffer, buffer_access::transfer_source);
     out = pass.write(out, buffer_access::transfer_destination);
-    pass.record([offset, out, texture = modelled.texture, image = modelled.handle,
-                 buffer = modelled.buffer](RecordContext& c) {
+    pass.record([offset, out, texture = model.texture, image = model.handle,
+                 buffer = model.buffer](RecordContext& c) {
       if (!texture) {
         const VkBufferCopy copy{0, offset, c.size(buffer)};
         vkCmdCopyBuffer(c.commands, c.buffer(buffer), c.buffer(out), 1, &copy);
@@ -358,7 +356,7 @@ class FrameMaker {
   const HostBuffer& host_;
   Histories& histories_;
   Dice dice_;
-  std::vector<Modelled> all_;
+  std::vector<ResourceModel> all_;
 };
 
 enum class Path { record, submit, submit_to_two, submit_to_three };
@@ -405,7 +403,7 @@ void run_frames(Gpu& gpu, Executor& executor, const Way& way, std::uint64_t seed
   ChecksumKernels kernels(gpu);
   const HostBuffer host = gpu.make_host_buffer(4 * kHostWords);
   Graph graph;
-  Histories histories;
+  Histories histories{{{"history", false}, {"persistent", true}}};
   const std::uint32_t frames = frame_count();
   for (std::uint32_t i = 0; i < frames; ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed + i));

@@ -3,45 +3,12 @@
 
 #include <cstdint>
 
+#include "executor_fixture.h"
 #include "extra_device.h"
 #include "failing_device.h"
-#include "gpu.h"
 
 namespace alcove::framegraph {
 namespace {
-
-class ExecutorTest : public testing::Test {
- protected:
-  void SetUp() override { ASSERT_EQ(gpu_.problem(), ""); }
-  void TearDown() override { EXPECT_EQ(gpu_.messages(), ""); }
-
-  Executor make(const ExecutorOptions& options = {}) {
-    auto made = Executor::create(gpu_.handles(), options);
-    EXPECT_TRUE(made.has_value());
-    return std::move(*made);
-  }
-  Gpu gpu_;
-};
-
-// Declares a chain of passes that clear textures which share memory. Each texture is copied out
-// before the next is cleared.
-void declare_chain(Graph& graph, const HostBuffer& host, std::uint32_t length) {
-  graph.reset();
-  Buffer out = graph.import_buffer("out", Gpu::imported(host));
-  for (std::uint32_t i = 0; i < length; ++i) {
-    Texture texture =
-        graph.create_texture("texture", {VK_FORMAT_R32_UINT, Extent::absolute(16 + i, 16)});
-    PassBuilder clear = graph.add_pass("clear");
-    texture = clear.write(texture, access::clear);
-    clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 100 + i); });
-    PassBuilder copy = graph.add_pass("copy");
-    copy.read(texture, access::transfer_source);
-    out = copy.write(out, buffer_access::transfer_destination);
-    copy.record([=](RecordContext& c) {
-      copy_image(c, c.image(texture), c.buffer(out), i * sizeof(std::uint32_t));
-    });
-  }
-}
 
 // A callback that fails makes submit() return an error before anything is submitted: the history
 // keeps its contents, and the copy to the host does not run.
@@ -62,11 +29,7 @@ TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
       if (mistake == 1) c.fail("table", VK_ERROR_OUT_OF_HOST_MEMORY);
       if (mistake == 2) (void)c.image(other);
     });
-    PassBuilder copy = graph.add_pass("copy");
-    copy.read(cleared, access::transfer_source);
-    Buffer out = graph.import_buffer("out", Gpu::imported(host));
-    out = copy.write(out, buffer_access::transfer_destination);
-    copy.record([=](RecordContext& c) { copy_image(c, c.image(cleared), c.buffer(out)); });
+    (void)add_copy(graph, cleared, graph.import_buffer("out", Gpu::imported(host)));
     const auto report = executor.submit(graph);
     EXPECT_EQ(report.has_value(), mistake == 0);
     EXPECT_TRUE(executor.wait());
@@ -182,11 +145,8 @@ TEST_F(ExecutorTest, MemoryThatSmallerFramesDoNotNeedIsFreed) {
   Graph graph;
   const auto allocated = [&](std::uint32_t side) {
     graph.reset();
-    Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(side, side)});
-    PassBuilder pass = graph.add_pass("clear");
-    texture = pass.write(texture, access::clear);
-    pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), side); });
-    graph.output(texture);
+    const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(side, side)};
+    graph.output(add_clear(graph, graph.create_texture("t", desc), side));
     const auto report = gpu_.run(executor, graph);
     EXPECT_TRUE(report) << to_string(report.error());
     return report->memory.allocated;
@@ -403,11 +363,9 @@ TEST_F(ExecutorTest, ExecutorRunsOnAVulkan12DeviceWithTheSynchronization2Extensi
   ASSERT_TRUE(executor) << to_string(executor.error());
   EXPECT_GT(executor->limits().max_buffer_size, 1u << 20);
   Graph graph;
-  Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(16, 16)});
-  PassBuilder clear = graph.add_pass("clear");
-  texture = clear.write(texture, access::clear);
-  clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 3); });
-  Texture other = graph.create_texture("u", {VK_FORMAT_R32_UINT, Extent::absolute(16, 16)});
+  const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(16, 16)};
+  const Texture texture = add_clear(graph, graph.create_texture("t", desc), 3);
+  Texture other = graph.create_texture("u", desc);
   PassBuilder copy = graph.add_pass("copy");
   copy.read(texture, access::transfer_source);
   other = copy.write(other, access::transfer_destination);
@@ -431,6 +389,30 @@ TEST_F(ExecutorTest, ExecutorRunsOnAVulkan12DeviceWithTheSynchronization2Extensi
   EXPECT_THAT(report.error()[0].message,
               testing::HasSubstr("pass 'draw' begins a rendering, but the device has no "
                                  "vkCmdBeginRendering"));
+}
+
+TEST_F(ExecutorTest, RenderingWithAViewMaskIsAcceptedOnADeviceWithMultiview) {
+  VkPhysicalDeviceVulkan11Features v11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
+  v11.multiview = VK_TRUE;
+  VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v11};
+  v12.timelineSemaphore = VK_TRUE;
+  VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &v12};
+  v13.synchronization2 = v13.dynamicRendering = VK_TRUE;
+  const ExtraDevice device(gpu_, &v13);
+  auto executor = Executor::create(device.handles());
+  ASSERT_TRUE(executor) << to_string(executor.error());
+  Graph graph;
+  Texture eyes =
+      graph.create_texture("eyes", {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(16, 16), 1, 2});
+  PassBuilder draw = graph.add_pass("draw");
+  eyes = draw.write(eyes, access::color_attachment);
+  draw.side_effect();
+  draw.record([=](RecordContext& c) {
+    const Attachment target{eyes};
+    if (c.begin_rendering({&target, 1}, {}, {.view_mask = 3})) c.end_rendering();
+  });
+  const auto report = executor->submit(graph);
+  EXPECT_TRUE(report) << to_string(report.error());
 }
 
 // The three frames declare, in this order, a transient buffer without a device address, a transient
@@ -481,13 +463,9 @@ TEST_F(ExecutorTest, MemoryOfAReplacedResourceIsCountedAsAllocatedUntilItIsFreed
     auto& [executor, graph] = made;
     graph.reset();
     const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(side, side)};
-    for (Texture texture : {graph.create_texture_history("history", desc).current,
-                            graph.create_texture("transient", desc)}) {
-      PassBuilder pass = graph.add_pass("clear");
-      texture = pass.write(texture, access::clear);
-      pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), side); });
-      graph.output(texture);
-    }
+    for (const Texture texture : {graph.create_texture_history("history", desc).current,
+                                  graph.create_texture("transient", desc)})
+      graph.output(add_clear(graph, texture, side));
     const auto report = gpu_.run(executor, graph);
     EXPECT_TRUE(report) << to_string(report.error());
     return report->memory.allocated;
@@ -504,119 +482,6 @@ TEST_F(ExecutorTest, MemoryOfAReplacedResourceIsCountedAsAllocatedUntilItIsFreed
   // freed.
   EXPECT_GT(allocated(resized, 128), allocated(large, 128));
   EXPECT_EQ(allocated(resized, 128), allocated(large, 128));
-}
-
-class FailingDeviceTest : public ExecutorTest {
- protected:
-  void SetUp() override {
-    ExecutorTest::SetUp();
-    failing::fail_at(0);
-    failing::lose(false);
-    host_ = gpu_.make_host_buffer(4 * sizeof(std::uint32_t));
-    handles_ = gpu_.handles();
-    handles_.get_instance_proc_addr = failing::get_instance_proc_addr;
-  }
-
-  // Declares a frame with transients, an import and a history. The pass that writes the history
-  // runs on `queue`.
-  void declare(Graph& graph, QueueClass queue = QueueClass::graphics) {
-    declare_chain(graph, host_, 4);
-    const TextureHistory history =
-        graph.create_texture_history("history", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
-    PassBuilder pass = graph.add_pass("remember", queue);
-    const Texture texture = pass.write(history.current, access::clear);
-    pass.record([=](RecordContext& c) {
-      (void)c.view(texture);
-      clear_image(c, c.image(texture), 1);
-    });
-    graph.output(texture);
-  }
-
-  HostBuffer host_;
-  DeviceHandles handles_;
-};
-
-// Makes each call that creates an object fail in turn. The frame must then return an error, the
-// next frame must run, and nothing may leak.
-TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyVulkanCallIsAnErrorAndLeaksNothing) {
-  int failed = 0;
-  int last = 0;
-  for (const bool submits : {false, true}) {
-    for (int call = 1; call == 1 || last >= call - 1; ++call) {
-      auto executor = Executor::create(handles_);
-      ASSERT_TRUE(executor) << to_string(executor.error());
-      Graph graph;
-      failing::fail_at(call);
-      declare(graph);
-      const auto report = submits ? executor->submit(graph) : gpu_.run(*executor, graph);
-      last = failing::calls();
-      failing::fail_at(0);
-      if (last < call) {
-        EXPECT_TRUE(report);
-      } else {
-        ++failed;
-        ASSERT_FALSE(report) << "call " << call;
-        EXPECT_EQ(report.error()[0].result, VK_ERROR_OUT_OF_DEVICE_MEMORY);
-      }
-      ASSERT_TRUE(executor->wait());
-      declare(graph);
-      const auto again = submits ? executor->submit(graph) : gpu_.run(*executor, graph);
-      EXPECT_TRUE(again) << to_string(again.error());
-      ASSERT_TRUE(executor->wait());
-    }
-    EXPECT_EQ(failing::alive(), 0);
-  }
-  EXPECT_GE(failed, 20);
-}
-
-// Loses the device at each submission in turn. Every later call must return an error, and nothing
-// may leak.
-TEST_F(FailingDeviceTest, LosingTheDeviceAtAnySubmissionIsAnErrorAndLeaksNothing) {
-  handles_.queues[1] = handles_.queues[0];
-  int lost = 0;
-  for (int submission = 0; submission < 4; ++submission) {
-    {
-      auto executor = Executor::create(handles_);
-      ASSERT_TRUE(executor) << to_string(executor.error());
-      Graph graph;
-      failing::lose_after(submission);
-      for (std::uint32_t frame = 0; frame < 4; ++frame) {
-        declare(graph, QueueClass::compute);
-        const auto report = executor->submit(graph, {frame % 2});
-        if (report) {
-          EXPECT_EQ(lost, 0);
-          continue;
-        }
-        ++lost;
-        EXPECT_EQ(report.error()[0].result, VK_ERROR_DEVICE_LOST);
-        EXPECT_THAT(report.error()[0].message, testing::HasSubstr("VK_ERROR_DEVICE_LOST"));
-      }
-      EXPECT_GE(lost, 1) << submission;
-      lost = 0;
-    }
-    EXPECT_EQ(failing::alive(), 0);
-    failing::lose(false);
-  }
-}
-
-TEST_F(FailingDeviceTest, LosingTheDeviceWhileWaitingForAFrameIsAnErrorAndLeaksNothing) {
-  {
-    auto executor = Executor::create(handles_);
-    ASSERT_TRUE(executor) << to_string(executor.error());
-    Graph graph;
-    declare(graph);
-    ASSERT_TRUE(executor->submit(graph));
-    failing::lose(true);
-    const auto waited = executor->wait();
-    ASSERT_FALSE(waited);
-    EXPECT_EQ(waited.error()[0].result, VK_ERROR_DEVICE_LOST);
-    declare(graph);
-    const auto report = executor->submit(graph);
-    ASSERT_FALSE(report);
-    EXPECT_EQ(report.error()[0].result, VK_ERROR_DEVICE_LOST);
-  }
-  EXPECT_EQ(failing::alive(), 0);
-  failing::lose(false);
 }
 
 }  // namespace

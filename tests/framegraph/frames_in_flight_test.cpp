@@ -66,12 +66,6 @@ class FramesInFlight : public testing::Test {
   std::array<VkCommandBuffer, kSlots> commands_{};
 };
 
-void add_clear(Graph& graph, Texture& texture, const char* name = "clear") {
-  PassBuilder pass = graph.add_pass(name);
-  texture = pass.write(texture, access::clear, {}, Contents::discard);
-  pass.record([texture](RecordContext& c) { clear_image(c, c.image(texture), 0); });
-}
-
 // Returns an import of the buffer whose last use was a copy by the previous frame.
 ImportedBuffer arriving(const HostBuffer& host) {
   ImportedBuffer import = Gpu::imported(host);
@@ -80,19 +74,11 @@ ImportedBuffer arriving(const HostBuffer& host) {
   return import;
 }
 
-void add_read(Graph& graph, Texture texture, Buffer& out) {
-  PassBuilder pass = graph.add_pass("copy");
-  pass.read(texture, access::transfer_source);
-  out = pass.write(out, buffer_access::transfer_destination);
-  pass.record([=](RecordContext& c) { copy_image(c, c.image(texture), c.buffer(out)); });
-}
-
 void declare(Graph& graph, std::uint32_t size) {
   graph.reset();
-  Texture texture =
+  const Texture texture =
       graph.create_texture("texture", {VK_FORMAT_R32_UINT, Extent::absolute(size, 4)});
-  add_clear(graph, texture);
-  graph.output(texture);
+  graph.output(add_clear(graph, texture, 0));
 }
 
 // Two plans alternate. One ends with a write of the texture and the other with a read, so that each
@@ -108,13 +94,10 @@ TEST_F(FramesInFlight, FramesOfAlternatingPlansAreOrderedOnTheDeviceWithoutAWait
     Buffer out = graph.import_buffer("out", arriving(host));
     Texture texture =
         graph.create_texture("texture", {VK_FORMAT_R32_UINT, Extent::absolute(16, 16)});
-    add_clear(graph, texture);
-    if (!written_last) add_clear(graph, texture, "again");
-    add_read(graph, texture, out);
-    if (written_last) {
-      add_clear(graph, texture, "again");
-      graph.output(texture);
-    }
+    texture = add_clear(graph, texture, 0);
+    if (!written_last) texture = add_clear(graph, texture, 0, Contents::discard);
+    out = add_copy(graph, texture, out);
+    if (written_last) graph.output(add_clear(graph, texture, 0, Contents::discard));
     run(executor, graph, frame);
   }
   wait();
@@ -141,8 +124,8 @@ TEST_F(FramesInFlight, BarrierToTheFinalStateOfAnImportWaitsForTheReadsOfTheFram
                   .initial_state = {VK_PIPELINE_STAGE_2_BLIT_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED},
                   .final_state = {VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}});
-    add_clear(graph, texture);
-    add_read(graph, texture, out);
+    texture = add_clear(graph, texture, 0, Contents::discard);
+    out = add_copy(graph, texture, out);
     run(executor, graph, frame);
   }
   wait();

@@ -47,6 +47,25 @@ inline void copy_image(RecordContext& context, VkImage image, VkBuffer buffer,
                          &copy);
 }
 
+// Adds a pass that clears a texture with one 32-bit channel. Returns the cleared texture.
+inline Texture add_clear(Graph& graph, Texture texture, std::uint32_t value,
+                         Contents contents = Contents::keep,
+                         QueueClass queue = QueueClass::graphics) {
+  PassBuilder pass = graph.add_pass("clear", queue);
+  texture = pass.write(texture, access::clear, {}, contents);
+  pass.record([=](RecordContext& c) { clear_image(c, c.image(texture), value); });
+  return texture;
+}
+
+// Adds a pass that copies the first texel of a texture to a buffer. Returns the written buffer.
+inline Buffer add_copy(Graph& graph, Texture texture, Buffer out, VkDeviceSize offset = 0) {
+  PassBuilder pass = graph.add_pass("copy");
+  pass.read(texture, access::transfer_source);
+  out = pass.write(out, buffer_access::transfer_destination);
+  pass.record([=](RecordContext& c) { copy_image(c, c.image(texture), c.buffer(out), offset); });
+  return out;
+}
+
 class Gpu {
  public:
   // Without validation it serves tests that count calls of the executor.

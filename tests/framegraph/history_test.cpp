@@ -57,7 +57,7 @@ class GraphHistory : public testing::Test {
       vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0xffff);
     });
     Texture newest = frame.in_place ? history.previous() : history.current;
-    if (frame.writes) newest = write(newest, frame.value);
+    if (frame.writes) newest = add_clear(*graph_, newest, frame.value);
     if (frame.writes && frame.wanted) graph_->output(newest);
     for (std::uint32_t age = 1; age < kSlots && frame.wanted; ++age) {
       if (!frame.writes && validity_ != HistoryValidity::valid) continue;
@@ -69,13 +69,6 @@ class GraphHistory : public testing::Test {
     ASSERT_TRUE(report) << to_string(report.error());
     history_bytes_ = report->memory.history;
     if (frame.discarded) executor_->discard(*graph_);
-  }
-
-  Texture write(Texture texture, std::uint32_t value) {
-    PassBuilder pass = graph_->add_pass("write");
-    texture = pass.write(texture, access::clear);
-    pass.record([texture, value](RecordContext& c) { clear_image(c, c.image(texture), value); });
-    return texture;
   }
 
   Buffer read_by_copy(Texture texture, Buffer out, std::uint32_t age) {
@@ -93,7 +86,7 @@ class GraphHistory : public testing::Test {
   // usages and layouts differ from those of a copy.
   Buffer read_by_kernel(Texture texture, Buffer out, std::uint32_t age) {
     Texture zero = graph_->create_texture("zero", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
-    zero = write(zero, 0);
+    zero = add_clear(*graph_, zero, 0);
     Texture mixed = graph_->create_texture("mixed", {VK_FORMAT_R32_UINT, Extent::absolute(1, 1)});
     PassBuilder pass = graph_->add_pass("mix");
     pass.read(texture, access::sampled_compute);
@@ -104,13 +97,7 @@ class GraphHistory : public testing::Test {
       kernels_->mix_texture(c, c.view(texture), c.view(zero), c.view(mixed), c.extent(mixed), 0,
                             false);
     });
-    PassBuilder copy_pass = graph_->add_pass("copy mixed");
-    copy_pass.read(mixed, access::transfer_source);
-    out = copy_pass.write(out, buffer_access::transfer_destination);
-    copy_pass.record([=](RecordContext& c) {
-      copy_image(c, c.image(mixed), c.buffer(out), VkDeviceSize{4} * age);
-    });
-    return out;
+    return add_copy(*graph_, mixed, out, VkDeviceSize{4} * age);
   }
 
   std::uint32_t slot(std::uint32_t age) const {

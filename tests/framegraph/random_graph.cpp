@@ -38,7 +38,7 @@ std::string numbered(char letter, std::size_t number) {
   return std::string(1, letter).append(std::to_string(number));
 }
 
-struct Known {
+struct Resource {
   bool texture = true;
   Texture handle;
   Buffer buffer;
@@ -60,14 +60,14 @@ class Declarer {
     if (options_.imports && dice_.chance(90)) add_import();
     if (options_.histories && dice_.chance(100)) add_history();
     for (std::uint32_t i = 0; i < passes; ++i) add_pass(i);
-    for (Known& known : known_) {
-      const bool all =
-          std::find(known.written.begin(), known.written.end(), false) == known.written.end();
-      if (known.old || !all || !dice_.chance(90)) continue;
-      if (known.texture)
-        graph_.output(known.handle);
+    for (Resource& resource : resources_) {
+      const bool all = std::find(resource.written.begin(), resource.written.end(), false) ==
+                       resource.written.end();
+      if (resource.old || !all || !dice_.chance(90)) continue;
+      if (resource.texture)
+        graph_.output(resource.handle);
       else
-        graph_.output(known.buffer);
+        graph_.output(resource.buffer);
     }
   }
 
@@ -80,8 +80,8 @@ class Declarer {
                                      VK_FORMAT_R32_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM};
     desc.format = kFormats[dice_.roll(4)];
     desc.extent = Extent::absolute(side(), side());
-    if (dice_.chance(40) && !known_.empty() && known_[0].texture)
-      desc.extent = Extent::relative(known_[0].handle, 1 + dice_.roll(3));
+    if (dice_.chance(40) && !resources_.empty() && resources_[0].texture)
+      desc.extent = Extent::relative(resources_[0].handle, 1 + dice_.roll(3));
     if (dice_.chance(60)) {
       desc.extent = Extent::absolute(16 + side(), 16 + side());
       desc.mips = 1 + dice_.roll(4);
@@ -92,24 +92,24 @@ class Declarer {
     return desc;
   }
 
-  void keep(Known known, bool full) {
-    known.written.assign(std::size_t{known.mips} * known.layers, full);
-    known_.push_back(std::move(known));
+  void keep(Resource resource, bool full) {
+    resource.written.assign(std::size_t{resource.mips} * resource.layers, full);
+    resources_.push_back(std::move(resource));
   }
 
   void add_transient() {
-    Known known;
-    known.texture = !dice_.chance(70) || !options_.transient_buffers;
-    if (known.texture) {
+    Resource resource;
+    resource.texture = !dice_.chance(70) || !options_.transient_buffers;
+    if (resource.texture) {
       const TextureDesc desc = texture_desc();
-      known.mips = std::clamp(desc.mips, 1u, 64u);
-      known.layers = desc.layers;
-      known.handle = graph_.create_texture(numbered('t', known_.size()), desc);
+      resource.mips = std::clamp(desc.mips, 1u, 64u);
+      resource.layers = desc.layers;
+      resource.handle = graph_.create_texture(numbered('t', resources_.size()), desc);
     } else {
-      known.buffer = graph_.create_buffer(numbered('b', known_.size()),
-                                          {VkDeviceSize{4} * (1 + dice_.roll(5000))});
+      resource.buffer = graph_.create_buffer(numbered('b', resources_.size()),
+                                             {VkDeviceSize{4} * (1 + dice_.roll(5000))});
     }
-    keep(std::move(known), false);
+    keep(std::move(resource), false);
   }
 
   // Returns a state that reads or writes in some stages, in the layout of a texture or for a
@@ -141,11 +141,11 @@ class Declarer {
   void add_import() {
     const bool full = dice_.chance(128);
     const bool departs = dice_.chance(140);
-    Known known;
-    known.texture = dice_.chance(160);
-    if (known.texture) {
+    Resource resource;
+    resource.texture = dice_.chance(160);
+    if (resource.texture) {
       ImportedTexture import;
-      import.image = fake_handle<VkImage>(known_.size());
+      import.image = fake_handle<VkImage>(resources_.size());
       import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(side(), side()), 1, 1,
                      VK_SAMPLE_COUNT_1_BIT};
       import.usage = ~VkImageUsageFlags{0};
@@ -167,10 +167,10 @@ class Declarer {
         if (departs) import.final_state = any_state(true);
         import.concurrent = dice_.chance(60);
       }
-      known.handle = graph_.import_texture(numbered('i', known_.size()), import);
+      resource.handle = graph_.import_texture(numbered('i', resources_.size()), import);
     } else {
       ImportedBuffer import;
-      import.buffer = fake_handle<VkBuffer>(known_.size());
+      import.buffer = fake_handle<VkBuffer>(resources_.size());
       import.desc.size = 1024;
       import.usage = ~VkBufferUsageFlags{0};
       import.has_contents = full;
@@ -185,24 +185,24 @@ class Declarer {
         if (departs) import.final_state = any_state(false);
         import.concurrent = dice_.chance(60);
       }
-      known.buffer = graph_.import_buffer(numbered('i', known_.size()), import);
+      resource.buffer = graph_.import_buffer(numbered('i', resources_.size()), import);
     }
-    keep(std::move(known), full);
+    keep(std::move(resource), full);
   }
 
   void add_history() {
     // All histories have one size, so that the next frame can use what this one leaves.
     TextureDesc desc{VK_FORMAT_R32_SFLOAT, Extent::absolute(16, 16), 1 + dice_.roll(2)};
     const TextureHistory history = graph_.create_texture_history("h", desc, 2 + dice_.roll(2));
-    Known current;
+    Resource current;
     current.mips = desc.mips;
     current.handle = history.current;
     keep(current, false);
-    Known previous;
+    Resource previous;
     previous.handle = history.previous(1);
     previous.mips = desc.mips;
     previous.old = true;
-    history_ = known_.size();
+    history_ = resources_.size();
     keep(previous, history.validity == HistoryValidity::valid);
   }
 
@@ -212,92 +212,93 @@ class Declarer {
     PassBuilder pass = graph_.add_pass(numbered('p', index), queue);
     pass.record([](RecordContext&) {});
     const std::uint32_t reads = dice_.roll(4);
-    for (std::uint32_t i = 0; i < reads && !known_.empty(); ++i) read(pass, index, queue);
+    for (std::uint32_t i = 0; i < reads && !resources_.empty(); ++i) read(pass, index, queue);
     const std::uint32_t writes = 1 + dice_.roll(3);
     for (std::uint32_t i = 0; i < writes; ++i) write(pass, index, queue);
     if (dice_.chance(options_.side_effects)) pass.side_effect();
   }
 
-  // Returns the index of a known resource: in half of the cases one of the last few, otherwise any.
+  // Returns the index of a resource resource: in half of the cases one of the last few, otherwise
+  // any.
   std::size_t choose() {
-    const auto count = static_cast<std::uint32_t>(known_.size());
+    const auto count = static_cast<std::uint32_t>(resources_.size());
     const std::uint32_t window = dice_.chance(128) ? std::min(count, 4u) : count;
     return count - 1 - dice_.roll(window);
   }
 
   void read(PassBuilder& pass, std::uint32_t index, QueueClass queue) {
     const std::size_t chosen = choose();
-    Known& known = known_[chosen];
-    if (known.last_pass == index) return;
-    const bool old = known.old;
+    Resource& resource = resources_[chosen];
+    if (resource.last_pass == index) return;
+    const bool old = resource.old;
     // A frame may read a history that has no contents yet only if it also writes the history. This
     // read of the older slot must then come after the write.
-    if (old && !known.written[0] && !known_[history_ - 1].written[0]) return;
+    if (old && !resource.written[0] && !resources_[history_ - 1].written[0]) return;
     Range range;
-    const bool all =
-        std::find(known.written.begin(), known.written.end(), false) == known.written.end();
-    if (!old && (!all || (known.written.size() > 1 && dice_.chance(100)))) {
-      const auto start = dice_.roll(static_cast<std::uint32_t>(known.written.size()));
-      if (!known.written[start]) return;
-      range = {static_cast<std::uint16_t>(start % known.mips), 1,
-               static_cast<std::uint16_t>(start / known.mips), 1};
+    const bool all = std::find(resource.written.begin(), resource.written.end(), false) ==
+                     resource.written.end();
+    if (!old && (!all || (resource.written.size() > 1 && dice_.chance(100)))) {
+      const auto start = dice_.roll(static_cast<std::uint32_t>(resource.written.size()));
+      if (!resource.written[start]) return;
+      range = {static_cast<std::uint16_t>(start % resource.mips), 1,
+               static_cast<std::uint16_t>(start / resource.mips), 1};
     }
-    known.last_pass = index;
+    resource.last_pass = index;
     if (options_.mistakes && dice_.chance(4)) range.base_mip = 40;
-    if (known.texture) {
-      Texture handle = known.handle;
+    if (resource.texture) {
+      Texture handle = resource.handle;
       if (options_.mistakes && dice_.chance(4)) handle.version += 1;
       if (options_.mistakes && dice_.chance(4)) handle.graph += 1;
       pass.read(handle, kReads[pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3})], range);
     } else {
-      pass.read(known.buffer,
+      pass.read(resource.buffer,
                 kBufferReads[pick(dice_, queue, {0, 1, 2, 3, 4, 5}, {0, 3, 4, 5}, {3})]);
     }
   }
 
   void write(PassBuilder& pass, std::uint32_t index, QueueClass queue) {
-    if (known_.empty() || dice_.chance(150)) add_transient();
+    if (resources_.empty() || dice_.chance(150)) add_transient();
     const std::size_t chosen = choose();
-    Known& known = known_[chosen];
+    Resource& resource = resources_[chosen];
     // An older slot is updated in place.
-    if ((known.old && !known.written[0]) || known.last_pass == index) return;
-    known.last_pass = index;
-    Contents contents = !known.old && dice_.chance(80) ? Contents::discard : Contents::keep;
+    if ((resource.old && !resource.written[0]) || resource.last_pass == index) return;
+    resource.last_pass = index;
+    Contents contents = !resource.old && dice_.chance(80) ? Contents::discard : Contents::keep;
     if (contents == Contents::keep && dice_.chance(80)) contents = Contents::accumulate;
     const Need need = dice_.chance(40) ? Need::optional : Need::required;
-    if (!known.texture) {
+    if (!resource.texture) {
       std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2});
       // A read-modify-write needs contents.
-      if (way == 1 && !known.written[0] && contents != Contents::discard) way = 0;
-      known.buffer = pass.write(known.buffer, kBufferWrites[way], contents, need);
-      known.written[0] = true;
+      if (way == 1 && !resource.written[0] && contents != Contents::discard) way = 0;
+      resource.buffer = pass.write(resource.buffer, kBufferWrites[way], contents, need);
+      resource.written[0] = true;
       return;
     }
     Range range;
     bool had_contents = true;
-    if (known.written.size() > 1 && dice_.chance(150)) {
-      const auto start = dice_.roll(static_cast<std::uint32_t>(known.written.size()));
-      range = {static_cast<std::uint16_t>(start % known.mips), 1,
-               static_cast<std::uint16_t>(start / known.mips), 1};
-      had_contents = known.written[start];
-      known.written[start] = true;
+    if (resource.written.size() > 1 && dice_.chance(150)) {
+      const auto start = dice_.roll(static_cast<std::uint32_t>(resource.written.size()));
+      range = {static_cast<std::uint16_t>(start % resource.mips), 1,
+               static_cast<std::uint16_t>(start / resource.mips), 1};
+      had_contents = resource.written[start];
+      resource.written[start] = true;
     } else {
-      had_contents =
-          std::find(known.written.begin(), known.written.end(), false) == known.written.end();
-      known.written.assign(known.written.size(), true);
+      had_contents = std::find(resource.written.begin(), resource.written.end(), false) ==
+                     resource.written.end();
+      resource.written.assign(resource.written.size(), true);
     }
     std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3});
     // A second attachment in the same pass is avoided, because attachments must have the same size.
     if (way == 2 && drawn_in_ == index) way = 4;
     if (way == 2) drawn_in_ = index;
     if (way == 1 && !had_contents && contents != Contents::discard) way = 0;
-    known.handle = pass.write(known.handle, kWrites[way], range, contents, need);
+    resource.handle = pass.write(resource.handle, kWrites[way], range, contents, need);
   }
 
   Graph& graph_;
   Dice& dice_;
   const RandomOptions& options_;
-  std::vector<Known> known_;
+  std::vector<Resource> resources_;
   std::size_t history_ = 0;
   std::uint32_t drawn_in_ = kNone;  // the last pass with an attachment
 };

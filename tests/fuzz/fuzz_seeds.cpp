@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gltf_maker.h"
+#include "draco_maker.h"
 #include "image_maker.h"
 #include "support/image_io.h"
 
@@ -49,7 +49,8 @@ void write_scenes(const fs::path& folder) {
   jpeg.json["images"][0] = {
       {"bufferView", jpeg.view(make_jpeg(8, 8, JCS_RGB, std::vector<uint8_t>(192, 90)))}};
   int i = 0;
-  for (const GltfMaker& maker : {GltfMaker::triangle(), rich_scene(), jpeg}) {
+  for (const GltfMaker& maker :
+       {GltfMaker::triangle(), rich_scene(), jpeg, draco_square(0), draco_square(1)}) {
     const std::string name = std::to_string(i++);
     write(folder / "gltf" / (name + ".gltf"), maker.gltf());
     write(folder / "gltf" / (name + ".glb"), maker.glb());

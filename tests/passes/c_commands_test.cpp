@@ -103,13 +103,13 @@ TEST_F(CCommands, MultisampledInputImageIsRefused) {
   const Context context = create_context();
   AlcoveSettings settings;
   AlcoveView view = view_of(given_view(test_views()[2], 16, 12, ball_on_floor()), settings);
-  view.depth.samples = 4;
+  view.normals.samples = 4;
   const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
   EXPECT_EQ(alcovePrepareFrame(context.get(), &frame), ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_STREQ(alcoveGetMessage(context.get()),
-               "View 0: the image of depth has 4 samples a pixel; resolve it first, depth and "
-               "normals to sample 0 (VK_RESOLVE_MODE_SAMPLE_ZERO_BIT).");
-  view.depth.samples = 1;
+               "View 0: the image of normals has 4 samples a pixel; resolve it first, depths and "
+               "normals to sample 0.");
+  view.normals.samples = 1;
   EXPECT_EQ(alcovePrepareFrame(context.get(), &frame), ALCOVE_SUCCESS);
 }
 

@@ -61,6 +61,24 @@ TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
             "");
 }
 
+TEST(CDiagnose, IndexMayStandStillIfNoiseIsStatic) {
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
+  const auto said = [&](std::uint32_t history_frames, std::uint32_t static_noise) {
+    settings.history_frames = history_frames;
+    settings.static_noise = static_noise;
+    return said_of([&](AlcoveFrame& frame, AlcoveView& view) {
+      frame.index = frame.index / 8 % 2;
+      view.settings = &settings;
+    });
+  };
+  EXPECT_EQ(said(0, 1), "");
+  for (const std::string& other : {said(0, 0), said(32, 1)}) {
+    EXPECT_THAT(other, HasSubstr("AlcoveFrame::index stays the same"));
+    EXPECT_THAT(other, HasSubstr("AlcoveFrame::index goes back"));
+  }
+}
+
 TEST(CDiagnose, MistakeIsForgottenAfterItHasBeenMended) {
   const auto until = [](std::uint32_t end) {
     return [end](AlcoveFrame& frame, AlcoveView& view) {

@@ -72,17 +72,25 @@ GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t he
   return given;
 }
 
-HostImage in_corner_of(const HostImage& contents, VkExtent2D larger) {
+HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t x,
+                    std::uint32_t y) {
   HostImage around{larger.width, larger.height, {}, contents.channels};
-  around.texels.assign(std::size_t{larger.width} * larger.height * contents.channels,
-                       std::numeric_limits<float>::quiet_NaN());
-  const std::size_t row = std::size_t{contents.width} * contents.channels;
-  for (std::size_t y = 0; y < contents.height; ++y) {
-    std::copy_n(
-        contents.texels.begin() + static_cast<std::ptrdiff_t>(y * row), row,
-        around.texels.begin() + static_cast<std::ptrdiff_t>(y * larger.width * contents.channels));
+  around.texels.resize(std::size_t{larger.width} * larger.height * contents.channels);
+  for (std::size_t i = 0; i < around.texels.size(); ++i) {
+    around.texels[i] =
+        i / contents.channels % 3 == 0 ? std::numeric_limits<float>::quiet_NaN() : 0.3f;
   }
+  place(around, contents, x, y);
   return around;
+}
+
+void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::uint32_t y) {
+  const std::size_t row = std::size_t{contents.width} * contents.channels;
+  for (std::size_t i = 0; i < contents.height; ++i) {
+    std::copy_n(contents.texels.begin() + static_cast<std::ptrdiff_t>(i * row), row,
+                image.texels.begin() +
+                    static_cast<std::ptrdiff_t>(((y + i) * image.width + x) * contents.channels));
+  }
 }
 
 void CInterface::SetUp() {

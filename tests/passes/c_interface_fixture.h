@@ -50,9 +50,12 @@ struct Results {
 GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t height,
                      const Scene& scene);
 
-// Returns an image of `larger` pixels with `contents` in its upper left corner. The other pixels
-// are NaN, so that a pass which reads them is noticed.
-HostImage in_corner_of(const HostImage& contents, VkExtent2D larger);
+// Returns an image of `larger` pixels with `contents` from the pixel (x, y) on. The other pixels
+// are NaN or 0.3, so that a pass which reads them is noticed.
+HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t x = 0,
+                    std::uint32_t y = 0);
+// Copies `contents` into `image`, from the pixel (x, y) on.
+void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::uint32_t y);
 
 class CInterface : public PassTest {
  protected:

@@ -87,6 +87,12 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
          g.settings.advanced.filter_tolerance_px = 0.5f;
          g.settings.history_frames = 0;
        }},
+      {"static noise",
+       [](GivenView& g) {
+         g.settings.history_frames = 0;
+         g.settings.static_noise = true;
+       },
+       2},
       {"history",
        [](GivenView& g) {
          g.settings.history_frames = 2;

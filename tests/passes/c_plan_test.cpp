@@ -232,7 +232,7 @@ TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
     EXPECT_EQ(alcovePrintSettings(&settings, text.data(), text.size() + 1), text.size());
     EXPECT_THAT(text, HasSubstr("radius = 2.5\n"));
     EXPECT_THAT(text, HasSubstr("specular = slices\n"));
-    EXPECT_EQ(std::ranges::count(text, '\n'), 24);
+    EXPECT_EQ(std::ranges::count(text, '\n'), 25);
     char little[8];
     EXPECT_EQ(alcovePrintSettings(&settings, little, sizeof little), text.size());
     EXPECT_EQ(std::string(little), text.substr(0, 7));

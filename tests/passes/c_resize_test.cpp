@@ -197,7 +197,7 @@ void CResize::use_part(Shown& shown, VkExtent2D size) {
     AlcoveImage whole = *inputs[i];
     whole.width = shown.largest.width;
     whole.height = shown.largest.height;
-    fill_image(whole, in_corner_of(*contents[i], shown.largest), kResting);
+    fill_image(whole, placed_in(shown.largest, *contents[i]), kResting);
   }
   const auto use = [size](AlcoveImage* image) {
     image->width = size.width;
@@ -205,6 +205,7 @@ void CResize::use_part(Shown& shown, VkExtent2D size) {
   };
   std::ranges::for_each(inputs, use);
   std::ranges::for_each(outputs_of(shown.view), use);
+  shown.view.read_area = {0, 0, size.width, size.height};
 }
 
 void CResize::change_kind(Shown& shown) {

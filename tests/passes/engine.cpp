@@ -42,9 +42,10 @@ AlcoveContextInfo Engine::context_info() const {
 }
 
 AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
-                               VkImageUsageFlags usage, std::uint32_t layers) {
+                               VkImageUsageFlags usage, std::uint32_t layers,
+                               VkSampleCountFlagBits samples) {
   auto made = sample::GpuImage::create(
-      device_, {format, framegraph::Extent::absolute(width, height), 1, layers}, usage);
+      device_, {format, framegraph::Extent::absolute(width, height), 1, layers, samples}, usage);
   EXPECT_TRUE(made) << made.error();
   if (!made) {
     return {};

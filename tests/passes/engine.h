@@ -27,7 +27,8 @@ class Engine {
 
   // Creates an image in the state kResting with undefined contents.
   AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
-                         VkImageUsageFlags usage, std::uint32_t layers = 1);
+                         VkImageUsageFlags usage, std::uint32_t layers = 1,
+                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT);
 
   // Destroys an image that make_image() returned. The device must have finished using it.
   void destroy_image(const AlcoveImage& image);

@@ -30,6 +30,10 @@ AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const Alcove
           .normals_in_view_space = view.normals_in_view_space,
           .normal_encoding = view.normal_encoding,
           .normals_forward_z = view.normals_forward_z,
+          .read_area = view.read_area,
+          .written_area = view.written_area,
+          .output_x = view.output_x,
+          .output_y = view.output_y,
           .visibility_channel = view.visibility_channel,
           .half_size_outputs = view.half_size_outputs,
           .depth = image(view.depth),
@@ -39,6 +43,9 @@ AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const Alcove
           .back_depth = image(view.back_depth),
           .second_depth = image(view.second_depth),
           .albedo = image(view.albedo),
+          .mask = image(view.mask),
+          .not_receiving = view.not_receiving,
+          .not_occluding = view.not_occluding,
           .visibility = image(view.visibility),
           .bent_normal = image(view.bent_normal),
           .specular = image(view.specular),
@@ -50,6 +57,7 @@ struct Case {
   const char* name;
   Quality quality;
   void (*change)(GivenView& given) = [](GivenView&) {};
+  bool area_and_mask = false;
 };
 
 void all_outputs(GivenView& given) {
@@ -76,7 +84,8 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
     std::vector<VkImage> host;
     for (const AlcoveImage& image :
          {view.depth, view.normals, view.motion, view.roughness, view.back_depth, view.second_depth,
-          view.albedo, view.visibility, view.bent_normal, view.specular, view.multi_bounce}) {
+          view.albedo, view.mask, view.visibility, view.bent_normal, view.specular,
+          view.multi_bounce}) {
       if (image.image != VK_NULL_HANDLE) {
         host.push_back(image.image);
       }
@@ -85,6 +94,29 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
                     [&](VkCommandBuffer commands) { executor_->record(commands, *work_, host); });
     engine().wait();
     return results_of(view);
+  }
+
+  // A mask with all values, in columns.
+  AlcoveImage mask() {
+    AlcoveImage image = engine().make_image(
+        VK_FORMAT_R8_UNORM, 37, 26, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    auto buffer =
+        sample::HostBuffer::create(gpu().device(), 37 * 26, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    EXPECT_TRUE(buffer);
+    for (std::size_t i = 0; i < 37 * 26; ++i) {
+      (*buffer)->bytes()[i] = static_cast<std::byte>(i % 37 / 10);
+    }
+    run([&](framegraph::Graph& graph) {
+      const framegraph::State state{kResting.stages, kResting.access, kResting.layout};
+      sample::add_copy(graph, **buffer,
+                       graph.import_texture(
+                           "mask", {.image = image.image,
+                                    .desc = {image.format, framegraph::Extent::absolute(37, 26)},
+                                    .usage = image.usage,
+                                    .initial_state = state,
+                                    .final_state = state}));
+    });
+    return image;
   }
 
   void SetUp() override {
@@ -117,7 +149,13 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
     }
     given.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
     AlcoveSettings settings;
-    const AlcoveView view = view_of(given, settings);
+    AlcoveView view = view_of(given, settings);
+    if (GetParam().area_and_mask) {
+      view.read_area = {0, 0, view.depth.width, view.depth.height};
+      view.mask = mask();
+      view.not_receiving = 1;
+      view.not_occluding = 2;
+    }
     run_frame(*context, {&view, 1}, index);
     engine().wait();
     const Results expected = results_of(view);
@@ -131,6 +169,7 @@ INSTANTIATE_TEST_SUITE_P(Settings, WorkExecution,
                                          Case{"Low", Quality::low, all_outputs},
                                          Case{"Medium", Quality::medium, all_outputs},
                                          Case{"High", Quality::high, all_outputs},
+                                         Case{"Ultra", Quality::ultra, all_outputs},
                                          Case{"Reference", Quality::reference, all_outputs},
                                          Case{"VisibilityAlone", Quality::medium},
                                          Case{"ConsoleVisibilityAlone", Quality::console},
@@ -166,6 +205,9 @@ INSTANTIATE_TEST_SUITE_P(Settings, WorkExecution,
                                                 given.settings.specular = Specular::slices;
                                                 given.half_size_outputs = true;
                                               }},
+                                         Case{"AreaAndMask", Quality::medium, all_outputs, true},
+                                         Case{"HalfResolutionAreaAndMask", Quality::console,
+                                              all_outputs, true},
                                          Case{"HalfResolutionWithoutHistory", Quality::low,
                                               [](GivenView& given) {
                                                 all_outputs(given);

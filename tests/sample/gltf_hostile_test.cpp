@@ -156,7 +156,7 @@ GltfMaker with_image(const std::string& base64) {
   return maker;
 }
 
-TEST(GltfLimits, EveryTruncationOfABinaryFileIsRefused) {
+TEST(GltfFile, EveryTruncationOfABinaryFileIsRefused) {
   const auto glb = GltfMaker::triangle().glb();
   for (size_t size = 0; size < glb.size(); ++size) {
     const std::vector<uint8_t> cut(glb.begin(), glb.begin() + static_cast<std::ptrdiff_t>(size));
@@ -239,53 +239,6 @@ TEST(GltfImage, ImagesThatNoMeshUsesAreNotRead) {
   const Scene scene = parsed(maker.gltf());
   EXPECT_TRUE(scene.images.empty());
   EXPECT_THAT(scene.warnings, testing::IsEmpty());
-}
-
-TEST(GltfLimits, InstancesWithMoreTrianglesThanTheLimitAreRefused) {
-  GltfMaker maker = GltfMaker::triangle();
-  maker.json["nodes"].clear();
-  for (int i = 0; i < 100; ++i) {
-    maker.json["nodes"].push_back({{"mesh", 0}});
-    maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
-  }
-  GltfLimits limits;
-  limits.drawn_triangles = 50;
-  const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
-  EXPECT_FALSE(scene);
-}
-
-// Triangles without area take as long to read as others.
-TEST(GltfLimits, TrianglesWithoutAreaCountTowardsTheTriangleLimit) {
-  for (const bool indexed : {false, true}) {
-    GltfMaker maker = GltfMaker::triangle();
-    maker.json["accessors"][0].erase("bufferView");  // zeroes
-    if (indexed) {
-      maker.primitive()["indices"] =
-          maker.accessor(maker.view<uint16_t>({0, 1, 2, 2, 1, 0}), 5123, "SCALAR", 6);
-    }
-    maker.json["nodes"].clear();
-    for (int i = 0; i < 100; ++i) {
-      maker.json["nodes"].push_back({{"mesh", 0}});
-      maker.json["scenes"][0]["nodes"][static_cast<size_t>(i)] = i;
-    }
-    GltfLimits limits;
-    limits.drawn_triangles = 50;
-    const auto scene = parse_gltf(maker.gltf(), "many.gltf", "", limits);
-    ASSERT_FALSE(scene);
-    EXPECT_THAT(scene.error(), testing::Not(HasSubstr("no triangles")));
-  }
-}
-
-TEST(GltfLimits, PrimitivesThatAreNotTrianglesCountTowardsThePrimitiveLimit) {
-  GltfMaker maker = GltfMaker::triangle();
-  maker.primitive()["mode"] = 1;
-  const nlohmann::json lines = maker.primitive();
-  for (int i = 0; i < 100; ++i) maker.json["meshes"][0]["primitives"].push_back(lines);
-  GltfLimits limits;
-  limits.primitives = 50;
-  const auto scene = parse_gltf(maker.gltf(), "lines.gltf", "", limits);
-  ASSERT_FALSE(scene);
-  EXPECT_THAT(scene.error(), HasSubstr("parts"));
 }
 
 TEST(GltfImage, DamagedJpegIsLeftOutWithAWarning) {

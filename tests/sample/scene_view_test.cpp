@@ -175,6 +175,22 @@ TEST_F(ViewerWindowTest, PassTimesAndMemoryOfTheFrameAreReported) {
   EXPECT_GT(view_->facts().memory.aliased, 0u);
 }
 
+// The targets are out of reach on any device, so that no measured time decides.
+TEST_F(ViewerWindowTest, SlicesAndStepsAreFittedToATime) {
+  view_->state().settings.radius = 0.01f;
+  view_->state().fits_budget = true;
+  const passes::Budget limits;
+  view_->state().target_ms = 1e-6f;
+  draw(20);
+  EXPECT_EQ(view_->state().settings.slices, limits.least_slices);
+  EXPECT_EQ(view_->state().settings.steps, limits.least_steps);
+  view_->state().target_ms = 1e9f;
+  draw(20);
+  EXPECT_EQ(view_->state().settings.slices, limits.most_slices);
+  EXPECT_EQ(view_->state().settings.steps, limits.most_steps);
+  EXPECT_EQ(view_->facts().refusal, "");
+}
+
 TEST_F(ViewerWindowTest, NoFrameIsDrawnAfterTheWindowIsClosed) {
   draw(1);
   view_->window().close();

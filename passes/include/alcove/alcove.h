@@ -121,7 +121,7 @@ typedef struct AlcoveState {
   VkImageLayout layout;
 } AlcoveState;
 
-// An image of the engine: 2D, optimal tiling, one mip, one sample per pixel. It belongs to the
+// An image of the engine: 2D, optimal tiling, one mip. It belongs to the
 // queue family of the context, or is shared between families. A struct of zeros means that there is
 // no image.
 typedef struct AlcoveImage {
@@ -131,10 +131,11 @@ typedef struct AlcoveImage {
   // view and keeps it; call alcoveForgetImage before you destroy the image.
   VkImageView view;
   VkFormat format;
-  // The size in pixels of the part that is read or written, which begins at the top left corner. It
-  // is the size of the image, or less with dynamic resolution. All images of a view must have the
-  // same size, except with AlcoveView::half_size_outputs. An output keeps its contents outside of
-  // this part, unless its initial layout is VK_IMAGE_LAYOUT_UNDEFINED.
+  // The size in pixels. All inputs of a view must have the same size. Outputs have it too, except
+  // with half_size_outputs and with areas (AlcoveView::read_area). With dynamic resolution
+  // (AlcoveView::largest_width) it may be the size of the part in use, which then begins at the top
+  // left corner. An output keeps its contents outside of the part that is written, unless its
+  // initial layout is VK_IMAGE_LAYOUT_UNDEFINED.
   uint32_t width;
   uint32_t height;
   uint32_t layer;  // of an array image, such as one layer for each eye
@@ -143,10 +144,11 @@ typedef struct AlcoveImage {
   // multi-bounce or specular occlusion by TABLE or CONE is computed. Bent normals need SAMPLED for
   // TABLE and CONE.
   VkImageUsageFlags usage;
-  // The number of samples per pixel with which the image was created; 0 means 1. An image with
-  // several samples is an error. The engine must resolve it first: depth and normals to sample 0,
-  // because an average of several surfaces lies on none of them. For depth,
-  // VK_RESOLVE_MODE_SAMPLE_ZERO_BIT does this; for a colour format, a shader that reads sample 0.
+  // The number of samples per pixel with which the image was created; 0 means 1. Of
+  // AlcoveView::depth with several samples, a pass copies sample 0, because an average of several
+  // surfaces lies on none of them; this takes 4 bytes per pixel of transient memory. Other images
+  // must have one sample: the engine must resolve normals to sample 0 first, with a shader that
+  // reads it.
   uint32_t samples;
   // The last use of the image before the frame, and its layout at that time. For an input it is the
   // last write, for an output the last read or write. The first barrier waits for these stages. The
@@ -181,21 +183,46 @@ typedef struct AlcoveView {
   // outputs change. If it is at least 1, `motion` is not read. If it is at least 16, the history
   // averages up to 127 frames.
   uint32_t static_frames;
+  // Whether a frame does nothing for the view while its image has converged and does not change:
+  // its outputs keep what they hold, and only barriers to the final states are recorded. The view
+  // must have been recorded alcoveGetConvergedFrames() times in succession with static_frames above
+  // 0 (in all but the first), with the same images, cameras and settings. The outputs must then
+  // still hold the last results; an output that arrives in VK_IMAGE_LAYOUT_UNDEFINED is written
+  // again, and so is a view whose pixels are diagnosed. [VK_FALSE]
+  VkBool32 skip_converged;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
   // The camera with which this id was last recorded. It is not read, and may be zero, in the first
   // frame of an id, with reset_history, if history_frames is 0, and by alcovePrepareFrame.
   AlcoveCamera previous_camera;
-  // The largest size of the depth image, for dynamic resolution. The history has room for this
-  // size, and continues while the size of the depth image changes within it. Zero means the current
-  // size of the depth image; a change of size then begins a new history. A change of the largest
-  // size always does. These two fields and the two below are not read if history_frames is 0.
+  // The largest size of the depth image, or of read_area, for dynamic resolution. The history has
+  // room for this size, and continues while the size changes within it. Zero means the current
+  // size; a change of size then begins a new history. A change of the largest size always does.
   uint32_t largest_width;
   uint32_t largest_height;
-  // The size of the depth image when this id was last recorded. Zero means the current size. Not
-  // read with reset_history.
+  // The size of the depth image, or of read_area, when this id was last recorded. Zero means the
+  // current size. Not read with reset_history, nor if history_frames is 0.
   uint32_t previous_width;
   uint32_t previous_height;
+
+  // Areas, for several views in one image (split screen, stereo side by side, viewports of an
+  // editor) and for a guard band. If all of these fields are 0, images are read and written as a
+  // whole, which takes 2 to 6 % less time.
+  //
+  // The area of the inputs that is read. The cameras describe it, and uv and sizes of motion
+  // vectors refer to it. Pixels outside of it are not read. Zeros mean the whole images.
+  AlcoveArea read_area;
+  // The area for which results are computed, in pixels of the inputs, within read_area. Zeros mean
+  // read_area. If it is smaller, the rest of read_area is a guard band: occluders in it are found,
+  // and occlusion does not fade towards the border of the picture. The guard band is not traced,
+  // apart from its innermost tiles. Set reset_history when the distances between the borders of the
+  // two areas change.
+  AlcoveArea written_area;
+  // The position of the results in the output images, whose other pixels are not written. With
+  // half_size_outputs it counts texels of the outputs, and the distance from read_area to
+  // written_area must be even.
+  uint32_t output_x;
+  uint32_t output_y;
 
   // Inputs.
   //
@@ -243,6 +270,18 @@ typedef struct AlcoveView {
   // if depth_layers is 2, and not read otherwise.
   AlcoveImage second_depth;
   AlcoveImage albedo;  // linear RGB, [0,1], for multi_bounce
+  // A mask of surfaces, R8_UNORM or R8_UINT, for example for emissive or unlit surfaces, for water
+  // that is drawn into depth, and for weapons in the hand of the player. Without an image there is
+  // no mask. With one, a pass copies depth twice, which takes 8 bytes per pixel of transient
+  // memory.
+  AlcoveImage mask;
+  // Surfaces with one of these bits do not receive occlusion: their visibility and specular
+  // occlusion are 1, and their bent normal is the normal (without an image of normals, the
+  // direction to the eye). The filter and the history do not mix them with other surfaces.
+  uint32_t not_receiving;
+  // Surfaces with one of these bits do not occlude. Depth does not tell what lies behind them;
+  // these directions count as unobserved, like those behind a distant foreground.
+  uint32_t not_occluding;
 
   // Outputs, in any format with enough channels that the device can store to. The sky (pixels whose
   // depth is at the far plane or is NaN) gets the visibility 1, and its bent normal is the normal.
@@ -310,7 +349,8 @@ AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame
 // (inputs) or GENERAL (outputs) before its first use, and to its final_state after the last. Other
 // barriers concern the library's own memory only, except that a frame which differs from the
 // previous one begins with a full barrier. One image may serve as several inputs if it is described
-// in the same way each time. An output must not serve as anything else.
+// in the same way each time. An output must not serve as anything else, except as an output of
+// another view, if both have areas (AlcoveView::read_area).
 //
 // If the call returns one of these errors, nothing is recorded: a null pointer, a size that is zero
 // or above the largest, an unknown enum value, a number that is out of range or not finite, a
@@ -318,6 +358,32 @@ AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame
 // without an output.
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
                                const AlcoveFrame* frame);
+
+// A still image, such as a screenshot or a thumbnail, takes several frames of a scene and a camera
+// that do not move. Returns how many frames these settings need until their image has converged:
+// 128 with a history, which is then full, and 1 with history_frames = 0 and static_noise. Returns 0
+// if the settings are invalid, or if an image never converges because noise changes from frame to
+// frame and there is no history. Fewer frames have a larger error; INTEGRATION.md has figures.
+uint32_t alcoveGetConvergedFrames(const AlcoveSettings* settings);
+
+// Makes `view` that of frame `number`, counted from 0, of a still image: sets reset_history in the
+// first frame, static_frames, and camera and size of the previous frame. Record and submit the
+// frames one after the other with the same images and a growing AlcoveFrame::index. The last one
+// has the image. A view with an id of its own, dropped afterwards, does not disturb other views.
+AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view);
+
+// How far the image of a view with skip_converged has converged.
+typedef struct AlcoveViewState {
+  uint32_t struct_size;
+  uint32_t frames;            // recorded in succession for the unchanged image
+  uint32_t converged_frames;  // alcoveGetConvergedFrames of the view's settings
+  VkBool32 skipped;           // the last recorded frame did nothing for the view
+} AlcoveViewState;
+
+// Fills `state`, whose struct_size must be set. If `frames` is at least `converged_frames`, and
+// that is not 0, another frame of the unchanged view has nothing to do. All values are 0 for a view
+// that was never recorded with skip_converged.
+AlcoveResult alcoveGetViewState(AlcoveContext* context, uint32_t id, AlcoveViewState* state);
 
 // Undoes the effects of alcoveRecordFrame if the frame that was just recorded will not be
 // submitted, for example because the window was closed. Call it before any other call on the

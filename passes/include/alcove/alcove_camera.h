@@ -1,6 +1,9 @@
-// Cameras, and helpers that make them from an engine's matrices or numbers. Included by alcove.h.
+// Cameras, helpers that make them from an engine's matrices or numbers, and the areas of images
+// that cameras describe. Included by alcove.h.
 #ifndef ALCOVE_ALCOVE_CAMERA_H_
 #define ALCOVE_ALCOVE_CAMERA_H_
+
+#include <stdint.h>
 
 #include "alcove/alcove_result.h"
 
@@ -24,6 +27,14 @@ typedef struct AlcoveCamera {
   // left-handed worlds, a reflection and a translation.
   float view_from_world[16];
 } AlcoveCamera;
+
+// A rectangle of pixels. x and y are the position of its upper left pixel.
+typedef struct AlcoveArea {
+  uint32_t x;
+  uint32_t y;
+  uint32_t width;
+  uint32_t height;
+} AlcoveArea;
 
 // Bits that say how an engine's matrices differ from those of AlcoveCamera. They can be combined,
 // and are an argument of alcoveConvertCamera.

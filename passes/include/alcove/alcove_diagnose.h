@@ -40,7 +40,8 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 // not 0 although the image changes, reset_history in every frame, and views that are never dropped.
 // A sentence in the log tells of the last one, too.
 //
-// Other mistakes show in the pixels, in frames with AlcoveFrame::diagnose_pixels:
+// Other mistakes show in the pixels, in frames with AlcoveFrame::diagnose_pixels, if depth has one
+// sample per pixel:
 // - in depth: another range, direction or format than stated, another size of the image, dynamic
 //   resolution without a largest size, and a radius that is far too small or too large;
 // - in depth and normals: another angle of view, other near and far planes, the other sign of y,

@@ -11,22 +11,26 @@ extern "C" {
 #endif
 
 // Presets for alcoveGetSettings. A field that is not in the table has the default that
-// AlcoveSettings states. There are two exceptions: CONSOLE sets half_resolution, and REFERENCE sets
-// the precision FLOAT32 and, in its advanced settings, the paper's infinitely thick occluders and
-// no filter.
+// AlcoveSettings states. There are three exceptions: CONSOLE sets half_resolution, ULTRA sets
+// depth_layers to 2, and REFERENCE sets the precision FLOAT32 and, in its advanced settings, the
+// paper's infinitely thick occluders and no filter.
 //
 //              slices  steps  tile_size  history_frames  depth fetches per pixel and frame
 //   CONSOLE         1      8        8              32                                0.25
 //   LOW             1      8        4              32                                1
 //   MEDIUM          2     12        4              32                                3
-//   HIGH            2     16        2              32                               16
+//   HIGH            2     12        2              32                               12
+//   ULTRA           2     10        2              32                               20
 //   REFERENCE      32     64        1               0                             4096
 typedef enum AlcoveQuality {
   ALCOVE_QUALITY_CONSOLE = 0,  // traces one of 8x8 pixels in each frame, filters at half resolution
   ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
   ALCOVE_QUALITY_MEDIUM = 2,   // LOW with two slices and more steps; the preset to begin with
   ALCOVE_QUALITY_HIGH = 3,     // traces one of 2x2 pixels in each frame
-  ALCOVE_QUALITY_REFERENCE = 4,  // traces every pixel: a static image to compare with
+  // HIGH with a second depth layer. A view without the image AlcoveView::second_depth then fails
+  // with a sentence; set depth_layers to 1, or choose HIGH.
+  ALCOVE_QUALITY_ULTRA = 4,
+  ALCOVE_QUALITY_REFERENCE = 5,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
@@ -107,6 +111,11 @@ typedef struct AlcoveSettings {
   // lets the image follow changes more slowly. After 16 frames without a change (static_frames) the
   // limit is 127. With 0 there is no history, and no memory for one.
   uint32_t history_frames;
+  // Whether every frame has the same noise, so that equal inputs give equal outputs and
+  // AlcoveFrame::index is not read. Set it without any temporal filter: with history_frames = 0 the
+  // noise would otherwise change in every frame and never be averaged. It has no effect with a
+  // history, which needs changing noise. [0]
+  uint32_t static_noise;
   // Whether the passes filter and accumulate texels of 2x2 pixels and then upsample the result
   // along depth edges. This takes less time and less memory for the history, and has a larger
   // error. It needs a tile_size of at least 2. [0, but 1 for CONSOLE]
@@ -135,6 +144,50 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
 // that reads back as the same float, in every locale. Returns the number of bytes of the whole text
 // without that zero, or 0 if the settings are invalid. `text` may be null if `size` is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
+
+// Changes the settings that a text names. `text` holds `length` bytes of JSON, as in the file that
+// `alcove recommend --out` writes: an object whose member "settings" is an object of names, as
+// alcovePrintSettings writes them, and values. `settings` must have been filled before, for example
+// by alcoveGetSettings with the scene's radius, which that file does not contain. `advanced`, whose
+// struct_size must be set, receives the advanced settings, and settings->advanced then points to
+// it. Names of outputs ("bent_normal") are ignored, because the images of a view select outputs,
+// and so is a `specular` of "none". Reads no file and allocates nothing that grows with the text.
+//
+// If the text is no such JSON, is longer than 65536 bytes, or has an unknown name or a value that
+// the setting does not allow, nothing is changed and ALCOVE_ERROR_INVALID_INPUT is returned. If
+// `message` is not null, it must have room for ALCOVE_MAX_MESSAGE bytes, and receives a sentence,
+// or an empty text if there is no error.
+AlcoveResult alcoveReadSettings(const char* text, size_t length, AlcoveSettings* settings,
+                                struct AlcoveAdvancedSettings* advanced, char* message);
+
+// The limits of alcoveFitBudget.
+typedef struct AlcoveBudget {
+  uint32_t struct_size;   // sizeof(AlcoveBudget)
+  double target_ms;       // wanted time of the passes of a view in milliseconds, above 0
+  uint32_t least_slices;  // 1 to 64
+  uint32_t most_slices;   // least_slices to 64
+  uint32_t least_steps;   // 2 to 64
+  uint32_t most_steps;    // least_steps to 64
+} AlcoveBudget;
+
+// Changes `slices` and `steps` of `settings` so that the passes take about target_ms, and at most
+// that if the limits allow it. `milliseconds` holds the measured times of the last `count` frames
+// that were drawn with these settings, the newest last (the sum of alcoveGetTimings over the passes
+// of the view). Sets *changed to whether the settings have changed: the caller then drops the times
+// that it has collected. The function is pure: equal arguments give equal results.
+//
+// It judges by the median of the last 32 times. Times that are not finite or not above 0 do not
+// count, and fewer than 8 times change nothing. It lowers the settings if the median is above the
+// target, and raises them if it expects at most 0.9 of the target afterwards, so that times that
+// scatter by less than a tenth change nothing. It assumes that the time grows at most in proportion
+// to slices * (steps + 4); as the filter's time does not depend on either, it approaches the target
+// in several calls and does not oscillate. Steps are raised before slices. Settings outside of the
+// limits are moved into them.
+//
+// Each combination of slices and steps has pipelines of its own. Call alcovePrepareFrame with the
+// new settings, on another thread if frames must not wait.
+AlcoveResult alcoveFitBudget(const AlcoveBudget* budget, const double* milliseconds, uint32_t count,
+                             AlcoveSettings* settings, uint32_t* changed);
 
 #ifdef __cplusplus
 }

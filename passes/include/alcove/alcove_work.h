@@ -81,7 +81,8 @@ typedef struct AlcoveWorkResource {
   uint32_t width;   // in texels
   uint32_t height;
   uint32_t mip_count;
-  uint32_t usage;  // a combination of AlcoveWorkUsage
+  uint32_t samples;  // per pixel: 1, except for depth of the engine; 0 for a table
+  uint32_t usage;    // a combination of AlcoveWorkUsage
   // The indices of the first and the last dispatch that bind the resource. Transients whose ranges
   // do not overlap may share memory. Both are ALCOVE_WORK_NONE if no dispatch binds it.
   uint32_t first_dispatch;
@@ -134,7 +135,7 @@ typedef struct AlcoveWorkHistory {
 // The work of one view in one frame. Elements beyond the counts are undefined.
 typedef struct AlcoveWork {
   AlcoveCamera camera;  // of AlcoveWorkInfo
-  uint32_t width;       // of the depth image
+  uint32_t width;       // of the depth image, or of the area that is read
   uint32_t height;
   // Whether the previous slots of the histories are read. If not, the histories begin again.
   uint32_t history_valid;
@@ -147,11 +148,12 @@ typedef struct AlcoveWork {
 } AlcoveWork;
 
 // An image of the engine. All images of a view have the size of the depth image, except outputs
-// with half_size_outputs. A format of 0 means that there is no image.
+// with half_size_outputs or with areas. A format of 0 means that there is no image.
 typedef struct AlcoveWorkImage {
   uint32_t format;  // the number of its VkFormat
-  uint32_t width;   // in pixels: the part that is used, from the top left corner
+  uint32_t width;   // in pixels
   uint32_t height;
+  uint32_t samples;  // per pixel; 0 means 1
 } AlcoveWorkImage;
 
 // Everything that the work of a view depends on. The fields that AlcoveView (alcove.h) has too are
@@ -173,6 +175,10 @@ typedef struct AlcoveWorkInfo {
   uint32_t normals_forward_z;
   float motion_scale[2];
   float motion_offset[2];
+  AlcoveArea read_area;
+  AlcoveArea written_area;
+  uint32_t output_x;
+  uint32_t output_y;
   AlcoveChannel visibility_channel;
   uint32_t half_size_outputs;
   AlcoveWorkImage depth;
@@ -182,6 +188,9 @@ typedef struct AlcoveWorkInfo {
   AlcoveWorkImage back_depth;
   AlcoveWorkImage second_depth;
   AlcoveWorkImage albedo;
+  AlcoveWorkImage mask;
+  uint32_t not_receiving;
+  uint32_t not_occluding;
   AlcoveWorkImage visibility;
   AlcoveWorkImage bent_normal;
   AlcoveWorkImage specular;
@@ -192,7 +201,7 @@ typedef struct AlcoveWorkInfo {
 // `message` is not null, it must have room for ALCOVE_MAX_MESSAGE bytes, and receives the sentence
 // of the error. Errors: those of alcoveRecordFrame that concern settings, cameras, sizes and
 // formats. Resources are named "depth", "normals", "motion vectors", "roughness", "back-face
-// depth", "second depth", "albedo", "visibility", "bent normals", "specular occlusion" and
+// depth", "second depth", "albedo", "mask", "visibility", "bent normals", "specular occlusion" and
 // "multi-bounce" if they are images of the engine, in this order and without those that are absent.
 AlcoveResult alcoveDescribeWork(const AlcoveWorkInfo* info, AlcoveWork* work, char* message);
 

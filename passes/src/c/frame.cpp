@@ -1,4 +1,5 @@
 // Prepares, records and discards frames, and drops what a context keeps of views and images.
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -92,10 +93,15 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
   context.images.reset();
   for (const AlcoveView& view : std::span(frame.views, frame.view_count)) {
     const bool inspects = frame.diagnose_pixels != VK_FALSE && passes.count == 0;
-    if (auto added = passes::add_view(graph, context.kernels, context.images, view, frame, prepare,
-                                      inspects ? &context.pixels : nullptr);
-        !added) {
+    const bool skipped = !prepare && !inspects && context.still_views.is_converged(view);
+    auto added = skipped ? passes::import_view(graph, context.images, view)
+                         : passes::add_view(graph, context.kernels, context.images, view, frame,
+                                            prepare, inspects ? &context.pixels : nullptr);
+    if (!added) {
       return tl::unexpected(std::move(added.error()));
+    }
+    if (skipped) {
+      continue;
     }
     passes.views[passes.count++] = {view.id,
                                     static_cast<std::uint32_t>(graph.description().passes.size())};
@@ -154,6 +160,11 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   if (context.finder.observe(*frame)) {
     context.host->log(ALCOVE_SEVERITY_WARNING, passes::MistakeFinder::kTooManyViews);
   }
+  const auto recorded = std::span(passes->views).first(passes->count);
+  for (const AlcoveView& view : std::span(frame->views, frame->view_count)) {
+    context.still_views.observe(
+        view, std::ranges::find(recorded, view.id, &ViewPasses::View::id) == recorded.end());
+  }
   context.pixels.recorded(frame->slot);
   return {};
 }
@@ -174,6 +185,7 @@ AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
     if (context->may_discard) {
       context->executor.discard(context->graph, {context->slot});
       context->pixels.discarded(context->slot);
+      context->still_views = {};
       context->report = {};
     }
     context->may_discard = false;
@@ -189,6 +201,7 @@ AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
     context->graph.histories().end_frame();
     passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
     context->finder.drop_view(id);
+    context->still_views.drop(id);
     return {};
   });
 }

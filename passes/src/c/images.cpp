@@ -1,12 +1,15 @@
 #include "c/images.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cstdio>
 #include <span>
 
+#include "work/areas.h"
 #include "work/format_name.h"
 #include "work/kept_channels.h"
+#include "work/number_text.h"
 
 namespace alcove::passes {
 namespace {
@@ -67,6 +70,9 @@ bool suits(const ImageRole& role, VkFormat format) {
   if (role.kind == ImageRole::Kind::depth) {
     return std::ranges::find(kDepthFormats, format) != kDepthFormats.end();
   }
+  if (role.kind == ImageRole::Kind::mask) {
+    return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R8_UINT;
+  }
   const auto known = std::ranges::find(kColourFormats, format, &KnownFormat::format);
   return known != kColourFormats.end() && known->channels >= role.channels &&
          (known->is_signed || role.kind != ImageRole::Kind::signed_colour);
@@ -75,6 +81,9 @@ bool suits(const ImageRole& role, VkFormat format) {
 std::string wanted_format(const ImageRole& role) {
   if (role.kind == ImageRole::Kind::depth) {
     return "a depth format or VK_FORMAT_R32_SFLOAT";
+  }
+  if (role.kind == ImageRole::Kind::mask) {
+    return "VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT";
   }
   return std::string(role.kind == ImageRole::Kind::signed_colour ? "a signed normalised or float"
                                                                  : "a normalised or float") +
@@ -88,8 +97,8 @@ bool same_state(const AlcoveState& a, const AlcoveState& b) {
 
 bool same_description(const AlcoveImage& a, const AlcoveImage& b) {
   return a.view == b.view && a.format == b.format && a.width == b.width && a.height == b.height &&
-         a.usage == b.usage && same_state(a.initial_state, b.initial_state) &&
-         same_state(a.final_state, b.final_state);
+         a.usage == b.usage && a.samples == b.samples &&
+         same_state(a.initial_state, b.initial_state) && same_state(a.final_state, b.final_state);
 }
 
 framegraph::State to_state(const AlcoveState& state) {
@@ -98,31 +107,66 @@ framegraph::State to_state(const AlcoveState& state) {
 
 }  // namespace
 
-tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage& image,
-                                        const AlcoveImage& depth, std::uint32_t view) {
-  const auto fail = [&](const std::string& what) {
-    return invalid("View " + std::to_string(view) + ": the image of " + role.name + " " + what);
+ImageAreas to_areas(const AlcoveView& view) {
+  ImageAreas areas{view.read_area, view.written_area, view.output_x, view.output_y};
+  const auto is_given = [](const AlcoveArea& area) {
+    return area.x != 0 || area.y != 0 || area.width != 0 || area.height != 0;
   };
-  const auto size = [](const AlcoveImage& of) {
-    return std::to_string(of.width) + "x" + std::to_string(of.height);
+  const bool used = is_given(areas.written) || view.output_x != 0 || view.output_y != 0 ||
+                    view.largest_width != 0 || view.largest_height != 0;
+  if (used && !is_given(areas.read)) {
+    areas.read = {0, 0, view.depth.width, view.depth.height};
+  }
+  return areas;
+}
+
+namespace {
+
+// Checks the size of an image that is not depth. Returns what is wrong with it, or an empty text.
+std::string size_problem(const ImageRole& role, const AlcoveImage& image, const AlcoveView& view) {
+  const VkExtent2D size{image.width, image.height};
+  const VkExtent2D depth{view.depth.width, view.depth.height};
+  const WorkFrame frame{.view = {}, .areas = to_areas(view)};
+  const bool in_part = role.output && has_areas(frame);
+  const AlcoveArea written = written_area(frame, read_size(frame, depth));
+  VkExtent2D wanted = in_part ? VkExtent2D{written.width, written.height} : depth;
+  if (role.half_size) {
+    wanted = {wanted.width / 2 + wanted.width % 2, wanted.height / 2 + wanted.height % 2};
+  }
+  if (in_part) {
+    return output_problem(frame, wanted, size);
+  }
+  if (size.width == wanted.width && size.height == wanted.height) {
+    return {};
+  }
+  return role.half_size
+             ? "is " + size_text(size) + " pixels; with half_size_outputs it must be " +
+                   size_text(wanted) + ", half of depth's " + size_text(depth) + " rounded up."
+             : "is " + size_text(size) + " pixels and that of depth " + size_text(depth) +
+                   "; make them equal.";
+}
+
+}  // namespace
+
+tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage& image,
+                                        const AlcoveView& view) {
+  const auto fail = [&](const std::string& what) {
+    return invalid("View " + std::to_string(view.id) + ": the image of " + role.name + " " + what);
   };
   if (image.width == 0 || image.height == 0) {
-    return fail("is " + size(image) + " pixels; each side must be at least 1.");
+    return fail("is " + size_text({image.width, image.height}) +
+                " pixels; each side must be at least 1.");
   }
-  if (role.half_size) {
-    const AlcoveImage half{.width = (depth.width + 1) / 2, .height = (depth.height + 1) / 2};
-    if (image.width != half.width || image.height != half.height) {
-      return fail("is " + size(image) + " pixels; with half_size_outputs it must be " + size(half) +
-                  ", half of depth's " + size(depth) + " rounded up.");
-    }
-  } else if (image.width != depth.width || image.height != depth.height) {
-    return fail("is " + size(image) + " pixels and that of depth " + size(depth) +
-                "; make them equal.");
+  if (const std::string problem = size_problem(role, image, view); !problem.empty()) {
+    return fail(problem);
   }
-  if (image.samples > 1) {
+  if (image.samples > 1 && !role.may_have_samples) {
     return fail("has " + std::to_string(image.samples) +
-                " samples a pixel; resolve it first, depth and normals to sample 0 "
-                "(VK_RESOLVE_MODE_SAMPLE_ZERO_BIT).");
+                " samples a pixel; resolve it first, depths and normals to sample 0.");
+  }
+  if (image.samples > 64 || !std::has_single_bit(std::max(image.samples, 1u))) {
+    return fail("has " + std::to_string(image.samples) +
+                " samples a pixel; it must be a power of two up to 64.");
   }
   if (role.keeps_channels && kept_channels(image.format) < role.channels) {
     return fail("has the format " + format_name(image.format) +
@@ -155,11 +199,11 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
 
 tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, const ImageRole& role,
                                                   const AlcoveImage& image,
-                                                  const AlcoveImage& depth, std::uint32_t view) {
+                                                  const AlcoveView& view) {
   if (image.image == VK_NULL_HANDLE) {
     return Texture{};
   }
-  if (auto right = check_image(role, image, depth, view); !right) {
+  if (auto right = check_image(role, image, view); !right) {
     return tl::unexpected(std::move(right.error()));
   }
   const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -167,25 +211,35 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
     return entry.image.image == image.image && entry.image.layer == image.layer;
   });
   if (found != end) {
-    if (role.output || found->output || !same_description(found->image, image)) {
-      return invalid("View " + std::to_string(view) + ": the image of " + role.name +
-                     " is given twice in the frame; only inputs may be, described alike.");
+    // Several views may write to an image, each to another area of it.
+    const bool in_part = to_areas(view).read.width > 0;
+    const bool may_repeat = role.output ? found->output && in_part : !found->output;
+    if (!may_repeat || (role.output && found->view == view.id) ||
+        !same_description(found->image, image)) {
+      return invalid("View " + std::to_string(view.id) + ": the image of " + role.name +
+                     " is given twice in the frame; only inputs may be, and outputs of several "
+                     "views with areas, described alike.");
     }
-    return found->texture;
+    found->view = view.id;
+    return graph.latest(found->texture);
   }
   // The name is on the stack, because a steady frame must not allocate memory.
   std::array<char, 64> name{};
-  std::snprintf(name.data(), name.size(), "%s of view %u", role.name, static_cast<unsigned>(view));
+  std::snprintf(name.data(), name.size(), "%s of view %u", role.name,
+                static_cast<unsigned>(view.id));
   const Texture texture = graph.import_texture(
-      name.data(), {.image = image.image,
-                    .view = image.view,
-                    .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
-                    .usage = image.usage,
-                    .first_layer = image.layer,
-                    .initial_state = to_state(image.initial_state),
-                    .final_state = to_state(image.final_state)});
+      name.data(),
+      {.image = image.image,
+       .view = image.view,
+       .desc = {.format = image.format,
+                .extent = framegraph::Extent::absolute(image.width, image.height),
+                .samples = static_cast<VkSampleCountFlagBits>(std::max(image.samples, 1u))},
+       .usage = image.usage,
+       .first_layer = image.layer,
+       .initial_state = to_state(image.initial_state),
+       .final_state = to_state(image.final_state)});
   assert(count_ < entries_.size());
-  entries_[count_++] = {image, texture, role.output};
+  entries_[count_++] = {image, texture, role.output, view.id};
   return texture;
 }
 

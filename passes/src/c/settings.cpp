@@ -22,6 +22,7 @@ static_assert(same(Quality::console, ALCOVE_QUALITY_CONSOLE) &&
               same(Quality::low, ALCOVE_QUALITY_LOW) &&
               same(Quality::medium, ALCOVE_QUALITY_MEDIUM) &&
               same(Quality::high, ALCOVE_QUALITY_HIGH) &&
+              same(Quality::ultra, ALCOVE_QUALITY_ULTRA) &&
               same(Quality::reference, ALCOVE_QUALITY_REFERENCE));
 static_assert(same(Estimator::horizons, ALCOVE_ESTIMATOR_HORIZONS) &&
               same(Estimator::bitmask, ALCOVE_ESTIMATOR_BITMASK) &&
@@ -47,6 +48,7 @@ void for_each_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.hidden_occlusion, ours.hidden_occlusion);
   visit(theirs.depth_layers, ours.depth_layers);
   visit(theirs.history_frames, ours.history_frames);
+  visit(theirs.static_noise, ours.static_noise);
   visit(theirs.half_resolution, ours.half_resolution);
   visit(theirs.specular, ours.specular);
   visit(theirs.roughness, ours.roughness);

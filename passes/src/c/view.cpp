@@ -7,6 +7,7 @@
 #include "c/settings.h"
 #include "diagnose/pixel_observer.h"
 #include "graph/add_view.h"
+#include "work/areas.h"
 
 namespace alcove::passes {
 namespace {
@@ -14,7 +15,8 @@ namespace {
 using framegraph::Texture;
 using Kind = ImageRole::Kind;
 
-constexpr ImageRole kDepth{"depth", Kind::depth};
+constexpr ImageRole kDepth{.name = "depth", .kind = Kind::depth, .may_have_samples = true};
+constexpr ImageRole kMask{"mask", Kind::mask};
 constexpr ImageRole kMotion{"motion vectors", Kind::signed_colour, 2};
 constexpr ImageRole kBackDepth{"back-face depth", Kind::depth};
 constexpr ImageRole kSecondDepth{"second depth", Kind::depth};
@@ -48,7 +50,8 @@ tl::expected<void, Failure> check_hidden(const AlcoveView& view,
   }
   if (needs_second_depth(settings) && view.second_depth.image == VK_NULL_HANDLE) {
     return invalid(view_name(view) +
-                   " has no image of second_depth, which its settings' depth_layers need.");
+                   " has no image of second_depth, which its settings' depth_layers need; give it, "
+                   "or set depth_layers to 1.");
   }
   return {};
 }
@@ -76,6 +79,7 @@ ImageRole visibility_role(VisibilityChannel channel, bool half_size) {
           channel_index(channel) + 1,
           true,
           channel != VisibilityChannel::all,
+          false,
           half_size};
 }
 
@@ -132,8 +136,9 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
   const bool half_size = view.half_size_outputs != VK_FALSE;
   const ImageRole normals = normals_role(*encoding);
   const ImageRole visibility = visibility_role(*channel, half_size);
-  const ImageRole bent_normal{"bent normals", Kind::signed_colour, 3, true, false, half_size};
-  const ImageRole specular{"specular occlusion", Kind::colour, 1, true, false, half_size};
+  const ImageRole bent_normal{"bent normals", Kind::signed_colour, 3, true, false, false,
+                              half_size};
+  const ImageRole specular{"specular occlusion", Kind::colour, 1, true, false, false, half_size};
   ViewInputs inputs;
   inputs.occlusion.depth_format = view.depth_format;
   inputs.occlusion.normals_in_view_space = view.normals_in_view_space != VK_FALSE;
@@ -142,6 +147,8 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
   inputs.occlusion.motion_convention = motion_convention(view);
   inputs.occlusion.visibility_channel = *channel;
   inputs.occlusion.half_size_outputs = half_size;
+  inputs.occlusion.not_receiving = view.not_receiving;
+  inputs.occlusion.not_occluding = view.not_occluding;
   struct Import {
     const ImageRole& role;
     const AlcoveImage& image;
@@ -156,6 +163,7 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
       {kBackDepth, view.back_depth, inputs.occlusion.back_depth_ndc},
       {kSecondDepth, view.second_depth, inputs.occlusion.second_depth_ndc},
       {kAlbedo, view.albedo, inputs.albedo},
+      {kMask, view.mask, inputs.occlusion.mask},
       {visibility, view.visibility, inputs.occlusion.into.visibility},
       {bent_normal, view.bent_normal, inputs.occlusion.into.bent_normal},
       {specular, view.specular, inputs.occlusion.into.specular},
@@ -198,6 +206,9 @@ tl::expected<SettledView, Failure> settle(const AlcoveView& view, const ImageImp
   if (!right) {
     return tl::unexpected(std::move(right.error()));
   }
+  if (auto good = check_areas(to_areas(view), {view.depth.width, view.depth.height}); !good) {
+    return tl::unexpected(failure_of(good.error(), view_name(view)));
+  }
   auto inputs = import_images(view, settings, importer);
   if (!inputs) {
     return tl::unexpected(std::move(inputs.error()));
@@ -211,19 +222,34 @@ tl::expected<SettledView, Failure> settle(const AlcoveView& view, const ImageImp
   return SettledView{*inputs, settings};
 }
 
-tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
-                                     const AlcoveView& view, const AlcoveFrame& described,
-                                     bool prepare, PixelObserver* observer) {
+namespace {
+
+// Checks a view and imports its images into a graph.
+tl::expected<SettledView, Failure> settle_in(framegraph::Graph& graph, ImageTable& images,
+                                             const AlcoveView& view) {
   struct Import {
     framegraph::Graph& graph;
     ImageTable& images;
   } target{graph, images};
-  const auto settled = settle(
+  return settle(
       view, {[](void* user, const ImageRole& role, const AlcoveImage& image, const AlcoveView& of) {
                const Import& to = *static_cast<Import*>(user);
-               return to.images.import(to.graph, role, image, of.depth, of.id);
+               return to.images.import(to.graph, role, image, of);
              },
              &target});
+}
+
+}  // namespace
+
+tl::expected<void, Failure> import_view(framegraph::Graph& graph, ImageTable& images,
+                                        const AlcoveView& view) {
+  return settle_in(graph, images, view).map([](const SettledView&) {});
+}
+
+tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
+                                     const AlcoveView& view, const AlcoveFrame& described,
+                                     bool prepare, PixelObserver* observer) {
+  const auto settled = settle_in(graph, images, view);
   if (!settled) {
     return tl::unexpected(settled.error());
   }
@@ -238,6 +264,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
               to_view(view.previous_camera),
               reset ? 0 : view.static_frames};
   frame.prepare = prepare;
+  frame.areas = to_areas(view);
   frame.largest_size = {view.largest_width, view.largest_height};
   if (!reset) {
     frame.previous_size = {view.previous_width, view.previous_height};
@@ -246,7 +273,7 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (!added) {
     return tl::unexpected(failure_of(added.error(), view_name(view)));
   }
-  if (observer == nullptr) {
+  if (observer == nullptr || view.depth.samples > 1) {
     return {};
   }
   return observer->add(frame, view, settled->inputs.occlusion, described.slot)

@@ -5,6 +5,7 @@
 
 #include "c/context.h"
 #include "c/view.h"
+#include "work/areas.h"
 #include "work/shader_table.h"
 
 using namespace alcove;
@@ -27,6 +28,7 @@ AlcoveImage to_image(const AlcoveWorkImage& image, std::uintptr_t number) {
           .width = image.width,
           .height = image.height,
           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+          .samples = image.samples,
           .initial_state = state,
           .final_state = state};
 }
@@ -37,6 +39,12 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
                   .normal_encoding = info.normal_encoding,
                   .normals_forward_z = info.normals_forward_z,
                   .settings = info.settings,
+                  .largest_width = info.largest_width,
+                  .largest_height = info.largest_height,
+                  .read_area = info.read_area,
+                  .written_area = info.written_area,
+                  .output_x = info.output_x,
+                  .output_y = info.output_y,
                   .depth = to_image(info.depth, 1),
                   .normals = to_image(info.normals, 2),
                   .motion = to_image(info.motion, 3),
@@ -44,6 +52,9 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
                   .back_depth = to_image(info.back_depth, 5),
                   .second_depth = to_image(info.second_depth, 6),
                   .albedo = to_image(info.albedo, 7),
+                  .mask = to_image(info.mask, 12),
+                  .not_receiving = info.not_receiving,
+                  .not_occluding = info.not_occluding,
                   .visibility = to_image(info.visibility, 8),
                   .visibility_channel = info.visibility_channel,
                   .half_size_outputs = info.half_size_outputs,
@@ -76,20 +87,23 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
     frame.previous_size = {info.previous->width, info.previous->height};
   }
   passes::WorkList list(*work, info.previous);
-  work->camera = info.camera;
-  work->width = info.depth.width;
-  work->height = info.depth.height;
   const AlcoveView view = to_alcove_view(info);
+  frame.areas = passes::to_areas(view);
+  const VkExtent2D size = passes::read_size(frame, {info.depth.width, info.depth.height});
+  work->camera = info.camera;
+  work->width = size.width;
+  work->height = size.height;
   const auto settled = passes::settle(
       view, {[](void* user, const passes::ImageRole& role, const AlcoveImage& image,
                 const AlcoveView& of) -> tl::expected<framegraph::Texture, passes::Failure> {
                if (image.image == VK_NULL_HANDLE) {
                  return framegraph::Texture{};
                }
-               return passes::check_image(role, image, of.depth, of.id).map([&] {
+               return passes::check_image(role, image, of).map([&] {
                  return static_cast<passes::WorkList*>(user)->add(
                      role.output ? ALCOVE_RESOURCE_KIND_OUTPUT : ALCOVE_RESOURCE_KIND_INPUT,
-                     role.name, image.format, {image.width, image.height});
+                     role.name, image.format, {image.width, image.height}, 1,
+                     std::max(image.samples, 1u));
                });
              },
              &list});

@@ -100,6 +100,7 @@ struct InspectedFrame {
   bool is_static = false;          // static_frames is not 0
   bool continues_history = false;  // there is a history, which reset_history does not discard
   bool has_largest_size = false;
+  bool has_area = false;  // the view says which part of the images is in use
   std::vector<PixelSample> samples;
 };
 

@@ -32,7 +32,7 @@ bool same(const AlcoveCamera& a, const AlcoveCamera& b) {
 // Findings::measures.
 constexpr std::array<const char*, kMistakes> kSentences{
     "AlcoveFrame::index stays the same from frame to frame; count it up, so that the noise "
-    "averages out.",
+    "averages out, or set static_noise if no temporal filter follows.",
     "AlcoveFrame::index goes back again and again; count it up, so that the noise averages out.",
     "previous_camera is this frame's camera in every frame in which the camera moves; give the "
     "camera that the view was last recorded with.",
@@ -100,6 +100,11 @@ constexpr std::array<const char*, kMistakes> kSentences{
     "motion vectors fit the motion of the camera with other jitter; change motion_offset.",
 };
 
+VkExtent2D read_size(const AlcoveView& view) {
+  return view.read_area.width > 0 ? VkExtent2D{view.read_area.width, view.read_area.height}
+                                  : VkExtent2D{view.depth.width, view.depth.height};
+}
+
 bool is_reported(Mistake mistake, std::uint32_t seen) {
   // An index may go back once, for example when a game restarts.
   return mistake == Mistake::index_goes_back ? std::popcount(seen) >= 2
@@ -140,8 +145,9 @@ void MistakeFinder::drop_view(std::uint32_t id) {
 Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::uint32_t index) {
   Findings result;
   const bool reset = given.reset_history != VK_FALSE;
-  result.set(Mistake::index_repeats, index == view.index);
-  result.set(Mistake::index_goes_back, index < view.index);
+  const bool reads_index = given.settings->static_noise == 0 || given.settings->history_frames > 0;
+  result.set(Mistake::index_repeats, reads_index && index == view.index);
+  result.set(Mistake::index_goes_back, reads_index && index < view.index);
   result.set(Mistake::history_reset, reset);
   if (reset || given.settings->history_frames == 0) {
     return result;
@@ -156,8 +162,8 @@ Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::ui
     result.set(Mistake::previous_is_another, !is_last && !is_this && !other_projection);
     result.set(Mistake::static_in_motion, given.static_frames > 0);
   }
-  const bool resized =
-      given.depth.width != view.size.width || given.depth.height != view.size.height;
+  const VkExtent2D size = read_size(given);
+  const bool resized = size.width != view.size.width || size.height != view.size.height;
   if (resized && given.largest_width > 0) {
     result.set(Mistake::previous_size_is_wrong, given.previous_width != view.size.width ||
                                                     given.previous_height != view.size.height);
@@ -179,7 +185,7 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
     view->has_history = given.settings->history_frames > 0;
     view->index = frame.index;
     view->camera = given.camera;
-    view->size = {given.depth.width, given.depth.height};
+    view->size = read_size(given);
   }
   new_views_ = static_cast<std::uint8_t>(new_views_ << 1 | (is_new_ ? 1 : 0));
   too_many_views_ |= new_views_ == 0xff;

@@ -41,12 +41,16 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
   }
   const Texture depth = inputs.depth_ndc, normals = inputs.normals;
   const Texture motion = view.static_frames == 0 ? inputs.motion : Texture{};
+  const AlcoveArea& read = frame.areas.read;
+  const bool in_part = view.read_area.width > 0;
+  const VkExtent2D size = read.width > 0 ? VkExtent2D{read.width, read.height}
+                                         : VkExtent2D{view.depth.width, view.depth.height};
   pending.declared = true;
   pending.serial = serial_;
   pending.id = view.id;
   pending.frame = {
       .view = frame.view,
-      .size = {view.depth.width, view.depth.height},
+      .size = size,
       .depth_format = view.depth.format,
       .has_normals = bool(normals),
       .has_motion = bool(motion),
@@ -58,6 +62,7 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
       .is_static = view.static_frames > 0,
       .continues_history = view.reset_history == VK_FALSE && view.settings->history_frames > 0,
       .has_largest_size = view.largest_width > 0,
+      .has_area = in_part,
       .samples = {}};
   framegraph::Graph& graph = frame.graph;
   Texture samples = graph.create_texture(
@@ -73,7 +78,7 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
   samples = sampling.write(samples, framegraph::access::storage_write_compute, {},
                            framegraph::Contents::discard);
   const maths::InspectParameters parameters{
-      {view.depth.width, view.depth.height}, normals ? 1u : 0u, motion ? 1u : 0u};
+      {read.x, read.y}, {size.width, size.height}, normals ? 1u : 0u, motion ? 1u : 0u};
   sampling.record([&kernels = frame.kernels, kernel = *kernel, depth, normals, motion, samples,
                    parameters](RecordContext& context) {
     const std::array views{context.view(depth), context.view(normals ? normals : depth),
@@ -131,6 +136,10 @@ void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
   const Texel sizes = texel(0, kTexelsOfASample * kInspectRows);
   const auto whole = [](float number) { return static_cast<std::uint32_t>(number); };
   frame.depth_size = {whole(sizes[0]), whole(sizes[1])};
+  if (frame.has_area) {  // the images are known to be larger
+    frame.depth_size = {std::min(frame.depth_size.width, frame.size.width),
+                        std::min(frame.depth_size.height, frame.size.height)};
+  }
   frame.normals_size = {whole(sizes[2]), whole(sizes[3])};
   frame.samples.reserve(std::size_t{kInspectColumns} * kInspectRows);
   for (std::uint32_t y = 0; y < kInspectRows; ++y) {

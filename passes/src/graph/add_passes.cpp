@@ -27,8 +27,8 @@ void for_each_texture(Occlusion& of, const Visit& visit) {
 }
 template <typename Visit>
 void for_each_texture(GtaoInputs& of, const Visit& visit) {
-  for (Texture* texture :
-       {&of.depth_ndc, &of.normals, &of.roughness, &of.back_depth_ndc, &of.second_depth_ndc}) {
+  for (Texture* texture : {&of.depth_ndc, &of.normals, &of.roughness, &of.back_depth_ndc,
+                           &of.second_depth_ndc, &of.receiver_depth_ndc}) {
     visit(*texture);
   }
 }
@@ -56,7 +56,7 @@ void for_each_texture(GtsoInputs& of, const Visit& visit) {
 template <typename Visit>
 void for_each_texture(OcclusionInputs& of, const Visit& visit) {
   for (Texture* texture : {&of.depth_ndc, &of.normals, &of.motion, &of.roughness,
-                           &of.back_depth_ndc, &of.second_depth_ndc}) {
+                           &of.back_depth_ndc, &of.second_depth_ndc, &of.mask}) {
     visit(*texture);
   }
   for_each_texture(of.into, visit);
@@ -161,8 +161,8 @@ tl::expected<Occlusion, Error> add_reconstruct(const Frame& frame, const Reconst
 
 tl::expected<Texture, Error> add_multi_bounce(const Frame& frame, const MultiBounceInputs& inputs,
                                               Precision precision) {
-  return add_described(frame, inputs, [&](WorkList& list, const WorkFrame&, const auto& listed) {
-    return describe_multi_bounce(list, listed, precision);
+  return add_described(frame, inputs, [&](WorkList& list, const WorkFrame& of, const auto& listed) {
+    return describe_multi_bounce(list, of, listed, precision);
   });
 }
 
@@ -181,7 +181,8 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                   [&](WorkList& list, const WorkFrame& of, const auto& listed) {
                                     return describe_occlusion(list, of, listed, settings);
                                   });
-  if (!outputs || outputs->normals) {
+  if (!outputs || outputs->normals ||
+      frame.graph.description().resources[inputs.depth_ndc.index].samples > 1) {
     return outputs;
   }
   // For the caller. The graph culls these passes if nothing reads them.

@@ -42,7 +42,7 @@ Range range_of(const AlcoveWorkBinding& binding, const AlcoveWork& work) {
 }
 
 // Returns whether a pass that overwrites `texture` must keep its earlier contents: those of an
-// import, whose image may be larger than the part that the graph uses.
+// import, of which the pass may write a part, as may earlier passes of the frame.
 bool has_other_contents(const Graph& graph, Texture texture) {
   const framegraph::GraphDescription& declared = graph.description();
   if (texture.index >= declared.resources.size()) {
@@ -50,7 +50,7 @@ bool has_other_contents(const Graph& graph, Texture texture) {
   }
   const framegraph::ResourceRecord& record = declared.resources[texture.index];
   return record.origin == framegraph::Origin::imported &&
-         declared.externals[record.external].has_contents != 0;
+         (texture.version > 0 || declared.externals[record.external].has_contents != 0);
 }
 
 // The callback of a pass: one dispatch.
@@ -79,7 +79,8 @@ struct Dispatch {
 
 WorkFrame work_frame(const Frame& frame, Histories histories) {
   WorkFrame result{frame.view,          frame.index,        frame.previous_view,
-                   frame.static_frames, frame.largest_size, frame.previous_size};
+                   frame.static_frames, frame.largest_size, frame.previous_size,
+                   frame.areas};
   if (frame.prepare) {  // the previous frame is not read
     result.previous_view = frame.view;
     result.previous_size = {};
@@ -128,7 +129,8 @@ Texture GraphWork::import(Texture texture) {
   const Texture listed =
       list_.add(ALCOVE_RESOURCE_KIND_INPUT, "texture", frame_.graph.format(texture),
                 {size.width, size.height},
-                texture.index < resources.size() ? resources[texture.index].mips : 1u);
+                texture.index < resources.size() ? resources[texture.index].mips : 1u,
+                texture.index < resources.size() ? resources[texture.index].samples : 1u);
   if (listed) {
     textures_[listed.index] = texture;
   }

@@ -5,6 +5,7 @@
 #include "alcove/passes/work.h"
 #include "apply_parameters.h"
 #include "maths/spherical_harmonics.h"
+#include "work/areas.h"
 #include "work/bindings.h"
 #include "work/check_inputs.h"
 #include "work/number_text.h"
@@ -123,6 +124,9 @@ tl::expected<AppliedLight, Error> describe_apply(WorkList& list, const WorkFrame
                                                  const ApplyInputs& given,
                                                  const ApplySettings& settings) {
   const ApplyInputs inputs = given.map ? given : without_specular(given);
+  if (has_areas(frame)) {
+    return tl::unexpected(Error{"Probe light is computed for whole images; it was given areas."});
+  }
   auto good =
       check_settings(settings).and_then([&] { return check_textures(list, inputs); }).and_then([&] {
         return check_probe(list, inputs);

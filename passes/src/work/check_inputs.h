@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "alcove/passes/work.h"
+#include "work/number_text.h"
 
 namespace alcove::passes {
 
@@ -18,13 +19,15 @@ struct NamedInput {
 // first input of the list.
 [[nodiscard]] inline tl::expected<void, Error> check_inputs(
     const WorkList& list, std::string_view pass, std::initializer_list<NamedInput> inputs) {
-  const auto size_text = [](VkExtent2D size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
-  };
   for (const NamedInput& input : inputs) {
     if (!input.texture) {
       return tl::unexpected(Error{"The pass " + std::string(pass) + " needs a texture of " +
                                   std::string(input.name) + "; it was given none."});
+    }
+    if (list.samples(input.texture) > 1) {
+      return tl::unexpected(Error{
+          "The pass " + std::string(pass) + " was given " + std::string(input.name) + " with " +
+          std::to_string(list.samples(input.texture)) + " samples per pixel; resolve it first."});
     }
     const VkExtent2D size = list.size(input.texture);
     const VkExtent2D wanted = list.size(inputs.begin()->texture);

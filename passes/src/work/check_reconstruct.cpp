@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "work/areas.h"
 #include "work/check_inputs.h"
 #include "work/format_name.h"
 #include "work/kept_channels.h"
@@ -37,12 +38,19 @@ tl::expected<void, Error> check_textures(const WorkList& list, const Reconstruct
 }
 
 // Checks the sizes of the caller's textures for results.
-tl::expected<void, Error> check_result_sizes(const WorkList& list,
+tl::expected<void, Error> check_result_sizes(const WorkList& list, const WorkFrame& frame,
                                              const ReconstructInputs& inputs) {
-  const VkExtent2D depth = list.size(inputs.depth_ndc);
-  const bool half = inputs.half_size_results;
-  const VkExtent2D wanted{half ? (depth.width + 1) / 2 : depth.width,
-                          half ? (depth.height + 1) / 2 : depth.height};
+  const VkExtent2D read = read_size(frame, list.size(inputs.depth_ndc));
+  const AlcoveArea written = written_area(frame, read);
+  const std::uint32_t texel = inputs.half_size_results ? 2 : 1;
+  if (written.x % texel != 0 || written.y % texel != 0) {
+    return tl::unexpected(
+        Error{"The area that is written begins at (" + std::to_string(written.x) + ", " +
+              std::to_string(written.y) +
+              ") of the area that is read; with outputs of half size both must be even."});
+  }
+  const VkExtent2D wanted{(written.width + texel - 1) / texel,
+                          (written.height + texel - 1) / texel};
   const std::array<NamedInput, 3> given{{{"visibility", inputs.into.visibility},
                                          {"bent normals", inputs.into.bent_normal},
                                          {"specular occlusion", inputs.into.specular}}};
@@ -50,14 +58,8 @@ tl::expected<void, Error> check_result_sizes(const WorkList& list,
     if (!texture.texture) {
       continue;
     }
-    const VkExtent2D found = list.size(texture.texture);
-    if (found.width != wanted.width || found.height != wanted.height) {
-      return tl::unexpected(
-          Error{"The pass reconstruct was given a texture for " + std::string(texture.name) +
-                " of " + std::to_string(found.width) + "x" + std::to_string(found.height) +
-                " pixels; it needs one of " + std::to_string(wanted.width) + "x" +
-                std::to_string(wanted.height) +
-                (half ? ", half the depth's size rounded up." : ", the depth's size.")});
+    if (auto good = check_output(frame, wanted, list.size(texture.texture), texture.name); !good) {
+      return good;
     }
   }
   return {};
@@ -77,9 +79,9 @@ tl::expected<void, Error> check_channel(const WorkList& list, const ReconstructI
 }
 
 // Checks size and format of a texture of the raw occlusion, which the caller may have made.
-tl::expected<void, Error> check_blocks(const WorkList& list, Texture depth, std::uint32_t tile_size,
-                                       Texture texture, VkFormat format, const char* name) {
-  const VkExtent2D pixels = list.size(depth);
+tl::expected<void, Error> check_blocks(const WorkList& list, VkExtent2D pixels,
+                                       std::uint32_t tile_size, Texture texture, VkFormat format,
+                                       const char* name) {
   const VkExtent2D found = list.size(texture);
   const VkFormat found_format = list.format(texture);
   const VkExtent2D blocks{(pixels.width + tile_size - 1) / tile_size,
@@ -88,10 +90,9 @@ tl::expected<void, Error> check_blocks(const WorkList& list, Texture depth, std:
     return {};
   }
   return tl::unexpected(Error{"The pass reconstruct was given " + std::string(name) + " of " +
-                              std::to_string(found.width) + "x" + std::to_string(found.height) +
-                              " texels and " + format_name(found_format) + "; it needs " +
-                              std::to_string(blocks.width) + "x" + std::to_string(blocks.height) +
-                              ", one for each tile, and " + format_name(format) + "."});
+                              size_text(found) + " texels and " + format_name(found_format) +
+                              "; it needs " + size_text(blocks) + ", one for each tile, and " +
+                              format_name(format) + "."});
 }
 
 // Checks that add_gtao() can have made the raw occlusion with this tile size and number of slices.
@@ -102,11 +103,12 @@ tl::expected<void, Error> check_tracing(const RawOcclusionTextures& raw_occlusio
   return validate(settings);
 }
 
-tl::expected<void, Error> check_raw_occlusion(const WorkList& list, const ReconstructInputs& inputs,
+tl::expected<void, Error> check_raw_occlusion(const WorkList& list, VkExtent2D pixels,
+                                              const ReconstructInputs& inputs,
                                               bool half_resolution) {
   const RawOcclusionTextures& raw_occlusion = inputs.raw_occlusion;
   const auto check = [&](Texture texture, VkFormat format, const char* name) {
-    return check_blocks(list, inputs.depth_ndc, raw_occlusion.tile_size, texture, format, name);
+    return check_blocks(list, pixels, raw_occlusion.tile_size, texture, format, name);
   };
   return check_tracing(raw_occlusion)
       .and_then([&]() -> tl::expected<void, Error> {
@@ -128,7 +130,8 @@ tl::expected<void, Error> check_raw_occlusion(const WorkList& list, const Recons
 
 }  // namespace
 
-tl::expected<void, Error> check_reconstruct(const WorkList& list, const ReconstructInputs& inputs,
+tl::expected<void, Error> check_reconstruct(const WorkList& list, const WorkFrame& frame,
+                                            const ReconstructInputs& inputs,
                                             const OcclusionSettings& settings) {
   if (!needs_visibility(settings) && !inputs.raw_occlusion.bent && !inputs.raw_occlusion.lobe) {
     return tl::unexpected(
@@ -145,9 +148,13 @@ tl::expected<void, Error> check_reconstruct(const WorkList& list, const Reconstr
         return {};
       })
       .and_then([&] { return check_textures(list, inputs); })
-      .and_then([&] { return check_result_sizes(list, inputs); })
+      .and_then([&] { return check_areas(frame.areas, list.size(inputs.depth_ndc)); })
+      .and_then([&] { return check_result_sizes(list, frame, inputs); })
       .and_then([&] { return check_channel(list, inputs); })
-      .and_then([&] { return check_raw_occlusion(list, inputs, settings.half_resolution); });
+      .and_then([&] {
+        return check_raw_occlusion(list, read_size(frame, list.size(inputs.depth_ndc)), inputs,
+                                   settings.half_resolution);
+      });
 }
 
 tl::expected<ReconstructSizes, Error> reconstruct_sizes(const WorkFrame& frame, VkExtent2D now) {
@@ -162,12 +169,10 @@ tl::expected<ReconstructSizes, Error> reconstruct_sizes(const WorkFrame& frame, 
   if (fits(sizes.now) && fits(sizes.previous)) {
     return sizes;
   }
-  const auto text = [](VkExtent2D size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
-  };
-  return tl::unexpected(Error{"The depth has " + text(sizes.now) + " pixels and had " +
-                              text(sizes.previous) + " in the frame before; both must be within " +
-                              text(sizes.largest) + ", the largest size."});
+  return tl::unexpected(Error{"The depth has " + size_text(sizes.now) + " pixels and had " +
+                              size_text(sizes.previous) +
+                              " in the frame before; both must be within " +
+                              size_text(sizes.largest) + ", the largest size."});
 }
 
 }  // namespace alcove::passes

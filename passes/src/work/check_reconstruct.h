@@ -9,6 +9,7 @@ namespace alcove::passes {
 
 // Checks settings and textures.
 [[nodiscard]] tl::expected<void, Error> check_reconstruct(const WorkList& list,
+                                                          const WorkFrame& frame,
                                                           const ReconstructInputs& inputs,
                                                           const OcclusionSettings& settings);
 

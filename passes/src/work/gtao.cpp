@@ -6,6 +6,7 @@
 #include "gtao_parameters.h"
 #include "maths/slice_line.h"
 #include "maths/visibility_bitmask.h"
+#include "work/areas.h"
 #include "work/bindings.h"
 #include "work/check_inputs.h"
 #include "work/interleave_offset.h"
@@ -42,7 +43,7 @@ bool of_distance(const OcclusionSettings& settings) {
          settings.advanced.thickness_unit == ThicknessUnit::distance;
 }
 
-std::array<NamedConstant, 18> constants_of(const GtaoInputs& inputs,
+std::array<NamedConstant, 20> constants_of(const WorkFrame& frame, const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   const AdvancedSettings& advanced = settings.advanced;
@@ -63,7 +64,9 @@ std::array<NamedConstant, 18> constants_of(const GtaoInputs& inputs,
            {"kUnobserved", flag(advanced.unobserved)},
            {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
            {"kReversed", flag(is_reversed(projection))},
-           {"kInfiniteFar", flag(has_infinite_far(projection))}}};
+           {"kInfiniteFar", flag(has_infinite_far(projection))},
+           {"kAreas", flag(has_areas(frame))},
+           {"kMask", flag(bool(inputs.receiver_depth_ndc))}}};
 }
 
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
@@ -76,15 +79,44 @@ VkExtent3D in_strips(VkExtent2D tiles) {
   return {(rows + strips - 1) / strips * kGroup, tiles.width, strips};
 }
 
+// Returns the tiles that are traced: those of the area that is read which the reconstruction
+// filters.
+AlcoveArea traced_tiles(const WorkFrame& frame, VkExtent2D read,
+                        const OcclusionSettings& settings) {
+  const AlcoveArea written = written_area(frame, read);
+  const std::uint32_t tile = settings.tile_size;
+  // The groups of the reconstruction begin at multiples of 8 texels, of which one precedes the
+  // first that is written at half resolution, and filter so many tiles on each side.
+  const std::uint32_t texel = settings.half_resolution ? 2 : 1;
+  const std::uint32_t around = settings.advanced.filter_radius + 1;
+  const auto first = [&](std::uint32_t begin) {
+    const std::uint32_t texels = begin / texel;
+    const std::uint32_t group = (texels - std::min(texels, texel - 1)) / 8 * 8;
+    const std::uint32_t tiles = group * texel / tile;
+    return tiles - std::min(tiles, around);
+  };
+  const auto last = [&](std::uint32_t end, std::uint32_t size) {
+    return std::min((end + texel - 1) / tile + around, (size - 1) / tile);
+  };
+  const std::uint32_t x = first(written.x);
+  const std::uint32_t y = first(written.y);
+  return {x, y, last(written.x + written.width, read.width) - x + 1,
+          last(written.y + written.height, read.height) - y + 1};
+}
+
 maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame,
                                     const GtaoInputs& inputs, const OcclusionSettings& settings,
-                                    const maths::Projection& projection) {
+                                    const maths::Projection& projection, VkExtent2D read,
+                                    const AlcoveArea& tiles) {
   const float radius = std::min(settings.radius, kLargestRadius);
-  const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, frame.index);
+  const std::uint32_t index = noise_index(settings, frame.index);
+  const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, index);
   const maths::DepthStep step = depth_step(projection, inputs.depth_format != VK_FORMAT_UNDEFINED
                                                            ? inputs.depth_format
                                                            : list.format(inputs.depth_ndc));
   return {
+      maths::uvec4(frame.areas.read.x, frame.areas.read.y, read.width, read.height),
+      maths::uvec4(tiles.x, tiles.y, tiles.x + tiles.width - 1, tiles.y + tiles.height - 1),
       view_from_normal(frame.view, inputs.normals_in_view_space || !inputs.normals,
                        inputs.normals && inputs.normals_forward_z),
       maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
@@ -92,7 +124,7 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
       inverse_depth_from_ndc(projection),
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
       radius,
-      frame.index,
+      index,
       settings.thickness * (of_distance(settings) ? 1.0f : radius),
       maths::hidden_exponent(settings.hidden_occlusion),
       settings.advanced.falloff,
@@ -113,25 +145,30 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
   const Texture normals = or_else(inputs.normals, inputs.depth_ndc);
   const Texture roughness = optional(reads.roughness, inputs.roughness, inputs.depth_ndc);
   const Texture back = optional(reads.back_faces, inputs.back_depth_ndc, inputs.depth_ndc);
+  const Texture receiver = or_else(inputs.receiver_depth_ndc, inputs.depth_ndc);
   const Texture second = optional(reads.second_layer, inputs.second_depth_ndc, inputs.depth_ndc);
-  auto good = validate(settings).and_then([&] {
-    return check_inputs(list, "gtao",
-                        {{"depth", inputs.depth_ndc},
-                         {"normals", normals},
-                         {"roughness", roughness},
-                         {"back-face depth", back},
-                         {"second depth", second}});
-  });
+  auto good = validate(settings)
+                  .and_then([&] { return check_areas(frame.areas, list.size(inputs.depth_ndc)); })
+                  .and_then([&] {
+                    return check_inputs(list, "gtao",
+                                        {{"depth", inputs.depth_ndc},
+                                         {"normals", normals},
+                                         {"roughness", roughness},
+                                         {"back-face depth", back},
+                                         {"second depth", second},
+                                         {"depth of receivers", receiver}});
+                  });
   if (!good) {
     return tl::unexpected(std::move(good.error()));
   }
-  const VkExtent2D pixels = list.size(inputs.depth_ndc);
+  const VkExtent2D pixels = read_size(frame, list.size(inputs.depth_ndc));
   const auto projection = projection_of(frame.view, pixels);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
   const std::uint32_t tile = settings.tile_size;
   const VkExtent2D size{(pixels.width + tile - 1) / tile, (pixels.height + tile - 1) / tile};
+  const AlcoveArea traced = traced_tiles(frame, pixels, settings);
   RawOcclusionTextures result{
       .tile_size = tile, .slices = settings.slices, .lobe = has_lobe(settings)};
   result.raw_occlusion =
@@ -146,14 +183,16 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
                                  {"bent_image", or_else(result.bent, result.raw_occlusion)},
                                  {"back_image", back},
                                  {"second_image", second},
+                                 {"receiver_image", receiver},
                                  {"roughness_image", roughness}};
   return list
       .dispatch({.label = "gtao",
                  .shader = result.lobe ? Shader::gtao_specular : Shader::gtao,
-                 .constants = constants_of(inputs, settings, reads, *projection),
+                 .constants = constants_of(frame, inputs, settings, reads, *projection),
                  .images = images,
-                 .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection)),
-                 .size = in_strips(size)})
+                 .parameters = bytes_of(
+                     parameters_of(list, frame, inputs, settings, *projection, pixels, traced)),
+                 .size = in_strips({traced.width, traced.height})})
       .map([&] { return result; });
 }
 

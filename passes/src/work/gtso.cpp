@@ -4,6 +4,7 @@
 #include "alcove/passes/setting_names.h"
 #include "alcove/passes/work.h"
 #include "gtso_parameters.h"
+#include "work/areas.h"
 #include "work/bindings.h"
 #include "work/check_inputs.h"
 #include "work/output_format.h"
@@ -15,8 +16,8 @@ using framegraph::Texture;
 
 namespace {
 
-tl::expected<void, Error> check(const WorkList& list, const GtsoInputs& inputs,
-                                const OcclusionSettings& settings) {
+tl::expected<void, Error> check(const WorkList& list, const WorkFrame& frame,
+                                const GtsoInputs& inputs, const OcclusionSettings& settings) {
   if (auto good = validate(settings); !good) {
     return good;
   }
@@ -24,6 +25,20 @@ tl::expected<void, Error> check(const WorkList& list, const GtsoInputs& inputs,
     return tl::unexpected(Error{"The pass specular occlusion has the setting 'specular' " +
                                 std::string(name_of(settings.specular)) +
                                 "; it must be table or cone."});
+  }
+  if (has_areas(frame)) {
+    const AlcoveArea written = written_area(frame, list.size(inputs.depth));
+    const VkExtent2D size{written.width, written.height};
+    for (const NamedInput& output :
+         {NamedInput{"visibility", inputs.visibility},
+          {"bent normals", inputs.bent_normal},
+          {"specular occlusion", or_else(inputs.into, inputs.visibility)}}) {
+      if (auto good = check_output(frame, size, list.size(output.texture), output.name); !good) {
+        return good;
+      }
+    }
+    return check_areas(frame.areas,
+                       list.size(inputs.roughness ? inputs.roughness : inputs.normals));
   }
   return check_inputs(
       list, "specular occlusion",
@@ -40,7 +55,7 @@ tl::expected<void, Error> check(const WorkList& list, const GtsoInputs& inputs,
 tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& frame,
                                            const GtsoInputs& inputs,
                                            const OcclusionSettings& settings) {
-  if (auto good = check(list, inputs, settings); !good) {
+  if (auto good = check(list, frame, inputs, settings); !good) {
     return tl::unexpected(std::move(good.error()));
   }
   const VkExtent2D size = list.size(inputs.depth);
@@ -48,23 +63,36 @@ tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& fram
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const Texture result = given_or_added(list, inputs.into, "specular occlusion",
-                                        scalar_format(settings.precision), size);
+  const AlcoveArea written = written_area(frame, size);
+  const VkExtent2D results{written.width, written.height};
+  const Texture result =
+      given_or_added(list, inputs.into, "specular occlusion", scalar_format(settings.precision),
+                     output_size(frame, results));
   const bool textured = bool(inputs.roughness);
   const NamedConstant constants[] = {
       {"kRoughnessTexture", flag(textured)},
       {"kRoughnessChannel", channel_if(textured, settings.roughness_channel)},
       {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
-      {"kVisibilityChannel", channel_index(inputs.visibility_channel)}};
+      {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
+      {"kAreas", flag(has_areas(frame))}};
   const NamedTexture images[] = {{"visibility_image", inputs.visibility},
                                  {"bent_normal_image", inputs.bent_normal},
                                  {"normal_image", inputs.normals},
                                  {"depth_image", inputs.depth},
                                  {"roughness_image", or_else(inputs.roughness, inputs.visibility)},
                                  {"result_image", result}};
+  // Normals that were computed from depth have the size of the area that is read.
+  const AlcoveArea& read = frame.areas.read;
+  const VkExtent2D whole = list.size(inputs.normals);
+  const bool cropped = whole.width == size.width && whole.height == size.height;
+  const auto x = static_cast<int>(frame.areas.output_x) - static_cast<int>(written.x);
+  const auto y = static_cast<int>(frame.areas.output_y) - static_cast<int>(written.y);
   const maths::GtsoParameters parameters{
+      maths::uvec4(cropped ? 0u : read.x, cropped ? 0u : read.y, read.x, read.y),
+      maths::ivec4(written.x, written.y, x, y),
       *projection,
       view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z),
+      maths::uvec2(results.width, results.height),
       settings.roughness};
   return list
       .dispatch(
@@ -73,7 +101,7 @@ tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& fram
            .constants = constants,
            .images = images,
            .parameters = bytes_of(parameters),
-           .size = {size.width, size.height, 1}})
+           .size = {results.width, results.height, 1}})
       .map([&] { return result; });
 }
 

@@ -1,8 +1,10 @@
-// The pixel of each tile that is traced in a frame.
+// The number that selects the noise of a frame, and the pixel of each tile that is traced.
 #pragma once
 
 #include <array>
 #include <cstdint>
+
+#include "alcove/passes/settings.h"
 
 namespace alcove::passes {
 
@@ -25,6 +27,13 @@ struct InterleaveOffset {
     frame /= 4;
   }
   return offset;
+}
+
+// Returns the number that selects the noise of a frame. Static noise is that of frame 1, which
+// traces the pixel beside the centre of each tile.
+[[nodiscard]] constexpr std::uint32_t noise_index(const OcclusionSettings& settings,
+                                                  std::uint32_t frame) {
+  return has_static_noise(settings) ? 1 : frame;
 }
 
 }  // namespace alcove::passes

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <string>
 
+#include <vulkan/vulkan_core.h>
+
 namespace alcove::passes {
 
 // Returns the shortest text that reads back as the same float, at most 15 characters. Unlike
@@ -13,6 +15,10 @@ namespace alcove::passes {
   std::array<char, 16> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   return {text.data(), end};
+}
+
+[[nodiscard]] inline std::string size_text(VkExtent2D size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
 }  // namespace alcove::passes

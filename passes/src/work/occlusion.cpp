@@ -3,6 +3,7 @@
 
 #include "alcove/passes/setting_names.h"
 #include "alcove/passes/work.h"
+#include "work/mask_depth.h"
 #include "work/view_work.h"
 
 namespace alcove::passes {
@@ -10,10 +11,10 @@ namespace {
 
 // Adds linear depth if an output or specular occlusion needs it.
 tl::expected<framegraph::Texture, Error> describe_linear(WorkList& list, const WorkFrame& frame,
-                                                         const OcclusionInputs& inputs,
+                                                         framegraph::Texture depth_ndc,
                                                          const OcclusionSettings& settings) {
   const bool read = settings.linear_depth || specular_reads_bent_normal(settings);
-  return read ? describe_linear_depth(list, frame, inputs.depth_ndc)
+  return read ? describe_linear_depth(list, frame, depth_ndc)
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
@@ -56,7 +57,14 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
         "The setting 'specular' is " + std::string(name_of(settings.specular)) +
         "; outputs of half size need slices, because that model reads outputs of full size."});
   }
-  const auto depth = describe_linear(list, frame, inputs, settings);
+  const auto depths = describe_depths(list, frame, inputs);
+  if (!depths) {
+    return tl::unexpected(depths.error());
+  }
+  const VkFormat depth_format = inputs.depth_format != VK_FORMAT_UNDEFINED
+                                    ? inputs.depth_format
+                                    : list.format(inputs.depth_ndc);
+  const auto depth = describe_linear(list, frame, depths->all, settings);
   if (!depth) {
     return tl::unexpected(depth.error());
   }
@@ -69,23 +77,26 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
     }
     normals = *made;
   }
-  const auto raw_occlusion = describe_gtao(list, frame,
-                                           {.depth_ndc = inputs.depth_ndc,
-                                            .normals = inputs.normals,
-                                            .normals_in_view_space = in_view_space,
-                                            .roughness = inputs.roughness,
-                                            .back_depth_ndc = inputs.back_depth_ndc,
-                                            .second_depth_ndc = inputs.second_depth_ndc,
-                                            .depth_format = inputs.depth_format,
-                                            .normal_encoding = inputs.normal_encoding,
-                                            .normals_forward_z = inputs.normals_forward_z},
-                                           settings);
+  const auto raw_occlusion =
+      describe_gtao(list, frame,
+                    {.depth_ndc = depths->occluders,
+                     .normals = inputs.normals,
+                     .normals_in_view_space = in_view_space,
+                     .roughness = inputs.roughness,
+                     .back_depth_ndc = inputs.back_depth_ndc,
+                     .second_depth_ndc = inputs.second_depth_ndc,
+                     .receiver_depth_ndc = inputs.mask ? depths->receivers : framegraph::Texture{},
+                     .depth_format = depth_format,
+                     .normal_encoding = inputs.normal_encoding,
+                     .normals_forward_z = inputs.normals_forward_z},
+                    settings);
   if (!raw_occlusion) {
     return tl::unexpected(raw_occlusion.error());
   }
   const auto filtered = describe_reconstruct(list, frame,
                                              {.raw_occlusion = *raw_occlusion,
-                                              .depth_ndc = inputs.depth_ndc,
+                                              .depth_ndc = depths->receivers,
+                                              .depth_format = depth_format,
                                               .normals = inputs.normals,
                                               .normals_in_view_space = in_view_space,
                                               .motion = inputs.motion,
@@ -117,7 +128,7 @@ tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFr
   const VisibilityChannel channel = inputs.occlusion.into.visibility
                                         ? inputs.occlusion.visibility_channel
                                         : VisibilityChannel::all;
-  return describe_multi_bounce(list,
+  return describe_multi_bounce(list, frame,
                                {outputs->visibility, inputs.albedo, inputs.multi_bounce, channel},
                                settings.precision)
       .map([&](framegraph::Texture) { return *outputs; });

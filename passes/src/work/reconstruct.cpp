@@ -3,6 +3,7 @@
 
 #include "alcove/passes/work.h"
 #include "maths/history.h"
+#include "work/areas.h"
 #include "work/bindings.h"
 #include "work/check_reconstruct.h"
 #include "work/output_format.h"
@@ -53,7 +54,7 @@ Past past_of(const WorkFrame& frame, const ReconstructSizes& sizes, bool history
   return Past::unchanged;
 }
 
-std::array<NamedConstant, 16> constants_of(const ReconstructInputs& inputs,
+std::array<NamedConstant, 17> constants_of(const WorkFrame& frame, const ReconstructInputs& inputs,
                                            const OcclusionSettings& settings,
                                            const maths::Projection& projection, Past past) {
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
@@ -72,7 +73,8 @@ std::array<NamedConstant, 16> constants_of(const ReconstructInputs& inputs,
            {"kShaped", flag(!settings.half_resolution && shaped)},
            {"kReversed", flag(is_reversed(projection))},
            {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
-           {"kVisibilityChannel", channel_index(inputs.visibility_channel)}}};
+           {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
+           {"kAreas", flag(has_areas(frame))}}};
 }
 
 // Every texture that the passes access; null where it is not wanted.
@@ -89,11 +91,13 @@ VkExtent2D texels(VkExtent2D pixels, bool half) {
   return half ? VkExtent2D{(pixels.width + 1) / 2, (pixels.height + 1) / 2} : pixels;
 }
 
-Textures add_textures(WorkList& list, const ReconstructInputs& inputs,
+Textures add_textures(WorkList& list, const WorkFrame& frame, const ReconstructInputs& inputs,
                       const OcclusionSettings& settings, const ReconstructSizes& sizes) {
   const bool half = settings.half_resolution;
   const bool history = settings.history_frames > 0;
-  const VkExtent2D size = texels(sizes.now, inputs.half_size_results);
+  const AlcoveArea written = written_area(frame, sizes.now);
+  const VkExtent2D size =
+      output_size(frame, texels({written.width, written.height}, inputs.half_size_results));
   Textures textures;
   if (needs_visibility(settings)) {
     textures.result.visibility = given_or_added(list, inputs.into.visibility, "visibility",
@@ -170,7 +174,8 @@ WorkFrame without_past(const WorkFrame& frame) {
   return {.view = frame.view,
           .index = frame.index,
           .previous_view = frame.view,
-          .static_frames = frame.static_frames};
+          .static_frames = frame.static_frames,
+          .areas = frame.areas};
 }
 
 }  // namespace
@@ -195,13 +200,13 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   if (!inputs.into.visibility || !needs_visibility(settings)) {
     inputs.visibility_channel = VisibilityChannel::all;
   }
-  if (auto good = check_reconstruct(list, inputs, settings); !good) {
+  if (auto good = check_reconstruct(list, frame, inputs, settings); !good) {
     return tl::unexpected(good.error());
   }
   if (!history) {
     inputs.motion = {};
   }
-  const auto sizes = reconstruct_sizes(frame, list.size(inputs.depth_ndc));
+  const auto sizes = reconstruct_sizes(frame, read_size(frame, list.size(inputs.depth_ndc)));
   if (!sizes) {
     return tl::unexpected(sizes.error());
   }
@@ -209,7 +214,7 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   if (!projection) {
     return tl::unexpected(projection.error());
   }
-  const Textures textures = add_textures(list, inputs, settings, *sizes);
+  const Textures textures = add_textures(list, frame, inputs, settings, *sizes);
   if (!textures.valid) {  // the previous view is not read
     frame.previous_view = frame.view;
   }
@@ -220,25 +225,34 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   }
   const Past past = past_of(frame, *sizes, textures.valid, bool(inputs.motion));
   maths::ReconstructParameters parameters = reconstruct_parameters(
-      frame, *projection, *previous, inputs, settings, list.format(inputs.depth_ndc));
+      frame, *projection, *previous, inputs, settings,
+      inputs.depth_format != VK_FORMAT_UNDEFINED ? inputs.depth_format
+                                                 : list.format(inputs.depth_ndc));
   // In a static view all frames get the same weight in the history.
   if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
   }
-  const VkExtent2D half_size = texels(sizes->now, true);
   const VkExtent2D stored =
       textures.texels.current ? list.size(textures.texels.current) : VkExtent2D{1, 1};
   parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
+  // The groups begin at a multiple of 8 texels (first_texel() of the shader).
+  const AlcoveArea written = written_area(frame, sizes->now);
+  const std::uint32_t texel = half ? 2 : 1;
+  const auto first = [&](std::uint32_t pixel) {
+    return (pixel / texel - std::min(pixel / texel, texel - 1)) / 8 * 8;
+  };
   // At half resolution the dispatch covers one more texel to the right and below, if the textures
   // have room for it, because the upsampling pass reads those texels.
-  const VkExtent2D covered = half ? VkExtent2D{std::min(half_size.width + 1, stored.width),
-                                               std::min(half_size.height + 1, stored.height)}
-                                  : sizes->now;
+  const auto end = [&](std::uint32_t pixels, std::uint32_t room) {
+    return half ? std::min((pixels + 1) / 2 + 1, room) : pixels;
+  };
+  const VkExtent2D covered{end(written.x + written.width, stored.width) - first(written.x),
+                           end(written.y + written.height, stored.height) - first(written.y)};
   // The number of texels that an invocation reconstructs, kBlocks of the shader.
   const std::uint32_t blocks = inputs.raw_occlusion.tile_size > (half ? 2u : 1u) ? 4 : 1;
   auto added = list.dispatch({.label = "reconstruct",
                               .shader = shader_of(history, inputs.raw_occlusion.lobe, half),
-                              .constants = constants_of(inputs, settings, *projection, past),
+                              .constants = constants_of(frame, inputs, settings, *projection, past),
                               .images = images_of(inputs, textures, half),
                               .parameters = bytes_of(parameters),
                               .size = {covered.width, (covered.height + blocks - 1) / blocks, 1}});
@@ -251,7 +265,6 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   return describe_upsample(list, frame,
                            {.half = textures.texels.current,
                             .half_depth = textures.depth.current,
-                            .half_size = half_size,
                             .residuals = textures.bent.current,
                             .lobes = textures.lobe.current,
                             .depth_ndc = inputs.depth_ndc,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "maths/slice_line.h"
+#include "work/areas.h"
 #include "work/interleave_offset.h"
 #include "work/view_parameters.h"
 
@@ -192,7 +193,16 @@ maths::ReconstructParameters reconstruct_parameters(
       1.0f / (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   parameters.clamp_width = settings.advanced.clamp_width;
-  parameters.previous_extent = maths::vec4(maths::ceil(previous.size_px / texel) - 1.0f,
+  // The distances between the borders of the area that is read and those of the area that is
+  // written were the same in the previous frame.
+  const VkExtent2D read{static_cast<std::uint32_t>(projection.size_px.x),
+                        static_cast<std::uint32_t>(projection.size_px.y)};
+  set_areas(parameters, frame, read);
+  const maths::vec2 beyond =
+      projection.size_px - 1.0f - maths::vec2(parameters.written.z, parameters.written.w);
+  parameters.to_outputs = maths::ivec2(frame.areas.output_x, frame.areas.output_y) -
+                          maths::ivec2(parameters.written.x, parameters.written.y);
+  parameters.previous_extent = maths::vec4(maths::ceil((previous.size_px - beyond) / texel) - 1.0f,
                                            previous.size_px / projection.size_px / texel);
   parameters.pixel_uv = 1.0f / projection.size_px;
   parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
@@ -217,7 +227,8 @@ maths::ReconstructParameters reconstruct_parameters(
                              (is_perspective(projection) ? 1.442695f : 1.0f);
   // The dither offsets of the frames are multiples of the golden ratio modulo 1, which are spread
   // evenly over any number of successive frames.
-  parameters.dither_offset = static_cast<float>(frame.index * 2654435769u) * 0x1p-32f;
+  const std::uint32_t index = noise_index(settings, frame.index);
+  parameters.dither_offset = static_cast<float>(index * 2654435769u) * 0x1p-32f;
   const MotionConvention& motion = inputs.motion_convention;
   parameters.motion = maths::vec4(
       maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px / texel,
@@ -232,8 +243,7 @@ maths::ReconstructParameters reconstruct_parameters(
   // More slices narrow the window. They also reduce the distance from the tangent plane that is
   // tolerated.
   parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
-  const auto [offset_x, offset_y] =
-      interleave_offset_of(inputs.raw_occlusion.tile_size, frame.index);
+  const auto [offset_x, offset_y] = interleave_offset_of(inputs.raw_occlusion.tile_size, index);
   parameters.interleave_pixel = {offset_x, offset_y};
   parameters.traced_range =
       traced_range(projection.size_px, maths::vec2(parameters.interleave_pixel),

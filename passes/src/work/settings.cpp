@@ -90,6 +90,11 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
     case Quality::high:
       settings.tile_size = 2;
       break;
+    case Quality::ultra:
+      settings.tile_size = 2;
+      settings.steps = 10;
+      settings.depth_layers = 2;
+      break;
     case Quality::reference:
       settings.tile_size = 1;
       settings.slices = 32;

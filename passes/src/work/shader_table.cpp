@@ -19,6 +19,8 @@
 #include "spirv/half_output_specular.h"
 #include "spirv/inspect.h"
 #include "spirv/linear_depth.h"
+#include "spirv/mask_depth.h"
+#include "spirv/mask_depth_integer.h"
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
@@ -29,6 +31,7 @@
 #include "spirv/reconstruct_history.h"
 #include "spirv/reconstruct_specular.h"
 #include "spirv/reconstruct_specular_history.h"
+#include "spirv/resolve_depth.h"
 #include "spirv/upsample.h"
 #include "spirv/upsample_specular.h"
 #include "tables/gtso.h"
@@ -58,6 +61,9 @@ constexpr ShaderSource kSources[] = {
     {"upsample_specular", kUpsampleSpecular},
     {"half_output", kHalfOutput},
     {"half_output_specular", kHalfOutputSpecular},
+    {"resolve_depth", kResolveDepth},
+    {"mask_depth", kMaskDepth},
+    {"mask_depth_integer", kMaskDepthInteger},
     {"multi_bounce", kMultiBounce},
     {"gtso", kGtso},
     {"gtso_by_table", kGtsoByTable, kGtsoTable},

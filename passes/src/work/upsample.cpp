@@ -5,6 +5,7 @@
 
 #include "maths/half_texel.h"
 #include "upsample_parameters.h"
+#include "work/areas.h"
 #include "work/bindings.h"
 #include "work/view_parameters.h"
 
@@ -25,7 +26,8 @@ Shader shader_of(const UpsampleInputs& inputs, const Occlusion& result) {
   return result.specular ? Shader::upsample_specular : Shader::upsample;
 }
 
-std::array<NamedConstant, 8> constants_of(const UpsampleInputs& inputs, const Occlusion& result,
+std::array<NamedConstant, 9> constants_of(const WorkFrame& frame, const UpsampleInputs& inputs,
+                                          const Occlusion& result,
                                           const OcclusionSettings& settings,
                                           const maths::Projection& projection) {
   const std::uint32_t encoding =
@@ -37,17 +39,22 @@ std::array<NamedConstant, 8> constants_of(const UpsampleInputs& inputs, const Oc
            {"kNormalEncoding", encoding},
            {"kReversed", flag(is_reversed(projection))},
            {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
-           {"kVisibilityChannel", channel_index(inputs.visibility_channel)}}};
+           {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
+           {"kAreas", flag(has_areas(frame))}}};
 }
 
 maths::UpsampleParameters parameters_of(const WorkList& list, const WorkFrame& frame,
                                         const UpsampleInputs& inputs,
                                         const OcclusionSettings& settings,
-                                        const maths::Projection& projection) {
+                                        const maths::Projection& projection, VkExtent2D read) {
   // The textures are of the largest size.
   const VkExtent2D stored = list.size(inputs.half);
   const maths::vec2 per_px = maths::ray_per_px(projection);
   maths::UpsampleParameters parameters{};
+  set_areas(parameters, frame, read);
+  parameters.to_outputs =
+      maths::ivec2(frame.areas.output_x, frame.areas.output_y) -
+      maths::ivec2(parameters.written.x, parameters.written.y) / (inputs.half_size_results ? 2 : 1);
   parameters.normal_from_view = maths::transpose(
       view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z));
   parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
@@ -68,7 +75,8 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
                                                  const UpsampleInputs& inputs,
                                                  const Occlusion& result,
                                                  const OcclusionSettings& settings) {
-  const auto projection = projection_of(frame.view, list.size(inputs.depth_ndc));
+  const VkExtent2D read = read_size(frame, list.size(inputs.depth_ndc));
+  const auto projection = projection_of(frame.view, read);
   if (!projection) {
     return tl::unexpected(projection.error());
   }
@@ -86,16 +94,20 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
       {"kept_image", keeps ? result.visibility : inputs.depth_ndc},
       {"lobe_image", or_else(inputs.lobes, inputs.half)},
       {"specular_image", or_else(result.specular, written)}};
-  // One invocation of the upsampling computes the pixels between the centres of four texels. One
-  // more row and column of invocations is therefore needed.
-  const std::uint32_t more = inputs.half_size_results ? 0 : 1;
+  // An invocation of the upsampling computes the pixels between the centres of four texels, of
+  // which the first lies one pixel before the image.
+  const AlcoveArea area = written_area(frame, read);
+  const auto invocations = [&](std::uint32_t begin, std::uint32_t size) {
+    return inputs.half_size_results ? (size + 1) / 2 : (begin + size) / 2 - (begin + 1) / 2 + 1;
+  };
   return list
-      .dispatch({.label = inputs.half_size_results ? "half-resolution output" : "upsample",
-                 .shader = shader_of(inputs, result),
-                 .constants = constants_of(inputs, result, settings, *projection),
-                 .images = images,
-                 .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection)),
-                 .size = {inputs.half_size.width + more, inputs.half_size.height + more, 1}})
+      .dispatch(
+          {.label = inputs.half_size_results ? "half-resolution output" : "upsample",
+           .shader = shader_of(inputs, result),
+           .constants = constants_of(frame, inputs, result, settings, *projection),
+           .images = images,
+           .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection, read)),
+           .size = {invocations(area.x, area.width), invocations(area.y, area.height), 1}})
       .map([&] { return result; });
 }
 

@@ -8,7 +8,6 @@ namespace alcove::passes {
 struct UpsampleInputs {
   framegraph::Texture half;        // maths::pack_half_texel()
   framegraph::Texture half_depth;  // maths::half_texel_depth()
-  VkExtent2D half_size;            // the part of these textures that is used
   framegraph::Texture residuals;  // maths::pack_half_residual(); null where there is no bent normal
   framegraph::Texture lobes;      // maths::LobeTexel; null where there is no lobe
   framegraph::Texture depth_ndc;  // as GtaoInputs has it

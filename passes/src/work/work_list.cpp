@@ -63,7 +63,7 @@ WorkList::WorkList(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
 }
 
 Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format, VkExtent2D size,
-                      std::uint32_t mips) {
+                      std::uint32_t mips, std::uint32_t samples) {
   if (work_.resource_count == ALCOVE_MAX_WORK_RESOURCES) {
     return {};
   }
@@ -74,6 +74,7 @@ Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format
       .width = size.width,
       .height = size.height,
       .mip_count = mips,
+      .samples = samples,
       .usage = 0,
       .first_dispatch = ALCOVE_WORK_NONE,
       .last_dispatch = ALCOVE_WORK_NONE,
@@ -201,6 +202,11 @@ VkExtent2D WorkList::size(Texture texture) const {
 VkFormat WorkList::format(Texture texture) const {
   const AlcoveWorkResource* const found = find(texture);
   return found == nullptr ? VK_FORMAT_UNDEFINED : static_cast<VkFormat>(found->format);
+}
+
+std::uint32_t WorkList::samples(Texture texture) const {
+  const AlcoveWorkResource* const found = find(texture);
+  return found == nullptr ? 0 : found->samples;
 }
 
 std::uint32_t WorkList::mips(Texture texture) const {

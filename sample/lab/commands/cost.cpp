@@ -39,6 +39,9 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
                           .height = options.view.height,
                           .normals = options.occlusion.normals != NormalSource::depth,
                           .motion = options.cost.motion_vectors,
+                          .area = options.cost.area,
+                          .mask = options.cost.mask,
+                          .samples = options.cost.samples,
                           .settings = *settings},
                          ""};
   for (const auto& [name, value] : options.occlusion.set) {

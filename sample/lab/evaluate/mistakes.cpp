@@ -327,7 +327,8 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) { f.view.depth.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
       {"output without STORAGE", "VK_IMAGE_USAGE_STORAGE_BIT",
        [](F& f) { f.view.visibility.usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
-      {"four samples per pixel", "resolve it first", [](F& f) { f.view.depth.samples = 4; }},
+      {"normals with four samples per pixel", "resolve it first",
+       [](F& f) { f.view.normals.samples = 4; }},
       {"a size above the largest", "the largest size",
        [](F& f) {
          f.view.largest_width = f.view.depth.width - 1;

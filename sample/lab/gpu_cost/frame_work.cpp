@@ -43,14 +43,19 @@ tl::expected<passes::OcclusionOutputs, passes::Error> describe(passes::WorkList&
   frame.static_frames = state == FrameState::unchanged   ? 1
                         : state == FrameState::converged ? 16
                                                          : 0;
-  const auto add = [&](bool wanted, const char* name, VkFormat format) {
-    return wanted
-               ? list.add(ALCOVE_RESOURCE_KIND_INPUT, name, format, {inputs.width, inputs.height})
-               : Texture{};
+  const auto add = [&](bool wanted, const char* name, VkFormat format, std::uint32_t samples = 1) {
+    return wanted ? list.add(ALCOVE_RESOURCE_KIND_INPUT, name, format,
+                             {inputs.width, inputs.height}, 1, samples)
+                  : Texture{};
   };
+  if (inputs.area) {
+    frame.areas.read = {0, 0, inputs.width, inputs.height};
+  }
   const passes::OcclusionSettings& settings = inputs.settings;
   passes::OcclusionInputs given;
-  given.depth_ndc = add(true, "depth", VK_FORMAT_D32_SFLOAT);
+  given.depth_ndc = add(true, "depth", VK_FORMAT_D32_SFLOAT, inputs.samples ? 4 : 1);
+  given.mask = add(inputs.mask, "mask", VK_FORMAT_R8_UNORM);
+  given.not_receiving = given.not_occluding = inputs.mask ? 1 : 0;
   given.normals = add(inputs.normals, "normals", VK_FORMAT_R16G16B16A16_SFLOAT);
   given.normal_encoding = inputs.normal_encoding;
   given.motion = add(inputs.motion, "motion vectors", VK_FORMAT_R16G16_SFLOAT);
@@ -63,7 +68,9 @@ tl::expected<passes::OcclusionOutputs, passes::Error> describe(passes::WorkList&
 
 std::uint32_t texel_bytes(const AlcoveWorkResource& resource) {
   if (resource.kind == ALCOVE_RESOURCE_KIND_INPUT) {  // one of describe()
-    return resource.format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
+    return resource.format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8
+           : resource.format == VK_FORMAT_R8_UNORM          ? 1
+                                                            : 4 * resource.samples;
   }
   return static_cast<std::uint32_t>(resource.size /
                                     (std::uint64_t{resource.width} * resource.height));

@@ -151,6 +151,12 @@ class Graph {
 
   PassBuilder add_pass(std::string_view name, QueueClass queue = QueueClass::graphics);
 
+  // Returns the handle of the latest version of a texture of this frame.
+  Texture latest(Texture texture) const {
+    texture.version = texture.index < versions_.size() ? versions_[texture.index] : texture.version;
+    return texture;
+  }
+
   // Marks this version as an output of the frame, so that the passes that produce it are not
   // culled. The contents of a transient can be read after the frame, until the next frame reuses
   // its memory.

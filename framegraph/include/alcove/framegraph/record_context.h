@@ -25,6 +25,16 @@ struct Attachment {
   VkResolveModeFlagBits resolve_mode = VK_RESOLVE_MODE_AVERAGE_BIT;
 };
 
+// How a rendering covers its attachments. By default it covers all texels, and all layers of the
+// range that the pass declared.
+struct Rendering {
+  VkRenderingFlags flags = 0;  // for example, the commands come from secondary command buffers
+  VkRect2D area = {};          // the texels that are drawn to; all of them if the width is 0
+  // If not 0, one bit for each layer to which the pass draws as a view of its own. This needs the
+  // feature multiview.
+  std::uint32_t view_mask = 0;
+};
+
 // The argument of a recording callback. It is valid only during the callback. Any version of a
 // handle refers to the same image or buffer.
 //
@@ -60,10 +70,12 @@ class RecordContext {
   // Returns the attachment for vkCmdBeginRendering. Earlier contents are loaded if there are any
   // and the access keeps them. The result is stored if a later pass or frame needs it.
   VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
-  // Begins a rendering over the whole of the attachments' mips and layers. `depth` is bound for the
-  // aspects that the pass declared as attachments. Returns false, and record() returns an error, if
-  // the attachments' sizes or samples differ or the device lacks dynamic rendering.
-  bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {}) const;
+  // Begins a rendering to the attachments' mips and layers. `depth` is bound for the aspects that
+  // the pass declared as attachments. Returns false, and record() returns an error, if the
+  // attachments' sizes or samples differ, the rendering covers more than they have, or the device
+  // lacks dynamic rendering.
+  bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {},
+                       const Rendering& rendering = {}) const;
   void end_rendering() const { vk.vkCmdEndRendering(commands); }
   VkImage image(Texture texture) const;
   VkBuffer buffer(Buffer buffer) const;

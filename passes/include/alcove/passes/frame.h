@@ -57,6 +57,24 @@ enum class VisibilityChannel : std::uint8_t { all, red, green, blue, alpha };
   return channel == VisibilityChannel::all ? 0u : static_cast<std::uint32_t>(channel) - 1u;
 }
 
+// The parts of images that the occlusion passes read and write, for several views in one image, and
+// for a guard band: an area that is larger than the picture, so that occluders beyond its border
+// are found. If the size of `read` is zero, images are read and written as a whole; this costs
+// less.
+struct ImageAreas {
+  // The part of the inputs that is read. The camera describes it. Pixels outside are not read.
+  AlcoveArea read{};
+  // The part of `read` for which results are computed, in pixels of the inputs. If its size is
+  // zero, it is `read`. History is kept for it alone, so reset the history if the distances between
+  // its borders and those of `read` change.
+  AlcoveArea written{};
+  // The position of the results in the caller's textures, of which other pixels are not written.
+  // For results of half size it counts their texels, and the distance from `read` to `written` must
+  // be even.
+  std::uint32_t output_x = 0;
+  std::uint32_t output_y = 0;
+};
+
 // The arguments of every function that adds a pass to a frame: the graph, the kernels and the view.
 // The referenced objects must stay alive until the frame is recorded.
 struct Frame {
@@ -74,9 +92,10 @@ struct Frame {
   // reprojected. If it is at least 16, the history averages up to 127 frames.
   std::uint32_t static_frames = 0;
   // Two sizes for dynamic resolution. With them, the history continues while the size of the depth
-  // texture changes. Zero means the current size of the depth texture.
+  // texture, or of ImageAreas::read, changes. Zero means the current size.
   VkExtent2D largest_size{};   // size of the history textures; a change discards the history
   VkExtent2D previous_size{};  // of the depth in the previous frame; at most largest_size
+  ImageAreas areas;            // add_apply() reads and writes whole images only
   // Whether adding the passes creates all pipelines that frames of this view can need: for a first
   // frame, after a camera cut, in motion and while static. Declare such a frame in a separate graph
   // that is never recorded, while loading or before settings change. No frame then has to wait for

@@ -27,6 +27,10 @@ struct GtaoInputs {
   framegraph::Texture back_depth_ndc;
   // See OcclusionInputs::second_depth_ndc. Needed only if needs_second_depth() returns true.
   framegraph::Texture second_depth_ndc;
+  // With a mask, the depth with sky in the place of surfaces that do not receive occlusion;
+  // `depth_ndc` then has kNoOccluder in the place of those that do not occlude (add_occlusion()
+  // makes both). Null: there is no mask.
+  framegraph::Texture receiver_depth_ndc;
   // The format in which the depths were first stored, if `depth_ndc` is a copy in another format.
   // By default it is the format of `depth_ndc`.
   VkFormat depth_format = VK_FORMAT_UNDEFINED;

@@ -12,7 +12,9 @@
 namespace alcove::passes {
 
 struct OcclusionInputs {
-  framegraph::Texture depth_ndc;                // the depth buffer that the view's projection wrote
+  // The depth buffer that the view's projection wrote. If it has several samples per pixel, a pass
+  // first copies sample 0.
+  framegraph::Texture depth_ndc;
   VkFormat depth_format = VK_FORMAT_UNDEFINED;  // see GtaoInputs::depth_format
   framegraph::Texture normals;                  // unit vectors; null: they are made from depth
   bool normals_in_view_space = false;           // else in world space
@@ -31,6 +33,12 @@ struct OcclusionInputs {
   // `depth_ndc` (for example by at least a thousandth of the distance). If this depth is the sky or
   // NaN at a pixel, the second layer has no occluder there.
   framegraph::Texture second_depth_ndc;
+  // A mask of surfaces in one channel of 8 bits, R8_UNORM or R8_UINT; null: there is none. Surfaces
+  // with one of the bits `not_receiving` get the visibility 1, as the sky. Surfaces with one of the
+  // bits `not_occluding` occlude nothing; what lies behind them counts as unobserved.
+  framegraph::Texture mask;
+  std::uint32_t not_receiving = 0;
+  std::uint32_t not_occluding = 0;
   // Textures of the caller for the outputs: see ReconstructInputs::into.
   Occlusion into;
   NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
@@ -54,7 +62,9 @@ struct OcclusionOutputs {
   // Linear depth from add_linear_depth(). It is null unless it was requested, or specular occlusion
   // or normals from depth need it.
   framegraph::Texture linear_depth;
-  framegraph::Texture normals;  // the given ones, or normals from depth in view space
+  // The given ones, or normals from depth in view space. Null if none were given and depth has
+  // several samples per pixel.
+  framegraph::Texture normals;
 };
 
 // Adds all passes that the settings need. The graph culls passes whose results are not read. Bent

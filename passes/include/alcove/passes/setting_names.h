@@ -17,8 +17,8 @@ inline constexpr std::array<std::string_view, 0> kNames{};
 template <>
 inline constexpr auto kNames<bool> = std::to_array<std::string_view>({"false", "true"});
 template <>
-inline constexpr auto kNames<Quality> = std::to_array<std::string_view>({"console", "low", "medium",
-                                                                         "high", "reference"});
+inline constexpr auto kNames<Quality> =
+    std::to_array<std::string_view>({"console", "low", "medium", "high", "ultra", "reference"});
 template <>
 inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons", "bitmask",
                                                                            "connected"});

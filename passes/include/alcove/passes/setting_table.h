@@ -101,6 +101,12 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                       "After 16 frames without a change the limit is 127. 0 turns the history off.",
                   .range = {.maximum = 127}},
       settings.history_frames);
+  visit(SettingInfo{.name = "static_noise",
+                    .help = "Gives every frame the same noise, for images that no temporal filter "
+                            "follows. Without it, noise changes from frame to frame. It has an "
+                            "effect with a history_frames of 0.",
+                    .matters = [](S s) { return s.history_frames == 0; }},
+        settings.static_noise);
   visit(SettingInfo{.name = "half_resolution",
                     .help = "Filters and accumulates at half of the image's width and height, then "
                             "upsamples: less time, larger error. It needs a tile_size above 1.",

@@ -19,6 +19,10 @@ enum class Quality : std::uint8_t {
   low,     // 1 slice of 8 steps per half-slice; traces one pixel in 4x4: 1 fetch.
   medium,  // 2 slices of 12 steps; one pixel in 4x4: 3 fetches. The default.
   high,    // 2 slices of 12 steps; one pixel in 2x2: 12 fetches.
+  // 2 slices of 10 steps in two depth layers; one pixel in 2x2: 20 fetches. It needs
+  // OcclusionInputs::second_depth_ndc. Without that texture the passes return an error; set
+  // depth_layers to 1, or choose `high`.
+  ultra,
   // 32 slices of 64 steps per half-slice; traces every pixel: 4096 fetches. For comparisons with a
   // static image: without filter and history, in 32-bit floats, and with the infinitely thick
   // occluders of [Jimenez 2016].
@@ -60,8 +64,14 @@ struct OcclusionSettings {
   // OcclusionInputs::second_depth_ndc is searched too.
   std::uint32_t depth_layers = 1;
   // Largest number of frames that the history averages, 0 to 127. After 16 static frames the limit
-  // is 127. 0 keeps no history and allocates none, for engines with a temporal filter of their own.
+  // is 127. 0 keeps no history and allocates none, for engines with a temporal filter of their own
+  // or with none at all (static_noise).
   std::uint32_t history_frames = 32;
+  // Whether every frame has the same noise, so that equal inputs give equal outputs whatever
+  // Frame::index is. Set it without any temporal filter: with history_frames = 0 the noise would
+  // otherwise change in every frame and never be averaged. It has no effect with a history, which
+  // needs changing noise.
+  bool static_noise = false;
   // Whether the passes filter and accumulate texels of 2x2 pixels, and upsample the result to
   // pixels along depth edges. This takes less time and less memory for the history, and has a
   // larger error (figures in passes/README.md). It needs a tile_size of at least 2.
@@ -108,6 +118,18 @@ struct OcclusionSettings {
 // Returns whether OcclusionInputs::second_depth_ndc is read.
 [[nodiscard]] constexpr bool needs_second_depth(const OcclusionSettings& settings) {
   return has_thickness(settings.advanced.estimator) && settings.depth_layers > 1;
+}
+
+// Returns whether all frames have the same noise, so that Frame::index is not read.
+[[nodiscard]] constexpr bool has_static_noise(const OcclusionSettings& settings) {
+  return settings.static_noise && settings.history_frames == 0;
+}
+
+// Returns the number of frames of an unchanged image after which further frames no longer improve
+// it: 128 with a history, which is then full, and 1 with static noise. It is 0, which stands for
+// never, without a history if the noise changes from frame to frame.
+[[nodiscard]] constexpr std::uint32_t converged_frames(const OcclusionSettings& settings) {
+  return settings.history_frames > 0 ? 128 : settings.static_noise ? 1 : 0;
 }
 
 // Returns whether add_gtso() computes specular occlusion, from visibility and the bent normal.

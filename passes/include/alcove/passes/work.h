@@ -72,7 +72,7 @@ class WorkList {
 
   // Adds an image. Returns a null handle if the list is full.
   framegraph::Texture add(AlcoveResourceKind kind, const char* name, VkFormat format,
-                          VkExtent2D size, std::uint32_t mips = 1);
+                          VkExtent2D size, std::uint32_t mips = 1, std::uint32_t samples = 1);
   // Adds the two slots of a history.
   History add_history(HistoryRole role, VkFormat format, VkExtent2D size);
   void set_history_source(const HistorySource& source) { source_ = source; }
@@ -84,6 +84,7 @@ class WorkList {
   VkExtent2D size(framegraph::Texture texture) const;
   VkFormat format(framegraph::Texture texture) const;
   std::uint32_t mips(framegraph::Texture texture) const;
+  std::uint32_t samples(framegraph::Texture texture) const;  // per pixel
   AlcoveWork& work() const { return work_; }
 
  private:
@@ -110,6 +111,7 @@ struct WorkFrame {
   std::uint32_t static_frames = 0;
   VkExtent2D largest_size{};
   VkExtent2D previous_size{};
+  ImageAreas areas;
 };
 
 // Describe what the functions add_linear_depth and so on add, with the same inputs, results and
@@ -126,7 +128,8 @@ struct WorkFrame {
     WorkList& list, const WorkFrame& frame, const ReconstructInputs& inputs,
     const OcclusionSettings& settings);
 [[nodiscard]] tl::expected<framegraph::Texture, Error> describe_multi_bounce(
-    WorkList& list, const MultiBounceInputs& inputs, Precision precision = Precision::unorm8);
+    WorkList& list, const WorkFrame& frame, const MultiBounceInputs& inputs,
+    Precision precision = Precision::unorm8);
 [[nodiscard]] tl::expected<framegraph::Texture, Error> describe_gtso(
     WorkList& list, const WorkFrame& frame, const GtsoInputs& inputs,
     const OcclusionSettings& settings);

@@ -107,6 +107,56 @@ TEST_F(Scenario, MultisampledColorIsResolvedInThePassThatDrawsIt) {
   EXPECT_EQ(word(0), kRed);
 }
 
+// The first rendering clears the whole texture, and the second one all texels but the first.
+TEST_F(Scenario, RenderingDrawsOnlyToItsArea) {
+  begin();
+  Texture color = texture("color");
+  PassBuilder draw = graph_.add_pass("draw");
+  color = draw.write(color, access::color_attachment);
+  draw.record([=](RecordContext& c) {
+    static constexpr VkClearValue kClearGreen{{{0.0f, 1.0f, 0.0f, 1.0f}}};
+    const Attachment red{color, &kClearRed};
+    const Attachment green{color, &kClearGreen};
+    ASSERT_TRUE(c.begin_rendering({&red, 1}));
+    c.end_rendering();
+    VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = barrier.dstStageMask = access::color_attachment.stages;
+    barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+    barrier.dstAccessMask = access::color_attachment.access;
+    VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    info.memoryBarrierCount = 1;
+    info.pMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(c.commands, &info);
+    ASSERT_TRUE(c.begin_rendering({&green, 1}, {}, {.area = {{1, 0}, {15, 16}}}));
+    c.end_rendering();
+  });
+  copy_out(color);
+  run();
+  EXPECT_EQ(word(0), kRed);
+}
+
+TEST_F(Scenario, RenderingOverTexelsOrViewsThatItsAttachmentsDoNotHaveIsRefused) {
+  for (const Rendering& rendering :
+       {Rendering{.area = {{1, 0}, {16, 16}}}, Rendering{.area = {{0, -1}, {4, 4}}},
+        Rendering{.area = {{0, 16}, {1, 1}}}, Rendering{.area = {{0, 0}, {~0u, 1}}},
+        Rendering{.view_mask = 2}}) {
+    begin();
+    const Texture color = texture("color");
+    PassBuilder draw = graph_.add_pass("draw");
+    const Texture drawn = draw.write(color, access::color_attachment);
+    draw.side_effect();
+    draw.record([=](RecordContext& c) {
+      const Attachment target{drawn, &kClearRed};
+      EXPECT_FALSE(c.begin_rendering({&target, 1}, {}, rendering));
+    });
+    const auto report = executor().submit(graph_);
+    ASSERT_FALSE(report);
+    EXPECT_THAT(report.error()[0].message,
+                testing::HasSubstr("pass 'draw' begins a rendering over texels or views that its "
+                                   "attachments do not have"));
+  }
+}
+
 // The second pass must load the contents that the first one stored. A pass that discards must not
 // load.
 TEST_F(Scenario, AttachmentsAreLoadedAndStoredOnlyIfContentsAreNeeded) {
@@ -291,14 +341,8 @@ TEST_F(Scenario, FrameWithAsyncComputeWaitsForAndSignalsSemaphoresOfTheCaller) {
   begin();
   Texture scene = texture("scene", VK_FORMAT_R32_UINT);
   Texture ao = texture("ao", VK_FORMAT_R32_UINT);
-  const auto clear = [this](const char* name, Texture to, QueueClass queue, std::uint32_t value) {
-    PassBuilder pass = graph_.add_pass(name, queue);
-    to = pass.write(to, access::clear);
-    pass.record([=](RecordContext& c) { clear_image(c, c.image(to), value); });
-    return to;
-  };
-  scene = clear("scene", scene, QueueClass::graphics, 7);
-  ao = clear("occlusion", ao, QueueClass::compute, 8);
+  scene = add_clear(graph_, scene, 7);
+  ao = add_clear(graph_, ao, 8, Contents::keep, QueueClass::compute);
   copy_out(scene, 0);
   copy_out(ao, 1);
   const int submits = failing::submits();
@@ -377,11 +421,7 @@ TEST_F(Scenario, ImportOfAnotherQueueFamilyIsAcquiredFromThatFamilyAndReleasedBa
                         VK_IMAGE_LAYOUT_GENERAL};
   import.initial_family = import.final_family = VK_QUEUE_FAMILY_EXTERNAL;
   begin();
-  Texture shared = graph_.import_texture("shared", import);
-  PassBuilder pass = graph_.add_pass("clear");
-  shared = pass.write(shared, access::clear);
-  pass.record([=](RecordContext& c) { clear_image(c, c.image(shared), 5); });
-  copy_out(shared);
+  copy_out(add_clear(graph_, graph_.import_texture("shared", import), 5));
   const int transfers = failing::outside_transfers();
   run();
   EXPECT_EQ(word(0), 5u);

@@ -1,9 +1,11 @@
-// Tests small files that name the same data many times. Memory and time must stay within the
-// limits, which count data once for each use.
+// Tests the limits on memory and time. Small files that name the same data many times reach them,
+// because data counts once for each use.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <ostream>
+#include <string>
 
 #include "gltf_maker.h"
 
@@ -11,10 +13,6 @@ namespace alcove::sample {
 namespace {
 
 using testing::HasSubstr;
-
-tl::expected<Scene, std::string> parsed_within(const GltfMaker& maker, const GltfLimits& limits) {
-  return parse_gltf(maker.gltf(), "repeated.gltf", "", limits);
-}
 
 // A triangle that `nodes` nodes show, whose mesh has `primitives` primitives.
 GltfMaker repeated_triangle(int nodes, int primitives) {
@@ -43,41 +41,75 @@ GltfMaker skinned_triangle(int sets) {
   return maker;
 }
 
-TEST(GltfRepeatedData, InstancesCountTowardsTheLimitOnceForEachPrimitive) {
-  GltfLimits limits;
-  limits.instances = 40;
-  EXPECT_TRUE(parsed_within(repeated_triangle(10, 4), limits));
-  const auto scene = parsed_within(repeated_triangle(10, 5), limits);
-  ASSERT_FALSE(scene);
-  EXPECT_THAT(scene.error(), HasSubstr("past the number of instances"));
-}
-
-TEST(GltfRepeatedData, EachSetOfJointsAndWeightsCountsTowardsTheVertexLimit) {
-  GltfLimits limits;
-  limits.vertices = 9;  // 3 vertices and 2 sets for each
-  EXPECT_TRUE(parsed_within(skinned_triangle(2), limits));
-  const auto scene = parsed_within(skinned_triangle(3), limits);
-  ASSERT_FALSE(scene);
-  EXPECT_THAT(scene.error(), HasSubstr("too many joints and weights: 3 sets for 3 vertices"));
-}
-
-TEST(GltfRepeatedData, JointsOfASkinCountOnceTowardsTheLimitHoweverManyNodesUseTheSkin) {
+GltfMaker repeated_skin() {
   GltfMaker maker = skinned_triangle(1);
   const nlohmann::json node = maker.json["nodes"][0];
   maker.json["nodes"] = nlohmann::json(20, node);
   for (size_t i = 0; i < 20; ++i) maker.json["scenes"][0]["nodes"][i] = i;
-  GltfLimits limits;
-  limits.joints = 3;
-  EXPECT_TRUE(parsed_within(maker, limits));
-  limits.joints = 2;
-  const auto scene = parsed_within(maker, limits);
-  ASSERT_FALSE(scene);
-  EXPECT_THAT(scene.error(), HasSubstr("past the number of joints"));
+  return maker;
 }
+
+// A triangle with an area, and one without, which takes as long to read.
+GltfMaker flat_triangle(bool indexed) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["accessors"].push_back({{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+  nlohmann::json flat = {{"attributes", {{"POSITION", 1}}}};
+  if (indexed) flat["indices"] = maker.accessor(maker.view<uint16_t>({0, 1, 2}), 5123, "SCALAR", 3);
+  maker.json["meshes"][0]["primitives"].push_back(flat);
+  return maker;
+}
+
+GltfMaker triangle_and_lines() {
+  GltfMaker maker = repeated_triangle(1, 101);
+  for (size_t i = 1; i < 101; ++i) maker.json["meshes"][0]["primitives"][i]["mode"] = 1;
+  return maker;
+}
+
+// A file that a limit of `enough` just admits, and a part of the sentence that refuses it below.
+struct Limit {
+  const char* name;
+  GltfMaker maker;
+  uint64_t GltfLimits::*limit;
+  uint64_t enough;
+  const char* word;
+};
+std::ostream& operator<<(std::ostream& out, const Limit& limit) { return out << limit.name; }
+
+class GltfLimit : public testing::TestWithParam<Limit> {};
+
+TEST_P(GltfLimit, FileIsReadUpToTheLimitAndRefusedBeyondIt) {
+  const Limit& limit = GetParam();
+  GltfLimits limits;
+  limits.*limit.limit = limit.enough;
+  EXPECT_TRUE(parse_gltf(limit.maker.gltf(), "limit.gltf", "", limits));
+  --(limits.*limit.limit);
+  const auto scene = parse_gltf(limit.maker.gltf(), "limit.gltf", "", limits);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error(), HasSubstr(limit.word));
+}
+
+const Limit kLimits[] = {
+    {"InstancesOnceForEachPrimitive", repeated_triangle(10, 4), &GltfLimits::instances, 40,
+     "past the number of instances"},
+    {"SetsOfJointsAsVertices", skinned_triangle(2), &GltfLimits::vertices, 9,
+     "too many joints and weights: 2 sets for 3 vertices"},
+    {"JointsOnceForEachSkin", repeated_skin(), &GltfLimits::joints, 3, "past the number of joints"},
+    {"TrianglesOnceForEachInstance", repeated_triangle(100, 1), &GltfLimits::drawn_triangles, 100,
+     "instances counted each"},
+    {"TrianglesWithoutArea", flat_triangle(false), &GltfLimits::drawn_triangles, 2,
+     "past the number of triangles"},
+    {"IndexedTrianglesWithoutArea", flat_triangle(true), &GltfLimits::drawn_triangles, 2,
+     "past the number of triangles"},
+    {"PrimitivesThatAreNotTriangles", triangle_and_lines(), &GltfLimits::primitives, 101, "parts"},
+    {"Vertices", repeated_triangle(1, 3), &GltfLimits::vertices, 9, "too many vertices"},
+    {"Indices", flat_triangle(true), &GltfLimits::indices, 6, "too many elements"},
+};
+INSTANTIATE_TEST_SUITE_P(All, GltfLimit, testing::ValuesIn(kLimits),
+                         [](const auto& param) { return std::string(param.param.name); });
 
 // 5 * 10^8 uses of primitives would take 16 GB.
 TEST(GltfRepeatedData, FileWithHalfABillionInstancesIsRefused) {
-  const auto scene = parsed_within(repeated_triangle(50'000, 10'000), {});
+  const auto scene = parse_gltf(repeated_triangle(50'000, 10'000).gltf(), "repeated.gltf", "");
   ASSERT_FALSE(scene);
   EXPECT_THAT(scene.error(), HasSubstr("past the number of instances"));
 }
@@ -96,7 +128,7 @@ TEST(GltfRepeatedData, OnlyTheVerticesThatIndicesUseAreReadAndKept) {
       maker.accessor(maker.view<uint32_t>({66'999'999, 5, 6}), 5125, "SCALAR", 3);
   GltfLimits limits;
   limits.vertices = 3;
-  const auto scene = parsed_within(maker, limits);
+  const auto scene = parse_gltf(maker.gltf(), "sparse.gltf", "", limits);
   ASSERT_TRUE(scene) << scene.error();
   EXPECT_EQ(scene->meshes[0].positions.size(), 3u);
   EXPECT_THAT(corners(*scene),
@@ -116,7 +148,7 @@ TEST(GltfRepeatedData, VerticesWithoutDataAndWithoutIndicesAreLimited) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["accessors"][0].erase("bufferView");
   maker.json["accessors"][0]["count"] = 60'000'000;
-  const auto scene = parsed_within(maker, {});
+  const auto scene = parse_gltf(maker.gltf(), "many.gltf", "");
   ASSERT_FALSE(scene);
   EXPECT_THAT(scene.error(), HasSubstr("has too many vertices: 60000000"));
 }

@@ -1,0 +1,173 @@
+// What inspect() compares: frames with their matrices, under hypotheses of how inputs are meant.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "diagnose/inspect.h"
+#include "work/view_parameters.h"
+
+namespace alcove::passes {
+
+using maths::dmat4;
+using maths::dvec2;
+using maths::dvec3;
+using maths::dvec4;
+
+// The least number of samples from which a mistake is concluded.
+inline constexpr std::size_t kEnoughSamples = 100;
+// The least number of samples of some kind, for example of one direction, among enough samples.
+inline constexpr std::size_t kEnoughOfSome = 12;
+
+// A hypothesis of how the inputs are meant.
+struct Reading {
+  std::uint32_t encoding = 0;  // of normals
+  bool in_view_space = false;
+  bool forward_z = false;
+  bool flip_y = false;
+  bool invert_view = false;        // view_from_world is world_from_view
+  bool whole_image = false;        // the whole image is in use
+  double tangent_scale = 1.0;      // of the tangents of half the angles of view
+  double translation_scale = 1.0;  // of the camera's way from frame to frame
+};
+
+inline bool is_sky(float depth) { return !(depth > 0.0f && depth < 1.0f); }
+
+// Returns the value that a fraction `share`, 0 to 1, of the values does not exceed.
+inline double quantile(std::vector<double> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(values.size()) * share);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+template <typename Values, typename Predicate>
+double share_of(const Values& values, const Predicate& predicate) {
+  return values.empty() ? 0.0
+                        : static_cast<double>(std::ranges::count_if(values, predicate)) /
+                              static_cast<double>(values.size());
+}
+
+inline dvec2 to_vector(VkExtent2D size) { return {size.width, size.height}; }
+
+// A frame with its matrices, and the gradients of depth at its samples.
+class Picture {
+ public:
+  explicit Picture(const InspectedFrame& of)
+      : frame(of),
+        clip_from_view(to_mat4(of.view.clip_from_view)),
+        view_from_clip(maths::inverse(clip_from_view)),
+        view_from_world(to_rigid(of.view.view_from_world)),
+        perspective(of.view.clip_from_view[15] == 0.0f) {
+    gradients.reserve(of.samples.size());
+    for (const PixelSample& sample : of.samples) {
+      gradients.push_back(gradient(sample));
+    }
+  }
+
+  // The distance from the eye along the view axis.
+  double distance(double depth) const {
+    const dvec4 p = view_from_clip * dvec4(0.0, 0.0, depth, 1.0);
+    return -p.z / p.w;
+  }
+
+  dvec2 size(const Reading& reading) const {
+    return to_vector(reading.whole_image ? frame.depth_size : frame.size);
+  }
+  dvec2 ndc(const PixelSample& s, const Reading& reading) const {
+    return 2.0 * dvec2(s.x + 0.5, s.y + 0.5) / size(reading) - 1.0;
+  }
+  dmat4 clip_from_view_by(const Reading& reading) const {
+    dmat4 clip = clip_from_view;
+    for (int column = 0; column < 4; ++column) {
+      clip[column][0] /= reading.tangent_scale;
+      clip[column][1] /= reading.flip_y ? -reading.tangent_scale : reading.tangent_scale;
+    }
+    return clip;
+  }
+  dmat4 view_by(const Reading& reading) const {
+    return reading.invert_view ? maths::inverse(view_from_world) : view_from_world;
+  }
+
+  // The shift of the image by the jitter, in pixels.
+  dvec2 jitter() const {
+    const dvec4 axis = clip_from_view * dvec4(0.0, 0.0, -1.0, 1.0);
+    return 0.5 * dvec2(axis) / axis.w * to_vector(frame.size);
+  }
+
+  // The largest step between neighbouring values of the format near this depth.
+  double depth_step(float depth) const {
+    switch (frame.depth_format) {
+      case VK_FORMAT_D16_UNORM:
+      case VK_FORMAT_D16_UNORM_S8_UINT:
+        return 1.0 / 65535.0;
+      case VK_FORMAT_X8_D24_UNORM_PACK32:
+      case VK_FORMAT_D24_UNORM_S8_UINT:
+        return 1.0 / 16777215.0;
+      default:
+        return depth * 0x1p-23;
+    }
+  }
+
+  const InspectedFrame& frame;
+  dmat4 clip_from_view;
+  dmat4 view_from_clip;
+  dmat4 view_from_world;
+  bool perspective;
+  std::vector<std::optional<dvec2>> gradients;
+
+ private:
+  // Returns the gradient of depth per pixel, or nothing if the surface is not smooth there. Depth
+  // is linear in screen space on a plane, so a pixel whose depth is not linear among its neighbours
+  // is left out.
+  std::optional<dvec2> gradient(const PixelSample& s) const {
+    const double step = depth_step(s.depth);
+    const auto is_line = [&](float before, float after) {
+      const double second = double{before} + after - 2.0 * double{s.depth};
+      return !is_sky(before) && !is_sky(after) &&
+             std::abs(second) <= 0.02 * std::abs(double{after} - before) + 2.0 * step;
+    };
+    const bool inside =
+        s.x > 0 && s.y > 0 && s.x + 1 < frame.size.width && s.y + 1 < frame.size.height;
+    if (!inside || is_sky(s.depth) || !is_line(s.left, s.right) || !is_line(s.up, s.down)) {
+      return std::nullopt;
+    }
+    return 0.5 * dvec2(double{s.right} - s.left, double{s.down} - s.up);
+  }
+};
+
+inline bool is_smaller(VkExtent2D size, VkExtent2D than) {
+  return size.width < than.width || size.height < than.height;
+}
+
+// Calls `call` with each hypothesis about the projection of a picture.
+template <typename Call>
+void for_projections(const Picture& picture, const Reading& given, const Call& call) {
+  Reading reading = given;
+  reading.whole_image = true;
+  if (is_smaller(picture.frame.size, picture.frame.depth_size)) {
+    call(Mistake::image_too_large, reading);
+  }
+  reading = given;
+  reading.flip_y = true;
+  call(Mistake::flipped_y, reading);
+  // Factors by which the tangent of half the field of view may be wrong.
+  reading = given;
+  for (double scale = 0.25; picture.perspective && scale < 4.2; scale *= 1.05) {
+    if (scale < 0.87 || scale > 1.15) {
+      reading.tangent_scale = scale;
+      call(Mistake::field_of_view, reading);
+    }
+  }
+}
+
+// The largest jitter of a camera from one frame to the next, in pixels.
+inline constexpr double kLargestJitter = 1.5;
+
+// Compares a frame with the frames before it. `pictures` begins with the frame, and `given` is how
+// its inputs are described. Stores the mistakes of its cameras and motion vectors in `findings`.
+void inspect_motion(const std::vector<Picture>& pictures, const Reading& given, Findings& findings);
+
+}  // namespace alcove::passes

@@ -1,0 +1,65 @@
+// Tests that frames with static noise do not depend on the number of the frame.
+#include <gtest/gtest.h>
+
+#include "gtao_scenes.h"
+#include "pass_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+class StaticNoise : public PassTest {
+ protected:
+  OcclusionImages images(std::uint32_t index, const OcclusionSettings& settings) {
+    return run_occlusion({.view = view_.view,
+                          .depth_ndc = drawing_.depth_ndc,
+                          .normal_vs = &drawing_.normal_vs,
+                          .index = index,
+                          .reset = index == 0},
+                         settings);
+  }
+
+ private:
+  TestView view_ = test_views()[2];
+  Drawing drawing_ = draw(view_, 70, 45, ball_on_floor());
+};
+
+OcclusionSettings all_outputs(Quality quality) {
+  OcclusionSettings settings = quality_settings(quality, 0.6f);
+  settings.bent_normal = true;
+  settings.specular = Specular::slices;
+  settings.precision = Precision::float32;
+  return settings;
+}
+
+TEST_F(StaticNoise, FramesWithoutHistoryAreIdentical) {
+  for (const Quality quality : {Quality::console, Quality::high}) {
+    SCOPED_TRACE(static_cast<int>(quality));
+    OcclusionSettings settings = all_outputs(quality);
+    settings.history_frames = 0;
+    settings.static_noise = true;
+    const OcclusionImages first = images(0, settings);
+    for (const std::uint32_t index : {1u, 2u, 7u, 0xffffffffu}) {
+      const OcclusionImages next = images(index, settings);
+      EXPECT_EQ(next.visibility.texels, first.visibility.texels) << index;
+      EXPECT_EQ(next.bent_normal.texels, first.bent_normal.texels) << index;
+      EXPECT_EQ(next.specular.texels, first.specular.texels) << index;
+    }
+    settings.static_noise = false;
+    EXPECT_NE(images(2, settings).visibility.texels, images(3, settings).visibility.texels);
+  }
+}
+
+TEST_F(StaticNoise, HasNoEffectWithAHistory) {
+  OcclusionSettings settings = all_outputs(Quality::low);
+  HostImage last[2];
+  for (const bool static_noise : {false, true}) {
+    settings.static_noise = static_noise;
+    for (std::uint32_t index = 0; index < 4; ++index) {
+      last[static_noise ? 1 : 0] = images(index, settings).visibility;
+    }
+  }
+  EXPECT_EQ(last[0].texels, last[1].texels);
+}
+
+}  // namespace
+}  // namespace alcove::passes
