@@ -170,9 +170,8 @@ SliceResult sum_of(SliceResult a, SliceResult b) {
 float depth_step_length(Surface surface) {
   float constant = parameters.depth_step;
   float per_inverse_depth = parameters.depth_step_per_inverse_depth;
-  float depth = kPerspective ? 1.0 / surface.inverse_depth : surface.inverse_depth;
-  return kPerspective ? max((constant * depth + per_inverse_depth) * depth, 0.0)
-                      : max(constant + per_inverse_depth * depth, 0.0);
+  return kPerspective ? max((constant * surface.depth + per_inverse_depth) * surface.depth, 0.0)
+                      : max(constant + per_inverse_depth * surface.depth, 0.0);
 }
 
 // Searches all slices of a pixel that is not the sky: the outer integral of section 4.1, a mean

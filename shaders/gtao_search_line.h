@@ -67,14 +67,13 @@ SearchLine make_search_line(Surface surface, vec3 direction) {
   SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
   // The tangent plane is computed anew for each slice, because it would hold registers through all
   // slices.
-  float distance = depth_again(surface);
-  TangentPlane tangent =
-      make_tangent_plane(parameters.slope.xy, surface.normal, surface.view, distance, kPerspective);
+  TangentPlane tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
+                                            surface.depth, kPerspective);
   DepthStep depth_step = DepthStep(parameters.depth_step, parameters.depth_step_per_inverse_depth);
   float step = depth_step_at(depth_step, surface.inverse_depth);
   float per_radius = 1.0 / parameters.radius;
   float px_per_length = 1.0 / max(slice_line.x_per_step, 1e-30);
-  float depth = kPerspective ? distance : -1.0;
+  float depth = kPerspective ? surface.depth : -1.0;
   float y_per_depth = slice_line.y_per_depth * depth;
   SearchLine search_line;
   search_line.px_per_offset = slice_line.direction_px * (parameters.radius * px_per_length);
@@ -109,11 +108,11 @@ SearchLine opposite(SearchLine search_line) {
 // direction. Slices need no search then.
 bool reaches_samples(Surface surface) {
   vec2 per_px = abs(parameters.slope.xy);
-  // The least length of a pixel on the surface, times its inverse depth. The factor allows for the
-  // part of the sphere that is nearer to the eye.
-  float length_per_px = 0.9 * min(per_px.x, per_px.y) * surface.view.z;
-  float radius = parameters.radius * (kPerspective ? surface.inverse_depth : 1.0);
-  return radius >= kNearestStep * length_per_px;
+  // The least length of a pixel on the surface. The factor allows for the part of the sphere that
+  // is nearer to the eye.
+  float length_per_px =
+      0.9 * min(per_px.x, per_px.y) * surface.view.z * (kPerspective ? surface.depth : 1.0);
+  return parameters.radius >= kNearestStep * length_per_px;
 }
 
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded

@@ -13,6 +13,7 @@
 // The surface that a traced pixel shows.
 struct Surface {
   ivec2 pixel;
+  float depth;  // linear, scene units
   float inverse_depth;
   vec3 normal;        // unit, view space
   vec3 view;          // unit, view space, towards the eye
@@ -42,17 +43,11 @@ float load_inverse_depth(ivec2 pixel) {
 // The centre of the surface's pixel, in pixels from the image's corner.
 vec2 centre_of(Surface surface) { return vec2(surface.pixel) + 0.5; }
 
-// The linear depth of a surface, in scene units. The search computes it by other operations than
-// what follows it, because a common value would hold a register meanwhile.
-float depth_again(Surface surface) {
-  return kPerspective ? surface.view.z / (surface.view.z * surface.inverse_depth)
-                      : surface.inverse_depth;
-}
-
 // The surface at a pixel that is not the sky, whose inverse depth is already loaded.
 Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   Surface surface;
   surface.pixel = pixel;
+  surface.depth = kPerspective ? 1.0 / inverse_depth : inverse_depth;
   surface.inverse_depth = inverse_depth;
   vec2 slope =
       parameters.slope.zw + (kPerspective ? centre_of(surface) * parameters.slope.xy : vec2(0.0));

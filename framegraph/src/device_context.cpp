@@ -7,36 +7,19 @@
 namespace alcove::framegraph {
 namespace {
 
-// Creates the resource to query its memory requirements, and destroys it. Without
-// VK_KHR_maintenance4 a device reports the requirements of existing resources only.
-VkMemoryRequirements made_requirements(const DeviceContext& device, const ResourceRecord& record,
-                                       VkFlags usage) {
-  const VkDevice handle = device.handles.device;
-  VkMemoryRequirements found{};
-  if (record.kind == ResourceKind::texture) {
-    const VkImageCreateInfo info = image_info(record, usage);
-    VkImage image = VK_NULL_HANDLE;
-    if (device.vk.vkCreateImage(handle, &info, device.callbacks(), &image) != VK_SUCCESS)
-      return found;
-    device.vk.vkGetImageMemoryRequirements(handle, image, &found);
-    device.vk.vkDestroyImage(handle, image, device.callbacks());
-  } else {
-    const VkBufferCreateInfo info = buffer_info(record, usage);
-    VkBuffer buffer = VK_NULL_HANDLE;
-    if (device.vk.vkCreateBuffer(handle, &info, device.callbacks(), &buffer) != VK_SUCCESS)
-      return found;
-    device.vk.vkGetBufferMemoryRequirements(handle, buffer, &found);
-    device.vk.vkDestroyBuffer(handle, buffer, device.callbacks());
-  }
-  return found;
-}
-
 MemoryRequirements device_requirements(const void* context, const ResourceRecord& record,
                                        VkFlags usage) {
   const auto& device = *static_cast<const DeviceContext*>(context);
   VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
   if (!device.vk.vkGetDeviceImageMemoryRequirements) {
-    found.memoryRequirements = made_requirements(device, record, usage);
+    // Without VK_KHR_maintenance4 a device reports the requirements of existing resources only.
+    VkImage image = VK_NULL_HANDLE;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    if (create_unbound(device, record, usage, image, buffer, found.memoryRequirements) !=
+        VK_SUCCESS)
+      return {0, 0, 0};
+    device.vk.vkDestroyImage(device.handles.device, image, device.callbacks());
+    device.vk.vkDestroyBuffer(device.handles.device, buffer, device.callbacks());
   } else if (record.kind == ResourceKind::texture) {
     const VkImageCreateInfo info = image_info(record, usage);
     const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
@@ -214,6 +197,23 @@ VkBufferCreateInfo buffer_info(const ResourceRecord& record, VkFlags usage) {
   info.usage = usage;
   info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
   return info;
+}
+
+VkResult create_unbound(const DeviceContext& device, const ResourceRecord& record, VkFlags usage,
+                        VkImage& image, VkBuffer& buffer, VkMemoryRequirements& requirements) {
+  const VkDevice handle = device.handles.device;
+  VkResult result = VK_SUCCESS;
+  if (record.kind == ResourceKind::texture) {
+    const VkImageCreateInfo info = image_info(record, usage);
+    result = device.vk.vkCreateImage(handle, &info, device.callbacks(), &image);
+    if (result == VK_SUCCESS) device.vk.vkGetImageMemoryRequirements(handle, image, &requirements);
+  } else {
+    const VkBufferCreateInfo info = buffer_info(record, usage);
+    result = device.vk.vkCreateBuffer(handle, &info, device.callbacks(), &buffer);
+    if (result == VK_SUCCESS)
+      device.vk.vkGetBufferMemoryRequirements(handle, buffer, &requirements);
+  }
+  return result;
 }
 
 Errors vulkan_error(VkResult result, std::string what) {

@@ -26,9 +26,12 @@ struct DeviceContext {
 // that the device lacks.
 [[nodiscard]] tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& handles);
 
-// Return the create infos with which memory requirements are queried and resources created.
 VkImageCreateInfo image_info(const ResourceRecord& record, VkFlags usage);
 VkBufferCreateInfo buffer_info(const ResourceRecord& record, VkFlags usage);
+// Creates the image or buffer of a resource, without memory, and queries its memory requirements.
+[[nodiscard]] VkResult create_unbound(const DeviceContext& device, const ResourceRecord& record,
+                                      VkFlags usage, VkImage& image, VkBuffer& buffer,
+                                      VkMemoryRequirements& requirements);
 
 Errors vulkan_error(VkResult result, std::string what);
 // Returns the name of a result, for example `VK_ERROR_OUT_OF_DEVICE_MEMORY`.

@@ -257,11 +257,12 @@ void Graph::add_stale_builder() {
 }
 
 template <ResourceKind kKind>
-History<kKind> Graph::add_history(std::string_view name, ResourceRecord record,
-                                  std::uint32_t slots) {
+History<kKind> Graph::add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
+                                  std::uint32_t flags) {
   History<kKind> made;
   made.slots = std::clamp(slots, 1u, kMaxHistorySlots);
   record.origin = Origin::history;
+  record.flags |= flags;
   record.slots = static_cast<std::uint8_t>(made.slots);
   ImportHandles handles;
   handles.history = histories_.declare(name, record);
@@ -314,15 +315,11 @@ BufferHistory Graph::create_buffer_history(std::string_view name, const BufferDe
 }
 
 TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc) {
-  ResourceRecord record = texture_record(desc);
-  record.flags |= kPersistent;
-  return add_history<ResourceKind::texture>(name, record, 1);
+  return add_history<ResourceKind::texture>(name, texture_record(desc), 1, kPersistent);
 }
 
 BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc) {
-  ResourceRecord record = buffer_record(desc);
-  record.flags |= kPersistent;
-  return add_history<ResourceKind::buffer>(name, record, 1);
+  return add_history<ResourceKind::buffer>(name, buffer_record(desc), 1, kPersistent);
 }
 
 void Graph::reset_history(std::string_view name) { histories_.invalidate(name); }

@@ -1,7 +1,6 @@
 #include "alcove/framegraph/history.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace alcove::framegraph {
 
@@ -28,7 +27,7 @@ std::uint32_t HistoryTable::declare(std::string_view name, const ResourceRecord&
   auto place = std::find_if(entries_.begin(), entries_.end(),
                             [](const HistoryEntry& entry) { return entry.dropped; });
   if (place == entries_.end()) {
-    before_.reserve(entries_.size() + 1);
+    saved_.reserve(entries_.size() + 1);
     place = entries_.insert(place, HistoryEntry{});
   }
   // The generation number of the new history continues from that of the previous history in this
@@ -50,7 +49,7 @@ void HistoryTable::drop(std::string_view name) {
     if (entry.declared || entry.dropped || entry.name != name) continue;
     entry.dropped = true;
     entry.generation = ++entry.newest;
-    std::erase_if(before_, [i](const Before& before) { return before.index == i; });
+    std::erase_if(saved_, [i](const SavedState& saved) { return saved.index == i; });
   }
 }
 
@@ -75,7 +74,7 @@ void HistoryTable::invalidate(std::uint32_t index) {
 
 // The frame may be a second one with the same declaration. undo() then takes back only that frame.
 void HistoryTable::begin_end() {
-  if (ended_) before_.clear();
+  if (ended_) saved_.clear();
   ended_ = false;
 }
 
@@ -93,30 +92,24 @@ void HistoryTable::rotate(std::uint32_t index) {
 }
 
 void HistoryTable::remember(std::uint32_t index) {
-  const auto is_here = [index](const Before& before) { return before.index == index; };
-  if (std::any_of(before_.begin(), before_.end(), is_here)) return;
-  const HistoryEntry& entry = entries_[index];
-  Before before{index, entry.head, entry.generation, entry.record, {}};
-  std::copy(std::begin(entry.slots), std::end(entry.slots), before.slots);
-  before_.push_back(before);
+  const auto is_here = [index](const SavedState& saved) { return saved.index == index; };
+  if (std::any_of(saved_.begin(), saved_.end(), is_here)) return;
+  saved_.push_back({index, entries_[index]});
 }
 
 void HistoryTable::undo() {
-  for (const Before& before : before_) {
-    HistoryEntry& entry = entries_[before.index];
-    anew_ = anew_ || before.generation != entry.generation;
-    entry.head = before.head;
-    entry.generation = before.generation;
-    entry.record = before.record;
-    std::copy(std::begin(before.slots), std::end(before.slots), entry.slots);
+  for (const SavedState& saved : saved_) {
+    HistoryState& state = entries_[saved.index];
+    anew_ = anew_ || saved.state.generation != state.generation;
+    state = saved.state;
   }
-  before_.clear();
+  saved_.clear();
   ended_ = false;
   moved_ = true;
 }
 
 void HistoryTable::forget_contents() {
-  before_.clear();
+  saved_.clear();
   moved_ = true;
   for (HistoryEntry& entry : entries_) {
     for (HistorySlot& slot : entry.slots) {
@@ -128,14 +121,14 @@ void HistoryTable::forget_contents() {
 
 bool HistoryTable::needs(std::uint32_t index, std::uint32_t generation) const {
   return entries_[index].generation == generation ||
-         std::any_of(before_.begin(), before_.end(), [&](const Before& before) {
-           return before.index == index && before.generation == generation;
+         std::any_of(saved_.begin(), saved_.end(), [&](const SavedState& saved) {
+           return saved.index == index && saved.state.generation == generation;
          });
 }
 
 void HistoryTable::begin_frame() {
   end_frame();
-  before_.clear();
+  saved_.clear();
   ended_ = anew_ = moved_ = false;
 }
 

@@ -292,18 +292,9 @@ VkDeviceSize Pool::history_size() const {
 VkResult Pool::create(Physical& physical, std::string_view name) {
   const VkDevice device = device_.handles.device;
   VkMemoryRequirements needed{};
-  VkResult result = VK_SUCCESS;
-  if (physical.record.kind == ResourceKind::texture) {
-    const VkImageCreateInfo info = image_info(physical.record, physical.usage);
-    result = device_.vk.vkCreateImage(device, &info, device_.callbacks(), &physical.image);
-    if (result != VK_SUCCESS) return result;
-    device_.vk.vkGetImageMemoryRequirements(device, physical.image, &needed);
-  } else {
-    const VkBufferCreateInfo info = buffer_info(physical.record, physical.usage);
-    result = device_.vk.vkCreateBuffer(device, &info, device_.callbacks(), &physical.buffer);
-    if (result != VK_SUCCESS) return result;
-    device_.vk.vkGetBufferMemoryRequirements(device, physical.buffer, &needed);
-  }
+  VkResult result = create_unbound(device_, physical.record, physical.usage, physical.image,
+                                   physical.buffer, needed);
+  if (result != VK_SUCCESS) return result;
   set_name(physical, name);
   MemoryRange memory;
   if (physical.heap != kNone) {

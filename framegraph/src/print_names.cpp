@@ -6,12 +6,13 @@
 namespace alcove::framegraph {
 namespace {
 
-struct Bit {
-  std::uint64_t bit;
-  const char* name;
+// The name of a bit or of a value of an enum.
+struct Name {
+  std::uint64_t value;
+  const char* text;
 };
 
-constexpr Bit kStages[] = {
+constexpr Name kStages[] = {
     {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, "indirect"},
     {VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, "index"},
     {VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, "attributes"},
@@ -37,7 +38,7 @@ constexpr Bit kStages[] = {
 };
 
 // Vulkan's names without their common prefix and suffix, for example TRANSFER_SRC.
-constexpr Bit kImageUsages[] = {
+constexpr Name kImageUsages[] = {
     {VK_IMAGE_USAGE_TRANSFER_SRC_BIT, "TRANSFER_SRC"},
     {VK_IMAGE_USAGE_TRANSFER_DST_BIT, "TRANSFER_DST"},
     {VK_IMAGE_USAGE_SAMPLED_BIT, "SAMPLED"},
@@ -48,7 +49,7 @@ constexpr Bit kImageUsages[] = {
     {VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT, "INPUT_ATTACHMENT"},
 };
 
-constexpr Bit kBufferUsages[] = {
+constexpr Name kBufferUsages[] = {
     {VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "TRANSFER_SRC"},
     {VK_BUFFER_USAGE_TRANSFER_DST_BIT, "TRANSFER_DST"},
     {VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, "UNIFORM_TEXEL_BUFFER"},
@@ -65,17 +66,17 @@ constexpr Bit kBufferUsages[] = {
 };
 
 template <std::size_t kCount>
-std::string join(std::uint64_t bits, const Bit (&names)[kCount]) {
+std::string join(std::uint64_t bits, const Name (&names)[kCount]) {
   if (bits == 0) return "none";
   std::string text;
-  const auto append = [&text](const std::string& name) {
+  const auto append = [&text](const std::string& part) {
     if (!text.empty()) text += '|';
-    text += name;
+    text += part;
   };
-  for (const Bit& bit : names) {
-    if (!(bits & bit.bit)) continue;
-    append(bit.name);
-    bits &= ~bit.bit;
+  for (const Name& name : names) {
+    if (!(bits & name.value)) continue;
+    append(name.text);
+    bits &= ~name.value;
   }
   if (bits != 0) append(std::string("+").append(std::to_string(bits)));
   return text;
@@ -90,42 +91,25 @@ std::string usage_names(ResourceKind kind, VkFlags usage) {
 }
 
 std::string layout_name(VkImageLayout layout) {
-  switch (layout) {
-    case VK_IMAGE_LAYOUT_UNDEFINED:
-      return "undefined";
-    case VK_IMAGE_LAYOUT_GENERAL:
-      return "general";
-    case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL:
-      return "color";
-    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL:
-      return "depth";
-    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL:
-      return "depth read";
-    case VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL:
-      return "stencil";
-    case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL:
-      return "shader read";
-    case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL:
-      return "transfer source";
-    case VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL:
-      return "transfer destination";
-    case VK_IMAGE_LAYOUT_PRESENT_SRC_KHR:
-      return "present";
-    default:
-      return std::string("layout ").append(std::to_string(layout));
+  constexpr Name kLayouts[] = {{VK_IMAGE_LAYOUT_UNDEFINED, "undefined"},
+                               {VK_IMAGE_LAYOUT_GENERAL, "general"},
+                               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, "color"},
+                               {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, "depth"},
+                               {VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, "depth read"},
+                               {VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL, "stencil"},
+                               {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, "shader read"},
+                               {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "transfer source"},
+                               {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, "transfer destination"},
+                               {VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, "present"}};
+  for (const Name& name : kLayouts) {
+    if (name.value == static_cast<std::uint64_t>(layout)) return name.text;
   }
+  return std::string("layout ").append(std::to_string(layout));
 }
 
 std::string queue_name(QueueClass queue) {
-  switch (queue) {
-    case QueueClass::graphics:
-      return "graphics";
-    case QueueClass::compute:
-      return "compute";
-    case QueueClass::transfer:
-      return "transfer";
-  }
-  return "unknown";
+  constexpr const char* kNames[kQueueClasses] = {"graphics", "compute", "transfer"};
+  return kNames[static_cast<std::size_t>(queue)];
 }
 
 std::string byte_size(VkDeviceSize bytes) {

@@ -104,9 +104,8 @@ tl::expected<std::string, std::string> split_table(const Options& options,
   if (!gpu) {
     return tl::unexpected(gpu.error());
   }
-  const auto split =
-      split_error(**gpu, rendering.scene, static_setup(options, rendering.camera),
-                  rendering.settings, truths.scene.visibility, truths.surfaces);
+  const auto split = split_error(**gpu, rendering.scene, static_setup(options, rendering.camera),
+                                 rendering.settings, truths.scene.visibility, truths.surfaces);
   if (!split) {
     return tl::unexpected(split.error());
   }

@@ -445,7 +445,8 @@ void add_split(CLI::App& app, bool& split) {
   Group(app).add_flag(
       "--split",
       "also render the view without each cause of the error, and print and draw the part of the "
-      "squared error that is noise, filter and tiles, hidden surfaces, unknown thickness, occluders "
+      "squared error that is noise, filter and tiles, hidden surfaces, unknown thickness, "
+      "occluders "
       "outside the image, and the rest",
       split);
 }

@@ -138,6 +138,13 @@ class Declarer {
             texture ? kLayouts[dice_.roll(3)] : VK_IMAGE_LAYOUT_UNDEFINED};
   }
 
+  template <typename Import>
+  void set_any_states(Import& import, bool full, bool departs, bool texture) {
+    if (full) import.initial_state = any_state(texture);
+    if (departs) import.final_state = any_state(texture);
+    import.concurrent = dice_.chance(60);
+  }
+
   void add_import() {
     const bool full = dice_.chance(128);
     const bool departs = dice_.chance(140);
@@ -162,11 +169,7 @@ class Declarer {
         import.final_state = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                               VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-      if (options_.any_states) {
-        if (full) import.initial_state = any_state(true);
-        if (departs) import.final_state = any_state(true);
-        import.concurrent = dice_.chance(60);
-      }
+      if (options_.any_states) set_any_states(import, full, departs, true);
       resource.handle = graph_.import_texture(numbered('i', resources_.size()), import);
     } else {
       ImportedBuffer import;
@@ -180,11 +183,7 @@ class Declarer {
             dice_.chance(128) ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_TRANSFER_READ_BIT,
             VK_IMAGE_LAYOUT_UNDEFINED};
       if (departs) import.final_state = buffer_access::host_read;
-      if (options_.any_states) {
-        if (full) import.initial_state = any_state(false);
-        if (departs) import.final_state = any_state(false);
-        import.concurrent = dice_.chance(60);
-      }
+      if (options_.any_states) set_any_states(import, full, departs, false);
       resource.buffer = graph_.import_buffer(numbered('i', resources_.size()), import);
     }
     keep(std::move(resource), full);

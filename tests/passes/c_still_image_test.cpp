@@ -139,6 +139,13 @@ TEST_F(CStillImage, WhatEndsAConvergedImageIsRecordedAgain) {
       [](AlcoveView& v) { v.camera.view_from_world[12] += 0.1f; },
       [](AlcoveView& v) { v.camera.clip_from_view[0] *= 1.01f; },
       [](AlcoveView& v) { v.normals = {}; },
+      [](AlcoveView& v) {
+        v.read_area = {0, 0, 24, 16};
+      },
+      [](AlcoveView& v) {
+        v.read_area = {0, 0, 24, 16};
+        v.written_area = {4, 4, 12, 8};
+      },
       [&](AlcoveView& v) { v.settings = &larger; },
       [&](AlcoveView& v) {
         v.visibility = output(VK_FORMAT_R32_SFLOAT, 24, 16);

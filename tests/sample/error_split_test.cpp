@@ -106,9 +106,8 @@ TEST_F(ErrorSplitTest, WallBesideTheImageIsMostlyOutside) {
   builder.use(builder.add_material("stone", glm::vec3(0.6f), 0.8f));
   builder.box({-5.0f, -0.1f, -5.0f}, {5.0f, 0.0f, 5.0f});
   builder.box({1.1f, 0.0f, -5.0f}, {1.2f, 0.6f, 5.0f});
-  const Camera camera{.eye_ws = {0.0f, 1.0f, 0.0f},
-                      .target_ws = {0.0f, 0.0f, 0.0f},
-                      .up_ws = {0.0f, 0.0f, -1.0f}};
+  const Camera camera{
+      .eye_ws = {0.0f, 1.0f, 0.0f}, .target_ws = {0.0f, 0.0f, 0.0f}, .up_ws = {0.0f, 0.0f, -1.0f}};
   expect_largest(split(scene_of(builder, camera), settings_of(0.6f), 16), 4);
 }
 

@@ -24,17 +24,35 @@ StillViews::Description StillViews::describe(const AlcoveView& view) {
   auto number = std::copy_n(view.camera.clip_from_view, 16, result.numbers.begin());
   number = std::copy_n(view.camera.view_from_world, 16, number);
   std::copy_n(view.motion_offset, 2, std::copy_n(view.motion_scale, 2, number));
-  result.choices = {view.normals_in_view_space, number_of(view.normal_encoding),
-                    view.normals_forward_z,     view.largest_width,
-                    view.largest_height,        number_of(view.depth_format),
-                    view.half_size_outputs,     number_of(view.visibility_channel)};
+  result.choices = {view.normals_in_view_space,
+                    number_of(view.normal_encoding),
+                    view.normals_forward_z,
+                    view.largest_width,
+                    view.largest_height,
+                    number_of(view.depth_format),
+                    view.half_size_outputs,
+                    number_of(view.visibility_channel),
+                    view.read_area.x,
+                    view.read_area.y,
+                    view.read_area.width,
+                    view.read_area.height,
+                    view.written_area.x,
+                    view.written_area.y,
+                    view.written_area.width,
+                    view.written_area.height,
+                    view.output_x,
+                    view.output_y,
+                    view.not_receiving,
+                    view.not_occluding};
   const std::array<const AlcoveImage*, kImages> images{
-      &view.depth,       &view.normals,      &view.motion,      &view.roughness,
-      &view.back_depth,  &view.second_depth, &view.albedo,      &view.visibility,
-      &view.bent_normal, &view.specular,     &view.multi_bounce};
+      &view.depth,      &view.normals,      &view.motion,   &view.roughness,
+      &view.back_depth, &view.second_depth, &view.albedo,   &view.mask,
+      &view.visibility, &view.bent_normal,  &view.specular, &view.multi_bounce};
   std::ranges::transform(images, result.images.begin(), [](const AlcoveImage* image) {
-    return Image{
-        image->image, image->view, image->format, {image->width, image->height, image->layer}};
+    return Image{image->image,
+                 image->view,
+                 image->format,
+                 {image->width, image->height, image->layer, image->samples}};
   });
   return result;
 }
@@ -121,8 +139,9 @@ AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view) {
   view->reset_history = number == 0 ? VK_TRUE : VK_FALSE;
   view->static_frames = number;
   view->previous_camera = view->camera;
-  view->previous_width = view->depth.width;
-  view->previous_height = view->depth.height;
+  const bool whole = view->read_area.width == 0;
+  view->previous_width = whole ? view->depth.width : view->read_area.width;
+  view->previous_height = whole ? view->depth.height : view->read_area.height;
   return ALCOVE_SUCCESS;
 }
 

@@ -23,19 +23,19 @@ class StillViews {
   [[nodiscard]] AlcoveViewState state(std::uint32_t id) const;
 
  private:
-  static constexpr std::size_t kImages = 11;
+  static constexpr std::size_t kImages = 12;
   struct Image {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
     VkFormat format = VK_FORMAT_UNDEFINED;
-    std::array<std::uint32_t, 3> place{};  // width, height, layer
+    std::array<std::uint32_t, 4> place{};  // width, height, layer, samples
     bool operator==(const Image&) const = default;
   };
   // Everything that the image of a view depends on, except the contents of its inputs.
   struct Description {
     OcclusionSettings settings;
     std::array<float, 36> numbers{};  // the camera, and the scale and offset of motion vectors
-    std::array<std::uint32_t, 8> choices{};
+    std::array<std::uint32_t, 20> choices{};
     std::array<Image, kImages> images{};
     bool operator==(const Description&) const = default;
   };

@@ -150,8 +150,7 @@ Done run_ablate(const Options& options) {
   if (!folder) {
     return tl::unexpected(folder.error());
   }
-  const auto clock =
-      choose_clock(session->gpu->device().properties(), *options.gpu, options.clock);
+  const auto clock = choose_clock(session->gpu->device().properties(), *options.gpu, options.clock);
   if (!clock) {
     return Failure(clock.error());
   }

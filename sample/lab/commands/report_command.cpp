@@ -145,20 +145,20 @@ class ScenePage {
       if (!visibility) {
         return Failure(visibility.error());
       }
-      done = done.and_then([&] { return add_picture("pictures", name, *visibility); })
-                 .and_then([&] {
-                   return add_picture("errors", name, error_colours(*visibility, truth));
-                 });
+      done =
+          done.and_then([&] { return add_picture("pictures", name, *visibility); }).and_then([&] {
+            return add_picture("errors", name, error_colours(*visibility, truth));
+          });
     }
     return done;
   }
 
   // The causes of the error of `medium`.
   Done add_split() {
-    const auto split = split_error(
-        *session_.gpu, session_.scene, static_setup(options_, session_.camera),
-        passes::quality_settings(Quality::medium, session_.settings.radius),
-        errors_.truths().scene.visibility, errors_.truths().surfaces);
+    const auto split =
+        split_error(*session_.gpu, session_.scene, static_setup(options_, session_.camera),
+                    passes::quality_settings(Quality::medium, session_.settings.radius),
+                    errors_.truths().scene.visibility, errors_.truths().surfaces);
     if (!split) {
       return Failure(split.error());
     }

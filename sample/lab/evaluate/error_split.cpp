@@ -43,7 +43,8 @@ Image<float> middle_of(const Image<float>& wide, std::uint32_t width, std::uint3
   return middle;
 }
 
-// The error's limit for the given model of occluders: nothing is interpolated, and samples are many.
+// The error's limit for the given model of occluders: nothing is interpolated, and samples are
+// many.
 OcclusionSettings sampled_fully(OcclusionSettings settings) {
   settings.tile_size = 1;
   settings.half_resolution = false;
@@ -72,7 +73,7 @@ class Splitter {
   Done add_noise(const StaticSetup& setup, const OcclusionSettings& settings);
   // Adds a cause whose remedy changes the current visibility to `after`. Returns whether it lowers
   // the error.
-  bool add(const char* name, Image<float> after);
+  bool add(const char* key, const char* name, Image<float> after);
 
   Gpu& gpu_;
   const Scene& scene_;
@@ -113,14 +114,14 @@ Splitter::Done Splitter::add_noise(const StaticSetup& setup, const OcclusionSett
   for (std::size_t i = 0; i < current_.pixels.size(); ++i) {
     current_.pixels[i] = 0.5f * (current_.pixels[i] + own->pixels[i]);
   }
-  split_.causes.push_back({"noise", noise / whole_error_, *own, current_});
+  split_.causes.push_back({"noise", "noise", noise / whole_error_, *own, current_});
   return {};
 }
 
-bool Splitter::add(const char* name, Image<float> after) {
+bool Splitter::add(const char* key, const char* name, Image<float> after) {
   const double error = mean_squared_error(after, truth_, surfaces_);
   const bool lowers = error < current_error_;
-  split_.causes.push_back({name, (current_error_ - error) / whole_error_, current_, after});
+  split_.causes.push_back({key, name, (current_error_ - error) / whole_error_, current_, after});
   if (lowers) {
     current_error_ = error;
     current_ = std::move(after);
@@ -136,42 +137,41 @@ tl::expected<ErrorSplit, std::string> Splitter::split(const StaticSetup& setup,
   StaticSetup averaged = setup;
   averaged.frames = kAveragedFrames;
   OcclusionSettings best = sampled_fully(settings);
-  const auto try_settings = [&](const char* name, const OcclusionSettings& changed) -> Done {
+  const auto try_settings = [&](const char* key, const char* name,
+                                const OcclusionSettings& changed) -> Done {
     if (!passes::validate(changed)) {  // an estimator without thickness
-      split_.causes.push_back({name, 0.0, current_, current_});
+      split_.causes.push_back({key, name, 0.0, current_, current_});
       return {};
     }
     Picture drawn = draw(averaged, changed);
     if (!drawn) {
       return Failure(std::move(drawn.error()));
     }
-    best = add(name, std::move(*drawn)) ? changed : best;
+    best = add(key, name, std::move(*drawn)) ? changed : best;
     return {};
   };
-  if (auto tried = try_settings("filter, tiles and few steps", best); !tried) {
+  if (auto tried = try_settings("sampling", "filter, tiles and few steps", best); !tried) {
     return Failure(std::move(tried.error()));
   }
   OcclusionSettings layers = best;
   layers.depth_layers = 2;
-  if (auto tried = try_settings("hidden surfaces, which a second layer shows", layers); !tried) {
+  if (auto tried = try_settings("layer", "hidden surfaces, which a second layer shows", layers);
+      !tried) {
     return Failure(std::move(tried.error()));
   }
   OcclusionSettings back_faces = best;
   back_faces.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
-  if (auto tried = try_settings("thickness, which back faces tell", back_faces); !tried) {
+  if (auto tried = try_settings("back_faces", "thickness, which back faces tell", back_faces);
+      !tried) {
     return Failure(std::move(tried.error()));
   }
   const Picture wide = draw(widened(averaged), best);
   if (!wide) {
     return Failure(wide.error());
   }
-  add("occluders outside the image", middle_of(*wide, setup.width, setup.height));
-  split_.causes.push_back({"the rest", current_error_ / whole_error_, current_, truth_});
+  add("outside", "occluders outside the image", middle_of(*wide, setup.width, setup.height));
+  split_.causes.push_back({"rest", "the rest", current_error_ / whole_error_, current_, truth_});
   return std::move(split_);
-}
-
-std::string file_name(const ErrorCause& cause) {
-  return "split_" + cause.name.substr(cause.name.rfind(' ') + 1) + ".png";
 }
 
 }  // namespace
@@ -179,8 +179,7 @@ std::string file_name(const ErrorCause& cause) {
 tl::expected<ErrorSplit, std::string> split_error(Gpu& gpu, const Scene& scene,
                                                   const StaticSetup& setup,
                                                   const OcclusionSettings& settings,
-                                                  const Image<float>& truth,
-                                                  const Mask& surfaces) {
+                                                  const Image<float>& truth, const Mask& surfaces) {
   return Splitter(gpu, scene, truth, surfaces).split(setup, settings);
 }
 
@@ -196,7 +195,7 @@ std::string table_of(const ErrorSplit& split) {
 nlohmann::ordered_json to_json(const ErrorSplit& split) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const ErrorCause& cause : split.causes) {
-    list.push_back({{"cause", cause.name}, {"share", cause.share}});
+    list.push_back({{"cause", cause.key}, {"share", cause.share}});
   }
   return list;
 }
@@ -208,7 +207,8 @@ Image<glm::vec3> picture_of(const ErrorCause& cause) {
 tl::expected<void, std::string> write_pictures(const ErrorSplit& split,
                                                const std::filesystem::path& folder) {
   for (const ErrorCause& cause : split.causes) {
-    if (auto written = write_png(folder / file_name(cause), picture_of(cause)); !written) {
+    if (auto written = write_png(folder / ("split_" + cause.key + ".png"), picture_of(cause));
+        !written) {
       return written;
     }
   }

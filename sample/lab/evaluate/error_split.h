@@ -18,7 +18,8 @@ namespace alcove::sample {
 
 // A cause of the error. A remedy removes it, on top of the remedies of the causes before.
 struct ErrorCause {
-  std::string name;
+  std::string key;   // in names of files and in report.json
+  std::string name;  // in tables
   // The part of the mean squared error that the remedy removes, 0..1. It is negative if the remedy
   // raises the error; the causes after it are then measured without it.
   double share = 0;

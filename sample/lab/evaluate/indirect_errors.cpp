@@ -130,10 +130,9 @@ nlohmann::ordered_json to_json(const IndirectErrors& errors) {
                           {"true_visibility_unbounced", to_json(errors.unbounced_truth)},
                           {"true_visibility_best_rmse", errors.bounced_best}};
   for (const SpecularErrors& one : errors.specular) {
-    json["specular_occlusion"][one.name] = {
-        {"pipeline", to_json(one.pipeline)},
-        {"true_inputs", to_json(one.true_inputs)},
-        {"none", to_json(one.none)}};
+    json["specular_occlusion"][one.name] = {{"pipeline", to_json(one.pipeline)},
+                                            {"true_inputs", to_json(one.true_inputs)},
+                                            {"none", to_json(one.none)}};
   }
   return json;
 }

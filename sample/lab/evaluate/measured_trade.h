@@ -22,8 +22,9 @@ struct MeasuredTrade {
 };
 
 // Renders the session's view with every variant of preset_sweep() and compares each with the
-// truths. choose_clock() says by which clock; modelled times are those of an RDNA2 part. Leaves out half resolution if the device cannot store its format.
-// Errors: `clock` is `modelled` and the driver is not installed, or a rendering fails.
+// truths. choose_clock() says by which clock; modelled times are those of an RDNA2 part. Leaves out
+// half resolution if the device cannot store its format. Errors: `clock` is `modelled` and the
+// driver is not installed, or a rendering fails.
 [[nodiscard]] tl::expected<MeasuredTrade, std::string> measure_trade(
     const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
     std::optional<Clock> clock);

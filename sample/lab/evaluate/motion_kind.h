@@ -16,9 +16,8 @@ enum class MotionKind : std::uint8_t {
   cut,     // The camera is static and jumps to another place in the middle of the path.
 };
 
-inline constexpr std::array kMotionKinds{MotionKind::orbit, MotionKind::dolly,
-                                         MotionKind::strafe, MotionKind::object,
-                                         MotionKind::cut};
+inline constexpr std::array kMotionKinds{MotionKind::orbit, MotionKind::dolly, MotionKind::strafe,
+                                         MotionKind::object, MotionKind::cut};
 
 // Names in the order of the enumerators.
 inline constexpr std::array<std::string_view, 5> kMotionKindNames{"orbit", "dolly", "strafe",

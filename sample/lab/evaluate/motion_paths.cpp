@@ -203,7 +203,7 @@ void MotionPath::add_to(Scene& scene) const {
     return;
   }
   Mesh mesh = kind_ == MotionKind::strafe ? column_mesh(start_, frames_)
-                                           : block_mesh(object_half_width(start_));
+                                          : block_mesh(object_half_width(start_));
   mesh.material = static_cast<std::uint32_t>(scene.materials.size());
   mesh.moves = kind_ == MotionKind::object;
   scene.materials.push_back({.name = mesh.name, .roughness = 0.6f});

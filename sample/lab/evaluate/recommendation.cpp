@@ -220,8 +220,8 @@ class Search {
         changed.*field = value;
         consider_if_promising(changed);
       };
-      for (const std::uint32_t steps : {from.steps * 3 / 4, from.steps - 1, from.steps + 1,
-                                        (from.steps * 4 + 2) / 3}) {
+      for (const std::uint32_t steps :
+           {from.steps * 3 / 4, from.steps - 1, from.steps + 1, (from.steps * 4 + 2) / 3}) {
         change(&OcclusionSettings::steps, steps);
       }
       change(&OcclusionSettings::slices, from.slices - 1);

@@ -32,8 +32,8 @@ std::string program_hash() {
   return hash;
 }
 
-// The settings that determine the time. Radius, thickness and hidden occlusion are parameters of the
-// shaders; the model's searches have a fixed length.
+// The settings that determine the time. Radius, thickness and hidden occlusion are parameters of
+// the shaders; the model's searches have a fixed length.
 OcclusionSettings timed_settings(OcclusionSettings settings) {
   const OcclusionSettings defaults;
   settings.specular = passes::Specular::none;

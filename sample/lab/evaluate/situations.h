@@ -74,8 +74,8 @@ class ModelledTimes {
 };
 
 // Returns the clock for times on a device. Without `wanted`, it is `timestamps` on a GPU; on a
-// software device, whose timestamps are noise, it is `modelled`, or `processor` if Mesa's AMD driver
-// is not installed. Error: `wanted` is `modelled` and the driver is not installed.
+// software device, whose timestamps are noise, it is `modelled`, or `processor` if Mesa's AMD
+// driver is not installed. Error: `wanted` is `modelled` and the driver is not installed.
 [[nodiscard]] tl::expected<Clock, std::string> choose_clock(
     const VkPhysicalDeviceProperties& device, const GpuPart& part, std::optional<Clock> wanted);
 

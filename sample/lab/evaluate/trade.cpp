@@ -23,27 +23,12 @@ struct SweepPoint {
   std::uint32_t depth_layers = 1;
 };
 
-constexpr std::array<SweepPoint, 21> kSweepPoints{{{8, 1, 4, true},
-                                                   {8, 1, 16, true},
-                                                   {4, 1, 8, true},
-                                                   {4, 1, 16, true},
-                                                   {2, 1, 10, true},
-                                                   {8, 1, 8},
-                                                   {4, 1, 4},
-                                                   {4, 1, 12},
-                                                   {4, 1, 24},
-                                                   {2, 1, 4},
-                                                   {2, 1, 6},
-                                                   {2, 1, 10},
-                                                   {4, 3, 12},
-                                                   {2, 1, 16},
-                                                   {2, 1, 24},
-                                                   {2, 3, 16},
-                                                   {2, 2, 10},
-                                                   {1, 1, 12},
-                                                   {1, 1, 24},
-                                                   {1, 2, 24},
-                                                   {1, 4, 32}}};
+constexpr std::array<SweepPoint, 21> kSweepPoints{
+    {{8, 1, 4, true}, {8, 1, 16, true}, {4, 1, 8, true}, {4, 1, 16, true}, {2, 1, 10, true},
+     {8, 1, 8},       {4, 1, 4},        {4, 1, 12},      {4, 1, 24},       {2, 1, 4},
+     {2, 1, 6},       {2, 1, 10},       {4, 3, 12},      {2, 1, 16},       {2, 1, 24},
+     {2, 3, 16},      {2, 2, 10},       {1, 1, 12},      {1, 1, 24},       {1, 2, 24},
+     {1, 4, 32}}};
 
 std::string name_of(const SweepPoint& s) {
   return fmt::format("{}, {} {} of {}{}",
@@ -104,9 +89,8 @@ std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   SweepList list(base);
   for (const Quality quality : presets()) {
     const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
-    list.add(std::string(passes::name_of(quality)),
-             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution,
-              preset.depth_layers});
+    list.add(std::string(passes::name_of(quality)), {preset.tile_size, preset.slices, preset.steps,
+                                                     preset.half_resolution, preset.depth_layers});
   }
   for (const SweepPoint& point : kSweepPoints) {
     list.add(name_of(point), point);

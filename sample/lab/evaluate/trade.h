@@ -18,8 +18,9 @@ namespace alcove::sample {
 [[nodiscard]] std::vector<passes::Quality> presets();
 
 // Returns the presets, and other settings with tile sizes, numbers of slices and steps, and half
-// resolution between and beyond those of the presets. Everything else is as in `base`, except that a
-// preset with a second depth layer has one. No setting appears twice. `base` itself appears only if it equals one of these.
+// resolution between and beyond those of the presets. Everything else is as in `base`, except that
+// a preset with a second depth layer has one. No setting appears twice. `base` itself appears only
+// if it equals one of these.
 [[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
 
 // Returns variants of `base` with 8, 16, 32 and 64 steps and 1, 2, 4 and 8 slices, ordered by

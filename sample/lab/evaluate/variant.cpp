@@ -14,7 +14,8 @@ using passes::OcclusionSettings;
 FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& settings,
                         std::uint32_t frame) {
   const auto matrices = [&](std::uint32_t at) {
-    const float angle = setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1));
+    const float angle =
+        setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1));
     return camera_matrices(orbited(setup.camera, angle), setup.width, setup.height);
   };
   const CameraMatrices now = matrices(frame);

@@ -223,7 +223,8 @@ class Graph {
   ResourceRecord texture_record(const TextureDesc& desc) const;
   static ResourceRecord buffer_record(const BufferDesc& desc);
   template <ResourceKind kKind>
-  History<kKind> add_history(std::string_view name, ResourceRecord record, std::uint32_t slots);
+  History<kKind> add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
+                             std::uint32_t flags = 0);
   template <typename Import>
   std::uint32_t add_import(std::string_view name, const Import& import, ResourceRecord record,
                            ImportHandles handles, bool has_contents);

@@ -5,9 +5,8 @@
 // frame in which that pass is culled leaves all contents where they are. A frame that instead
 // writes an older slot and keeps its contents updates that slot in place. If a pass that runs uses
 // a slot, all passes that write the history run, because a later frame may read it. A changed
-// description or
-// a reset makes every slot invalid and keeps the reason. A slot becomes valid again when it is
-// written. A frame that does not declare the history leaves it unchanged.
+// description or a reset makes every slot invalid and keeps the reason. A slot becomes valid again
+// when it is written. A frame that does not declare the history leaves it unchanged.
 #pragma once
 
 #include <cstdint>
@@ -29,15 +28,18 @@ struct HistorySlot {
   HistoryValidity validity = HistoryValidity::first_frame;
 };
 
-struct HistoryEntry {
-  std::string name;
+struct HistoryState {
   ResourceRecord record;                // of slot 0, with `external` cleared
   HistorySlot slots[kMaxHistorySlots];  // by physical position
   std::uint32_t head = 0;               // physical position of slot 0
   std::uint32_t generation = 0;         // changes when new physical resources are needed
-  std::uint32_t newest = 0;             // of all generations: none comes twice
-  bool declared = false;                // in the frame that is being declared
-  bool dropped = false;                 // the place is free
+};
+
+struct HistoryEntry : HistoryState {
+  std::string name;
+  std::uint32_t newest = 0;  // of all generations: none comes twice
+  bool declared = false;     // in the frame that is being declared
+  bool dropped = false;      // the place is free
 
   std::uint32_t physical(std::uint32_t slot) const { return (head + slot) % record.slots; }
 };
@@ -83,20 +85,17 @@ class HistoryTable {
   std::weak_ptr<const char> life() const { return life_; }
 
  private:
-  // An entry as it was before the frame changed it.
-  struct Before {
+  // The state of an entry before the frame changed it.
+  struct SavedState {
     std::uint32_t index = 0;
-    std::uint32_t head = 0;
-    std::uint32_t generation = 0;
-    ResourceRecord record;
-    HistorySlot slots[kMaxHistorySlots];
+    HistoryState state;
   };
   void remember(std::uint32_t index);
   void invalidate(std::uint32_t index);
 
   std::vector<HistoryEntry> entries_;
-  std::vector<Before> before_;  // room for all entries
-  bool ended_ = false;          // the frame has left some
+  std::vector<SavedState> saved_;  // room for all entries
+  bool ended_ = false;             // the frame has left some
   bool anew_ = false;
   bool moved_ = false;
   std::shared_ptr<const char> life_ = std::make_shared<const char>('\0');
