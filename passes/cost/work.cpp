@@ -163,7 +163,10 @@ double branch_share(const PassWork& work, const CompiledBranch& branch) {
   if (branch.stores > 0 || branch.loops > 0) {
     return 1.0;
   }
-  const bool from_depth = branch.loads == 8 || branch.loads == 9;
+  // A half-slice of eight samples loads as much, but takes more instructions.
+  constexpr std::uint32_t kMostInstructions = 300;
+  const bool from_depth =
+      (branch.loads == 8 || branch.loads == 9) && branch.instructions < kMostInstructions;
   const bool given =
       std::ranges::find(work.images, "normals", &PassImage::name) != work.images.end();
   if (work.pass == "reconstruct" && has_depth_planes(work) &&

@@ -8,6 +8,4 @@ layout(push_constant) uniform Depths {
   float edge;  // pixels
 };
 
-void main() {
-  gl_FragDepth = (gl_FragCoord.x < edge ? left : right) + per_pixel * gl_FragCoord.y;
-}
+void main() { gl_FragDepth = (gl_FragCoord.x < edge ? left : right) + per_pixel * gl_FragCoord.y; }

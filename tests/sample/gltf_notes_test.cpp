@@ -64,7 +64,8 @@ TEST(GltfNotes, WarningsAndErrorsStayShortForLongNamesAndUris) {
   const Scene scene = parsed(maker.gltf());
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_LT(scene.warnings[0].size(), 250u);
-  EXPECT_THAT(scene.warnings[0], testing::AllOf(HasSubstr("\xc3\xa9...\xc3\xa9"), HasSubstr("\" has points")));
+  EXPECT_THAT(scene.warnings[0],
+              testing::AllOf(HasSubstr("\xc3\xa9...\xc3\xa9"), HasSubstr("\" has points")));
   maker.primitive()["attributes"]["POSITION"] = 9;
   const std::string why = refusal(maker.gltf());
   EXPECT_LT(why.size(), 250u);
