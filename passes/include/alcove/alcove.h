@@ -121,9 +121,8 @@ typedef struct AlcoveState {
   VkImageLayout layout;
 } AlcoveState;
 
-// An image of the engine: 2D, optimal tiling, one mip. It belongs to the
-// queue family of the context, or is shared between families. A struct of zeros means that there is
-// no image.
+// An image of the engine: 2D, optimal tiling, one mip. It belongs to the queue family of the
+// context, or is shared between families. A struct of zeros means that there is no image.
 typedef struct AlcoveImage {
   VkImage image;
   // A 2D view of the layer. For a format with depth and stencil it must show the depth aspect only,
