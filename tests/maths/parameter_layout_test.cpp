@@ -7,9 +7,12 @@
 #include <string>
 
 #include "apply_parameters.h"
+#include "depth_copy_parameters.h"
 #include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
+#include "inspect_parameters.h"
+#include "linear_depth_parameters.h"
 #include "maths/projection.h"
 #include "multi_bounce_parameters.h"
 #include "normals_parameters.h"
@@ -34,7 +37,8 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
       ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
     {"GtaoParameters",
-     {ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
+     {ALCOVE_OFFSET(GtaoParameters, area), ALCOVE_OFFSET(GtaoParameters, written),
+      ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
       ALCOVE_OFFSET(GtaoParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(GtaoParameters, interleave_offset), ALCOVE_OFFSET(GtaoParameters, radius),
       ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
@@ -42,8 +46,9 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(GtaoParameters, roughness), ALCOVE_OFFSET(GtaoParameters, depth_step),
       ALCOVE_OFFSET(GtaoParameters, depth_step_per_inverse_depth)}},
     {"GtsoParameters",
-     {ALCOVE_OFFSET(GtsoParameters, projection), ALCOVE_OFFSET(GtsoParameters, view_from_normal),
-      ALCOVE_OFFSET(GtsoParameters, roughness)}},
+     {ALCOVE_OFFSET(GtsoParameters, origins), ALCOVE_OFFSET(GtsoParameters, written),
+      ALCOVE_OFFSET(GtsoParameters, size_px), ALCOVE_OFFSET(GtsoParameters, projection),
+      ALCOVE_OFFSET(GtsoParameters, view_from_normal), ALCOVE_OFFSET(GtsoParameters, roughness)}},
     {"ApplyParameters",
      {ALCOVE_OFFSET(ApplyParameters, projection), ALCOVE_OFFSET(ApplyParameters, world_from_view),
       ALCOVE_OFFSET(ApplyParameters, world_from_normal), ALCOVE_OFFSET(ApplyParameters, map),
@@ -53,10 +58,25 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(EnvironmentParameters, samples),
       ALCOVE_OFFSET(EnvironmentParameters, roughness),
       ALCOVE_OFFSET(EnvironmentParameters, levels)}},
-    {"MultiBounceParameters", {ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
+    {"DepthCopyParameters",
+     {ALCOVE_OFFSET(DepthCopyParameters, first), ALCOVE_OFFSET(DepthCopyParameters, size),
+      ALCOVE_OFFSET(DepthCopyParameters, not_receiving),
+      ALCOVE_OFFSET(DepthCopyParameters, not_occluding), ALCOVE_OFFSET(DepthCopyParameters, sky)}},
+    {"LinearDepthParameters",
+     {ALCOVE_OFFSET(LinearDepthParameters, projection),
+      ALCOVE_OFFSET(LinearDepthParameters, origin)}},
+    {"InspectParameters",
+     {ALCOVE_OFFSET(InspectParameters, origin), ALCOVE_OFFSET(InspectParameters, size_px),
+      ALCOVE_OFFSET(InspectParameters, has_normals), ALCOVE_OFFSET(InspectParameters, has_motion)}},
+    {"MultiBounceParameters",
+     {ALCOVE_OFFSET(MultiBounceParameters, positions),
+      ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
     {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, slope)}},
     {"ReconstructParameters",
-     {ALCOVE_OFFSET(ReconstructParameters, previous_from_pixel),
+     {ALCOVE_OFFSET(ReconstructParameters, area),
+      ALCOVE_OFFSET(ReconstructParameters, written),
+      ALCOVE_OFFSET(ReconstructParameters, to_outputs),
+      ALCOVE_OFFSET(ReconstructParameters, previous_from_pixel),
       ALCOVE_OFFSET(ReconstructParameters, normal_from_view),
       ALCOVE_OFFSET(ReconstructParameters, plane_from_normal),
       ALCOVE_OFFSET(ReconstructParameters, previous_from_view),
@@ -88,7 +108,9 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, intensity),
       ALCOVE_OFFSET(ReconstructParameters, dither_offset)}},
     {"UpsampleParameters",
-     {ALCOVE_OFFSET(UpsampleParameters, normal_from_view), ALCOVE_OFFSET(UpsampleParameters, slope),
+     {ALCOVE_OFFSET(UpsampleParameters, area), ALCOVE_OFFSET(UpsampleParameters, written),
+      ALCOVE_OFFSET(UpsampleParameters, to_outputs),
+      ALCOVE_OFFSET(UpsampleParameters, normal_from_view), ALCOVE_OFFSET(UpsampleParameters, slope),
       ALCOVE_OFFSET(UpsampleParameters, inverse_depth_from_ndc),
       ALCOVE_OFFSET(UpsampleParameters, pixel_uv), ALCOVE_OFFSET(UpsampleParameters, texel_uv),
       ALCOVE_OFFSET(UpsampleParameters, half_pixel_per_tilt),

@@ -384,7 +384,7 @@ TEST_F(CBadInput, RequestingSettingsWithUnknownQualityOrInvalidRadiusIsAnError) 
   for (const float radius : {0.0f, -1.0f, kNaN, std::numeric_limits<float>::infinity()}) {
     EXPECT_EQ(alcoveGetSettings(quality, radius, &settings), ALCOVE_ERROR_INVALID_INPUT);
   }
-  set_number(quality, 5);
+  set_number(quality, ALCOVE_QUALITY_REFERENCE + 1);
   EXPECT_EQ(alcoveGetSettings(quality, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
   settings.struct_size = 12;
   EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);

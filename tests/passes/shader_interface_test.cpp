@@ -47,7 +47,7 @@ TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslF
                           "6 result_image " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE),
                           "7  " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)));
   EXPECT_THAT(constants, ElementsAre("0 kRoughnessTexture", "1 kRoughnessChannel",
-                                     "2 kNormalEncoding", "3 kVisibilityChannel"));
+                                     "2 kNormalEncoding", "3 kVisibilityChannel", "4 kAreas"));
 }
 
 TEST(ShaderInterface, CombinedImageSamplersAreDistinguishedFromSampledImages) {
@@ -119,6 +119,7 @@ TEST_F(DispatchByName, SpecialisationConstantWithoutAValueIsReportedByName) {
 TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithThoseOfOtherShaders) {
   const auto added = add_gtso({{"kTileSize", 9},
                                {"kVisibilityChannel", 1},
+                               {"kAreas", 0},
                                {"kNormalEncoding", 3},
                                {"kRoughnessTexture", 1},
                                {"kRoughnessChannel", 2}});
@@ -128,7 +129,7 @@ TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithTh
        std::span(work_->dispatches[0].constants).first(work_->dispatches[0].constant_count)) {
     values.push_back(constant.value);
   }
-  EXPECT_THAT(values, ElementsAre(1, 2, 3, 1));
+  EXPECT_THAT(values, ElementsAre(1, 2, 3, 1, 0));
 }
 
 TEST_F(DispatchByName, SpecialisationConstantThatNoShaderDeclaresIsReportedByName) {
@@ -136,6 +137,7 @@ TEST_F(DispatchByName, SpecialisationConstantThatNoShaderDeclaresIsReportedByNam
                                {"kRoughnessChannel", 2},
                                {"kNormalEncoding", 3},
                                {"kVisibilityChannel", 1},
+                               {"kAreas", 0},
                                {"kTilesize", 9}});
   ASSERT_FALSE(added);
   EXPECT_THAT(added.error().message,

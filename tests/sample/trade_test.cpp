@@ -58,7 +58,7 @@ TEST(PresetSweep, SweepContainsHalfResolutionWithSeveralTileSizesAndSteps) {
                                            std::pair(2u, 10u)}));
 }
 
-TEST(PresetSweep, SweepChangesOnlyTileSizeSlicesStepsAndHalfResolution) {
+TEST(PresetSweep, SweepChangesOnlyNumbersOfSamplesHalfResolutionAndDepthLayers) {
   OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
   base.history_frames = 0;
   base.advanced.estimator = passes::Estimator::horizons;
@@ -69,6 +69,7 @@ TEST(PresetSweep, SweepChangesOnlyTileSizeSlicesStepsAndHalfResolution) {
     settings.slices = base.slices;
     settings.steps = base.steps;
     settings.half_resolution = base.half_resolution;
+    settings.depth_layers = base.depth_layers;
     EXPECT_EQ(settings, base) << way.name;
   }
 }

@@ -82,9 +82,10 @@ class Search {
   }
 
  private:
-  // Every number of samples in order of time.
+  // Every number of samples in order of time. A second depth layer is a feature.
   tl::expected<void, std::string> make_ladder() {
-    for (const Variant& variant : preset_sweep(base_)) {
+    for (Variant& variant : preset_sweep(base_)) {
+      variant.settings.depth_layers = base_.depth_layers;
       const auto ms = world_.time(variant.settings);
       if (!ms) {
         return Failure(ms.error());
