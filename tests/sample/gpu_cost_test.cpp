@@ -311,13 +311,15 @@ SettingsCost one_pass(double instructions, double registers, double waves, doubl
           {{"gtao", {50, 50, registers}, {9, 9, waves}, {0, 0, spills}}}};
 }
 
-TEST(GpuBudget, EachModelledCostThatExceedsItsBudgetIsReported) {
+TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
   const std::string budget = budget_of({one_pass(100, 64, 8, 0)}, "compiler");
   const auto complaints = [&](const SettingsCost& cost) {
     return over_budget(budget, "compiler", {cost}).value();
   };
   EXPECT_THAT(complaints(one_pass(100.9, 64, 8, 0)), IsEmpty());
-  EXPECT_THAT(complaints(one_pass(80, 48, 10, 0)), IsEmpty());
+  EXPECT_THAT(complaints(one_pass(99.1, 48, 10, 0)), IsEmpty());
+  EXPECT_THAT(complaints(one_pass(80, 48, 10, 0)),
+              ElementsAre(HasSubstr("instructions_per_pixel[0] is 80")));
   EXPECT_THAT(complaints(one_pass(101.5, 64, 8, 0)),
               ElementsAre("navi21, medium, gtao: instructions_per_pixel[0] is 101.5, the budget is "
                           "100."));

@@ -160,9 +160,9 @@ typedef struct AlcoveImage {
   AlcoveState final_state;
 } AlcoveImage;
 
-// One view of a frame, such as an eye or a part of a split screen. Each view has images, or layers
-// of images, of its own. An output without an image is not computed, and costs no pass and no
-// memory.
+// One view of a frame, such as an eye or a part of a split screen. Each view has images, layers of
+// images, or areas of images (read_area), of its own. An output without an image is not computed,
+// and costs no pass and no memory.
 typedef struct AlcoveView {
   uint32_t struct_size;
   // The number that identifies the view, different from those of the frame's other views. Each id
@@ -358,15 +358,9 @@ AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame
 AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
                                const AlcoveFrame* frame);
 
-// A still image, such as a screenshot or a thumbnail, takes several frames of a scene and a camera
-// that do not move. Returns how many frames these settings need until their image has converged:
-// 128 with a history, which is then full, and 1 with history_frames = 0 and static_noise. Returns 0
-// if the settings are invalid, or if an image never converges because noise changes from frame to
-// frame and there is no history. Fewer frames have a larger error; INTEGRATION.md has figures.
-uint32_t alcoveGetConvergedFrames(const AlcoveSettings* settings);
-
-// Makes `view` that of frame `number`, counted from 0, of a still image: sets reset_history in the
-// first frame, static_frames, and camera and size of the previous frame. Record and submit the
+// Makes `view` that of frame `number`, counted from 0, of a still image, which takes
+// alcoveGetConvergedFrames() frames of a scene and a camera that do not move: sets reset_history in
+// the first frame, static_frames, and camera and size of the previous frame. Record and submit the
 // frames one after the other with the same images and a growing AlcoveFrame::index. The last one
 // has the image. A view with an id of its own, dropped afterwards, does not disturb other views.
 AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view);
@@ -381,7 +375,8 @@ typedef struct AlcoveViewState {
 
 // Fills `state`, whose struct_size must be set. If `frames` is at least `converged_frames`, and
 // that is not 0, another frame of the unchanged view has nothing to do. All values are 0 for a view
-// that was never recorded with skip_converged.
+// that was not recorded with skip_converged, or was dropped. The context remembers 16 such views,
+// and forgets the oldest.
 AlcoveResult alcoveGetViewState(AlcoveContext* context, uint32_t id, AlcoveViewState* state);
 
 // Undoes the effects of alcoveRecordFrame if the frame that was just recorded will not be

@@ -5,7 +5,7 @@
 #ifndef ALCOVE_ALCOVE_ADVANCED_H_
 #define ALCOVE_ALCOVE_ADVANCED_H_
 
-#include "alcove/alcove.h"
+#include "alcove/alcove_settings.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -29,7 +29,7 @@ typedef enum AlcoveEstimator {
 typedef enum AlcoveThicknessUnit {
   // The radius: the thickness of occluders is constant in scene units.
   ALCOVE_THICKNESS_UNIT_RADIUS = 0,
-  // The occluder's distance from the eye: distant occluders are thicker.
+  // The occluder's depth along the view axis: distant occluders are thicker.
   ALCOVE_THICKNESS_UNIT_DISTANCE = 1,
   // Occluders end at the back faces in AlcoveView::back_depth. At pixels without a back face the
   // thickness is that of RADIUS.
@@ -62,14 +62,14 @@ typedef struct AlcoveAdvancedSettings {
 
   // Whether each sample is moved to the centre of its depth texel. If off, tilted planes occlude
   // themselves. [true]
-  VkBool32 snap_to_texels;
+  uint32_t snap_to_texels;
   // Whether surfaces that leave the image are extrapolated beyond its border, where they can
   // occlude. If off, nothing beyond the border occludes. Read by CONNECTED. [true]
-  VkBool32 extrapolation;
+  uint32_t extrapolation;
   // Whether directions that the depth buffer does not show are partly excluded from the average.
   // These are directions hidden behind a foreground or beyond the border of the image. If off, they
   // count as unoccluded. Read by CONNECTED. [true]
-  VkBool32 unobserved;
+  uint32_t unobserved;
 } AlcoveAdvancedSettings;
 
 // Fills `settings`, whose struct_size must be set, with the advanced settings of a preset. They are

@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-struct AlcoveSettings;  // alcove.h
+struct AlcoveSettings;  // alcove_settings.h
 
 // When the contents of device memory are needed.
 typedef enum AlcoveMemoryLifetime {

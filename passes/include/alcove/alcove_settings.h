@@ -27,8 +27,8 @@ typedef enum AlcoveQuality {
   ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
   ALCOVE_QUALITY_MEDIUM = 2,   // LOW with two slices and more steps; the preset to begin with
   ALCOVE_QUALITY_HIGH = 3,     // traces one of 2x2 pixels in each frame
-  // HIGH with a second depth layer. A view without the image AlcoveView::second_depth then fails
-  // with a sentence; set depth_layers to 1, or choose HIGH.
+  // HIGH with 10 steps in each of two depth layers. A view without the image
+  // AlcoveView::second_depth then fails with a sentence; set depth_layers to 1, or choose HIGH.
   ALCOVE_QUALITY_ULTRA = 4,
   ALCOVE_QUALITY_REFERENCE = 5,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
@@ -80,9 +80,9 @@ typedef enum AlcovePrecision {
 struct AlcoveAdvancedSettings;  // alcove_advanced.h
 
 // The settings of a view. Fill the struct with alcoveGetSettings, then change individual fields.
-// Values in square brackets are the defaults of all qualities except REFERENCE. If a value is out
-// of range, the call fails with ALCOVE_ERROR_INVALID_INPUT, and alcoveGetMessage names the field
-// and its range.
+// Values in square brackets are the defaults of all qualities except REFERENCE, if not said
+// otherwise. If a value is out of range, the call fails with ALCOVE_ERROR_INVALID_INPUT, and
+// alcoveGetMessage names the field and its range.
 typedef struct AlcoveSettings {
   uint32_t struct_size;  // sizeof(AlcoveSettings)
   // The largest distance at which occluders count, in scene units, above 0. A twentieth to a fifth
@@ -106,7 +106,8 @@ typedef struct AlcoveSettings {
   // The actual fraction grows with the occluder's width in the image: it is larger behind a wall
   // than behind a twig. [0.286]
   float hidden_occlusion;
-  uint32_t depth_layers;  // the depth layers that are searched: 1, or 2 with second_depth [1]
+  uint32_t depth_layers;  // the depth layers that are searched: 1, or 2 with second_depth [1, but 2
+                          // for ULTRA]
   // The largest number of frames that the history averages, 0 to 127. Raising it reduces noise, and
   // lets the image follow changes more slowly. After 16 frames without a change (static_frames) the
   // limit is 127. With 0 there is no history, and no memory for one.
@@ -159,6 +160,13 @@ size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t si
 // or an empty text if there is no error.
 AlcoveResult alcoveReadSettings(const char* text, size_t length, AlcoveSettings* settings,
                                 struct AlcoveAdvancedSettings* advanced, char* message);
+
+// A still image, such as a screenshot or a thumbnail, takes several frames of a scene and a camera
+// that do not move. Returns how many frames these settings need until their image has converged:
+// 128 with a history, which is then full, and 1 with history_frames = 0 and static_noise. Returns 0
+// if the settings are invalid, or if an image never converges because noise changes from frame to
+// frame and there is no history. Fewer frames have a larger error; INTEGRATION.md has figures.
+uint32_t alcoveGetConvergedFrames(const AlcoveSettings* settings);
 
 // The limits of alcoveFitBudget.
 typedef struct AlcoveBudget {

@@ -16,8 +16,9 @@ using Json = nlohmann::ordered_json;
 using Failure = tl::unexpected<std::string>;
 using passes::Quality;
 
-constexpr double kTolerance = 0.01;  // fraction by which instructions per pixel may exceed a budget
-constexpr float kRadius = 0.5f;      // scene units; the instructions do not depend on it
+constexpr double kTolerance =
+    0.01;                        // relative difference of instructions per pixel that is allowed
+constexpr float kRadius = 0.5f;  // scene units; the instructions do not depend on it
 constexpr const char* kKeys[] = {"part", "settings", "pass"};
 
 LabelledSettings preset(Quality quality) {
@@ -46,20 +47,33 @@ Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
           {"spilled_registers", occupancy.spills}};
 }
 
+enum class Bound { at_most, at_least, near };
+
+bool keeps(Bound bound, double value, double limit) {
+  switch (bound) {
+    case Bound::at_most:
+      return value <= limit;
+    case Bound::at_least:
+      return value >= limit;
+    case Bound::near:
+      return std::abs(value - limit) <= kTolerance * limit;
+  }
+  return false;
+}
+
 // Compares each number of a list with its limit.
-void check(const Json& limits, const Json& row, const char* key, double tolerance, bool at_least,
+void check(const Json& limits, const Json& row, const char* key, Bound bound,
            std::vector<std::string>& complaints) {
   const Json& found = row[key];
   const Json limit = limits.value(key, Json::array());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double value = found[i];
     const bool known = i < limit.size() && limit[i].is_number();
-    const double bound = known ? limit[i].get<double>() : 0.0;
-    if (!known || (at_least ? value < bound : value > bound * (1 + tolerance))) {
+    if (!known || !keeps(bound, value, limit[i].get<double>())) {
       complaints.push_back(fmt::format(
           "{}, {}, {}: {}[{}] is {:g}, the budget is {}.", row["part"].get<std::string>(),
           row["settings"].get<std::string>(), row["pass"].get<std::string>(), key, i, value,
-          known ? fmt::format("{:g}", bound) : "missing"));
+          known ? fmt::format("{:g}", limit[i].get<double>()) : "missing"));
     }
   }
 }
@@ -138,10 +152,10 @@ tl::expected<std::vector<std::string>, std::string> over_budget(
       });
       const Json none = Json::object();
       const Json& found = limits == rows.end() ? none : *limits;
-      check(found, row, "instructions_per_pixel", kTolerance, false, complaints);
-      check(found, row, "vector_registers", 0, false, complaints);
-      check(found, row, "waves_per_simd", 0, true, complaints);
-      check(found, row, "spilled_registers", 0, false, complaints);
+      check(found, row, "instructions_per_pixel", Bound::near, complaints);
+      check(found, row, "vector_registers", Bound::at_most, complaints);
+      check(found, row, "waves_per_simd", Bound::at_least, complaints);
+      check(found, row, "spilled_registers", Bound::at_most, complaints);
     }
   }
   return complaints;

@@ -28,9 +28,10 @@ namespace alcove::sample {
 [[nodiscard]] std::string budget_of(const std::vector<SettingsCost>& costs,
                                     const std::string& compiler);
 
-// Returns a sentence for each figure that exceeds its budget: more than 1 % more instructions per
-// pixel, more vector registers or spilled registers, fewer waves per SIMD, or a pass without a
-// budget. Error: the budget is for another compiler, whose code is different.
+// Returns a sentence for each figure that does not keep its budget: more than 1 % more or fewer
+// instructions per pixel (a model that forgets a loop finds fewer), more vector registers or
+// spilled registers, fewer waves per SIMD, or a pass without a budget. Error: the budget is for
+// another compiler, whose code is different.
 [[nodiscard]] tl::expected<std::vector<std::string>, std::string> over_budget(
     const std::string& budget, const std::string& compiler, const std::vector<SettingsCost>& costs);
 

@@ -13,8 +13,9 @@ using passes::cost::Direction;
 using passes::cost::ImageAccess;
 using passes::cost::Texel;
 
-// At most this many accesses of waves are simulated: the first rows of groups of a larger dispatch
-// stand for all. At 1920x1080 the searches of console, low and medium are simulated completely.
+// At most this many accesses of waves are simulated: the rows of groups in the middle of a larger
+// dispatch stand for all. At 1920x1080 the searches of console, low and medium are simulated
+// completely.
 constexpr std::size_t kMostAccesses = 110'000;
 constexpr std::uint32_t kGroup = 8;  // invocations of a group along x and y; a group is a wave
 
@@ -116,6 +117,7 @@ class Simulation {
     const std::size_t row = dispatch_.groups_x * dispatch_.accesses.size();
     const auto rows = static_cast<std::uint32_t>(
         std::clamp<std::size_t>(kMostAccesses / row, 1, dispatch_.groups_y));
+    first_row_ = (dispatch_.groups_y - rows) / 2;
     const std::uint32_t waves = dispatch_.groups_x * rows;
     bool busy = true;
     for (std::uint32_t started = 0; started < waves || busy;) {
@@ -152,8 +154,9 @@ class Simulation {
       filled = false;
       for (Unit& unit : units_) {
         if (unit.waves.size() < held_ && started < waves) {
-          unit.waves.push_back({{static_cast<std::int32_t>(started % dispatch_.groups_x),
-                                 static_cast<std::int32_t>(started / dispatch_.groups_x)}});
+          unit.waves.push_back(
+              {{static_cast<std::int32_t>(started % dispatch_.groups_x),
+                static_cast<std::int32_t>(first_row_ + started / dispatch_.groups_x)}});
           ++started;
           filled = true;
         }
@@ -238,7 +241,8 @@ class Simulation {
 
   const GpuPart& part_;
   const passes::cost::DispatchAccesses& dispatch_;
-  std::size_t held_;  // waves of a compute unit
+  std::size_t held_;             // waves of a compute unit
+  std::uint32_t first_row_ = 0;  // of the groups that are simulated
   std::vector<Unit> units_;
   std::vector<Cache> arrays_;  // RDNA2's L1 of each shader array
   Cache l2_;

@@ -49,7 +49,7 @@ struct OcclusionSettings {
   // Slices per traced pixel and frame, 1 to 64. More slices reduce noise.
   std::uint32_t slices = 2;
   // Depth samples per half-slice (each of the two directions of a slice), 2 to 64. More samples
-  // find thinner occluders. A traced pixel costs 2 * slices * steps depth fetches.
+  // find thinner occluders. A traced pixel costs 2 * slices * steps * depth_layers depth fetches.
   std::uint32_t steps = 12;
   // Thickness of occluders as a fraction of the radius (or in AdvancedSettings::thickness_unit), at
   // least 0. It is an upper limit: an occluder is no thicker than it is seen to be wide, so that
@@ -74,7 +74,7 @@ struct OcclusionSettings {
   bool static_noise = false;
   // Whether the passes filter and accumulate texels of 2x2 pixels, and upsample the result to
   // pixels along depth edges. This takes less time and less memory for the history, and has a
-  // larger error (figures in passes/README.md). It needs a tile_size of at least 2.
+  // larger error. It needs a tile_size of at least 2.
   bool half_resolution = false;
 
   // Outputs. An output that is off needs no pass and no memory.
