@@ -208,8 +208,9 @@ class MotionInspector {
     Mistake best = Mistake::count;
     double most = std::max(kFits, share + 0.3);
     const auto consider = [&](Mistake mistake, const Reading& reading) {
+      const auto other = displacements(now_, before, now_, before, reading);
       const double other_share =
-          share_in_motion(displacements(now_, before, now_, before, reading)).value_or(0.0);
+          other.size() < kEnoughSamples ? 0.0 : share_in_motion(other).value_or(0.0);
       if (other_share > most) {
         most = other_share;
         best = mistake;
