@@ -12,6 +12,7 @@ namespace {
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 // Limits for the comparison of the angles to the view axis.
+constexpr double kSameSurface = 15.0;          // degrees between the normals of successive samples
 constexpr double kSameAngleAboutAxis = 0.966;  // cosine of 15 degrees about the view axis
 constexpr double kStoredError = 0.002;  // of stored normals, radians: that of 10 bits a channel
 constexpr double kRatioError = 0.05;    // of the tangents' ratio at one sample
@@ -224,7 +225,7 @@ class Inspector {
     for_normals(reading, [&](const dvec3& own, const dvec3& given, double) {
       const dvec3 size = maths::abs(own);
       const int axis = size.x > std::max(size.y, size.z) ? 0 : size.y > size.z ? 1 : 2;
-      angles.at(static_cast<std::size_t>(2 * axis + (own[axis] < 0.0 ? 1 : 0)))
+      angles.at(2 * static_cast<std::size_t>(axis) + (own[axis] < 0.0 ? 1 : 0))
           .push_back(angle_between(own, given));
     });
     double largest = 0.0;
@@ -236,13 +237,21 @@ class Inspector {
     return largest;
   }
 
-  // Returns the median of these angles, or 0 with too few samples.
+  // Returns the median of these angles on continuous surfaces, where successive samples have nearly
+  // the same normal, or 0 if there are too few. Leaves often have the normals of their crown.
   double typical_angle() const {
     std::vector<double> angles;
+    std::size_t count = 0;
+    dvec3 before(0.0, 0.0, 1.0);
     for_normals(given_, [&](const dvec3& own, const dvec3& given, double) {
-      angles.push_back(angle_between(own, given));
+      if (angle_between(own, before) < kSameSurface) {
+        angles.push_back(angle_between(own, given));
+      }
+      before = own;
+      ++count;
     });
-    return angles.size() < kEnoughSamples ? 0.0 : quantile(angles, 0.5);
+    const bool judged = count >= kEnoughSamples && 5 * angles.size() >= 2 * count;
+    return judged ? quantile(angles, 0.5) : 0.0;
   }
 
   // The fraction of the given normals that face away from the eye, by more than 15 degrees.
