@@ -2,13 +2,15 @@
 // execute. The functions that describe a pass are pure, and the functions that add a pass to a
 // render graph (add_gtao and so on) add what these describe.
 //
+// clang-format off
 //   AlcoveWork work;
 //   WorkList list(work, previous);
-//   const Texture depth = list.add(ALCOVE_RESOURCE_KIND_INPUT, "depth", VK_FORMAT_D32_SFLOAT,
-//   size); const Texture ao = list.add(ALCOVE_RESOURCE_KIND_OUTPUT, "ao", VK_FORMAT_R8_UNORM,
-//   size); describe_occlusion(list, {.view = view}, {.depth_ndc = depth, .into = {.visibility =
-//   ao}},
+//   const Texture depth =
+//       list.add(ALCOVE_RESOURCE_KIND_INPUT, "depth", VK_FORMAT_D32_SFLOAT, size);
+//   const Texture ao = list.add(ALCOVE_RESOURCE_KIND_OUTPUT, "ao", VK_FORMAT_R8_UNORM, size);
+//   describe_occlusion(list, {.view = view}, {.depth_ndc = depth, .into = {.visibility = ao}},
 //                      settings);
+// clang-format on
 //
 // The functions take the same structs as those that add passes to a graph. The textures in them are
 // here handles of the list: Texture::index is the index of a resource. Results for which the caller
