@@ -33,6 +33,6 @@ layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 void main() {
   sum = projection.size_px.x + gtao.radius + normals.slope.x + reconstruct.largest_weight +
         gtso.roughness + multi_bounce.size_px.x + apply.roughness + environment.size +
-        gtao.depth_step + upsample.tolerance + depth_copy.sky +
-        float(linear_depth.origin.x) + float(inspect.has_motion);
+        gtao.depth_step + upsample.tolerance + depth_copy.sky + float(linear_depth.origin.x) +
+        float(inspect.has_motion);
 }
