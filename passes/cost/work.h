@@ -65,7 +65,7 @@ struct PassWork {
   FrameState state = FrameState::first;
   std::span<const PassImage> images;
   Groups groups;
-  // Of the full image, in pixels. The radius of the search is 96 pixels of 1080.
+  // The size of the full image in pixels. The radius of the search is 96 pixels of 1080.
   std::uint32_t height = 1080;
 };
 

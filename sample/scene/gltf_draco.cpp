@@ -21,7 +21,7 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 using Bytes = std::span<const uint8_t>;
 
-// What may still be decoded.
+// The triangles and bytes that may still be decoded.
 struct Budget {
   uint64_t faces = uint64_t{1} << 24;
   uint64_t bytes = uint64_t{1} << 30;

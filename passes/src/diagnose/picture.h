@@ -1,4 +1,4 @@
-// What inspect() compares: frames with their matrices, under hypotheses of how inputs are meant.
+// Frames with their matrices, under hypotheses of how inputs are meant. inspect() compares them.
 #pragma once
 
 #include <algorithm>

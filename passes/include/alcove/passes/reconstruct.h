@@ -35,7 +35,7 @@ struct ReconstructInputs {
   RawOcclusionTextures raw_occlusion;  // From add_gtao, with the same Frame::index.
   framegraph::Texture depth_ndc;       // See GtaoInputs::depth_ndc and depth_format.
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
-  framegraph::Texture normals;  // As GtaoInputs::normals.
+  framegraph::Texture normals;  // The same texture as GtaoInputs::normals.
   bool normals_in_view_space = false;
   // Motion vectors in xy: how far each surface moved on the image, in the units of
   // `motion_convention`. If null, only the camera is assumed to move. With motion vectors,
