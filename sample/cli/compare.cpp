@@ -12,6 +12,7 @@
 #include "evaluate/truths.h"
 #include "evaluate/weave.h"
 #include "support/image_io.h"
+#include "support/try.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -59,9 +60,7 @@ nlohmann::ordered_json errors_json(const Errors& errors) {
                               {"surface_normal", to_json(errors.surface_normal)},
                               {"open_surfaces", to_json(errors.open)},
                               {"weave", to_json(errors.weave)}};
-  if (errors.static_weave) {
-    json["static_weave"] = to_json(*errors.static_weave);
-  }
+  if (errors.static_weave) json["static_weave"] = to_json(*errors.static_weave);
   return json;
 }
 
@@ -100,17 +99,12 @@ tl::expected<void, std::string> write_truths(const Rendering& rendering, const T
 tl::expected<std::string, std::string> split_table(const Options& options,
                                                    const Rendering& rendering, const Truths& truths,
                                                    nlohmann::ordered_json& report) {
-  const auto gpu = open_gpu({options.device, options.validation});
-  if (!gpu) {
-    return tl::unexpected(gpu.error());
-  }
-  const auto split = split_error(**gpu, rendering.scene, static_setup(options, rendering.camera),
+  ALCOVE_TRY(const auto gpu, open_gpu({options.device, options.validation}));
+  const auto split = split_error(*gpu, rendering.scene, static_setup(options, rendering.camera),
                                  rendering.settings, truths.scene.visibility, truths.surfaces);
-  if (!split) {
-    return tl::unexpected(split.error());
-  }
+  if (!split) return tl::unexpected(split.error());
   report["split"] = to_json(*split);
-  return check_validation(**gpu)
+  return check_validation(*gpu)
       .and_then([&] { return write_pictures(*split, options.out); })
       .map([&] { return table_of(*split); });
 }
@@ -119,61 +113,44 @@ tl::expected<std::string, std::string> split_table(const Options& options,
 
 tl::expected<void, std::string> run_compare(const Options& options) {
   // The folder is created first, because the comparison takes minutes.
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
-  const auto rendering = render(options);
-  if (!rendering) {
-    return tl::unexpected(rendering.error());
-  }
-  const FrameImages& images = rendering->images;
-  const auto truths = truths_of({rendering->scene, rendering->camera, rendering->settings.radius,
-                                 images.depth_ndc, images.normal_ws},
-                                truth_options(options));
-  if (!truths) {
-    return tl::unexpected(truths.error());
-  }
-  const auto light = indirect_truths_of(*rendering, truth_options(options));
-  if (!light) {
-    return tl::unexpected(light.error());
-  }
-  Errors errors = errors_of(*rendering, *truths);
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY(const auto rendering, render(options));
+  const FrameImages& images = rendering.images;
+  ALCOVE_TRY(const auto truths,
+             truths_of({rendering.scene, rendering.camera, rendering.settings.radius,
+                        images.depth_ndc, images.normal_ws},
+                       truth_options(options)));
+  ALCOVE_TRY(const auto light, indirect_truths_of(rendering, truth_options(options)));
+  Errors errors = errors_of(rendering, truths);
   if (options.view.orbit != 0.0f) {
-    auto standing = static_weave(options, *truths);
-    if (!standing) {
-      return tl::unexpected(standing.error());
-    }
-    errors.static_weave = std::move(*standing);
+    ALCOVE_TRY(auto standing, static_weave(options, truths));
+    errors.static_weave = std::move(standing);
   }
-  const IndirectErrors indirect_errors = indirect_errors_of(*rendering, *truths, *light);
-  nlohmann::ordered_json report = report_of(*rendering, options);
+  const IndirectErrors indirect_errors = indirect_errors_of(rendering, truths, light);
+  nlohmann::ordered_json report = report_of(rendering, options);
   report["spp"] = options.occlusion.spp;
   report["errors"] = errors_json(errors);
   report["errors"].update(to_json(indirect_errors));
   std::string lit_table;
-  if (light->lit) {
-    const LitErrors lit_errors = lit_errors_of(*rendering, *light);
+  if (light.lit) {
+    const LitErrors lit_errors = lit_errors_of(rendering, light);
     report["errors"].update(to_json(lit_errors));
     lit_table = lit_error_table(lit_errors);
   }
   std::string causes;
   if (options.split) {
-    auto table = split_table(options, *rendering, *truths, report);
-    if (!table) {
-      return tl::unexpected(std::move(table.error()));
-    }
-    causes = std::move(*table);
+    ALCOVE_TRY(auto table, split_table(options, rendering, truths, report));
+    causes = std::move(table);
   }
-  return write_images(*rendering, options.out)
-      .and_then([&] { return write_truths(*rendering, *truths, options.out); })
+  return write_images(rendering, options.out)
+      .and_then([&] { return write_truths(rendering, truths, options.out); })
       .and_then([&] {
-        return light->lit ? write_lit_steps(*rendering, *light, options.out)
-                          : tl::expected<void, std::string>();
+        return light.lit ? write_lit_steps(rendering, light, options.out)
+                         : tl::expected<void, std::string>();
       })
       .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
       .map([&] {
-        std::cout << time_table(*rendering) << error_table(errors)
+        std::cout << time_table(rendering) << error_table(errors)
                   << indirect_error_table(indirect_errors) << lit_table << causes
                   << "Images and report.json are in " << options.out.string()
                   << "; in error.png red is too dark and blue too bright\n";

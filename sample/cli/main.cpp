@@ -77,9 +77,7 @@ int stop(const Stop& stop) {
 int main(int argc, char** argv) {
   try {
     const auto options = alcove::sample::parse_options(argc, argv);
-    if (!options) {
-      return stop(options.error());
-    }
+    if (!options) return stop(options.error());
     const auto done = run(*options);
     return done ? flush_output() : fail(done.error());
   } catch (const std::bad_alloc&) {

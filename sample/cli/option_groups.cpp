@@ -216,7 +216,7 @@ void add_motion(CLI::App& app, Options& options) {
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
   group.add("--quality", "NAME",
-            "preset: console, low, medium, high, ultra or reference. Default: medium",
+            "preset: " + passes::names_text<passes::Quality>() + ". Default: medium",
             [&](const OptionValue& given) {
               occlusion.quality_given = true;
               occlusion.quality =

@@ -31,9 +31,7 @@ std::string degrees_text(float radians) {
   std::string text;
   for (int digits = 3; digits <= 9; ++digits) {
     text = fmt::format("{:.{}g}", glm::degrees(radians), digits);
-    if (glm::radians(std::strtof(text.c_str(), nullptr)) == radians) {
-      break;
-    }
+    if (glm::radians(std::strtof(text.c_str(), nullptr)) == radians) break;
   }
   return text;
 }
@@ -97,15 +95,9 @@ void append_settings(const OcclusionSettings& settings, std::vector<std::string>
 
 std::vector<std::string> render_arguments(const Options& options, const Shot& shot) {
   std::vector<std::string> arguments{"alcove", "render"};
-  if (!options.scene.empty()) {
-    arguments.push_back(options.scene);
-  }
-  if (options.materials.cut_blends) {
-    arguments.emplace_back("--cut-blends");
-  }
-  if (options.materials.both_sides) {
-    arguments.emplace_back("--both-sides");
-  }
+  if (!options.scene.empty()) arguments.push_back(options.scene);
+  if (options.materials.cut_blends) arguments.emplace_back("--cut-blends");
+  if (options.materials.both_sides) arguments.emplace_back("--both-sides");
   if (!options.view.camera.empty()) {
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
   }
@@ -143,9 +135,7 @@ std::string shell_line(const std::vector<std::string>& arguments) {
       continue;
     }
     line += '\'';
-    for (const char c : argument) {
-      line += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
+    for (const char c : argument) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
     line += '\'';
   }
   return line;

@@ -31,4 +31,7 @@ namespace alcove::sample {
 [[nodiscard]] tl::expected<std::vector<std::pair<std::string, std::string>>, std::string>
 read_settings(const std::string& file);
 
+// The preset of --quality, or all presets for frames in real time if it was not given.
+[[nodiscard]] std::vector<passes::Quality> chosen_presets(const OcclusionOptions& options);
+
 }  // namespace alcove::sample

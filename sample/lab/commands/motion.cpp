@@ -10,6 +10,7 @@
 #include "render/settings_json.h"
 #include "support/image_io.h"
 #include "support/progress.h"
+#include "support/try.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -27,28 +28,19 @@ struct MotionInputs {
 };
 
 tl::expected<MotionInputs, std::string> motion_inputs(const Options& options) {
-  auto session = open_session(options);
-  if (!session) {
-    return Failure(std::move(session.error()));
-  }
-  MotionInputs inputs{std::move(*session), {}, {}};
+  ALCOVE_TRY(auto session, open_session(options));
+  MotionInputs inputs{std::move(session), {}, {}};
   const passes::OcclusionSettings& settings = inputs.session.settings;
   if (settings.history_frames == 0) {
     return Failure(
         "The occlusion keeps no history, so there is nothing to follow in motion: give another "
         "--quality, or --set history_frames=32.");
   }
-  const auto rays = RayScene::create(inputs.session.scene);
-  if (!rays) {
-    return Failure(rays.error());
-  }
+  ALCOVE_TRY(const auto rays, RayScene::create(inputs.session.scene));
   const float aspect =
       static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
-  auto start = motion_start(*rays, inputs.session.camera, aspect, settings.radius);
-  if (!start) {
-    return Failure(std::move(start.error()));
-  }
-  inputs.start = std::move(*start);
+  ALCOVE_TRY(auto start, motion_start(rays, inputs.session.camera, aspect, settings.radius));
+  inputs.start = std::move(start);
   inputs.setup = {settings,
                   options.occlusion.normals,
                   options.view.width,
@@ -75,9 +67,7 @@ Done write_pictures(const std::filesystem::path& folder, MotionKind kind,
                          return write_png(folder / (name + "_trails.png"),
                                           error_colours(picture.visibility, picture.static_camera));
                        });
-    if (!written) {
-      return written;
-    }
+    if (!written) return written;
   }
   return {};
 }
@@ -166,25 +156,18 @@ Done run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Jso
   std::vector<MotionPicture> pictures;
   std::string table;
   if (kind == MotionKind::cut) {
-    auto made = run_cut(*inputs.session.gpu, inputs.session.scene, path, inputs.setup);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    report[std::string(name_of(kind))] = to_json(*made);
-    table = table_of(*made);
-    pictures = std::move(made->pictures);
+    ALCOVE_TRY(auto made, run_cut(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
+    report[std::string(name_of(kind))] = to_json(made);
+    table = table_of(made);
+    pictures = std::move(made.pictures);
   } else {
-    auto made = run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    report[std::string(name_of(kind))] = to_json(*made);
-    table = table_of(kind, *made);
-    pictures = std::move(made->pictures);
+    ALCOVE_TRY(auto made,
+               run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
+    report[std::string(name_of(kind))] = to_json(made);
+    table = table_of(kind, made);
+    pictures = std::move(made.pictures);
   }
-  if (auto valid = check_validation(*inputs.session.gpu); !valid) {
-    return valid;
-  }
+  ALCOVE_TRY_VOID(check_validation(*inputs.session.gpu));
   std::cout << table << std::flush;
   return write_pictures(options.out, kind, pictures);
 }
@@ -192,25 +175,15 @@ Done run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Jso
 }  // namespace
 
 Done run_motion(const Options& options) {
-  auto inputs = motion_inputs(options);
-  if (!inputs) {
-    return Failure(std::move(inputs.error()));
-  }
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
+  ALCOVE_TRY(auto inputs, motion_inputs(options));
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   Json report;
-  report["device"] = inputs->session.gpu->device().properties().deviceName;
-  report["settings"] = to_json(inputs->setup.occlusion);
+  report["device"] = inputs.session.gpu->device().properties().deviceName;
+  report["settings"] = to_json(inputs.setup.occlusion);
   report["frames"] = options.view.frames;
   for (const MotionKind kind : kMotionKinds) {
-    if (options.path && *options.path != kind) {
-      continue;
-    }
-    if (auto done = run_path(*inputs, kind, options, report["paths"]); !done) {
-      return done;
-    }
+    if (options.path && *options.path != kind) continue;
+    ALCOVE_TRY_VOID(run_path(inputs, kind, options, report["paths"]));
   }
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
     std::cout

@@ -3,7 +3,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "alcove/passes/setting_names.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/render_command.h"
@@ -11,10 +10,12 @@
 #include "evaluate/errors.h"
 #include "evaluate/situations.h"
 #include "evaluate/trade.h"
+#include "gpu_cost/presets.h"
 #include "gpu_cost/xegtao.h"
 #include "report/report_page.h"
 #include "support/printable.h"
 #include "support/progress.h"
+#include "support/try.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -42,9 +43,7 @@ class ScenePage {
                     .and_then([&] { return add_pictures(); })
                     .and_then([&] { return add_split(); })
                     .and_then([&] { return add_plan(); });
-    if (!done) {
-      return Failure(std::move(done.error()));
-    }
+    if (!done) return Failure(std::move(done.error()));
     json_["name"] = options_.scene.empty() ? "builtin" : printable(options_.scene);
     json_["points"] = std::move(points_);
     return std::move(json_);
@@ -54,15 +53,9 @@ class ScenePage {
   using Done = tl::expected<void, std::string>;
 
   tl::expected<Achievement, std::string> measure(const OcclusionSettings& settings) {
-    const auto ms = times_.measure(settings);
-    if (!ms) {
-      return Failure(ms.error());
-    }
-    const auto rmse = errors_.measure(settings);
-    if (!rmse) {
-      return Failure(rmse.error());
-    }
-    return Achievement{settings, *rmse, *ms};
+    ALCOVE_TRY(const auto ms, times_.measure(settings));
+    ALCOVE_TRY(const auto rmse, errors_.measure(settings));
+    return Achievement{settings, rmse, ms};
   }
 
   void add_point(const std::string& name, const Achievement& of, bool preset, bool recommended) {
@@ -83,13 +76,10 @@ class ScenePage {
     const std::vector<Variant> variants = preset_sweep(session_.settings);
     const Progress progress = print_progress("settings");
     for (std::size_t i = 0; i < variants.size(); ++i) {
-      const auto found = measure(variants[i].settings);
-      if (!found) {
-        return Failure(found.error());
-      }
+      ALCOVE_TRY(const auto found, measure(variants[i].settings));
       const bool preset = std::ranges::any_of(
           presets(), [&](Quality quality) { return variants[i].name == passes::name_of(quality); });
-      add_point(variants[i].name, *found, preset, false);
+      add_point(variants[i].name, found, preset, false);
       progress(static_cast<double>(i + 1) / static_cast<double>(variants.size()));
     }
     return {};
@@ -98,28 +88,22 @@ class ScenePage {
   // The settings that `recommend` finds within the time of `medium`.
   Done add_requirements() {
     OcclusionSettings medium = passes::quality_settings(Quality::medium, session_.settings.radius);
-    const auto limit = times_.measure(medium);
-    if (!limit) {
-      return Failure(limit.error());
-    }
+    ALCOVE_TRY(const auto limit, times_.measure(medium));
     RecommendationGoal goal;
-    goal.budget_ms = goal.ms({medium, {}, *limit});
+    goal.budget_ms = goal.ms({medium, {}, limit});
     const RecommendationWorld world{
         [&](const OcclusionSettings& settings) { return measure(settings); },
         [&](const OcclusionSettings& settings) { return times_.measure(settings); }};
-    const auto found = recommend(medium, goal, world);
-    if (!found) {
-      return Failure(found.error());
-    }
-    add_point("recommended within the time of medium", found->chosen, false, true);
+    ALCOVE_TRY(const auto found, recommend(medium, goal, world));
+    add_point("recommended within the time of medium", found.chosen, false, true);
     json_["summary"] = fmt::format(
         "Within the time of medium ({:.4f} ms): tiles of {}x{}, {} slices of {} steps, {} depth "
         "layers; RMSE {:.4f}.",
-        *goal.budget_ms, found->chosen.settings.tile_size, found->chosen.settings.tile_size,
-        found->chosen.settings.slices, found->chosen.settings.steps,
-        found->chosen.settings.depth_layers, goal.rmse(found->chosen));
+        *goal.budget_ms, found.chosen.settings.tile_size, found.chosen.settings.tile_size,
+        found.chosen.settings.slices, found.chosen.settings.steps,
+        found.chosen.settings.depth_layers, goal.rmse(found.chosen));
     json_["requirements"] = Json::array();
-    for (const FeatureEffect& feature : found->features) {
+    for (const FeatureEffect& feature : found.features) {
       json_["requirements"].push_back(feature.sentence());
     }
     return {};
@@ -140,15 +124,12 @@ class ScenePage {
     });
     for (const Quality quality : presets()) {
       const std::string name(passes::name_of(quality));
-      const auto visibility = errors_.draw(
-          passes::quality_settings(quality, session_.settings.radius), options_.view.frames, 0);
-      if (!visibility) {
-        return Failure(visibility.error());
-      }
-      done =
-          done.and_then([&] { return add_picture("pictures", name, *visibility); }).and_then([&] {
-            return add_picture("errors", name, error_colours(*visibility, truth));
-          });
+      ALCOVE_TRY(const auto visibility,
+                 errors_.draw(passes::quality_settings(quality, session_.settings.radius),
+                              options_.view.frames, 0));
+      done = done.and_then([&] { return add_picture("pictures", name, visibility); }).and_then([&] {
+        return add_picture("errors", name, error_colours(visibility, truth));
+      });
     }
     return done;
   }
@@ -159,9 +140,7 @@ class ScenePage {
         split_error(*session_.gpu, session_.scene, static_setup(options_, session_.camera),
                     passes::quality_settings(Quality::medium, session_.settings.radius),
                     errors_.truths().scene.visibility, errors_.truths().surfaces);
-    if (!split) {
-      return Failure(split.error());
-    }
+    if (!split) return Failure(split.error());
     json_["split"] = to_json(*split);
     Done done;
     for (const ErrorCause& cause : split->causes) {
@@ -172,11 +151,8 @@ class ScenePage {
   }
 
   Done add_plan() {
-    auto text = plan_text(session_, options_);
-    if (!text) {
-      return Failure(std::move(text.error()));
-    }
-    json_["plan"] = std::move(*text);
+    ALCOVE_TRY(auto text, plan_text(session_, options_));
+    json_["plan"] = std::move(text);
     return {};
   }
 
@@ -191,18 +167,10 @@ class ScenePage {
 }  // namespace
 
 tl::expected<void, std::string> run_report(const Options& options) {
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   // A missing Chart.js is reported before the measurement, which takes minutes.
-  if (const auto page = report_page({}); !page) {
-    return Failure(page.error());
-  }
-  const auto times = modelled_times(options);
-  if (!times) {
-    return Failure(times.error());
-  }
+  ALCOVE_TRY_VOID(report_page({}));
+  ALCOVE_TRY(const auto times, modelled_times(options));
   Json data{{"gpu", options.gpu->title},
             {"target", fmt::format("{}x{}", options.target_width, options.target_height)},
             {"size", fmt::format("{}x{}", options.view.width, options.view.height)},
@@ -217,27 +185,15 @@ tl::expected<void, std::string> run_report(const Options& options) {
   for (const std::string& scene : scenes) {
     Options one = options;
     one.scene = scene;
-    const auto session = open_session(one);
-    if (!session) {
-      return Failure(session.error());
-    }
-    data["device"] = session->gpu->device().properties().deviceName;
-    auto errors =
-        SituationErrors::create(*session, static_setup(one, session->camera), truth_options(one));
-    if (!errors) {
-      return Failure(std::move(errors.error()));
-    }
-    auto page = ScenePage(one, *session, *times, std::move(*errors)).make();
-    if (!page) {
-      return Failure(std::move(page.error()));
-    }
-    data["scenes"].push_back(std::move(*page));
+    ALCOVE_TRY(const auto session, open_session(one));
+    data["device"] = session.gpu->device().properties().deviceName;
+    ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(one, session.camera),
+                                                    truth_options(one)));
+    ALCOVE_TRY(auto page, ScenePage(one, session, times, std::move(errors)).make());
+    data["scenes"].push_back(std::move(page));
   }
-  const auto page = report_page(data);
-  if (!page) {
-    return Failure(page.error());
-  }
-  return write_text(options.out / "index.html", *page).map([&] {
+  ALCOVE_TRY(const auto page, report_page(data));
+  return write_text(options.out / "index.html", page).map([&] {
     std::cout << "index.html is in " << options.out.string() << "\n";
   });
 }

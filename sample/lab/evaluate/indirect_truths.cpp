@@ -10,6 +10,7 @@
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
 #include "support/progress.h"
+#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -100,9 +101,7 @@ class CachedTracer {
         })) {
       truth = lit_truth(rays_, points_, materials, viewer_of(rendering_.camera),
                         rendering_.light.environment, settings_, print_progress("lit truth"));
-      for (const auto& [name, image] : parts) {
-        cache_.write(key_of(name), *image);
-      }
+      for (const auto& [name, image] : parts) cache_.write(key_of(name), *image);
     }
     return truth;
   }
@@ -132,28 +131,21 @@ std::vector<Image<float>> roughness_images(const Rendering& rendering) {
 
 tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& rendering,
                                                              const TruthOptions& options) {
-  const auto rays = RayScene::create(rendering.scene);
-  if (!rays) {
-    return tl::unexpected(rays.error());
-  }
+  ALCOVE_TRY(const auto rays, RayScene::create(rendering.scene));
   const Image<float> depth = linear_depth(rendering);
   IndirectTruths truths;
   truths.block = block_size(depth, options.indirect_points);
   truths.sampled = choose_pixels(depth, truths.block);
-  truths.points = surface_points(*rays, rendering.camera, rendering.images.normal_ws, depth);
+  truths.points = surface_points(rays, rendering.camera, rendering.images.normal_ws, depth);
   for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {
-    if (truths.sampled.pixels[i] == 0) {
-      truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
-    }
+    if (truths.sampled.pixels[i] == 0) truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
   }
-  const CachedTracer tracer(rendering, options, *rays, truths.points);
+  const CachedTracer tracer(rendering, options, rays, truths.points);
   truths.interreflection = tracer.interreflection();
   for (const Image<float>& roughness : roughness_images(rendering)) {
     truths.specular.push_back(tracer.specular(roughness));
   }
-  if (rendering.light.lit_steps) {
-    truths.lit = tracer.lit(roughness_images(rendering).front());
-  }
+  if (rendering.light.lit_steps) truths.lit = tracer.lit(roughness_images(rendering).front());
   return truths;
 }
 

@@ -15,9 +15,7 @@ namespace {
 
 Image<glm::vec3> sum(const Image<glm::vec3>& a, const Image<glm::vec3>& b) {
   Image<glm::vec3> result = a;
-  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
-    result.pixels[i] += b.pixels[i];
-  }
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] += b.pixels[i];
   return result;
 }
 
@@ -57,9 +55,7 @@ Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths
 void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
            Image<glm::vec3>& canvas) {
   for (std::uint32_t y = 0; y < tile.height; ++y) {
-    for (std::uint32_t x = 0; x < tile.width; ++x) {
-      canvas.at(left + x, top + y) = tile.at(x, y);
-    }
+    for (std::uint32_t x = 0; x < tile.width; ++x) canvas.at(left + x, top + y) = tile.at(x, y);
   }
 }
 
@@ -117,9 +113,7 @@ nlohmann::ordered_json to_json(const LitErrors& errors) {
   const auto add = [](const LitStep& step) {
     return nlohmann::ordered_json{{"rmse", step.rmse}, {"bias", step.bias}};
   };
-  for (const LitStep& step : errors.steps) {
-    json["steps"][step.name] = add(step);
-  }
+  for (const LitStep& step : errors.steps) json["steps"][step.name] = add(step);
   json["visibility_alone"] = add(errors.visibility_only);
   json["diffuse"] = add(errors.diffuse);
   json["specular"] = add(errors.specular);
@@ -133,9 +127,7 @@ std::string lit_error_table(const LitErrors& errors) {
       errors.pixels, errors.mean_radiance, errors.noise);
   std::vector<LitStep> steps = errors.steps;
   steps.insert(steps.end(), {errors.visibility_only, errors.diffuse, errors.specular});
-  for (const LitStep& step : steps) {
-    text += error_row(step.name, step.rmse, step.bias);
-  }
+  for (const LitStep& step : steps) text += error_row(step.name, step.rmse, step.bias);
   return text;
 }
 

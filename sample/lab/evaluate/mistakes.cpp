@@ -1,4 +1,5 @@
 #include "evaluate/mistakes.h"
+#include "support/try.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,9 +67,7 @@ void change_view_matrices(F& frame, const Change& change) {
 
 void transpose(float* matrix, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      std::swap(matrix[4 * i + k], matrix[4 * k + i]);
-    }
+    for (std::size_t k = 0; k < i; ++k) std::swap(matrix[4 * i + k], matrix[4 * k + i]);
   }
 }
 
@@ -362,11 +361,8 @@ tl::expected<std::string, std::string> said_of_right_frames(EngineRun& run) {
                               }};
   std::string said;
   for (const ChangeFrame& way : ways) {
-    auto drawn = run.draw(way);
-    if (!drawn) {
-      return Failure(std::move(drawn.error()));
-    }
-    said += drawn->said;
+    ALCOVE_TRY(auto drawn, run.draw(way));
+    said += drawn.said;
   }
   return said;
 }
@@ -386,9 +382,7 @@ tl::expected<MistakeRun, std::string> MistakeRun::create(Gpu& gpu, const Scene& 
   from.reversed_z = true;
   from.far_plane = std::numeric_limits<float>::infinity();
   auto reversed = EngineRun::create(gpu, scene, from, course);
-  if (!plain || !reversed) {
-    return Failure(plain ? reversed.error() : plain.error());
-  }
+  if (!plain || !reversed) return Failure(plain ? reversed.error() : plain.error());
   result.plain_ = std::move(*plain);
   result.reversed_ = std::move(*reversed);
   return result;

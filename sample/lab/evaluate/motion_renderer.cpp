@@ -7,6 +7,7 @@
 
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
+#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -24,12 +25,9 @@ tl::expected<MotionRenderer, std::string> MotionRenderer::create(Gpu& gpu, const
   MotionRenderer made(path, setup);
   made.scene_ = std::make_unique<Scene>(scene);
   path.add_to(*made.scene_);
-  auto renderer =
-      FrameRenderer::create(gpu, *made.scene_, {setup.width, setup.height}, setup.normals);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
-  made.renderer_ = std::move(*renderer);
+  ALCOVE_TRY(auto renderer,
+             FrameRenderer::create(gpu, *made.scene_, {setup.width, setup.height}, setup.normals));
+  made.renderer_ = std::move(renderer);
   return made;
 }
 
@@ -51,24 +49,16 @@ FrameRequest MotionRenderer::request(const Step& step) const {
   request.occlusion = setup_.occlusion;
   request.occlusion.specular = passes::Specular::none;
   request.occlusion.bent_normal = true;
-  if (step.filtering != Filtering::spatial_and_temporal) {
-    request.occlusion.history_frames = 0;
-  }
-  if (step.filtering == Filtering::none) {
-    request.occlusion.advanced.filter_radius = 0;
-  }
+  if (step.filtering != Filtering::spatial_and_temporal) request.occlusion.history_frames = 0;
+  if (step.filtering == Filtering::none) request.occlusion.advanced.filter_radius = 0;
   return request;
 }
 
 tl::expected<RenderedFrame, std::string> MotionRenderer::draw_and_read(const Step& step) {
-  auto images = renderer_->draw_and_read(request(step));
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
+  ALCOVE_TRY(auto images, renderer_->draw_and_read(request(step)));
   const Camera camera = path_.camera(step.frame);
-  return RenderedFrame{camera, linear_depth(camera, images->depth_ndc),
-                       std::move(images->normal_ws), std::move(images->visibility),
-                       std::move(images->bent_normal_ws)};
+  return RenderedFrame{camera, linear_depth(camera, images.depth_ndc), std::move(images.normal_ws),
+                       std::move(images.visibility), std::move(images.bent_normal_ws)};
 }
 
 tl::expected<void, std::string> MotionRenderer::draw(const Step& step) {
@@ -107,19 +97,14 @@ tl::expected<MotionRenderer::Truth, std::string> MotionRenderer::truth(std::uint
     return cache.read(known_half.visibility_key, known_half.visibility) &&
            cache.read(known_half.bent_normal_key, known_half.bent_normal_ws);
   });
-  if (known) {
-    return truth;
-  }
-  const auto rays = RayScene::create(*scene_);
-  if (!rays) {
-    return Failure(rays.error());
-  }
-  const SurfacePoints points = surface_points(*rays, seen.camera, seen.normal_ws, seen.depth);
+  if (known) return truth;
+  ALCOVE_TRY(const auto rays, RayScene::create(*scene_));
+  const SurfacePoints points = surface_points(rays, seen.camera, seen.normal_ws, seen.depth);
   const Progress whole = progress(fmt::format("truth of frame {}", frame));
   for (std::uint32_t i = 0; i < halves.size(); ++i) {
     const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + i};
     OcclusionTruth traced =
-        occlusion_truth(*rays, points, settings, [&](double done) { whole(0.5 * (i + done)); });
+        occlusion_truth(rays, points, settings, [&](double done) { whole(0.5 * (i + done)); });
     halves[i].visibility = std::move(traced.visibility);
     halves[i].bent_normal_ws = std::move(traced.bent_normal_ws);
     cache.write(halves[i].visibility_key, halves[i].visibility);

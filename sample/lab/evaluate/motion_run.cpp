@@ -1,4 +1,5 @@
 #include "evaluate/motion_run.h"
+#include "support/try.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,9 +48,7 @@ std::uint32_t first_converged(const MotionPath& path) { return path.frames() / k
 
 bool is_compared(const MotionPath& path, std::uint32_t frame) {
   for (std::uint32_t i = 1; i <= kCompared; ++i) {
-    if (frame + 1 == i * path.frames() / kCompared) {
-      return true;
-    }
+    if (frame + 1 == i * path.frames() / kCompared) return true;
   }
   return false;
 }
@@ -79,31 +78,28 @@ tl::expected<PathResult, std::string> render_path(MotionRenderer& renderer,
   RenderedFrame before;
   Image<Age> ages;
   for (std::uint32_t frame = first; frame < path.frames(); ++frame) {
-    auto seen = renderer.draw_and_read({.frame = frame,
-                                        .before = frame - (frame > first ? 1 : 0),
-                                        .index = frame,
-                                        .filtering = filtering});
-    if (!seen) {
-      return Failure(std::move(seen.error()));
-    }
+    ALCOVE_TRY(auto seen, renderer.draw_and_read({.frame = frame,
+                                                  .before = frame - (frame > first ? 1 : 0),
+                                                  .index = frame,
+                                                  .filtering = filtering}));
     if (frame == first) {
-      ages = first_ages(*seen);
+      ages = first_ages(seen);
     } else {
-      const Reprojection reprojection = reproject(*seen, before, [&](const glm::vec3& position) {
+      const Reprojection reprojection = reproject(seen, before, [&](const glm::vec3& position) {
         return path.position_before(position, frame);
       });
-      ages = next_ages(*seen, reprojection, ages);
+      ages = next_ages(seen, reprojection, ages);
       if (frame >= first_converged(path)) {
-        passed.change += visibility_change(seen->visibility, before.visibility, reprojection);
+        passed.change += visibility_change(seen.visibility, before.visibility, reprojection);
       }
       const Speed speed = speed_of(reprojection);
       passed.speed += {speed.mean, 1};
       passed.fast += {speed.percentile_95, 1};
       if (history && is_compared(path, frame)) {
-        passed.compared.push_back({frame, *seen, ages, std::move(before), reprojection});
+        passed.compared.push_back({frame, seen, ages, std::move(before), reprojection});
       }
     }
-    before = std::move(*seen);
+    before = std::move(seen);
     progress(static_cast<double>(frame + 1 - first) / (path.frames() - first));
   }
   return passed;
@@ -119,32 +115,23 @@ struct StaticResult {
 tl::expected<StaticResult, std::string> render_static(MotionRenderer& renderer,
                                                       std::uint32_t frame) {
   for (std::uint32_t index = 0; index + 1 < frame; ++index) {
-    if (auto drawn =
-            renderer.draw({.frame = frame, .before = frame, .index = index, .moving = false});
-        !drawn) {
-      return Failure(std::move(drawn.error()));
-    }
+    ALCOVE_TRY_VOID(
+        renderer.draw({.frame = frame, .before = frame, .index = index, .moving = false}));
   }
   const auto read = [&](std::uint32_t index) {
     return renderer.draw_and_read(
         {.frame = frame, .before = frame, .index = index, .moving = false});
   };
-  const auto before = read(frame - 1);
-  if (!before) {
-    return Failure(before.error());
-  }
-  auto last = read(frame);
-  if (!last) {
-    return Failure(std::move(last.error()));
-  }
+  ALCOVE_TRY(const auto before, read(frame - 1));
+  ALCOVE_TRY(auto last, read(frame));
   StaticResult standing;
-  for (std::size_t i = 0; i < last->depth.pixels.size(); ++i) {
-    if (std::isfinite(last->depth.pixels[i])) {
-      standing.change += {std::abs(last->visibility.pixels[i] - before->visibility.pixels[i]), 1};
+  for (std::size_t i = 0; i < last.depth.pixels.size(); ++i) {
+    if (std::isfinite(last.depth.pixels[i])) {
+      standing.change += {std::abs(last.visibility.pixels[i] - before.visibility.pixels[i]), 1};
     }
   }
-  standing.visibility = std::move(last->visibility);
-  standing.bent_normal_ws = std::move(last->bent_normal_ws);
+  standing.visibility = std::move(last.visibility);
+  standing.bent_normal_ws = std::move(last.bent_normal_ws);
   return standing;
 }
 
@@ -177,40 +164,31 @@ struct Comparison {
 };
 
 Done compare(MotionRenderer& renderer, const Compared& compared, Comparison& sums) {
-  auto standing = render_static(renderer, compared.frame);
-  if (!standing) {
-    return Failure(std::move(standing.error()));
-  }
-  const auto truth = renderer.truth(compared.frame, compared.seen);
-  if (!truth) {
-    return Failure(truth.error());
-  }
-  const auto truth_before = renderer.truth(compared.frame - 1, compared.before);
-  if (!truth_before) {
-    return Failure(truth_before.error());
-  }
+  ALCOVE_TRY(auto standing, render_static(renderer, compared.frame));
+  ALCOVE_TRY(const auto truth, renderer.truth(compared.frame, compared.seen));
+  ALCOVE_TRY(const auto truth_before, renderer.truth(compared.frame - 1, compared.before));
   const auto is_near_object = [&](const glm::vec3& position) {
     return renderer.path().is_near_object(position, compared.frame, kTrailFrames);
   };
   const RenderedFrame& seen = compared.seen;
   const Mask surfaces = surfaces_of(seen);
   const auto add = [&](SquaresPair& squares, const Mask& mask) {
-    squares.add(seen.visibility, standing->visibility, truth->visibility, mask);
+    squares.add(seen.visibility, standing.visibility, truth.visibility, mask);
   };
   add(sums.all, surfaces);
   add(sums.uncovered, pixels_of_age(compared.ages, true));
   add(sums.entered, pixels_of_age(compared.ages, false));
   add(sums.near_object, surfaces_where(seen, is_near_object));
-  sums.bent_normals.add(seen.bent_normal_ws, standing->bent_normal_ws, truth->bent_normal_ws,
+  sums.bent_normals.add(seen.bent_normal_ws, standing.bent_normal_ws, truth.bent_normal_ws,
                         surfaces);
-  sums.static_change += standing->change;
+  sums.static_change += standing.change;
   sums.truth_change +=
-      change_lower_bound(truth->visibility, truth_before->visibility, compared.reprojection);
-  Image<float> mean_truth = mean_of(truth->visibility);
+      change_lower_bound(truth.visibility, truth_before.visibility, compared.reprojection);
+  Image<float> mean_truth = mean_of(truth.visibility);
   sums.weave += weave_of(seen.visibility, mean_truth, surfaces);
-  sums.static_weave += weave_of(standing->visibility, mean_truth, surfaces);
+  sums.static_weave += weave_of(standing.visibility, mean_truth, surfaces);
   sums.pictures.push_back(
-      {compared.frame, seen.visibility, std::move(standing->visibility), std::move(mean_truth)});
+      {compared.frame, seen.visibility, std::move(standing.visibility), std::move(mean_truth)});
   return {};
 }
 
@@ -229,11 +207,8 @@ tl::expected<std::vector<RenderedFrame>, std::string> after_cut(MotionRenderer& 
         .restart = restart && frame == cut};
     // 1, 2, 4, ...
     if (since > 0 && (since & (since - 1)) == 0) {
-      auto images = renderer.draw_and_read(step);
-      if (!images) {
-        return Failure(std::move(images.error()));
-      }
-      seen.push_back(std::move(*images));
+      ALCOVE_TRY(auto images, renderer.draw_and_read(step));
+      seen.push_back(std::move(images));
     } else if (auto drawn = renderer.draw(step); !drawn) {
       return Failure(std::move(drawn.error()));
     }
@@ -246,37 +221,23 @@ tl::expected<std::vector<RenderedFrame>, std::string> after_cut(MotionRenderer& 
 tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
                                                    const MotionPath& path,
                                                    const MotionSetup& setup) {
-  auto renderer = MotionRenderer::create(gpu, scene, path, setup);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
+  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
   using Filtering = MotionRenderer::Filtering;
-  const auto passed = render_path(*renderer, Filtering::spatial_and_temporal);
-  if (!passed) {
-    return Failure(passed.error());
-  }
-  const auto unkept = render_path(*renderer, Filtering::spatial);
-  if (!unkept) {
-    return Failure(unkept.error());
-  }
-  const auto unfiltered = render_path(*renderer, Filtering::none);
-  if (!unfiltered) {
-    return Failure(unfiltered.error());
-  }
+  ALCOVE_TRY(const auto passed, render_path(renderer, Filtering::spatial_and_temporal));
+  ALCOVE_TRY(const auto unkept, render_path(renderer, Filtering::spatial));
+  ALCOVE_TRY(const auto unfiltered, render_path(renderer, Filtering::none));
   Comparison sums;
-  for (const Compared& compared : passed->compared) {
-    if (auto done = compare(*renderer, compared, sums); !done) {
-      return Failure(std::move(done.error()));
-    }
+  for (const Compared& compared : passed.compared) {
+    ALCOVE_TRY_VOID(compare(renderer, compared, sums));
   }
   return MotionReport{
-      .speed = {passed->speed.mean(), passed->fast.mean()},
+      .speed = {passed.speed.mean(), passed.fast.mean()},
       .all = sums.all.errors(),
       .uncovered = sums.uncovered.errors(),
       .entered = sums.entered.errors(),
       .near_object = sums.near_object.errors(),
       .bent_normals = sums.bent_normals.errors(),
-      .flicker = {passed->change.mean(), unkept->change.mean(), unfiltered->change.mean(),
+      .flicker = {passed.change.mean(), unkept.change.mean(), unfiltered.change.mean(),
                   sums.static_change.mean(), sums.truth_change.mean()},
       .weave = sums.weave,
       .static_weave = sums.static_weave,
@@ -285,30 +246,18 @@ tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
 
 tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
                                              const MotionSetup& setup) {
-  auto renderer = MotionRenderer::create(gpu, scene, path, setup);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
-  auto kept_frames = after_cut(*renderer, false);
-  if (!kept_frames) {
-    return Failure(std::move(kept_frames.error()));
-  }
-  auto restarted_frames = after_cut(*renderer, true);
-  if (!restarted_frames) {
-    return Failure(std::move(restarted_frames.error()));
-  }
+  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
+  ALCOVE_TRY(auto kept_frames, after_cut(renderer, false));
+  ALCOVE_TRY(auto restarted_frames, after_cut(renderer, true));
   const std::uint32_t cut = path.cut().value_or(0);
-  const auto truth = renderer->truth(cut, kept_frames->front());
-  if (!truth) {
-    return Failure(truth.error());
-  }
+  ALCOVE_TRY(const auto truth, renderer.truth(cut, kept_frames.front()));
   CutReport report;
-  const Mask surfaces = surfaces_of(kept_frames->front());
-  for (std::size_t i = 0; i < kept_frames->size(); ++i) {
-    RenderedFrame& kept = (*kept_frames)[i];
-    RenderedFrame& restarted = (*restarted_frames)[i];
+  const Mask surfaces = surfaces_of(kept_frames.front());
+  for (std::size_t i = 0; i < kept_frames.size(); ++i) {
+    RenderedFrame& kept = kept_frames[i];
+    RenderedFrame& restarted = restarted_frames[i];
     const std::uint32_t frames = 1u << i;
-    const SplitTruth<float>& visibility = truth->visibility;
+    const SplitTruth<float>& visibility = truth.visibility;
     report.after.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
                             root(squared_error(restarted.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),

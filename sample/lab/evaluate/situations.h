@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,10 @@
 
 namespace alcove::sample {
 
+// The width of the guard bands that are measured, over the height of the image: about the length of
+// a search.
+inline constexpr double kGuardBand = 0.1;
+
 // Measures the errors of settings in one view: of the first frame, of the last frame of an orbit
 // that ends at the view, and after StaticSetup::frames frames of a static camera.
 class SituationErrors {
@@ -28,6 +33,9 @@ class SituationErrors {
   // it, for this build of the program and this device.
   [[nodiscard]] tl::expected<std::array<double, 3>, std::string> measure(
       const passes::OcclusionSettings& settings);
+  // The errors with a guard band of kGuardBand of the image's height. They are not kept.
+  [[nodiscard]] tl::expected<std::array<double, 3>, std::string> measure_with_guard_band(
+      const passes::OcclusionSettings& settings) const;
 
   // Renders frames of an orbit that ends at the view, with `orbit` radians per frame, and returns
   // the visibility of the last one.
@@ -36,11 +44,14 @@ class SituationErrors {
   const Truths& truths() const { return truths_; }
 
  private:
-  explicit SituationErrors(const StaticSetup& setup) : setup_(setup) {}
+  // Renders StaticSetup of a situation and returns its visibility.
+  using Draw = std::function<tl::expected<Image<float>, std::string>(const StaticSetup& setup)>;
 
-  tl::expected<std::array<double, 3>, std::string> compute(
-      const passes::OcclusionSettings& settings);
+  SituationErrors(const Session& session, const StaticSetup& setup)
+      : session_(&session), setup_(setup) {}
+  tl::expected<std::array<double, 3>, std::string> compute(const Draw& draw) const;
 
+  const Session* session_;
   StaticSetup setup_;
   std::unique_ptr<FrameRenderer> renderer_;
   Truths truths_;
@@ -57,9 +68,10 @@ class ModelledTimes {
                                                                        const CostInputs& inputs,
                                                                        bool use_cache);
 
-  // The times in the order of Situation, in milliseconds.
+  // The times in the order of Situation, in milliseconds, without or with a guard band of
+  // kGuardBand of the image's height.
   [[nodiscard]] tl::expected<std::array<double, 3>, std::string> measure(
-      const passes::OcclusionSettings& settings) const;
+      const passes::OcclusionSettings& settings, bool guard_band = false) const;
 
  private:
   ModelledTimes(const GpuPart& part, const CostInputs& inputs, bool use_cache)

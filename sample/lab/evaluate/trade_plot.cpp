@@ -64,9 +64,7 @@ void draw_axes(Svg& svg, const Axes& axes, const std::string& clock_title) {
   for (int power = first_power; std::pow(10.0, power) <= axes.last_ms; ++power) {
     for (const double lead : {1.0, 2.0, 5.0}) {
       const double ms = lead * std::pow(10.0, power);
-      if (ms < axes.first_ms || ms > axes.last_ms) {
-        continue;
-      }
+      if (ms < axes.first_ms || ms > axes.last_ms) continue;
       svg.line({axes.x(ms), kTop}, {axes.x(ms), kHeight - kBottom}, kGridLine);
       svg.text({axes.x(ms), kHeight - kBottom + 18}, "middle", number(ms));
     }

@@ -8,6 +8,7 @@
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
 #include "support/progress.h"
+#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -79,11 +80,8 @@ tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const Truth
         "the view shows nothing but sky: turn it with --eye and --target, or widen --near and "
         "--far");
   }
-  auto scene = scene_truth(frame, options, depth);
-  if (!scene) {
-    return tl::unexpected(std::move(scene.error()));
-  }
-  truths.scene = std::move(*scene);
+  ALCOVE_TRY(auto scene, scene_truth(frame, options, depth));
+  truths.scene = std::move(scene);
   truths.height_field = depth_truth(frame, options, depth);
   return truths;
 }

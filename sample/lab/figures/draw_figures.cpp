@@ -60,9 +60,7 @@ float horizon_of(const Profile& p, float side) {
   float horizon = -1.0f;
   for (const vec2 point : p.surface) {
     const vec2 offset = point - p.shaded;
-    if (offset.x * side > 0.0f) {
-      horizon = std::max(horizon, glm::normalize(offset).y);
-    }
+    if (offset.x * side > 0.0f) horizon = std::max(horizon, glm::normalize(offset).y);
   }
   return horizon;
 }
@@ -308,9 +306,7 @@ tl::expected<void, std::string> draw_all(const std::filesystem::path& folder) {
   for (const Figure& figure : kFigures) {
     const auto written =
         write_text(folder / fmt::format("{}.svg", figure.name), figure.draw().svg());
-    if (!written) {
-      return written;
-    }
+    if (!written) return written;
   }
   return {};
 }

@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "alcove/passes/setting_names.h"
+#include "gpu_cost/presets.h"
+#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -82,11 +83,7 @@ void check(const Json& limits, const Json& row, const char* key, Bound bound,
 
 std::vector<LabelledSettings> budgeted_settings() {
   std::vector<LabelledSettings> all;
-  for (std::size_t i = 0; i < std::size(passes::kNames<Quality>); ++i) {
-    if (const auto quality = static_cast<Quality>(i); quality != Quality::reference) {
-      all.push_back(preset(quality));
-    }
-  }
+  for (const Quality quality : presets()) all.push_back(preset(quality));
   std::ranges::move(with_each_output(preset(Quality::medium)), std::back_inserter(all));
   return all;
 }
@@ -94,16 +91,10 @@ std::vector<LabelledSettings> budgeted_settings() {
 tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs() {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
-    const auto device = create_null_device(part.family);
-    if (!device) {
-      return Failure(device.error());
-    }
+    ALCOVE_TRY(const auto device, create_null_device(part.family));
     for (const LabelledSettings& settings : budgeted_settings()) {
-      auto cost = cost_of(part, *device, settings);
-      if (!cost) {
-        return Failure(std::move(cost.error()));
-      }
-      costs.push_back(std::move(*cost));
+      ALCOVE_TRY(auto cost, cost_of(part, device, settings));
+      costs.push_back(std::move(cost));
     }
   }
   return costs;

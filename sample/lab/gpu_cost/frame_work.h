@@ -22,11 +22,12 @@ inline constexpr std::array<std::string_view, 3> kProjectionNames{
 struct CostInputs {
   std::uint32_t width = 1920;
   std::uint32_t height = 1080;
-  bool normals = true;   // true: a texture of normals (RGBA16F); false: normals from depth
-  bool motion = false;   // motion vectors (RG16F)
-  bool area = false;     // the images are read and written in part
-  bool mask = false;     // a mask of surfaces (R8)
-  bool samples = false;  // four samples of depth per pixel
+  bool normals = true;           // true: a texture of normals (RGBA16F); false: normals from depth
+  bool motion = false;           // motion vectors (RG16F)
+  bool area = false;             // the images are read and written in part
+  std::uint32_t guard_band = 0;  // pixels beyond each border that are read and not written
+  bool mask = false;             // a mask of surfaces (R8)
+  bool samples = false;          // four samples of depth per pixel
   ProjectionKind projection = ProjectionKind::finite_far;
   passes::OcclusionSettings settings;
   passes::NormalEncoding normal_encoding = passes::NormalEncoding::signed_xyz;

@@ -1,4 +1,5 @@
 #include "gpu_cost/null_device.h"
+#include "support/try.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -32,9 +33,7 @@ std::optional<std::string> radv_manifest() {
         found.push_back(entry.path().string());
       }
     }
-    if (!found.empty()) {
-      return *std::ranges::min_element(found);
-    }
+    if (!found.empty()) return *std::ranges::min_element(found);
   }
   return std::nullopt;
 }
@@ -65,9 +64,7 @@ class SilentStandardError {
 class ScopedVariable {
  public:
   ScopedVariable(const char* name, const std::string& value) : name_(name) {
-    if (const char* before = std::getenv(name)) {
-      before_ = before;
-    }
+    if (const char* before = std::getenv(name)) before_ = before;
     setenv(name, value.c_str(), 1);
   }
   ~ScopedVariable() {
@@ -311,19 +308,14 @@ tl::expected<const CompiledShader*, std::string> compile_dispatch(
     constants.push_back(dispatch.constants[i].value);
   }
   const std::tuple key{device.device, std::string(dispatch.shader), std::move(constants)};
-  if (const auto found = known.find(key); found != known.end()) {
-    return &found->second;
-  }
+  if (const auto found = known.find(key); found != known.end()) return &found->second;
   VkPipeline pipeline = VK_NULL_HANDLE;
   if (create_pipeline(device.device, dispatch, pipeline) != VK_SUCCESS) {
     return Failure("Mesa's AMD driver could not compile the shader '" +
                    std::string(dispatch.shader) + "'.");
   }
-  auto shader = read_compiled_shader(device.device, pipeline);
-  if (!shader) {
-    return Failure(std::move(shader.error()));
-  }
-  return &known.emplace(key, std::move(*shader)).first->second;
+  ALCOVE_TRY(auto shader, read_compiled_shader(device.device, pipeline));
+  return &known.emplace(key, std::move(shader)).first->second;
 }
 
 }  // namespace alcove::sample

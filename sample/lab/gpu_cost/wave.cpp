@@ -29,9 +29,7 @@ bool ends_with_any(std::string_view text, std::initializer_list<std::string_view
 // The encoding suffixes of the disassembly do not affect the cost.
 std::string_view without_encoding(std::string_view operation) {
   for (const std::string_view suffix : {"_e32", "_e64", "_sdwa", "_dpp"}) {
-    if (operation.ends_with(suffix)) {
-      operation.remove_suffix(suffix.size());
-    }
+    if (operation.ends_with(suffix)) operation.remove_suffix(suffix.size());
   }
   return operation;
 }
@@ -132,9 +130,7 @@ Instruction instruction_of_word(std::uint32_t word) {
 
 // The block number of a line "BB12" or "BB12:"; none for any other line.
 std::optional<std::uint32_t> block_of_line(std::string_view line) {
-  if (!line.starts_with("BB")) {
-    return std::nullopt;
-  }
+  if (!line.starts_with("BB")) return std::nullopt;
   line.remove_prefix(2);
   std::uint32_t index = 0;
   const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), index);
@@ -147,9 +143,7 @@ std::optional<std::uint32_t> block_of_line(std::string_view line) {
 std::vector<std::uint32_t> predecessors_of(std::string_view line) {
   std::vector<std::uint32_t> found;
   const std::size_t begin = line.find("linear preds:");
-  if (begin == std::string_view::npos) {
-    return found;
-  }
+  if (begin == std::string_view::npos) return found;
   std::string_view list = line.substr(begin, line.find("/ kind:") - begin);
   for (std::size_t at = list.find("BB"); at != std::string_view::npos;
        at = list.find("BB", at + 2)) {
@@ -186,9 +180,7 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
       block = *index < blocks.size() ? &blocks[*index] : nullptr;
       continue;
     }
-    if (block == nullptr) {
-      continue;
-    }
+    if (block == nullptr) continue;
     if (const std::size_t repeated = line.find("(then repeated ");
         repeated != std::string::npos && !block->instructions.empty()) {
       block->instructions.back().repeats += number_at(line, repeated + 15);
@@ -207,9 +199,7 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
 
 const std::string* text_of(const CompiledShader& shader, std::string_view name) {
   for (const auto& [title, text] : shader.texts) {
-    if (title == name) {
-      return &text;
-    }
+    if (title == name) return &text;
   }
   return nullptr;
 }
@@ -316,9 +306,7 @@ tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShade
           fmt::format("The driver's 'ACO IR' has an unknown format: block {} is missing.", i));
     }
   }
-  if (disassembled) {
-    add_disassembly(*assembly, blocks);
-  }
+  if (disassembled) add_disassembly(*assembly, blocks);
   if (blocks.empty()) {
     return Failure("The driver's 'ACO IR' has an unknown format: it has no blocks.");
   }
@@ -366,15 +354,9 @@ std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks) {
     open.back() = end;
   };
   for (const BasicBlock& block : blocks) {
-    if ((block.inverts || block.merges) && !open.empty()) {
-      end_side(block.index);
-    }
-    if (block.merges && !open.empty()) {
-      open.pop_back();
-    }
-    if (block.branches) {
-      open.push_back(block.index);
-    }
+    if ((block.inverts || block.merges) && !open.empty()) end_side(block.index);
+    if (block.merges && !open.empty()) open.pop_back();
+    if (block.branches) open.push_back(block.index);
   }
   return branches;
 }
@@ -386,14 +368,10 @@ WaveWork wave_work(const std::vector<BasicBlock>& blocks, const std::vector<Loop
   for (const BasicBlock& block : blocks) {
     double times = 1.0;
     for (std::size_t i = 0; i < loops.size(); ++i) {
-      if (loops[i].first <= block.index && block.index <= loops[i].last) {
-        times *= iterations[i];
-      }
+      if (loops[i].first <= block.index && block.index <= loops[i].last) times *= iterations[i];
     }
     for (const Branch& branch : branches) {
-      if (branch.first <= block.index && block.index <= branch.last) {
-        times *= branch.share;
-      }
+      if (branch.first <= block.index && block.index <= branch.last) times *= branch.share;
     }
     for (const Instruction& instruction : block.instructions) {
       add(instruction, rdna, wave, times * instruction.repeats, work);

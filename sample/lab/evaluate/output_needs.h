@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "alcove/passes/occlusion.h"
+#include "evaluate/truths.h"
+#include "reference/truth.h"
+#include "scene/scene.h"
+#include "support/image.h"
+
+namespace alcove::sample {
+
+// Returns by how much a change of the settings raises the modelled time: 0.2 for 20 %.
+using TimeIncrease = std::function<tl::expected<double, std::string>(
+    const std::function<void(passes::OcclusionSettings& settings)>& change)>;
+
+// Returns a sentence for each output and input of the passes on which the materials in view decide:
+// specular occlusion, multi-bounce, bent normals, normals, settings for thin occluders, and motion
+// vectors. Each says how much of the view asks for it, and what it costs. `seen` and `truths` are
+// of the same view and size. The list is empty for a scene of one plain material. Errors: those of
+// `time_increase`.
+[[nodiscard]] tl::expected<std::vector<std::string>, std::string> output_needs(
+    const Scene& scene, const GBuffer& seen, const Truths& truths,
+    const TimeIncrease& time_increase);
+
+}  // namespace alcove::sample
