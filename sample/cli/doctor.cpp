@@ -14,7 +14,7 @@
 #include "evaluate/mistakes.h"
 #include "gpu/vulkan_device.h"
 #include "support/image_io.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -22,7 +22,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-tl::expected<void, std::string> list_all_devices() {
+Result<void> list_all_devices() {
   ALCOVE_TRY(const auto devices, list_devices());
   bool usable = false;
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -64,7 +64,7 @@ double rmse_of(const Image<float>& a, const Image<float>& b) {
 }
 
 // Prints a table of planted mistakes. An error names those that alcoveDiagnose should have named.
-tl::expected<void, std::string> print_mistakes(const Options& options, const Session& session) {
+Result<void> print_mistakes(const Options& options, const Session& session) {
   ALCOVE_TRY(auto run, MistakeRun::create(*session.gpu, session.scene, session.camera,
                                           course_of(options, session)));
   std::optional<OutputFolder> folder;
@@ -75,7 +75,7 @@ tl::expected<void, std::string> print_mistakes(const Options& options, const Ses
   const auto write = [&](const std::string& name, const Image<float>& picture) {
     return folder && !name.empty()
                ? write_png(std::filesystem::path(options.pictures) / (name + ".png"), picture)
-               : tl::expected<void, std::string>();
+               : Result<void>();
   };
   std::cout << fmt::format("{:<52} {:>5}  {}\n", "mistake", "RMSE", "the library says");
   std::string failed;
@@ -108,7 +108,7 @@ tl::expected<void, std::string> print_mistakes(const Options& options, const Ses
 }
 
 // Prints the output of alcoveDiagnose for frames of a scene without mistakes. It should be empty.
-tl::expected<void, std::string> check_scene(const Options& options, const Session& session) {
+Result<void> check_scene(const Options& options, const Session& session) {
   std::vector<std::string> names{options.view.camera};
   if (options.view.camera.empty() && !options.view.eye && !options.view.target) {
     names.clear();
@@ -133,14 +133,14 @@ tl::expected<void, std::string> check_scene(const Options& options, const Sessio
       reported = reported || !said->empty();
     }
   }
-  return reported ? tl::expected<void, std::string>(
-                        Failure("alcoveDiagnose reports mistakes in frames that have none."))
-                  : tl::expected<void, std::string>();
+  return reported
+             ? Result<void>(Failure("alcoveDiagnose reports mistakes in frames that have none."))
+             : Result<void>();
 }
 
 }  // namespace
 
-tl::expected<void, std::string> run_doctor(const Options& options) {
+Result<void> run_doctor(const Options& options) {
   if (!options.mistakes && options.scene.empty()) return list_all_devices();
   Options of_scene = options;
   if (options.mistakes) {

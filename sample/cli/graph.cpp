@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "render/surfaces.h"
-#include "support/try.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 namespace {
@@ -21,8 +21,7 @@ passes::Frame frame_of(framegraph::Graph& graph, const Session& session, const O
 }
 
 // Declares the frame of the occlusion, with placeholders for the images of the g-buffer.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, const Session& session,
-                                        const Options& options) {
+Result<void> declare(framegraph::Graph& graph, const Session& session, const Options& options) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
   const auto texture = [&](const char* name, VkFormat format) {
     auto pass = graph.add_pass(name);
@@ -57,7 +56,7 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, const Session&
 }
 
 // Prints the work of the occlusion as data.
-tl::expected<void, std::string> print_work(const Session& session, const Options& options) {
+Result<void> print_work(const Session& session, const Options& options) {
   const auto work = std::make_unique<AlcoveWork>();
   passes::WorkList list(*work);
   const auto image = [&](bool wanted, AlcoveResourceKind kind, const char* name, VkFormat format) {
@@ -92,7 +91,7 @@ tl::expected<void, std::string> print_work(const Session& session, const Options
 
 }  // namespace
 
-tl::expected<std::string, std::string> plan_text(const Session& session, const Options& options) {
+Result<std::string> plan_text(const Session& session, const Options& options) {
   framegraph::Graph graph;
   ALCOVE_TRY_VOID(declare(graph, session, options));
   const framegraph::GraphDescription& description = graph.description();
@@ -103,7 +102,7 @@ tl::expected<std::string, std::string> plan_text(const Session& session, const O
              : framegraph::print_text(description, *plan);
 }
 
-tl::expected<void, std::string> run_graph(const Options& options) {
+Result<void> run_graph(const Options& options) {
   ALCOVE_TRY(const auto session, open_session(options));
   if (options.graph_format == GraphFormat::work) return print_work(session, options);
   return plan_text(session, options).map([](const std::string& text) { std::cout << text; });

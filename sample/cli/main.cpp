@@ -9,14 +9,16 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "support/printable.h"
+#include "support/result.h"
 
 namespace {
 
 using alcove::sample::Command;
 using alcove::sample::Options;
+using alcove::sample::Result;
 using alcove::sample::Stop;
 
-tl::expected<void, std::string> run(const Options& options) {
+Result<void> run(const Options& options) {
   switch (options.command) {
     case Command::render:
       return alcove::sample::run_render(options);

@@ -11,7 +11,6 @@
 #include "scene/framing.h"
 #include "scene/load_scene.h"
 #include "support/progress.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 
@@ -32,7 +31,7 @@ void print_notes(const std::vector<std::string>& notes) {
 
 }  // namespace
 
-tl::expected<Session, std::string> load_session(const Options& options) {
+Result<Session> load_session(const Options& options) {
   Session session;
   const auto start = std::chrono::steady_clock::now();
   auto scene = load_scene(options.scene, options.materials, print_progress("loading"));
@@ -54,8 +53,8 @@ tl::expected<Session, std::string> load_session(const Options& options) {
   return session;
 }
 
-tl::expected<Session, std::string> open_session(
-    const Options& options, const std::vector<const char*>& surface_extensions) {
+Result<Session> open_session(const Options& options,
+                             const std::vector<const char*>& surface_extensions) {
   auto session = load_session(options);
   if (!session) return session;
   session->device = {options.device, options.validation, surface_extensions};
@@ -64,7 +63,7 @@ tl::expected<Session, std::string> open_session(
   return session;
 }
 
-tl::expected<Rendering, std::string> render(const Options& options) {
+Result<Rendering> render(const Options& options) {
   ALCOVE_TRY(auto session, open_session(options));
   ALCOVE_TRY(auto environment, load_environment(options.environment));
   const std::string radius =
@@ -86,7 +85,7 @@ StaticSetup static_setup(const Options& options, const Camera& camera) {
           options.occlusion.normals};
 }
 
-tl::expected<ModelledTimes, std::string> modelled_times(const Options& options) {
+Result<ModelledTimes> modelled_times(const Options& options) {
   return ModelledTimes::create(*options.gpu,
                                {.width = options.target_width,
                                 .height = options.target_height,

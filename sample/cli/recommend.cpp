@@ -12,14 +12,13 @@
 #include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/progress.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 
 std::string shown(const TradePoint& point) {
   return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.name, point.rmse,
@@ -112,10 +111,8 @@ void check_other_views(const Options& options, const Session& session,
   }
 }
 
-Done write_settings(const Options& options, const passes::OcclusionSettings& settings) {
-  if (options.settings_out.empty()) {
-    return {};
-  }
+Result<void> write_settings(const Options& options, const passes::OcclusionSettings& settings) {
+  if (options.settings_out.empty()) return {};
   nlohmann::ordered_json json{{"settings", to_json(settings)}};
   json["settings"].erase("radius");  // it belongs to the scene
   return write_text(options.settings_out, json.dump(2) + "\n").map([&] {
@@ -136,13 +133,12 @@ std::string unmet_message(const RecommendationGoal& goal, const std::string& clo
 }
 
 // Measures all settings of measure_all(), and prints them and the best of them.
-Done compare_with_all(const passes::OcclusionSettings& base, const RecommendationGoal& goal,
-                      const RecommendationWorld& world, const Achievement& chosen) {
-  const auto all = measure_all(base, world);
-  if (!all) return Failure(all.error());
+Result<void> compare_with_all(const passes::OcclusionSettings& base, const RecommendationGoal& goal,
+                              const RecommendationWorld& world, const Achievement& chosen) {
+  ALCOVE_TRY(const auto all, measure_all(base, world));
   const Achievement* best = nullptr;
   std::cout << fmt::format("  all settings: {:47}RMSE       ms\n", "");
-  for (const Achievement& one : *all) {
+  for (const Achievement& one : all) {
     std::cout << fmt::format("    {:56} {:.4f} {:.4f}\n", samples_text(one.settings),
                              goal.rmse(one), goal.ms(one));
     best = best == nullptr || goal.prefers(one, *best) ? &one : best;
@@ -156,58 +152,23 @@ Done compare_with_all(const passes::OcclusionSettings& base, const Recommendatio
   return {};
 }
 
-// Prints what a guard band would change, which belongs to the areas of the view.
-Done print_guard_band(const SituationErrors& errors, const ModelledTimes& times,
-                      const RecommendationGoal& goal, const Achievement& chosen) {
-  ALCOVE_TRY(const auto rmse, errors.measure_with_guard_band(chosen.settings));
-  ALCOVE_TRY(const auto ms, times.measure(chosen.settings, true));
-  const Achievement with{chosen.settings, rmse, ms};
-  FeatureEffect effect =
-      effect_of(fmt::format("a guard band of {:g} % of the height, by AlcoveView::written_area",
-                            100.0 * kGuardBand),
-                goal, with, chosen);
-  if (goal.prefers(with, chosen, kWorthwhile)) effect.verdict = "worth it";
-  std::cout << "  " << effect.sentence() << "\n";
-  return {};
-}
-
-// Prints which outputs and inputs the materials in view need.
-Done print_needs(const Options& options, const Session& session, const SituationErrors& errors,
-                 const ModelledTimes& times, const RecommendationGoal& goal,
-                 const Achievement& chosen) {
-  ALCOVE_TRY(const auto rays, RayScene::create(session.scene));
-  const GBuffer seen = cast_gbuffer(rays, session.camera, options.view.width, options.view.height);
-  ALCOVE_TRY(const auto sentences,
-             output_needs(session.scene, seen, errors.truths(),
-                          [&](const auto& change) -> tl::expected<double, std::string> {
-                            Achievement with = chosen;
-                            change(with.settings);
-                            ALCOVE_TRY(with.ms, times.measure(with.settings));
-                            return goal.ms(with) / goal.ms(chosen) - 1.0;
-                          }));
-  for (const std::string& sentence : sentences) std::cout << "  " << sentence << "\n";
-  return {};
-}
-
-Done recommend_by_model(const Options& options, const Session& session, const ModelledTimes& times,
-                        const RecommendationGoal& goal) {
+Result<void> recommend_by_model(const Options& options, const Session& session,
+                                const ModelledTimes& times, const RecommendationGoal& goal) {
   ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(options, session.camera),
                                                   truth_options(options)));
   constexpr double kExpected = 60;  // calls; their number depends on what they find
   double calls = 0;
   const Progress progress = print_progress("settings");
   const auto advance = [&] { progress(std::min(++calls / kExpected, 0.99)); };
-  const RecommendationWorld world{
-      [&](const passes::OcclusionSettings& settings) -> tl::expected<Achievement, std::string> {
-        advance();
-        ALCOVE_TRY(const auto ms, times.measure(settings));
-        ALCOVE_TRY(const auto rmse, errors.measure(settings));
-        return Achievement{settings, rmse, ms};
-      },
-      [&](const passes::OcclusionSettings& settings) {
-        advance();
-        return times.measure(settings);
-      }};
+  const RecommendationWorld measured = recommendation_world(errors, times);
+  const RecommendationWorld world{[&](const passes::OcclusionSettings& settings) {
+                                    advance();
+                                    return measured.measure(settings);
+                                  },
+                                  [&](const passes::OcclusionSettings& settings) {
+                                    advance();
+                                    return measured.time(settings);
+                                  }};
   ALCOVE_TRY(const Recommendation found, recommend(session.settings, goal, world));
   ALCOVE_TRY_VOID(check_validation(*session.gpu));
   const Achievement& chosen = found.chosen;
@@ -220,8 +181,8 @@ Done recommend_by_model(const Options& options, const Session& session, const Mo
   for (const FeatureEffect& feature : found.features) {
     std::cout << "  " << feature.sentence() << "\n";
   }
-  ALCOVE_TRY_VOID(print_guard_band(errors, times, goal, chosen));
-  ALCOVE_TRY_VOID(print_needs(options, session, errors, times, goal, chosen));
+  ALCOVE_TRY(const auto needs, view_needs(session, errors, times, goal, chosen));
+  for (const std::string& need : needs) std::cout << "  " << need << "\n";
   std::cout << std::flush;
   check_other_views(options, session, goal, chosen);
   if (options.exhaustive) ALCOVE_TRY_VOID(compare_with_all(session.settings, goal, world, chosen));
@@ -233,8 +194,8 @@ Done recommend_by_model(const Options& options, const Session& session, const Mo
 }
 
 // Chooses among numbers of samples by times that are measured on the device.
-Done recommend_by_clock(const Options& options, const Session& session,
-                        const RecommendationGoal& goal) {
+Result<void> recommend_by_clock(const Options& options, const Session& session,
+                                const RecommendationGoal& goal) {
   ALCOVE_TRY(MeasuredTrade measured, measure_trade(session, static_setup(options, session.camera),
                                                    truth_options(options), options.clock));
   const Trade trade = trade_of(std::move(measured.points));
@@ -258,7 +219,7 @@ Done recommend_by_clock(const Options& options, const Session& session,
 
 }  // namespace
 
-Done run_recommend(const Options& options) {
+Result<void> run_recommend(const Options& options) {
   ALCOVE_TRY(const Session session, open_session(options));
   const RecommendationGoal goal{options.budget_ms, options.tolerance, weights_of(options)};
   if (options.clock.value_or(Clock::modelled) != Clock::modelled)

@@ -3,11 +3,11 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/report.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
-tl::expected<void, std::string> run_render(const Options& options) {
+Result<void> run_render(const Options& options) {
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   ALCOVE_TRY(const auto rendering, render(options));
   return write_images(rendering, options.out)

@@ -86,9 +86,7 @@ void append_settings(const OcclusionSettings& settings, std::vector<std::string>
   }
   to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
                        text_of(settings.radius)});
-  for (const std::string& change : fewest) {
-    to.insert(to.end(), {"--set", change});
-  }
+  for (const std::string& change : fewest) to.insert(to.end(), {"--set", change});
 }
 
 }  // namespace
@@ -108,16 +106,12 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
   }
-  if (shot.roughness) {
-    arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
-  }
+  if (shot.roughness) arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
   if (!options.environment.empty()) {
     arguments.insert(arguments.end(), {"--environment", options.environment.string()});
   }
   const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
-  if (frames > 1) {
-    arguments.insert(arguments.end(), {"--frames", text_of(frames)});
-  }
+  if (frames > 1) arguments.insert(arguments.end(), {"--frames", text_of(frames)});
   if (options.device >= 0) {
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   }

@@ -118,8 +118,8 @@ std::string settings_help() {
   return text.str();
 }
 
-tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionOptions& options,
-                                                                float default_radius) {
+Result<OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
+                                             float default_radius) {
   OcclusionSettings settings =
       passes::quality_settings(options.quality, options.radius.value_or(default_radius));
   for (const auto* list : {&options.file, &options.set}) {
@@ -135,8 +135,7 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
   return settings;
 }
 
-tl::expected<std::vector<std::pair<std::string, std::string>>, std::string> read_settings(
-    const std::string& file) {
+Result<std::vector<std::pair<std::string, std::string>>> read_settings(const std::string& file) {
   constexpr std::size_t kMost = 64 << 10;  // bytes
   const auto opened = open_regular_file(file);
   if (!opened) return Failure("cannot read " + printable(file) + ": " + opened.error());

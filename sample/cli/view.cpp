@@ -2,11 +2,11 @@
 
 #include "cli/commands.h"
 #include "cli/scene_view_request.h"
-#include "support/try.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
-tl::expected<void, std::string> run_view(const Options& options) {
+Result<void> run_view(const Options& options) {
   ALCOVE_TRY(auto view, SceneView::create(scene_view_request(options)));
   const std::uint32_t frames = options.view.frames;
   while (frames == 0 || view->drawn_frames() < frames) {

@@ -396,9 +396,7 @@ std::ostream& operator<<(std::ostream& out, const Budgeted& budgeted) {
 std::vector<Budgeted> all_budgeted() {
   std::vector<Budgeted> all;
   for (const GpuPart& part : kGpuParts) {
-    for (const LabelledSettings& settings : budgeted_settings()) {
-      all.push_back({&part, settings});
-    }
+    for (const LabelledSettings& settings : budgeted_settings()) all.push_back({&part, settings});
   }
   return all;
 }

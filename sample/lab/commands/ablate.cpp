@@ -14,14 +14,12 @@
 #include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/progress.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 // The difference between two images that should be equal.
@@ -62,9 +60,8 @@ Mask common_surfaces(const InvariancePair& pair, const FrameImages& images,
   return mask;
 }
 
-tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const Session& session,
-                                                                 const Options& options,
-                                                                 const InvariancePair& pair) {
+Result<InvariancePairRow> run_invariance_pair(Gpu& gpu, const Session& session,
+                                              const Options& options, const InvariancePair& pair) {
   const StaticSetup first = static_setup(options, pair.first);
   StaticSetup second = static_setup(options, pair.second);
   second.width *= pair.scale;
@@ -77,7 +74,7 @@ tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const
 }
 
 // Replaces the ratios of device timestamps by those of the modelled times of a moving frame.
-Done model_times(const Options& options, std::vector<VariantErrors>& rows) {
+Result<void> model_times(const Options& options, std::vector<VariantErrors>& rows) {
   ALCOVE_TRY(const auto times, modelled_times(options));
   constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
   double base_ms = 0;
@@ -129,7 +126,7 @@ Json to_json(const VariantErrors& row) {
 
 }  // namespace
 
-Done run_ablate(const Options& options) {
+Result<void> run_ablate(const Options& options) {
   ALCOVE_TRY(auto session, open_session(options));
   // The folder is created first, because the measurement takes minutes.
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));

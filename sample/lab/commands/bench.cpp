@@ -9,14 +9,12 @@
 #include "evaluate/trade_plot.h"
 #include "scene/load_scene.h"
 #include "support/printable.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 std::string title_of(const Options& options, const std::string& scene) {
@@ -26,7 +24,7 @@ std::string title_of(const Options& options, const std::string& scene) {
 
 // Checks that every scene can be loaded and viewed. This is done for all scenes before the first
 // one is measured, because measuring takes minutes.
-Done check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
+Result<void> check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
   for (const std::string& name : scenes) {
     ALCOVE_TRY(const auto scene, load_scene(name));
     ALCOVE_TRY_VOID(camera_of(view, scene));
@@ -42,8 +40,8 @@ void print_trade(const Trade& trade, const std::string& title, const std::string
 }
 
 // Measures the grid of steps and slices, prints it and adds it to `report`.
-Done print_grid(const Session& session, const StaticSetup& setup, const Options& options,
-                Json& report) {
+Result<void> print_grid(const Session& session, const StaticSetup& setup, const Options& options,
+                        Json& report) {
   ALCOVE_TRY(const auto rmse, measure_grid(session, setup, truth_options(options)));
   const std::string title = title_of(options, options.scene);
   std::cout << title << "\n" << grid_table(rmse) << std::flush;
@@ -54,7 +52,7 @@ Done print_grid(const Session& session, const StaticSetup& setup, const Options&
 
 }  // namespace
 
-Done run_bench(const Options& options) {
+Result<void> run_bench(const Options& options) {
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   const std::vector<std::string> scenes =
       options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;

@@ -8,18 +8,16 @@
 #include "gpu_cost/cost_report.h"
 #include "scene/scene.h"
 #include "support/progress.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 
 // The preset with the changes of --set. With --outputs, also with each further output.
-tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Options& options,
-                                                                     passes::Quality quality) {
+Result<std::vector<LabelledSettings>> settings_of(const Options& options, passes::Quality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
   one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
@@ -36,9 +34,7 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
                           .settings = *settings},
                          ""};
   for (const auto& [name, value] : options.occlusion.set) given.label += " " + name + "=" + value;
-  if (!options.cost.outputs) {
-    return std::vector{std::move(given)};
-  }
+  if (!options.cost.outputs) return std::vector{std::move(given)};
   if (settings->bent_normal || settings->specular != passes::Specular::none) {
     return Failure(
         "--outputs compares settings with and without bent normals and specular occlusion; leave "
@@ -48,7 +44,7 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
   return std::vector{std::move(given), std::move(bent), std::move(specular)};
 }
 
-tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& options) {
+Result<std::vector<SettingsCost>> measure(const Options& options) {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
     if (!options.cost.family.empty() && options.cost.family != part.family) continue;
@@ -64,7 +60,7 @@ tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& opti
   return costs;
 }
 
-Done write_budget(const std::filesystem::path& file) {
+Result<void> write_budget(const std::filesystem::path& file) {
   ALCOVE_TRY(const auto device, create_null_device(kGpuParts.front().family));
   ALCOVE_TRY(const auto costs, budgeted_costs());
   return write_text(file, budget_of(costs, compiler_name(device)));
@@ -72,11 +68,11 @@ Done write_budget(const std::filesystem::path& file) {
 
 }  // namespace
 
-Done run_cost(const Options& options) {
+Result<void> run_cost(const Options& options) {
   if (!options.cost.budget.empty()) return write_budget(options.cost.budget);
   ALCOVE_TRY(const auto costs, measure(options));
   std::cout << table_of(costs, options.cost.loops);
-  Done written;
+  Result<void> written;
   if (!options.cost.json.empty()) {
     written = write_text(options.cost.json, to_json(costs).dump(2) + "\n");
   }

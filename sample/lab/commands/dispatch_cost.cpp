@@ -104,7 +104,7 @@ VkResult record(const Objects& objects, bool barriers) {
 
 }  // namespace
 
-tl::expected<DispatchCost, std::string> measure_dispatch_cost(const VulkanDevice& device) {
+Result<DispatchCost> measure_dispatch_cost(const VulkanDevice& device) {
   Objects objects(device.device());
   VkResult result = objects.create(device.queue_family());
   std::array<double, 2> medians{};

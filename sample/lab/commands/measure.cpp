@@ -13,14 +13,12 @@
 #include "gpu_cost/cost_report.h"
 #include "render/frame_renderer.h"
 #include "support/median.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 constexpr float kOrbit = 0.007f;  // radians per frame
@@ -47,8 +45,8 @@ FrameRequest moving_request(const Session& session, const CostInputs& inputs, st
 }
 
 // Renders frames of a moving camera. The first ones, which compile shaders, are not counted.
-tl::expected<MeasuredFrame, std::string> measure(const Session& session, const Options& options,
-                                                 const LabelledSettings& settings) {
+Result<MeasuredFrame> measure(const Session& session, const Options& options,
+                              const LabelledSettings& settings) {
   const CostInputs& inputs = settings.inputs;
   ALCOVE_TRY(const auto gpu, open_gpu(session.device));
   ALCOVE_TRY(const auto renderer,
@@ -66,9 +64,7 @@ tl::expected<MeasuredFrame, std::string> measure(const Session& session, const O
   }
   ALCOVE_TRY_VOID(check_validation(*gpu));
   MeasuredFrame frame{settings, {}};
-  for (const std::string& name : order) {
-    frame.passes.push_back({name, median(times[name])});
-  }
+  for (const std::string& name : order) frame.passes.push_back({name, median(times[name])});
   return frame;
 }
 
@@ -145,7 +141,7 @@ Json print_registers(const Session& session) {
 }
 
 // Draws a few frames on the session's own device, so that its pipelines are captured.
-Done compile(const Session& session, const Options& options, const CostInputs& inputs) {
+Result<void> compile(const Session& session, const Options& options, const CostInputs& inputs) {
   ALCOVE_TRY(const auto renderer,
              FrameRenderer::create(*session.gpu, session.scene, {inputs.width, inputs.height},
                                    options.occlusion.normals));
@@ -157,23 +153,21 @@ Done compile(const Session& session, const Options& options, const CostInputs& i
 
 }  // namespace
 
-Done run_measure(const Options& options) {
+Result<void> run_measure(const Options& options) {
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   ALCOVE_TRY(auto session, load_session(options));
   session.device = {options.device, options.validation, {}, true};
-  ALCOVE_TRY(auto gpu, open_gpu(session.device));
-  session.gpu = std::move(gpu);
+  ALCOVE_TRY(session.gpu, open_gpu(session.device));
   const VulkanDevice& device = session.gpu->device();
   std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
-  const auto dispatch = measure_dispatch_cost(device);
-  if (!dispatch) return Failure(dispatch.error());
+  ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(device));
   std::cout << fmt::format("An empty dispatch takes {:.2f} microseconds, behind a barrier {:.2f}\n",
-                           dispatch->alone_us, dispatch->behind_barrier_us);
+                           dispatch.alone_us, dispatch.behind_barrier_us);
   Json report{{"device", device.properties().deviceName},
               {"driver", device.driver()},
               {"frames", options.view.frames},
-              {"dispatch_us", dispatch->alone_us},
-              {"dispatch_behind_barrier_us", dispatch->behind_barrier_us}};
+              {"dispatch_us", dispatch.alone_us},
+              {"dispatch_behind_barrier_us", dispatch.behind_barrier_us}};
   std::optional<CostInputs> last;
   for (const auto& [width, height] : options.sizes) {
     for (const passes::Quality quality : chosen_presets(options.occlusion)) {

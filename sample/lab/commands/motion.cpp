@@ -10,14 +10,13 @@
 #include "render/settings_json.h"
 #include "support/image_io.h"
 #include "support/progress.h"
-#include "support/try.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 // The inputs that all paths of a run share.
@@ -27,7 +26,7 @@ struct MotionInputs {
   MotionSetup setup;
 };
 
-tl::expected<MotionInputs, std::string> motion_inputs(const Options& options) {
+Result<MotionInputs> motion_inputs(const Options& options) {
   ALCOVE_TRY(auto session, open_session(options));
   MotionInputs inputs{std::move(session), {}, {}};
   const passes::OcclusionSettings& settings = inputs.session.settings;
@@ -51,23 +50,16 @@ tl::expected<MotionInputs, std::string> motion_inputs(const Options& options) {
   return inputs;
 }
 
-Done write_pictures(const std::filesystem::path& folder, MotionKind kind,
-                    const std::vector<MotionPicture>& pictures) {
+Result<void> write_pictures(const std::filesystem::path& folder, MotionKind kind,
+                            const std::vector<MotionPicture>& pictures) {
   for (const MotionPicture& picture : pictures) {
     const std::string name = fmt::format("{}_{}", name_of(kind), picture.frame);
-    auto written = write_png(folder / (name + ".png"), picture.visibility)
-                       .and_then([&] {
-                         return write_png(folder / (name + "_static.png"), picture.static_camera);
-                       })
-                       .and_then([&] {
-                         return write_png(folder / (name + "_error.png"),
-                                          error_colours(picture.visibility, picture.truth));
-                       })
-                       .and_then([&] {
-                         return write_png(folder / (name + "_trails.png"),
-                                          error_colours(picture.visibility, picture.static_camera));
-                       });
-    if (!written) return written;
+    ALCOVE_TRY_VOID(write_png(folder / (name + ".png"), picture.visibility));
+    ALCOVE_TRY_VOID(write_png(folder / (name + "_static.png"), picture.static_camera));
+    ALCOVE_TRY_VOID(write_png(folder / (name + "_error.png"),
+                              error_colours(picture.visibility, picture.truth)));
+    ALCOVE_TRY_VOID(write_png(folder / (name + "_trails.png"),
+                              error_colours(picture.visibility, picture.static_camera)));
   }
   return {};
 }
@@ -112,9 +104,7 @@ Json to_json(const CutReport& report) {
 }
 
 std::string error_row(const std::string& name, const ErrorPair& errors, int digits = 4) {
-  if (errors.pixels == 0) {
-    return fmt::format("  {:34}none\n", name);
-  }
+  if (errors.pixels == 0) return fmt::format("  {:34}none\n", name);
   return fmt::format("  {:34}{:6.{}f}   {:6.{}f}{:8.2f}{:10}\n", name, errors.moving, digits,
                      errors.static_camera, digits, errors.ratio(), errors.pixels);
 }
@@ -151,7 +141,7 @@ std::string table_of(const CutReport& report) {
 }
 
 // Measures one path; prints the result and adds it to `report`.
-Done run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Json& report) {
+Result<void> run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Json& report) {
   const MotionPath path(kind, inputs.start, options.view.frames);
   std::vector<MotionPicture> pictures;
   std::string table;
@@ -174,7 +164,7 @@ Done run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Jso
 
 }  // namespace
 
-Done run_motion(const Options& options) {
+Result<void> run_motion(const Options& options) {
   ALCOVE_TRY(auto inputs, motion_inputs(options));
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   Json report;

@@ -18,9 +18,7 @@ class VariantList {
   void add(const char* part, const std::string& name, const Change& change) {
     OcclusionSettings settings = base_;
     change(settings);
-    if (settings != base_) {
-      variants_.push_back({part, name, settings});
-    }
+    if (settings != base_) variants_.push_back({part, name, settings});
   }
   std::vector<Variant> take() { return std::move(variants_); }
 

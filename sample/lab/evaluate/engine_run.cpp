@@ -10,7 +10,6 @@
 #include "gpu/gpu_image.h"
 #include "maths/octahedral.h"
 #include "render/gbuffer.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -57,20 +56,19 @@ struct EngineRun::State {
       : gpu(on), scene(of), camera(from), course(along) {}
   ~State();
 
-  tl::expected<void, std::string> create();
-  tl::expected<void, std::string> create_context();
-  tl::expected<AlcoveImage, std::string> create_image(VkFormat format, VkExtent2D size,
-                                                      VkImageUsageFlags usage);
+  Result<void> create();
+  Result<void> create_context();
+  Result<AlcoveImage> create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usage);
   template <typename Texel>
-  tl::expected<AlcoveImage, std::string> create_filled(VkFormat format, VkExtent2D size,
-                                                       const std::vector<Texel>& texels);
+  Result<AlcoveImage> create_filled(VkFormat format, VkExtent2D size,
+                                    const std::vector<Texel>& texels);
   framegraph::Texture import(Graph& graph, const AlcoveImage& image, bool fill) const;
   template <typename Texel>
-  tl::expected<std::vector<Texel>, std::string> read(const AlcoveImage& image);
+  Result<std::vector<Texel>> read(const AlcoveImage& image);
   VkExtent2D size_at(std::uint32_t frame) const;
   CameraMatrices matrices_at(std::uint32_t frame, bool with_jitter) const;
-  tl::expected<void, std::string> draw_frame(std::uint32_t frame);
-  tl::expected<void, std::string> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
+  Result<void> draw_frame(std::uint32_t frame);
+  Result<void> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
   EngineFrame describe(std::uint32_t frame) const;
   VkResult begin(VkCommandBuffer commands_of_slot) const;
   VkResult submit(VkCommandBuffer recorded) const;
@@ -94,9 +92,8 @@ EngineRun::State::~State() {
   vkDestroyCommandPool(device, pool, nullptr);
 }
 
-tl::expected<AlcoveImage, std::string> EngineRun::State::create_image(VkFormat format,
-                                                                      VkExtent2D size,
-                                                                      VkImageUsageFlags usage) {
+Result<AlcoveImage> EngineRun::State::create_image(VkFormat format, VkExtent2D size,
+                                                   VkImageUsageFlags usage) {
   ALCOVE_TRY(
       auto made,
       GpuImage::create(gpu.device(),
@@ -120,15 +117,15 @@ framegraph::Texture EngineRun::State::import(Graph& graph, const AlcoveImage& im
 }
 
 template <typename Texel>
-tl::expected<AlcoveImage, std::string> EngineRun::State::create_filled(
-    VkFormat format, VkExtent2D size, const std::vector<Texel>& texels) {
+Result<AlcoveImage> EngineRun::State::create_filled(VkFormat format, VkExtent2D size,
+                                                    const std::vector<Texel>& texels) {
   const VkDeviceSize bytes = texels.size() * sizeof(Texel);
   auto buffer = HostBuffer::create(gpu.device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   auto image = create_image(format, size, kFilledUsage);
   if (!buffer || !image) return Failure(buffer ? image.error() : buffer.error());
   std::memcpy((*buffer)->bytes().data(), texels.data(), bytes);
   return gpu
-      .run([&](Graph& graph) -> tl::expected<void, std::string> {
+      .run([&](Graph& graph) -> Result<void> {
         (void)add_copy(graph, **buffer, import(graph, *image, true));
         return {};
       })
@@ -136,12 +133,12 @@ tl::expected<AlcoveImage, std::string> EngineRun::State::create_filled(
 }
 
 template <typename Texel>
-tl::expected<std::vector<Texel>, std::string> EngineRun::State::read(const AlcoveImage& image) {
+Result<std::vector<Texel>> EngineRun::State::read(const AlcoveImage& image) {
   std::vector<Texel> texels(std::size_t{image.width} * image.height);
   ALCOVE_TRY(auto buffer, HostBuffer::create(gpu.device(), texels.size() * sizeof(Texel),
                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT));
   return gpu
-      .run([&](Graph& graph) -> tl::expected<void, std::string> {
+      .run([&](Graph& graph) -> Result<void> {
         add_read_back(graph, import(graph, image, false), *buffer);
         return {};
       })
@@ -151,7 +148,7 @@ tl::expected<std::vector<Texel>, std::string> EngineRun::State::read(const Alcov
       });
 }
 
-tl::expected<void, std::string> EngineRun::State::create() {
+Result<void> EngineRun::State::create() {
   const VkDevice device = gpu.device().device();
   const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                           .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
@@ -172,7 +169,7 @@ tl::expected<void, std::string> EngineRun::State::create() {
   return done;
 }
 
-tl::expected<void, std::string> EngineRun::State::create_context() {
+Result<void> EngineRun::State::create_context() {
   AlcoveContextInfo info{.struct_size = sizeof info};
   info.queue_family = gpu.device().queue_family();
   info.instance = gpu.device().instance();
@@ -206,7 +203,7 @@ CameraMatrices EngineRun::State::matrices_at(std::uint32_t frame, bool with_jitt
   return camera_matrices(now, size.width, size.height);
 }
 
-tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame) {
+Result<void> EngineRun::State::draw_frame(std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
   const CameraMatrices before = matrices_at(frame == 0 ? 0 : frame - 1, true);
@@ -237,7 +234,7 @@ tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame
   }
   drawn.other.half_depth.width = size.width;
   drawn.other.half_depth.height = size.height;
-  const auto report = gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {
+  const auto report = gpu.run([&](Graph& graph) -> Result<void> {
     (void)gbuffer->add(graph, seen,
                        {.depth = import(graph, view.depth, true),
                         .normal = import(graph, view.normals, true),
@@ -257,14 +254,12 @@ tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame
   view.reset_history = changes ? VK_TRUE : VK_FALSE;
   view.static_frames = course.orbit != 0.0f || course.jitter ? 0 : frame;
   drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false));
-  auto done =
-      course.other_inputs ? create_other_inputs(drawn, frame) : tl::expected<void, std::string>();
+  auto done = course.other_inputs ? create_other_inputs(drawn, frame) : Result<void>();
   frames.push_back(drawn);
   return done;
 }
 
-tl::expected<void, std::string> EngineRun::State::create_other_inputs(DrawnFrame& drawn,
-                                                                      std::uint32_t frame) {
+Result<void> EngineRun::State::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
   const auto depths = read<float>(drawn.view.depth);
@@ -339,15 +334,16 @@ VkResult EngineRun::State::submit(VkCommandBuffer recorded) const {
 EngineRun::EngineRun(std::unique_ptr<State> state) : state_(std::move(state)) {}
 EngineRun::~EngineRun() = default;
 
-tl::expected<std::unique_ptr<EngineRun>, std::string> EngineRun::create(
-    Gpu& gpu, const Scene& scene, const Camera& camera, const EngineCourse& course) {
+Result<std::unique_ptr<EngineRun>> EngineRun::create(Gpu& gpu, const Scene& scene,
+                                                     const Camera& camera,
+                                                     const EngineCourse& course) {
   auto state = std::make_unique<State>(gpu, scene, camera, course);
   ALCOVE_TRY_VOID(state->create());
   return std::unique_ptr<EngineRun>(new EngineRun(std::move(state)));
 }
 
-tl::expected<EngineResult, std::string> EngineRun::draw(const ChangeFrame& change,
-                                                        std::uint32_t begin, bool submit_late) {
+Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
+                                     bool submit_late) {
   State& s = *state_;
   AlcoveContext* const context = s.context.get();
   EngineResult result;

@@ -9,7 +9,6 @@
 #include "evaluate/errors.h"
 #include "support/image_io.h"
 #include "support/progress.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -41,15 +40,11 @@ class Splitter {
   Splitter(Gpu& gpu, const Scene& scene, const Image<float>& truth, const Mask& surfaces)
       : gpu_(gpu), scene_(scene), truth_(truth), surfaces_(surfaces) {}
 
-  tl::expected<ErrorSplit, std::string> split(const StaticSetup& setup,
-                                              const OcclusionSettings& settings);
+  Result<ErrorSplit> split(const StaticSetup& setup, const OcclusionSettings& settings);
 
  private:
-  using Done = tl::expected<void, std::string>;
-  using Picture = tl::expected<Image<float>, std::string>;
-
-  Picture draw(const StaticSetup& setup, const OcclusionSettings& settings);
-  Done add_noise(const StaticSetup& setup, const OcclusionSettings& settings);
+  Result<Image<float>> draw(const StaticSetup& setup, const OcclusionSettings& settings);
+  Result<void> add_noise(const StaticSetup& setup, const OcclusionSettings& settings);
   // Adds a cause whose remedy changes the current visibility to `after`. Returns whether it lowers
   // the error.
   bool add(const char* key, const char* name, Image<float> after);
@@ -66,7 +61,7 @@ class Splitter {
   Progress progress_ = print_progress("causes of the error");
 };
 
-Splitter::Picture Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings) {
+Result<Image<float>> Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings) {
   constexpr int kDrawings = 5;
   progress_(static_cast<double>(drawn_++) / kDrawings);
   return draw_static(gpu_, scene_, setup, settings).map([](FrameImages images) {
@@ -74,22 +69,20 @@ Splitter::Picture Splitter::draw(const StaticSetup& setup, const OcclusionSettin
   });
 }
 
-Splitter::Done Splitter::add_noise(const StaticSetup& setup, const OcclusionSettings& settings) {
-  const Picture own = draw(setup, settings);
-  if (!own) return Failure(own.error());
+Result<void> Splitter::add_noise(const StaticSetup& setup, const OcclusionSettings& settings) {
+  ALCOVE_TRY(const Image<float> own, draw(setup, settings));
   StaticSetup other_setup = setup;
   other_setup.first_frame += 1001;  // any odd number of frames later
-  Picture other = draw(other_setup, settings);
-  if (!other) return Failure(std::move(other.error()));
-  const double noise = 0.5 * mean_squared_error(*own, *other, surfaces_);
-  whole_error_ = std::max(mean_squared_error(*own, truth_, surfaces_), 1e-12);
+  ALCOVE_TRY(Image<float> other, draw(other_setup, settings));
+  const double noise = 0.5 * mean_squared_error(own, other, surfaces_);
+  whole_error_ = std::max(mean_squared_error(own, truth_, surfaces_), 1e-12);
   split_.rmse = std::sqrt(whole_error_);
   current_error_ = whole_error_ - noise;
-  current_ = std::move(*other);
+  current_ = std::move(other);
   for (std::size_t i = 0; i < current_.pixels.size(); ++i) {
-    current_.pixels[i] = 0.5f * (current_.pixels[i] + own->pixels[i]);
+    current_.pixels[i] = 0.5f * (current_.pixels[i] + own.pixels[i]);
   }
-  split_.causes.push_back({"noise", "noise", noise / whole_error_, *own, current_});
+  split_.causes.push_back({"noise", "noise", noise / whole_error_, own, current_});
   return {};
 }
 
@@ -104,21 +97,19 @@ bool Splitter::add(const char* key, const char* name, Image<float> after) {
   return lowers;
 }
 
-tl::expected<ErrorSplit, std::string> Splitter::split(const StaticSetup& setup,
-                                                      const OcclusionSettings& settings) {
+Result<ErrorSplit> Splitter::split(const StaticSetup& setup, const OcclusionSettings& settings) {
   ALCOVE_TRY_VOID(add_noise(setup, settings));
   StaticSetup averaged = setup;
   averaged.frames = kAveragedFrames;
   OcclusionSettings best = sampled_fully(settings);
   const auto try_settings = [&](const char* key, const char* name,
-                                const OcclusionSettings& changed) -> Done {
+                                const OcclusionSettings& changed) -> Result<void> {
     if (!passes::validate(changed)) {  // an estimator without thickness
       split_.causes.push_back({key, name, 0.0, current_, current_});
       return {};
     }
-    Picture drawn = draw(averaged, changed);
-    if (!drawn) return Failure(std::move(drawn.error()));
-    best = add(key, name, std::move(*drawn)) ? changed : best;
+    ALCOVE_TRY(Image<float> drawn, draw(averaged, changed));
+    best = add(key, name, std::move(drawn)) ? changed : best;
     return {};
   };
   ALCOVE_TRY_VOID(try_settings("sampling", "filter, tiles and few steps", best));
@@ -137,10 +128,9 @@ tl::expected<ErrorSplit, std::string> Splitter::split(const StaticSetup& setup,
 
 }  // namespace
 
-tl::expected<ErrorSplit, std::string> split_error(Gpu& gpu, const Scene& scene,
-                                                  const StaticSetup& setup,
-                                                  const OcclusionSettings& settings,
-                                                  const Image<float>& truth, const Mask& surfaces) {
+Result<ErrorSplit> split_error(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                               const OcclusionSettings& settings, const Image<float>& truth,
+                               const Mask& surfaces) {
   return Splitter(gpu, scene, truth, surfaces).split(setup, settings);
 }
 
@@ -165,8 +155,7 @@ Image<glm::vec3> picture_of(const ErrorCause& cause) {
   return error_colours(cause.before, cause.after);
 }
 
-tl::expected<void, std::string> write_pictures(const ErrorSplit& split,
-                                               const std::filesystem::path& folder) {
+Result<void> write_pictures(const ErrorSplit& split, const std::filesystem::path& folder) {
   for (const ErrorCause& cause : split.causes) {
     ALCOVE_TRY_VOID(write_png(folder / ("split_" + cause.key + ".png"), picture_of(cause)));
   }

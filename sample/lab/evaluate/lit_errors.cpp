@@ -26,9 +26,7 @@ double mean_over(const Mask& mask, const Image<glm::vec3>& image, const Value& v
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
     if (mask.pixels[i] != 0) {
-      for (int c = 0; c < 3; ++c) {
-        total += value(double{image.pixels[i][c]});
-      }
+      for (int c = 0; c < 3; ++c) total += value(double{image.pixels[i][c]});
       count += 3;
     }
   }
@@ -131,9 +129,8 @@ std::string lit_error_table(const LitErrors& errors) {
   return text;
 }
 
-tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
-                                                const IndirectTruths& light,
-                                                const std::filesystem::path& folder) {
+Result<void> write_lit_steps(const Rendering& rendering, const IndirectTruths& light,
+                             const std::filesystem::path& folder) {
   const LitImages& images = rendering.images.lit;
   const float exposure = exposure_of(rendering.light.environment);
   const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
@@ -158,15 +155,13 @@ tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
     paste(tiles[i], i % kColumns * width, i / kColumns * height, canvas);
   }
-  return write_png(folder / "lit_steps.png", canvas)
-      .and_then([&] { return write_png(folder / "truth_lit.png", tiles[kTruth]); })
-      .and_then([&] {
-        Image<glm::vec3> comparison(width * 3 - 2, tiles[0].height, glm::vec3(1.0f));
-        paste(tiles[0], 0, 0, comparison);
-        paste(tiles[3], width, 0, comparison);
-        paste(tiles[kTruth], 2 * width, 0, comparison);
-        return write_png(folder / "lit_comparison.png", comparison);
-      });
+  ALCOVE_TRY_VOID(write_png(folder / "lit_steps.png", canvas));
+  ALCOVE_TRY_VOID(write_png(folder / "truth_lit.png", tiles[kTruth]));
+  Image<glm::vec3> comparison(width * 3 - 2, tiles[0].height, glm::vec3(1.0f));
+  paste(tiles[0], 0, 0, comparison);
+  paste(tiles[3], width, 0, comparison);
+  paste(tiles[kTruth], 2 * width, 0, comparison);
+  return write_png(folder / "lit_comparison.png", comparison);
 }
 
 }  // namespace alcove::sample

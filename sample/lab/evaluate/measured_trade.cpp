@@ -10,7 +10,6 @@
 #include "evaluate/variant.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -33,8 +32,8 @@ std::string title_of(Clock clock) {
 }
 
 // The point of a variant. `times` is null unless they are modelled.
-tl::expected<TradePoint, std::string> point_of(const VariantErrors& errors, const FrameTimes& base,
-                                               Clock clock, const ModelledTimes* times) {
+Result<TradePoint> point_of(const VariantErrors& errors, const FrameTimes& base, Clock clock,
+                            const ModelledTimes* times) {
   TradePoint point{errors.variant.name, errors.variant.settings, errors.scene.rmse,
                    errors.height_field.rmse};
   point.processor_ms = errors.cost.processor * base.processor_ms;
@@ -62,10 +61,9 @@ bool can_store_half_resolution(VkPhysicalDevice device) {
 
 }  // namespace
 
-tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
-                                                       const StaticSetup& setup,
-                                                       const TruthOptions& truth_options,
-                                                       std::optional<Clock> wanted) {
+Result<MeasuredTrade> measure_trade(const Session& session, const StaticSetup& setup,
+                                    const TruthOptions& truth_options,
+                                    std::optional<Clock> wanted) {
   std::vector<Variant> variants = preset_sweep(session.settings);
   MeasuredTrade trade;
   const VulkanDevice& device = session.gpu->device();
@@ -110,9 +108,8 @@ tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
   return trade;
 }
 
-tl::expected<std::vector<double>, std::string> measure_grid(const Session& session,
-                                                            const StaticSetup& setup,
-                                                            const TruthOptions& truth_options) {
+Result<std::vector<double>> measure_grid(const Session& session, const StaticSetup& setup,
+                                         const TruthOptions& truth_options) {
   ALCOVE_TRY(const auto report, run_variants(session, setup, truth_options,
                                              sampling_grid(session.settings), "grid", 0));
   std::vector<double> rmse;

@@ -1,5 +1,4 @@
 #include "evaluate/mistakes.h"
-#include "support/try.h"
 
 #include <algorithm>
 #include <cmath>
@@ -351,7 +350,7 @@ std::vector<RightCourse> right_courses(const EngineCourse& base) {
   return courses;
 }
 
-tl::expected<std::string, std::string> said_of_right_frames(EngineRun& run) {
+Result<std::string> said_of_right_frames(EngineRun& run) {
   const ChangeFrame ways[] = {{},
                               [](F& f) { scale_motion(f, 1.0f, 1.0f); },
                               [](F& f) { f.view.normals = {}; },
@@ -367,9 +366,8 @@ tl::expected<std::string, std::string> said_of_right_frames(EngineRun& run) {
   return said;
 }
 
-tl::expected<MistakeRun, std::string> MistakeRun::create(Gpu& gpu, const Scene& scene,
-                                                         const Camera& camera,
-                                                         EngineCourse course) {
+Result<MistakeRun> MistakeRun::create(Gpu& gpu, const Scene& scene, const Camera& camera,
+                                      EngineCourse course) {
   course.orbit = 0.02f;
   course.jitter = true;
   course.other_inputs = true;
@@ -388,12 +386,11 @@ tl::expected<MistakeRun, std::string> MistakeRun::create(Gpu& gpu, const Scene& 
   return result;
 }
 
-tl::expected<EngineResult, std::string> MistakeRun::draw(const PlantedMistake& mistake,
-                                                         std::uint32_t begin) {
+Result<EngineResult> MistakeRun::draw(const PlantedMistake& mistake, std::uint32_t begin) {
   return (mistake.reversed ? reversed_ : plain_)->draw(mistake.plant, begin, !mistake.plant);
 }
 
-tl::expected<EngineResult, std::string> MistakeRun::draw_right(bool reversed) {
+Result<EngineResult> MistakeRun::draw_right(bool reversed) {
   return (reversed ? reversed_ : plain_)->draw();
 }
 

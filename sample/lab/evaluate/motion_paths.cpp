@@ -111,8 +111,8 @@ float median_depth(const GBuffer& view) {
 
 }  // namespace
 
-tl::expected<MotionStart, std::string> motion_start(const RayScene& rays, const Camera& camera,
-                                                    float aspect, float radius) {
+Result<MotionStart> motion_start(const RayScene& rays, const Camera& camera, float aspect,
+                                 float radius) {
   constexpr std::uint32_t kHeight = 45;
   const auto width = static_cast<std::uint32_t>(
       std::clamp(std::round(aspect * static_cast<float>(kHeight)), 1.0f, 1000.0f));

@@ -7,7 +7,6 @@
 
 #include "evaluate/errors.h"
 #include "maths/multi_bounce.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -26,9 +25,9 @@ double share_of(const Mask& part, const Mask& whole) {
 
 }  // namespace
 
-tl::expected<std::vector<std::string>, std::string> output_needs(
-    const Scene& scene, const GBuffer& seen, const Truths& truths,
-    const TimeIncrease& time_increase) {
+Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer& seen,
+                                              const Truths& truths,
+                                              const TimeIncrease& time_increase) {
   std::vector<std::string> sentences;
   if (scene.materials.size() < 2 && scene.images.empty()) return sentences;
   const Image<float>& visibility = truths.scene.visibility;
@@ -95,6 +94,32 @@ tl::expected<std::vector<std::string>, std::string> output_needs(
       moves ? "the file has animations, and motion vectors follow what moves"
             : "nothing moves by itself, and the history follows the camera without them");
   return sentences;
+}
+
+Result<std::vector<std::string>> view_needs(const Session& session, const SituationErrors& errors,
+                                            const ModelledTimes& times,
+                                            const RecommendationGoal& goal,
+                                            const Achievement& chosen) {
+  ALCOVE_TRY(const auto band_rmse, errors.measure_with_guard_band(chosen.settings));
+  ALCOVE_TRY(const auto band_ms, times.measure(chosen.settings, true));
+  const Achievement with{chosen.settings, band_rmse, band_ms};
+  FeatureEffect band =
+      effect_of(fmt::format("a guard band of {:g} % of the height, by AlcoveView::written_area",
+                            100.0 * kGuardBand),
+                goal, with, chosen);
+  if (goal.prefers(with, chosen, kWorthwhile)) band.verdict = "worth it";
+  const Image<float>& visibility = errors.truths().scene.visibility;
+  ALCOVE_TRY(const auto rays, RayScene::create(session.scene));
+  const GBuffer seen = cast_gbuffer(rays, session.camera, visibility.width, visibility.height);
+  const TimeIncrease time_increase = [&](const auto& change) -> Result<double> {
+    Achievement changed = chosen;
+    change(changed.settings);
+    ALCOVE_TRY(changed.ms, times.measure(changed.settings));
+    return goal.ms(changed) / goal.ms(chosen) - 1.0;
+  };
+  ALCOVE_TRY(auto needs, output_needs(session.scene, seen, errors.truths(), time_increase));
+  needs.insert(needs.begin(), band.sentence());
+  return needs;
 }
 
 }  // namespace alcove::sample

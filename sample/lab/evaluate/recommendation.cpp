@@ -8,12 +8,10 @@
 #include <utility>
 
 #include "evaluate/trade.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using passes::OcclusionSettings;
 
 struct Feature {
@@ -71,7 +69,7 @@ class Search {
          const RecommendationWorld& world)
       : base_(base), goal_(goal), world_(world) {}
 
-  tl::expected<Recommendation, std::string> run() {
+  Result<Recommendation> run() {
     for (Variant& variant : preset_sweep(base_)) {
       variant.settings.depth_layers = base_.depth_layers;  // a second depth layer is a feature
       ladder_.push_back({variant.settings, {}});
@@ -87,7 +85,7 @@ class Search {
   }
 
  private:
-  tl::expected<double, std::string> time(Rung& rung) const {
+  Result<double> time(Rung& rung) const {
     if (!rung.ms) {
       ALCOVE_TRY(const auto ms, world_.time(rung.settings));
       rung.ms = weighted(ms, goal_.weights);
@@ -97,8 +95,7 @@ class Search {
 
   // Returns the slowest numbers of samples that take at most `ms`, at most `most` of them. Times
   // nearly rise with the number of samples, so that few of them are modelled.
-  tl::expected<std::vector<OcclusionSettings>, std::string> slowest_within(double ms,
-                                                                           std::size_t most) {
+  Result<std::vector<OcclusionSettings>> slowest_within(double ms, std::size_t most) {
     constexpr std::size_t kOutOfOrder = 2;  // faster ones among those with more samples
     std::size_t low = 0;
     for (std::size_t high = ladder_.size(); low < high;) {
@@ -120,7 +117,7 @@ class Search {
     return known == found_.measured.end() ? nullptr : &*known;
   }
 
-  tl::expected<Achievement, std::string> measure(const OcclusionSettings& settings) {
+  Result<Achievement> measure(const OcclusionSettings& settings) {
     if (const Achievement* known = measured(settings)) return *known;
     auto result = world_.measure(settings);
     if (result) found_.measured.push_back(*result);
@@ -128,8 +125,7 @@ class Search {
   }
 
   // Measures settings and chooses them if the goal prefers them by the margin.
-  tl::expected<Achievement, std::string> consider(const OcclusionSettings& settings,
-                                                  double margin = 0) {
+  Result<Achievement> consider(const OcclusionSettings& settings, double margin = 0) {
     auto result = measure(settings);
     if (result && (found_.measured.size() == 1 || goal_.prefers(*result, found_.chosen, margin))) {
       found_.chosen = *result;
@@ -139,7 +135,7 @@ class Search {
 
   // Within a budget, considers the numbers of samples that nearly use it up. For a tolerance,
   // considers growing numbers until a few meet it, because the error does not fall with each step.
-  tl::expected<void, std::string> choose_samples() {
+  Result<void> choose_samples() {
     constexpr std::size_t kWithinBudget = 6;
     constexpr int kWithinTolerance = 2;
     if (goal_.budget_ms) {
@@ -204,11 +200,17 @@ class Search {
   void refine() {
     constexpr int kRounds = 3;
     for (int round = 0; round < kRounds; ++round) {
-      const OcclusionSettings from = found_.chosen.settings;
+      const Achievement before = found_.chosen;
+      const OcclusionSettings& from = before.settings;
+      // A tenth of a frame at least is the search, whose time is proportional to the samples. More
+      // samples that exceed the limit even so are left out without modelling their time.
+      const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(before);
       const auto change = [&](auto OcclusionSettings::*field, auto value) {
         OcclusionSettings changed = from;
         changed.*field = value;
-        consider_if_promising(changed);
+        const double more = samples_of(changed) / samples_of(from) - 1.0;
+        const bool too_slow = more > 0 && goal_.ms(before) * (1.0 + 0.1 * more) > limit;
+        if (!goal_.met(before) || !too_slow) consider_if_promising(changed);
       };
       for (const std::uint32_t steps :
            {from.steps * 3 / 4, from.steps - 1, from.steps + 1, (from.steps * 4 + 2) / 3}) {
@@ -246,9 +248,7 @@ bool RecommendationGoal::prefers(const Achievement& a, const Achievement& b, dou
 }
 
 std::string FeatureEffect::sentence() const {
-  if (!problem.empty()) {
-    return fmt::format("{}: not measured ({})", name, problem);
-  }
+  if (!problem.empty()) return fmt::format("{}: not measured ({})", name, problem);
   const auto change = [](double relative, const char* quantity) {
     const double per_cent = 100.0 * std::abs(relative);
     return per_cent < 0.05
@@ -265,14 +265,13 @@ FeatureEffect effect_of(const std::string& feature, const RecommendationGoal& go
           goal.ms(with) / goal.ms(without) - 1.0};
 }
 
-tl::expected<Recommendation, std::string> recommend(const OcclusionSettings& base,
-                                                    const RecommendationGoal& goal,
-                                                    const RecommendationWorld& world) {
+Result<Recommendation> recommend(const OcclusionSettings& base, const RecommendationGoal& goal,
+                                 const RecommendationWorld& world) {
   return Search(base, goal, world).run();
 }
 
-tl::expected<std::vector<Achievement>, std::string> measure_all(const OcclusionSettings& base,
-                                                                const RecommendationWorld& world) {
+Result<std::vector<Achievement>> measure_all(const OcclusionSettings& base,
+                                             const RecommendationWorld& world) {
   std::vector<Achievement> all;
   for (const Variant& variant : preset_sweep(base)) {
     for (const std::uint32_t layers : {1u, 2u}) {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -70,9 +70,8 @@ struct Recommendation {
 
 // Functions that a search calls. `time` gives Achievement::ms alone and takes much less time.
 struct RecommendationWorld {
-  std::function<tl::expected<Achievement, std::string>(const passes::OcclusionSettings&)> measure;
-  std::function<tl::expected<std::array<double, 3>, std::string>(const passes::OcclusionSettings&)>
-      time;
+  std::function<Result<Achievement>(const passes::OcclusionSettings&)> measure;
+  std::function<Result<std::array<double, 3>>(const passes::OcclusionSettings&)> time;
 };
 
 // Searches from `base`, whose settings beyond those that the search changes are kept. First it
@@ -80,13 +79,13 @@ struct RecommendationWorld {
 // that lowers the error is also tried with fewer samples. Last it changes slices, steps and tile
 // size a little, one at a time. If nothing meets the goal, the result is the closest. Errors: those
 // of `measure` and `time` for numbers of samples.
-[[nodiscard]] tl::expected<Recommendation, std::string> recommend(
-    const passes::OcclusionSettings& base, const RecommendationGoal& goal,
-    const RecommendationWorld& world);
+[[nodiscard]] Result<Recommendation> recommend(const passes::OcclusionSettings& base,
+                                               const RecommendationGoal& goal,
+                                               const RecommendationWorld& world);
 
 // Measures each number of samples with and without a second depth layer: what a search is compared
 // with.
-[[nodiscard]] tl::expected<std::vector<Achievement>, std::string> measure_all(
-    const passes::OcclusionSettings& base, const RecommendationWorld& world);
+[[nodiscard]] Result<std::vector<Achievement>> measure_all(const passes::OcclusionSettings& base,
+                                                           const RecommendationWorld& world);
 
 }  // namespace alcove::sample

@@ -8,7 +8,6 @@
 
 #include "evaluate/errors.h"
 #include "render/settings_json.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -50,15 +49,14 @@ std::uint32_t guard_band(std::uint32_t height) {
 
 // Reads three values from the cache, or computes and writes them.
 template <typename Compute>
-tl::expected<std::array<double, 3>, std::string> cached(const TruthCache& cache,
-                                                        const CacheKey& key,
-                                                        const Compute& compute) {
+Result<std::array<double, 3>> cached(const TruthCache& cache, const CacheKey& key,
+                                     const Compute& compute) {
   std::array<double, 3> values{};
   if (const auto known = cache.read(key, values.size())) {
     std::ranges::copy(*known, values.begin());
     return values;
   }
-  const tl::expected<std::array<double, 3>, std::string> computed = compute();
+  const Result<std::array<double, 3>> computed = compute();
   if (computed) {
     const std::vector<float> floats(computed->begin(), computed->end());
     cache.write(key, floats);
@@ -70,8 +68,8 @@ tl::expected<std::array<double, 3>, std::string> cached(const TruthCache& cache,
 
 }  // namespace
 
-tl::expected<SituationErrors, std::string> SituationErrors::create(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options) {
+Result<SituationErrors> SituationErrors::create(const Session& session, const StaticSetup& setup,
+                                                const TruthOptions& truth_options) {
   SituationErrors made(session, setup);
   ALCOVE_TRY(auto renderer, FrameRenderer::create(*session.gpu, session.scene,
                                                   {setup.width, setup.height}, setup.normals));
@@ -92,8 +90,8 @@ tl::expected<SituationErrors, std::string> SituationErrors::create(
   return made;
 }
 
-tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSettings& settings,
-                                                              std::uint32_t frames, float orbit) {
+Result<Image<float>> SituationErrors::draw(const OcclusionSettings& settings, std::uint32_t frames,
+                                           float orbit) {
   StaticSetup setup = setup_;
   setup.frames = frames;
   setup.orbit = orbit;
@@ -102,8 +100,7 @@ tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSet
   });
 }
 
-tl::expected<std::array<double, 3>, std::string> SituationErrors::measure(
-    const OcclusionSettings& settings) {
+Result<std::array<double, 3>> SituationErrors::measure(const OcclusionSettings& settings) {
   CacheKey key = key_;
   key.add(std::string_view(to_json(settings).dump()));
   return cached(cache_, key, [&] {
@@ -112,7 +109,7 @@ tl::expected<std::array<double, 3>, std::string> SituationErrors::measure(
   });
 }
 
-tl::expected<std::array<double, 3>, std::string> SituationErrors::measure_with_guard_band(
+Result<std::array<double, 3>> SituationErrors::measure_with_guard_band(
     const OcclusionSettings& settings) const {
   const std::uint32_t band = guard_band(setup_.height);
   return compute([&](const StaticSetup& setup) {
@@ -120,7 +117,7 @@ tl::expected<std::array<double, 3>, std::string> SituationErrors::measure_with_g
   });
 }
 
-tl::expected<std::array<double, 3>, std::string> SituationErrors::compute(const Draw& draw) const {
+Result<std::array<double, 3>> SituationErrors::compute(const Draw& draw) const {
   struct Course {
     std::uint32_t frames;
     float orbit;
@@ -137,17 +134,16 @@ tl::expected<std::array<double, 3>, std::string> SituationErrors::compute(const 
   return rmse;
 }
 
-tl::expected<ModelledTimes, std::string> ModelledTimes::create(const GpuPart& part,
-                                                               const CostInputs& inputs,
-                                                               bool use_cache) {
+Result<ModelledTimes> ModelledTimes::create(const GpuPart& part, const CostInputs& inputs,
+                                            bool use_cache) {
   ALCOVE_TRY(auto device, create_null_device(part.family));
   ModelledTimes made(part, inputs, use_cache && !program_hash().empty());
   made.device_ = std::move(device);
   return made;
 }
 
-tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
-    const OcclusionSettings& settings, bool with_guard_band) const {
+Result<std::array<double, 3>> ModelledTimes::measure(const OcclusionSettings& settings,
+                                                     bool with_guard_band) const {
   CostInputs inputs = inputs_;
   inputs.guard_band = with_guard_band ? guard_band(inputs.height) : 0;
   inputs.settings = timed_settings(settings);
@@ -155,7 +151,7 @@ tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
   key.add(std::string_view("modelled times"), std::string_view(program_hash()), part_->family,
           inputs.width, inputs.height, inputs.normals, inputs.motion, inputs.guard_band,
           std::string_view(to_json(inputs.settings).dump()));
-  return cached(cache_, key, [&]() -> tl::expected<std::array<double, 3>, std::string> {
+  return cached(cache_, key, [&]() -> Result<std::array<double, 3>> {
     ALCOVE_TRY(const auto frames, modelled_frames(*part_, device_, inputs));
     constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
                                                 FrameState::converged};
@@ -167,8 +163,17 @@ tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
   });
 }
 
-tl::expected<Clock, std::string> choose_clock(const VkPhysicalDeviceProperties& device,
-                                              const GpuPart& part, std::optional<Clock> wanted) {
+RecommendationWorld recommendation_world(SituationErrors& errors, const ModelledTimes& times) {
+  return {[&](const OcclusionSettings& settings) -> Result<Achievement> {
+            ALCOVE_TRY(const auto ms, times.measure(settings));
+            ALCOVE_TRY(const auto rmse, errors.measure(settings));
+            return Achievement{settings, rmse, ms};
+          },
+          [&](const OcclusionSettings& settings) { return times.measure(settings); }};
+}
+
+Result<Clock> choose_clock(const VkPhysicalDeviceProperties& device, const GpuPart& part,
+                           std::optional<Clock> wanted) {
   const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const Clock clock = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
   if (clock != Clock::modelled) return clock;

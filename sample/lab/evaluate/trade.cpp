@@ -50,9 +50,7 @@ class SweepList {
     settings.depth_layers = std::max(base_.depth_layers, point.depth_layers);
     const bool known = std::ranges::any_of(
         variants_, [&](const Variant& variant) { return variant.settings == settings; });
-    if (!known) {
-      variants_.push_back({"", name, settings});
-    }
+    if (!known) variants_.push_back({"", name, settings});
   }
   std::vector<Variant> take() { return std::move(variants_); }
 

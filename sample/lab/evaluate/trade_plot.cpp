@@ -109,9 +109,7 @@ class Labels {
       for (const bool right : {true, false}) {
         if (const Box box = box_of(x, base, right, text); is_free(box)) {
           taken_.push_back(box);
-          if (row > 1) {
-            svg.line({x, y}, {x + (right ? 8 : -8), base - 4}, kGridLine);
-          }
+          if (row > 1) svg.line({x, y}, {x + (right ? 8 : -8), base - 4}, kGridLine);
           svg.text({x + (right ? 9 : -9), base}, right ? "start" : "end", text);
           return;
         }

@@ -7,7 +7,6 @@
 
 #include "support/median.h"
 #include "support/progress.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -35,8 +34,8 @@ FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& setti
   return request;
 }
 
-tl::expected<std::unique_ptr<FrameRenderer>, std::string> create_renderer(
-    Gpu& gpu, const Scene& scene, const StaticSetup& setup) {
+Result<std::unique_ptr<FrameRenderer>> create_renderer(Gpu& gpu, const Scene& scene,
+                                                       const StaticSetup& setup) {
   return FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
 }
 
@@ -52,9 +51,8 @@ class Experiment {
   Experiment(const Session& session, const StaticSetup& setup, std::uint32_t timed_pairs)
       : session_(session), setup_(setup), timed_pairs_(timed_pairs) {}
 
-  tl::expected<VariantReport, std::string> run(const TruthOptions& truth_options,
-                                               const std::vector<Variant>& variants,
-                                               const std::string& progress) {
+  Result<VariantReport> run(const TruthOptions& truth_options, const std::vector<Variant>& variants,
+                            const std::string& progress) {
     ALCOVE_TRY(base_, create_renderer(*session_.gpu, session_.scene, setup_));
     ALCOVE_TRY(const FrameImages images, draw_frames(*base_, setup_, session_.settings));
     ALCOVE_TRY(truths_, truths_of({session_.scene, setup_.camera, session_.settings.radius,
@@ -80,7 +78,7 @@ class Experiment {
   }
 
   // Renders a variant on a device of its own, so that its histories start empty.
-  tl::expected<VariantErrors, std::string> measure(const Variant& variant) {
+  Result<VariantErrors> measure(const Variant& variant) {
     ALCOVE_TRY(const auto gpu, open_gpu(session_.device));
     ALCOVE_TRY(const auto renderer, create_renderer(*gpu, session_.scene, setup_));
     ALCOVE_TRY(const FrameImages images, draw_frames(*renderer, setup_, variant.settings));
@@ -90,8 +88,8 @@ class Experiment {
     return errors_of(variant, images.visibility, truths_, cost_of(pairs, bytes));
   }
 
-  tl::expected<std::vector<TimedPair>, std::string> time_pairs(FrameRenderer& variant,
-                                                               const OcclusionSettings& settings) {
+  Result<std::vector<TimedPair>> time_pairs(FrameRenderer& variant,
+                                            const OcclusionSettings& settings) {
     std::vector<TimedPair> pairs;
     // One pair before the timed ones is not counted, because it compiles shaders.
     for (std::uint32_t i = 0; timed_pairs_ > 0 && i <= timed_pairs_; ++i) {
@@ -119,26 +117,22 @@ class Experiment {
 
 }  // namespace
 
-tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer,
-                                                   const StaticSetup& setup,
-                                                   const OcclusionSettings& settings) {
+Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
+                                const OcclusionSettings& settings) {
   for (std::uint32_t i = 0; i + 1 < setup.frames; ++i) {
     ALCOVE_TRY_VOID(renderer.draw(request_of(setup, settings, i)));
   }
   return renderer.draw_and_read(request_of(setup, settings, setup.frames - 1));
 }
 
-tl::expected<FrameImages, std::string> draw_static(Gpu& gpu, const Scene& scene,
-                                                   const StaticSetup& setup,
-                                                   const OcclusionSettings& settings) {
+Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                                const OcclusionSettings& settings) {
   ALCOVE_TRY(const auto renderer, create_renderer(gpu, scene, setup));
   return draw_frames(*renderer, setup, settings);
 }
 
-tl::expected<Image<float>, std::string> draw_with_guard_band(Gpu& gpu, const Scene& scene,
-                                                             const StaticSetup& setup,
-                                                             const OcclusionSettings& settings,
-                                                             VkExtent2D band) {
+Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                                          const OcclusionSettings& settings, VkExtent2D band) {
   StaticSetup wide = setup;
   wide.width += 2 * band.width;
   wide.height += 2 * band.height;
@@ -170,9 +164,10 @@ VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes) {
   return cost;
 }
 
-tl::expected<VariantReport, std::string> run_variants(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
-    const std::vector<Variant>& variants, const std::string& progress, std::uint32_t timed_pairs) {
+Result<VariantReport> run_variants(const Session& session, const StaticSetup& setup,
+                                   const TruthOptions& truth_options,
+                                   const std::vector<Variant>& variants,
+                                   const std::string& progress, std::uint32_t timed_pairs) {
   return Experiment(session, setup, timed_pairs).run(truth_options, variants, progress);
 }
 

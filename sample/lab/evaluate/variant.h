@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
@@ -16,6 +15,7 @@
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -38,17 +38,18 @@ struct StaticSetup {
 };
 
 // Renders the frames of a view and reads the last one back.
-[[nodiscard]] tl::expected<FrameImages, std::string> draw_frames(
-    FrameRenderer& renderer, const StaticSetup& setup, const passes::OcclusionSettings& settings);
-[[nodiscard]] tl::expected<FrameImages, std::string> draw_static(
-    Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-    const passes::OcclusionSettings& settings);
+[[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
+                                              const passes::OcclusionSettings& settings);
+[[nodiscard]] Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene,
+                                              const StaticSetup& setup,
+                                              const passes::OcclusionSettings& settings);
 
 // Renders the frames of a view with a guard band, which is this many pixels wide beyond the borders
 // at the sides, and at top and bottom, and returns the visibility of the view without the band.
-[[nodiscard]] tl::expected<Image<float>, std::string> draw_with_guard_band(
-    Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-    const passes::OcclusionSettings& settings, VkExtent2D band);
+[[nodiscard]] Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene,
+                                                        const StaticSetup& setup,
+                                                        const passes::OcclusionSettings& settings,
+                                                        VkExtent2D band);
 
 // The cost of a variant. Times are relative to the base settings.
 struct VariantCost {
@@ -98,9 +99,10 @@ struct VariantReport {
 
 // Measures the session's own settings and the variants. `progress` is the name in progress
 // messages. With `timed_pairs` of 0 no times are measured.
-[[nodiscard]] tl::expected<VariantReport, std::string> run_variants(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
-    const std::vector<Variant>& variants, const std::string& progress,
-    std::uint32_t timed_pairs = kInformativePairs);
+[[nodiscard]] Result<VariantReport> run_variants(const Session& session, const StaticSetup& setup,
+                                                 const TruthOptions& truth_options,
+                                                 const std::vector<Variant>& variants,
+                                                 const std::string& progress,
+                                                 std::uint32_t timed_pairs = kInformativePairs);
 
 }  // namespace alcove::sample

@@ -14,6 +14,7 @@
 #include "maths/sampling.h"
 #include "maths/slice.h"
 #include "maths/visibility_bitmask.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 #include "work/interleave_offset.h"
 
@@ -194,9 +195,7 @@ Drawing hidden_volume() {
   draw_profile(d, p);
   d.polygon({slat.front, slat.front + vec2(0.9f, 0), slat.back + vec2(0.9f, 0), slat.back},
             "fill=\"#777\" stroke=\"#333\"");
-  for (const float x : {2.0f, 2.9f}) {
-    d.line({x, 3.8f}, {x, 0.25f * x}, kDashed);
-  }
+  for (const float x : {2.0f, 2.9f}) d.line({x, 3.8f}, {x, 0.25f * x}, kDashed);
   d.text({3.0f, 3.4f}, "the eye sees the front of the occluder");
   d.text({3.7f, 2.1f}, "yellow: directions that pass behind it.");
   d.text({3.7f, 1.88f}, "A fraction of them counts as occluded,");
@@ -302,7 +301,7 @@ constexpr std::array<Figure, 6> kFigures{{{"slice_and_horizons", slice_and_horiz
                                           {"tile_interleave", tile_interleave},
                                           {"history_reprojection", history_reprojection}}};
 
-tl::expected<void, std::string> draw_all(const std::filesystem::path& folder) {
+Result<void> draw_all(const std::filesystem::path& folder) {
   for (const Figure& figure : kFigures) {
     const auto written =
         write_text(folder / fmt::format("{}.svg", figure.name), figure.draw().svg());

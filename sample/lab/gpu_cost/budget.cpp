@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "gpu_cost/presets.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -88,7 +87,7 @@ std::vector<LabelledSettings> budgeted_settings() {
   return all;
 }
 
-tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs() {
+Result<std::vector<SettingsCost>> budgeted_costs() {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
     ALCOVE_TRY(const auto device, create_null_device(part.family));
@@ -120,9 +119,8 @@ std::string budget_of(const std::vector<SettingsCost>& costs, const std::string&
   return lines += "\n";
 }
 
-tl::expected<std::vector<std::string>, std::string> over_budget(
-    const std::string& budget, const std::string& compiler,
-    const std::vector<SettingsCost>& costs) {
+Result<std::vector<std::string>> over_budget(const std::string& budget, const std::string& compiler,
+                                             const std::vector<SettingsCost>& costs) {
   std::vector<Json> rows;
   std::istringstream lines(budget);
   for (std::string line; std::getline(lines, line);) {

@@ -5,13 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "gpu_cost/xegtao.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Failure = tl::unexpected<std::string>;
 
 std::string pass_row(const ModelledPass& pass) {
   return fmt::format(
@@ -162,8 +160,8 @@ std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) 
   return {std::move(bent), std::move(specular)};
 }
 
-tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part, const NullDevice& device,
-                                                const LabelledSettings& settings) {
+Result<SettingsCost> cost_of(const GpuPart& part, const NullDevice& device,
+                             const LabelledSettings& settings) {
   ALCOVE_TRY(auto frames, modelled_frames(part, device, settings.inputs));
   ALCOVE_TRY(auto found, occupancies(part, device, settings.inputs));
   return SettingsCost{settings, &part, std::move(frames), std::move(found)};

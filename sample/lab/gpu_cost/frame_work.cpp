@@ -78,7 +78,7 @@ std::uint32_t texel_bytes(const AlcoveWorkResource& resource) {
 
 }  // namespace
 
-tl::expected<std::vector<AlcoveWork>, std::string> describe_frames(const CostInputs& inputs) {
+Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs) {
   std::vector<AlcoveWork> frames(passes::cost::kFrameStates);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     passes::WorkList list(frames[i], i == 0 ? nullptr : &frames[i - 1]);

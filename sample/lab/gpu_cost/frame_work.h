@@ -4,11 +4,11 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/alcove_work.h"
 #include "cost/work.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -35,8 +35,7 @@ struct CostInputs {
 
 // Returns the work of a frame of each FrameState, in their order, with the outputs that the
 // settings enable. Error: the passes reject the settings.
-[[nodiscard]] tl::expected<std::vector<AlcoveWork>, std::string> describe_frames(
-    const CostInputs& inputs);
+[[nodiscard]] Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs);
 
 // Returns the images that a dispatch of `work` reads and writes, in the order of its bindings.
 [[nodiscard]] std::vector<passes::cost::PassImage> images_of(const AlcoveWork& work,

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "gpu_cost/cache_traffic.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -21,7 +20,7 @@ struct Statistics {
   double subgroups_per_simd, latency, inverse_throughput;
 };
 
-tl::expected<Statistics, std::string> statistics_of(const CompiledShader& shader) {
+Result<Statistics> statistics_of(const CompiledShader& shader) {
   std::string missing;
   const auto get = [&](const char* name) {
     const auto found = shader.statistics.find(name);
@@ -79,10 +78,9 @@ bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const Alcove
          images_of(work_a, a) == images_of(work_b, b);
 }
 
-tl::expected<ModelledPass, std::string> model(const GpuPart& part, const NullDevice& device,
-                                              const CostInputs& inputs, const AlcoveWork& frame,
-                                              const AlcoveWorkDispatch& dispatch,
-                                              FrameState state) {
+Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
+                           const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch,
+                           FrameState state) {
   ALCOVE_TRY(const auto compiled, compile_dispatch(device, dispatch));
   const CompiledShader& shader = *compiled;
   const auto statistics = statistics_of(shader);
@@ -109,9 +107,7 @@ tl::expected<ModelledPass, std::string> model(const GpuPart& part, const NullDev
           return branch.first <= loop.first && loop.last <= branch.last;
         }));
     branch.share = passes::cost::branch_share(work, branch.summary);
-    if (branch.share < 1.0) {
-      cost.branches.push_back({branch.summary, branch.share});
-    }
+    if (branch.share < 1.0) cost.branches.push_back({branch.summary, branch.share});
   }
   const double wave = shader.wave;
   constexpr double kGroup = 64;  // invocations, as alcove_work.h says
@@ -173,9 +169,8 @@ double ModelledFrame::milliseconds() const {
   return sum;
 }
 
-tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(const GpuPart& part,
-                                                                      const NullDevice& device,
-                                                                      const CostInputs& inputs) {
+Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part, const NullDevice& device,
+                                                   const CostInputs& inputs) {
   ALCOVE_TRY(const auto frames, describe_frames(inputs));
   std::vector<ModelledFrame> costs;
   // Returns the cost of a dispatch of an earlier frame that does the same work, or null.
@@ -205,9 +200,8 @@ tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(const GpuP
   return costs;
 }
 
-tl::expected<std::vector<Occupancy>, std::string> occupancies(const GpuPart& part,
-                                                              const NullDevice& device,
-                                                              CostInputs inputs) {
+Result<std::vector<Occupancy>> occupancies(const GpuPart& part, const NullDevice& device,
+                                           CostInputs inputs) {
   std::vector<Occupancy> found;
   for (std::size_t kind = 0; kind < kProjectionNames.size(); ++kind) {
     inputs.projection = static_cast<ProjectionKind>(kind);
@@ -218,9 +212,7 @@ tl::expected<std::vector<Occupancy>, std::string> occupancies(const GpuPart& par
         ALCOVE_TRY(const auto shader, compile_dispatch(device, dispatch));
         ALCOVE_TRY(const auto statistics, statistics_of(*shader));
         auto own = std::ranges::find(found, std::string_view(dispatch.label), &Occupancy::pass);
-        if (own == found.end()) {
-          own = found.insert(own, Occupancy{dispatch.label});
-        }
+        if (own == found.end()) own = found.insert(own, Occupancy{dispatch.label});
         const double held = waves_held(part, statistics, shader->wave);
         double& waves = own->waves_per_simd[kind];
         waves = waves == 0 ? held : std::min(waves, held);

@@ -1,5 +1,4 @@
 #include "gpu_cost/null_device.h"
-#include "support/try.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -220,7 +219,7 @@ VkResult create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch,
 
 }  // namespace
 
-tl::expected<NullDevice, std::string> create_null_device(std::string_view family) {
+Result<NullDevice> create_null_device(std::string_view family) {
   const auto manifest = radv_manifest();
   if (!manifest) {
     return Failure(
@@ -252,8 +251,7 @@ tl::expected<NullDevice, std::string> create_null_device(std::string_view family
   return made;
 }
 
-tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
-                                                               VkPipeline pipeline) {
+Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline) {
   const auto load = [device](const char* name) { return vkGetDeviceProcAddr(device, name); };
   const auto get_properties = reinterpret_cast<PFN_vkGetPipelineExecutablePropertiesKHR>(
       load("vkGetPipelineExecutablePropertiesKHR"));
@@ -298,8 +296,8 @@ tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
   return shader;
 }
 
-tl::expected<const CompiledShader*, std::string> compile_dispatch(
-    const NullDevice& device, const AlcoveWorkDispatch& dispatch) {
+Result<const CompiledShader*> compile_dispatch(const NullDevice& device,
+                                               const AlcoveWorkDispatch& dispatch) {
   // The states of a frame, and settings that differ little, have most pipelines in common.
   static std::map<std::tuple<VkDevice, std::string, std::vector<std::uint32_t>>, CompiledShader>
       known;

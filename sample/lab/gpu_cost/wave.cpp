@@ -86,9 +86,7 @@ double words_of(std::string_view text) {
 
 std::string_view first_word(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) {
-    return {};
-  }
+  if (begin == std::string_view::npos) return {};
   text.remove_prefix(begin);
   return text.substr(0, text.find_first_of(" \t\n"));
 }
@@ -291,7 +289,7 @@ double WaveWork::busiest() const {
   return std::max({vector_cycles, complex_cycles, scalar_cycles, branch_cycles, memory_cycles});
 }
 
-tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShader& shader) {
+Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader) {
   const std::string* aco = text_of(shader, "ACO IR");
   if (aco == nullptr) {
     return Failure("The driver gives no 'ACO IR' for its pipelines; Mesa's AMD driver is needed.");

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "support/regular_file.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -135,7 +136,7 @@ void TruthCache::write(const CacheKey& key, std::span<const float> values) const
   Header header;
   header.count = values.size();
   header.checksum = checksum(values);
-  const auto fill = [&](const std::filesystem::path& path) -> tl::expected<void, std::string> {
+  const auto fill = [&](const std::filesystem::path& path) -> Result<void> {
     std::ofstream file(path, std::ios::binary);
     file.write(reinterpret_cast<const char*>(&header), sizeof(header));
     file.write(reinterpret_cast<const char*>(values.data()),

@@ -7,7 +7,6 @@
 
 #include "report/page_html.h"
 #include "support/image_io.h"
-#include "support/try.h"
 
 namespace alcove::sample {
 namespace {
@@ -42,8 +41,7 @@ std::string base64(const std::string& bytes) {
 }
 
 template <typename Pixel>
-tl::expected<std::string, std::string> encoded(const Image<Pixel>& image,
-                                               const std::filesystem::path& folder) {
+Result<std::string> encoded(const Image<Pixel>& image, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "picture.png";
   ALCOVE_TRY_VOID(write_png(file, image));
   const std::string bytes = read_file(file);
@@ -68,17 +66,15 @@ std::string within_script(std::string text) {
 
 }  // namespace
 
-tl::expected<std::string, std::string> data_uri(const Image<float>& image,
-                                                const std::filesystem::path& folder) {
+Result<std::string> data_uri(const Image<float>& image, const std::filesystem::path& folder) {
   return encoded(image, folder);
 }
 
-tl::expected<std::string, std::string> data_uri(const Image<glm::vec3>& image,
-                                                const std::filesystem::path& folder) {
+Result<std::string> data_uri(const Image<glm::vec3>& image, const std::filesystem::path& folder) {
   return encoded(image, folder);
 }
 
-tl::expected<std::string, std::string> report_page(const nlohmann::ordered_json& data) {
+Result<std::string> report_page(const nlohmann::ordered_json& data) {
   std::string chart;
   for (const char* file : kChartFiles) chart = chart.empty() ? read_file(file) : chart;
   if (chart.empty()) {

@@ -1,10 +1,18 @@
-// Macros for functions that return a tl::expected and end with the error of a call that fails.
+// The results of functions that may fail with a sentence, and macros that pass errors on.
 #pragma once
 
+#include <string>
 #include <tl/expected.hpp>
 #include <utility>
 
-// Declares a variable with the value of a call, or returns the error of the call:
+namespace alcove::sample {
+
+template <class T>
+using Result = tl::expected<T, std::string>;
+
+}  // namespace alcove::sample
+
+// Declares a variable with the value of a call, or returns its error:
 //   ALCOVE_TRY(const auto scene, load_scene(name));
 #define ALCOVE_TRY(declaration, ...) \
   ALCOVE_TRY_AS(ALCOVE_TRY_NAME(alcove_result_, __LINE__), declaration, __VA_ARGS__)
