@@ -139,6 +139,11 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   EXPECT_THAT(search_iterations(settings, {loop(1, 48), loop(2, 48)}), ElementsAre(2, 2))
       << "both depth layers share the loads of back faces";
+  settings.slices = 1;
+  settings.steps = 24;
+  EXPECT_THAT(search_iterations(settings, {loop(1, 28), loop(2, 8), loop(2, 8)}),
+              ElementsAre(2, 5, 5))
+      << "both layers share the loads of the steps outside of the loops, but not of those inside";
 }
 
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
