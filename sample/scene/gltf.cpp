@@ -13,7 +13,7 @@
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_model.h"
-#include "scene/gltf_nodes.h"
+#include "scene/gltf_scene.h"
 #include "scene/subject.h"
 #include "support/printable.h"
 

@@ -10,7 +10,7 @@
 #include "scene/area.h"
 #include "scene/direction.h"
 #include "scene/gltf_accessor.h"
-#include "scene/gltf_placement.h"
+#include "scene/gltf_skin.h"
 
 namespace alcove::sample {
 namespace {
@@ -66,9 +66,9 @@ std::vector<uint32_t> compacted(std::vector<uint32_t>& indices) {
 }
 
 // Reverses the winding of triangles that their transform mirrors.
-void turn_mirrored(const VertexPlacement& placement, std::vector<uint32_t>& indices) {
+void turn_mirrored(const VertexTransforms& transforms, std::vector<uint32_t>& indices) {
   for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-    if (glm::determinant(glm::dmat3(placement.at(indices[i]))) < 0.0) {
+    if (glm::determinant(glm::dmat3(transforms.at(indices[i]))) < 0.0) {
       std::swap(indices[i + 1], indices[i + 2]);
     }
   }
@@ -182,7 +182,7 @@ class PrimitiveReader {
   MeshBudget& budget_;
   Scene& scene_;
   const Material& material_;
-  VertexPlacement transforms_;
+  VertexTransforms transforms_;
   std::vector<uint32_t> vertices_;  // the vertices of the file that the triangles use
 };
 
@@ -269,8 +269,8 @@ PrimitiveReader::Read PrimitiveReader::read_positions() {
   // The squares of larger lengths overflow a float.
   constexpr float kFarthest = 1e15f;
   if (placement_.joints != nullptr) {
-    auto skinned = VertexPlacement::skinned(model_, primitive_, vertices_, *placement_.joints,
-                                            budget_.vertices);
+    auto skinned = VertexTransforms::skinned(model_, primitive_, vertices_, *placement_.joints,
+                                             budget_.vertices);
     if (!skinned) return Failure(skinned.error());
     transforms_ = std::move(*skinned);
   }

@@ -115,7 +115,7 @@ const Fault kFaults[] = {
        m.json["nodes"] = {
            {{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"mesh", 0}, {"children", {1}}}};
      },
-     "node 1 is in a cycle"},
+     "some of its nodes form a cycle"},
     {"NodeWithTwoParents",
      [](GltfMaker& m) {
        m.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}};
