@@ -71,9 +71,6 @@ const Fault kFaults[] = {
      "finite"},
     {"ScalarPositions", [](GltfMaker& m) { m.json["accessors"][0]["type"] = "SCALAR"; },
      "components"},
-    {"RequiredExtensionThatHoldsGeometry",
-     [](GltfMaker& m) { m.json["extensionsRequired"] = {"KHR_gaussian_splatting"}; },
-     "KHR_gaussian_splatting"},
     {"NormalScaleTooLargeForAFloat",
      [](GltfMaker& m) {
        m = textured({{"index", 0}}, {{"index", 0}, {"scale", 1e300}});
