@@ -27,7 +27,7 @@ bool can_be_instance(const glm::dmat4& m) {
 // Adds the meshes and cameras of nodes to a scene.
 class NodeReader {
  public:
-  NodeReader(const tinygltf::Model& model, const NodeTree& nodes, MeshBudget& budget, Scene& scene)
+  NodeReader(const tinygltf::Model& model, const NodeTree& nodes, GltfLimits& budget, Scene& scene)
       : model_(model), nodes_(nodes), budget_(budget), scene_(scene) {
     nodes_of_.resize(model.meshes.size());
     for (const DrawnNode& drawn : nodes.drawn) {
@@ -124,7 +124,7 @@ class NodeReader {
 
   const tinygltf::Model& model_;
   const NodeTree& nodes_;
-  MeshBudget& budget_;
+  GltfLimits& budget_;
   Scene& scene_;
   std::vector<std::vector<const DrawnNode*>> nodes_of_;  // by mesh; those not added yet
   std::map<int, std::vector<glm::dmat4>> joints_of_skin_;
@@ -132,7 +132,7 @@ class NodeReader {
 
 }  // namespace
 
-tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudget& budget,
+tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, GltfLimits& budget,
                                           std::vector<PlacedCamera>& cameras, Scene& scene,
                                           const Progress& progress) {
   const auto nodes = read_nodes(model, budget.instances);

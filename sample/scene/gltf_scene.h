@@ -21,7 +21,7 @@ namespace alcove::sample {
 // space in the pose of their joints. `progress` receives the fraction of the nodes that have been
 // read. Error texts are the end of a sentence whose beginning the caller adds.
 [[nodiscard]] tl::expected<void, std::string> add_nodes(const tinygltf::Model& model,
-                                                        MeshBudget& budget,
+                                                        GltfLimits& budget,
                                                         std::vector<PlacedCamera>& cameras,
                                                         Scene& scene, const Progress& progress);
 

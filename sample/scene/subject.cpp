@@ -1,13 +1,14 @@
 #include "scene/subject.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "scene/area.h"
 #include "scene/scene.h"
+#include "support/disjoint_sets.h"
 
 namespace alcove::sample {
 namespace {
@@ -31,47 +32,20 @@ struct WorldTriangle {
   bool double_sided;
 };
 
-// Sets of vertices that grow together.
-class DisjointSets {
- public:
-  explicit DisjointSets(size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), 0u);
-  }
-  uint32_t root(uint32_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) { parents_[root(a)] = root(b); }
-
- private:
-  std::vector<uint32_t> parents_;
-};
-
 // Joins vertices whose coordinates differ by a few units in the last place.
 void join_touching(const std::vector<glm::vec3>& positions, DisjointSets& sets) {
-  struct Key {
-    uint32_t x, y, z;
-    bool operator==(const Key&) const = default;
-  };
-  const auto key_of = [](const glm::vec3& p) {
-    const auto rounded = [](float value) {
-      return (std::bit_cast<uint32_t>(value + 0.0f) + 8u) & ~15u;  // -0 becomes 0
-    };
-    return Key{rounded(p.x), rounded(p.y), rounded(p.z)};
-  };
-  const size_t mask = std::bit_ceil(2 * positions.size() + 1) - 1;
-  std::vector<uint32_t> table(mask + 1, UINT32_MAX);
-  for (uint32_t v = 0; v < positions.size(); ++v) {
-    const Key key = key_of(positions[v]);
-    uint64_t hash = key.x * 0x9e3779b97f4a7c15u;
-    hash = (hash ^ (hash >> 29) ^ key.y) * 0xbf58476d1ce4e5b9u;
-    hash = (hash ^ (hash >> 32) ^ key.z) * 0x94d049bb133111ebu;
-    size_t slot = (hash ^ (hash >> 31)) & mask;
-    while (table[slot] != UINT32_MAX && key_of(positions[table[slot]]) != key) {
-      slot = (slot + 1) & mask;
-    }
-    if (table[slot] == UINT32_MAX) table[slot] = v;
-    sets.join(v, table[slot]);
+  std::vector<glm::uvec3> rounded;
+  rounded.reserve(positions.size());
+  for (const glm::vec3& p : positions) {
+    rounded.push_back((glm::floatBitsToUint(p + 0.0f) + 8u) & ~15u);  // -0 becomes 0
+  }
+  std::vector<uint32_t> remap(positions.size()), first(positions.size(), UINT32_MAX);
+  meshopt_generateVertexRemap(remap.data(), nullptr, rounded.size(), rounded.data(), rounded.size(),
+                              sizeof(glm::uvec3));
+  for (uint32_t v = 0; v < remap.size(); ++v) {
+    uint32_t& twin = first[remap[v]];
+    if (twin == UINT32_MAX) twin = v;
+    sets.join(v, twin);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "check_scene.h"
+#include "glb_file.h"
 #include "scene/gltf_container.h"
 
 extern "C" size_t LLVMFuzzerMutate(uint8_t* data, size_t size, size_t max_size);
@@ -86,26 +87,6 @@ void mutate_json(json& root, std::minstd_rand& random) {
   }
 }
 
-void add_word(std::vector<uint8_t>& file, size_t value) {
-  for (int shift = 0; shift < 32; shift += 8) file.push_back(static_cast<uint8_t>(value >> shift));
-}
-
-std::vector<uint8_t> glb_of(std::string json, std::vector<uint8_t> binary) {
-  while (json.size() % 4) json += ' ';
-  while (binary.size() % 4) binary.push_back(0);
-  std::vector<uint8_t> file;
-  add_word(file, 0x46546c67);
-  add_word(file, 2);
-  add_word(file, 28 + json.size() + binary.size());
-  add_word(file, json.size());
-  add_word(file, 0x4e4f534a);
-  file.insert(file.end(), json.begin(), json.end());
-  add_word(file, binary.size());
-  add_word(file, 0x004e4942);
-  file.insert(file.end(), binary.begin(), binary.end());
-  return file;
-}
-
 // An empty result: the file is not one that can be taken apart.
 std::vector<uint8_t> mutated(std::span<const uint8_t> file, std::minstd_rand& random) {
   const auto parts = split_gltf(file);
@@ -118,7 +99,7 @@ std::vector<uint8_t> mutated(std::span<const uint8_t> file, std::minstd_rand& ra
   } else {
     mutate_json(root, random);
   }
-  return glb_of(root.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), binary);
+  return glb_file(root.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), binary);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "gltf_maker.h"
-#include "scene/area.h"
 
 namespace alcove::sample {
 namespace {

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "scene/area.h"
-#include "scene/direction.h"
-
 namespace alcove::sample {
 namespace {
 
