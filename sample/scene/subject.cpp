@@ -350,32 +350,35 @@ Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidat
   return large && all_behind ? Kind::surroundings : Kind::subject;
 }
 
-}  // namespace
-
-Subject find_subject(const Scene& scene) {
-  const Parts found(scene);
-  const std::vector<Part>& parts = found.all();
-  if (parts.empty()) return {};
+// Returns the parts to group, the largest first. Of many parts these are the largest, which may be
+// surroundings, and evenly spaced ones of the others.
+std::vector<uint32_t> parts_to_group(const std::vector<Part>& parts) {
+  const auto size = [&](uint32_t p) { return diagonal(parts[p].bounds_ws); };
   std::vector<uint32_t> order(parts.size());
   std::iota(order.begin(), order.end(), 0u);
-  const bool sampled = order.size() > kMostGrouped;
-  if (sampled) {
-    // The largest parts, which may be surroundings, and evenly spaced ones of the others.
+  if (order.size() > kMostGrouped) {
     constexpr size_t kLargest = 1024;
-    std::ranges::nth_element(order, order.begin() + kLargest, std::greater<>(),
-                             [&](uint32_t p) { return diagonal(parts[p].bounds_ws); });
+    std::ranges::nth_element(order, order.begin() + kLargest, std::greater<>(), size);
     const size_t step = order.size() / kMostGrouped + 1;
     size_t count = kLargest;
     for (size_t i = kLargest; i < order.size(); i += step) order[count++] = order[i];
     order.resize(count);
   }
-  const auto size = [&](size_t i) { return diagonal(parts[order[i]].bounds_ws); };
-  std::ranges::stable_sort(order, std::greater<>(),
-                           [&](uint32_t p) { return diagonal(parts[p].bounds_ws); });
+  std::ranges::stable_sort(order, std::greater<>(), size);
+  return order;
+}
 
+struct Separation {
+  std::vector<uint32_t> subject;  // its parts
+  std::vector<char> shells;       // by part: whether it would hide the subject from outside
+};
+
+// Separates the subject from its surroundings. `order` has the parts, the largest first.
+Separation separate(const Parts& found, const std::vector<uint32_t>& order) {
+  const std::vector<Part>& parts = found.all();
+  const auto size = [&](size_t i) { return diagonal(parts[order[i]].bounds_ws); };
   const auto directions = ray_directions();
-  std::vector<uint32_t> group = greatest_group(parts, order);
-  std::vector<char> shells(parts.size(), 0);
+  Separation out{greatest_group(parts, order), std::vector<char>(parts.size(), 0)};
   constexpr size_t kMostSurroundings = 32;
   for (size_t k = 1; k < std::min(order.size(), kMostSurroundings); ++k) {
     constexpr double kLarger = 1.5;  // than the next part, and than the rest
@@ -397,26 +400,47 @@ Subject find_subject(const Scene& scene) {
     if (kind == Kind::subject) continue;
     // The eye stays inside of a sky, and of a room that hides its inside from eyes outside. A
     // ground or backdrop, which no ray up meets, hides nothing.
-    shells.assign(parts.size(), 0);
+    out.shells.assign(parts.size(), 0);
     for (size_t i = 0; i < k; ++i) {
-      shells[candidates[i]] = enclosures[i].is_sheet() &&
-                              enclosures[i].directions(kSides, kUp) > 0 &&
-                              (kind == Kind::surroundings || enclosures[i].double_sided);
+      out.shells[candidates[i]] = enclosures[i].is_sheet() &&
+                                  enclosures[i].directions(kSides, kUp) > 0 &&
+                                  (kind == Kind::surroundings || enclosures[i].double_sided);
     }
-    if (kind == Kind::surroundings) group = rest;
+    if (kind == Kind::surroundings) out.subject = rest;
   }
+  return out;
+}
+
+// Returns the distances from a point at which the parts of `shells` hide it from each side.
+std::array<float, 4> free_distances(const Parts& found, const std::vector<char>& shells,
+                                    const glm::dvec3& from) {
+  const auto directions = ray_directions();
+  Enclosure shell;
+  found.for_each_triangle(shells, [&](size_t, const WorldTriangle& triangle) {
+    shell.add(triangle, from, directions);
+  });
+  std::array<float, 4> out;
+  std::transform(shell.nearest.begin() + kToEyes, shell.nearest.end(), out.begin(),
+                 [](double d) { return static_cast<float>(d); });
+  return out;
+}
+
+}  // namespace
+
+Subject find_subject(const Scene& scene) {
+  const Parts found(scene);
+  const std::vector<Part>& parts = found.all();
+  if (parts.empty()) return {};
+  const std::vector<uint32_t> order = parts_to_group(parts);
+  const bool sampled = order.size() < parts.size();
+  const Separation separation = separate(found, order);
   Subject out{empty_bounds()};
   std::vector<char> grouped(parts.size(), 0);
-  for (const uint32_t p : group) {
+  for (const uint32_t p : separation.subject) {
     grouped[p] = 1;
     out.bounds_ws = united(out.bounds_ws, parts[p].bounds_ws);
   }
-  Enclosure shell;
-  found.for_each_triangle(shells, [&](size_t, const WorldTriangle& triangle) {
-    shell.add(triangle, centre_of(out.bounds_ws), directions);
-  });
-  std::transform(shell.nearest.begin() + kToEyes, shell.nearest.end(), out.free_distance_ws.begin(),
-                 [](double d) { return static_cast<float>(d); });
+  out.free_distance_ws = free_distances(found, separation.shells, centre_of(out.bounds_ws));
   // Parts that were not sampled belong to the subject if they lie in it or at its border.
   const float border = sampled ? static_cast<float>(0.05 * diagonal(out.bounds_ws)) : 0.0f;
   const Bounds around{out.bounds_ws.low - border, out.bounds_ws.high + border};
