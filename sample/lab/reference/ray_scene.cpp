@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "support/result.h"
+
 namespace alcove::sample {
 namespace {
 
@@ -141,7 +143,7 @@ RayScene::Impl::~Impl() {
   if (device) rtcReleaseDevice(device);
 }
 
-tl::expected<RayScene, std::string> RayScene::create(const Scene& scene) {
+Result<RayScene> RayScene::create(const Scene& scene) {
   if (is_too_large(scene.bounds_ws)) {
     return tl::unexpected("the scene " + scene.name +
                           " reaches further than 1e12 from its origin, too far for rays to be "
