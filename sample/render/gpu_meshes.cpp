@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "maths/octahedral.h"
-#include "scene/area.h"
 #include "scene/tangents.h"
 
 namespace alcove::sample {

@@ -308,11 +308,11 @@ Camera framing_camera(const Scene& scene, double aspect) {
   camera.fit_planes = true;
   const Bounds grown = grown_subject(scene);
   Camera best = camera;
-  size_t most = 0;  // pixels that show the subject
+  double most = 0.0;  // share of the image that the subject would fill if all of it were in view
   for (size_t i = 0; i < kSidesOfSubject.size(); ++i) {
     constexpr float kInside =
-        0.85f;                     // of the distance at which a sky or a wall would be in the way
-    constexpr size_t kEnough = 6;  // one pixel in so many shows the subject
+        0.85f;  // of the distance at which a sky or a wall would be in the way
+    constexpr double kEnough = 1.0 / 6.0;
     const glm::vec3 back = glm::normalize(kSidesOfSubject[i]);
     const float whole = distance_in_view(bounds, back, camera.fov_y, static_cast<float>(aspect));
     const float distance =
@@ -325,12 +325,16 @@ Camera framing_camera(const Scene& scene, double aspect) {
     size_t pixels = 0;
     for_each_surface(picture, camera, aspect,
                      [&](const glm::vec3& at) { pixels += contains(grown, at); });
+    // An eye that is too near shows a large part of a subject that is cut off.
+    const double nearness = std::min(1.0, static_cast<double>(distance) / whole);
+    const double share = nearness * nearness * static_cast<double>(pixels) /
+                         static_cast<double>(picture.depth.pixels.size());
     // A later side has to show clearly more.
-    if (i == 0 || 4 * pixels > 5 * most) {
+    if (i == 0 || share > 1.25 * most) {
       best = camera;
-      most = pixels;
+      most = share;
     }
-    if (most * kEnough > picture.depth.pixels.size()) break;
+    if (most > kEnough) break;
   }
   return best;
 }

@@ -11,7 +11,8 @@ namespace alcove::sample {
 // Returns a camera that looks at the subject of a scene (find_subject()) from above and from one
 // side, as near as possible with the whole subject in view. `aspect` is the width of the image
 // divided by its height. Of four candidate eyes it takes the first in whose image the subject fills
-// a sixth, or the one that shows most of it. The eye stays inside of a sky and of a closed room.
+// a sixth, or the one that shows most of it, where a subject that is cut off counts as if it were
+// seen from where all of it is in view. The eye stays inside of a sky and of a closed room.
 // Call with_fitted_planes() afterwards.
 [[nodiscard]] Camera framing_camera(const Scene& scene, double aspect);
 

@@ -13,7 +13,7 @@
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_model.h"
-#include "scene/gltf_nodes.h"
+#include "scene/gltf_scene.h"
 #include "scene/subject.h"
 #include "support/printable.h"
 
@@ -62,8 +62,7 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
   Scene scene;
   scene.warnings = std::move(read.warnings);
   if (auto added = add_materials(model, scene); !added) return Failure(added.error());
-  MeshBudget budget{limits.primitives, limits.vertices, limits.indices,
-                    limits.instances,  limits.joints,   limits.drawn_triangles};
+  GltfLimits budget = limits;
   std::vector<PlacedCamera> cameras;
   if (auto added = add_nodes(model, budget, cameras, scene, progress); !added)
     return Failure(added.error());

@@ -30,6 +30,12 @@ namespace alcove::sample {
 // warning, because Alcove computes occlusion. Alpha-blended materials are opaque; with an alpha of
 // 0 they are not drawn.
 //
+// A reader follows a file through gltf_container (splits a .glb), gltf_properties (checks the
+// JSON), gltf_model (tinygltf's model, buffers), gltf_files (URIs), gltf_meshopt and gltf_draco
+// (decompression), gltf_material, gltf_nodes (node tree, instances), gltf_scene (meshes of the
+// nodes), gltf_mesh (one primitive, morph targets), gltf_skin (joints and weights), gltf_accessor
+// (binary data), gltf_camera and gltf_images.
+//
 // The file may be hostile. Every index, offset, stride and count is checked before it is used,
 // GltfLimits limits memory and time, and external files must be in the scene's folder. Errors are
 // one sentence with the file's name. Thread-safe.

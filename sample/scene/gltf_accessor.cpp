@@ -130,16 +130,11 @@ tl::expected<void, std::string> for_each_sparse(const tinygltf::Model& model, in
   const auto& sparse = model.accessors[static_cast<size_t>(index)].sparse;
   if (!sparse.isSparse) return {};
   const std::string name = "accessor " + std::to_string(index) + " ";
-  if (sparse.count < 0 || static_cast<uint64_t>(sparse.count) > elements.count) {
-    return Failure(name + "has more sparse values than elements");
-  }
+  const auto count = static_cast<uint64_t>(sparse.count);
+  if (count > elements.count) return Failure(name + "has more sparse values than elements");
   if (!is_unsigned(sparse.indices.componentType)) {
     return Failure(name + "has sparse indices that are not unsigned integers");
   }
-  if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
-    return Failure(name + "has a negative sparse offset");
-  }
-  const auto count = static_cast<uint64_t>(sparse.count);
   const uint64_t index_size = component_size(sparse.indices.componentType);
   const uint64_t value_size =
       component_size(elements.component_type) * static_cast<uint64_t>(elements.components);

@@ -3,80 +3,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
-
-#include "scene/gltf_texture.h"
+#include <utility>
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
 
+using tinygltf::Value;
+
+// The members of the extension KHR_texture_transform, which gltf_properties.h has checked, or null.
+const Value* transform_extension(const tinygltf::ExtensionMap& extensions) {
+  const auto found = extensions.find("KHR_texture_transform");
+  return found == extensions.end() ? nullptr : &found->second;
+}
+
 // A reference to a texture by any property of a material.
 struct TextureReference {
   const char* role;
-  int index;  // negative where there is none
-  int set;
-  const tinygltf::ExtensionMap* extensions;
+  int index;               // negative if there is none
+  int set;                 // of texture coordinates
+  const Value* transform;  // null if there is none
 };
 
+// The extension may replace the set of texture coordinates.
 template <class Info>
 TextureReference reference(const char* role, const Info& info) {
-  return {role, info.index, coordinate_set(info.texCoord, info.extensions), &info.extensions};
-}
-
-const tinygltf::Value* specular_glossiness(const tinygltf::Material& material) {
-  const auto found = material.extensions.find("KHR_materials_pbrSpecularGlossiness");
-  return found != material.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
-}
-
-double number_or(const tinygltf::Value& object, const char* key, double otherwise) {
-  if (!object.Has(key)) return otherwise;
-  const tinygltf::Value& value = object.Get(key);
-  return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
-}
-
-int int_or(const tinygltf::Value& object, const char* key, int otherwise) {
-  const double value = number_or(object, key, otherwise);
-  return value >= -1.0 && value < 2147483647.0 ? static_cast<int>(value) : otherwise;
-}
-
-// Returns a texture reference that is stored in an extension.
-tinygltf::TextureInfo texture_info(const tinygltf::Value& extension, const char* key) {
-  tinygltf::TextureInfo info;
-  if (!extension.Has(key) || !extension.Get(key).IsObject()) return info;
-  const tinygltf::Value& value = extension.Get(key);
-  info.index = int_or(value, "index", -1);
-  info.texCoord = int_or(value, "texCoord", 0);
-  if (value.Has("extensions") && value.Get("extensions").IsObject()) {
-    for (const auto& [name, extension_value] :
-         value.Get("extensions").Get<tinygltf::Value::Object>()) {
-      info.extensions[name] = extension_value;
-    }
-  }
-  return info;
-}
-
-// Converts a specular-glossiness material to metallic-roughness: the diffuse colour and texture
-// become the base colour of a dielectric, and 1 - glossiness becomes the roughness. The specular
-// colour is left out.
-tinygltf::Material as_metallic_roughness(const tinygltf::Material& material,
-                                         const tinygltf::Value& extension) {
-  tinygltf::Material out = material;
-  auto& pbr = out.pbrMetallicRoughness;
-  pbr = {};
-  pbr.metallicFactor = 0.0;
-  pbr.roughnessFactor = 1.0 - number_or(extension, "glossinessFactor", 1.0);
-  pbr.baseColorTexture = texture_info(extension, "diffuseTexture");
-  if (extension.Has("diffuseFactor")) {
-    const tinygltf::Value& factor = extension.Get("diffuseFactor");
-    for (int c = 0; factor.IsArray() && c < 4 && c < static_cast<int>(factor.ArrayLen()); ++c) {
-      if (factor.Get(c).IsNumber()) {
-        pbr.baseColorFactor[static_cast<size_t>(c)] = factor.Get(c).GetNumberAsDouble();
-      }
-    }
-  }
-  return out;
+  const Value* transform = transform_extension(info.extensions);
+  const bool replaces = transform != nullptr && transform->Has("texCoord");
+  const int set = replaces ? transform->Get("texCoord").GetNumberAsInt() : info.texCoord;
+  return {role, info.index, set, transform};
 }
 
 std::array<TextureReference, 4> references(const tinygltf::Material& material) {
@@ -87,118 +43,170 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
           reference("normal map", material.normalTexture)};
 }
 
-// Adds materials to a scene.
-class MaterialReader {
- public:
-  MaterialReader(const tinygltf::Model& model, Scene& scene) : model_(model), scene_(scene) {}
-
-  tl::expected<void, std::string> add(const tinygltf::Material& material);
-
- private:
-  tl::expected<void, std::string> add_textures(const tinygltf::Material& in, Material& out);
-  tl::expected<TextureUse, std::string> texture(const TextureReference& reference);
-
-  const tinygltf::Model& model_;
-  Scene& scene_;
-};
-
-float clamped(double value, double low, double high, double otherwise) {
-  return static_cast<float>(std::isfinite(value) ? std::clamp(value, low, high) : otherwise);
-}
-
-tl::expected<void, std::string> MaterialReader::add(const tinygltf::Material& in) {
-  Material out;
-  out.name = in.name;
-  const auto& pbr = in.pbrMetallicRoughness;
-  for (size_t c = 0; c < 4 && c < pbr.baseColorFactor.size(); ++c) {
-    out.base_color[static_cast<int>(c)] = clamped(pbr.baseColorFactor[c], 0.0, 1.0, 1.0);
-  }
-  out.metallic = clamped(pbr.metallicFactor, 0.0, 1.0, 1.0);
-  out.roughness = clamped(pbr.roughnessFactor, 0.0, 1.0, 1.0);
-  for (size_t c = 0; c < 3 && c < in.emissiveFactor.size(); ++c) {
-    out.emissive[static_cast<int>(c)] = clamped(in.emissiveFactor[c], 0.0, 1e6, 0.0);
-  }
-  out.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::mask
-                   : in.alphaMode == "BLEND" ? AlphaMode::blend
-                                             : AlphaMode::opaque;
-  out.double_sided = in.doubleSided;
-  out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6, 0.5);
-  if (auto added = add_textures(in, out); !added) {
-    return Failure("material \"" + in.name + "\" " + added.error());
-  }
-  scene_.materials.push_back(std::move(out));
-  return {};
-}
-
-tl::expected<void, std::string> MaterialReader::add_textures(const tinygltf::Material& in,
-                                                             Material& out) {
-  const auto all = references(in);
-  const auto uses = out.textures();
-  for (size_t i = 0; i < all.size(); ++i) {
-    if (all[i].index < 0) continue;
-    if (all[i].set != 0 && all[i].set != 1) {
-      scene_.warnings.push_back("Material \"" + in.name + "\" has its " + all[i].role +
-                                " by texture coordinates " + std::to_string(all[i].set) +
-                                ", neither 0 nor 1: it is left out.");
-      continue;
+// Converts a glTF sampler (glTF 2.0 section 5.26). Filters that the file does not give (-1) are
+// linear, also between mip levels. A value that glTF does not define is an error.
+tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
+  Sampler out;
+  for (const auto& [mode, wrap] : {std::pair{in.wrapS, &out.wrap_u}, {in.wrapT, &out.wrap_v}}) {
+    if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT && mode != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE &&
+        mode != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) {
+      return Failure("has a wrap mode unknown to glTF");
     }
-    auto read = texture(all[i]);
-    if (!read) return Failure(read.error());
-    *uses[i] = *read;
+    *wrap = mode == TINYGLTF_TEXTURE_WRAP_REPEAT          ? Wrap::repeat
+            : mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ? Wrap::clamp
+                                                          : Wrap::mirror;
   }
-  if (!std::isfinite(static_cast<float>(in.normalTexture.scale))) {
-    return Failure("has a normal map whose scale is not finite");
+  switch (in.magFilter) {
+    case TINYGLTF_TEXTURE_FILTER_NEAREST:
+      out.magnify = Filter::nearest;
+      break;
+    case TINYGLTF_TEXTURE_FILTER_LINEAR:
+    case -1:
+      break;
+    default:
+      return Failure("has a filter unknown to glTF");
   }
-  out.normal_scale = clamped(in.normalTexture.scale, -1e6, 1e6, 1.0);
-  return {};
+  // One number gives the filter within a mip level and the filter between mip levels.
+  switch (in.minFilter) {
+    case TINYGLTF_TEXTURE_FILTER_NEAREST:
+      out.minify = Filter::nearest;
+      [[fallthrough]];
+    case TINYGLTF_TEXTURE_FILTER_LINEAR:
+      out.mips = MipFilter::none;
+      break;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
+      out.minify = Filter::nearest;
+      [[fallthrough]];
+    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
+      out.mips = MipFilter::nearest;
+      break;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
+      out.minify = Filter::nearest;
+      break;
+    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
+    case -1:
+      break;
+    default:
+      return Failure("has a filter unknown to glTF");
+  }
+  return out;
 }
 
-tl::expected<TextureUse, std::string> MaterialReader::texture(const TextureReference& reference) {
+// Returns the matrix of KHR_texture_transform from the mesh's texture coordinates to those of the
+// image: scale, then rotation, then offset. A positive rotation is counter-clockwise in the image,
+// whose v points down. Numbers outside the range of a float are an error.
+tl::expected<glm::mat3x2, std::string> texture_transform(const Value& transform) {
+  const auto pair = [&](const char* name, double otherwise) {
+    if (!transform.Has(name)) return glm::dvec2(otherwise);
+    const Value& values = transform.Get(name);
+    return glm::dvec2(values.Get(0).GetNumberAsDouble(), values.Get(1).GetNumberAsDouble());
+  };
+  const glm::dvec2 offset = pair("offset", 0.0), scale = pair("scale", 1.0);
+  const double rotation =
+      transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
+  const double c = std::cos(rotation), s = std::sin(rotation);
+  // The columns are the transformed u axis, v axis and origin.
+  const glm::mat3x2 out(c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y);
+  for (int column = 0; column < 3; ++column) {
+    if (!std::isfinite(out[column].x) || !std::isfinite(out[column].y)) {
+      return Failure("has a texture transform that is not of finite numbers");
+    }
+  }
+  return out;
+}
+
+// Reads the texture of a reference. Samplers and images that cannot be used are left out with a
+// warning in the scene.
+tl::expected<TextureUse, std::string> read_texture(const tinygltf::Model& model,
+                                                   const TextureReference& reference,
+                                                   Scene& scene) {
   TextureUse use;
   use.uv_set = static_cast<uint32_t>(reference.set);
-  const int index = reference.index;
-  if (static_cast<size_t>(index) >= model_.textures.size()) {
-    return Failure("has no texture " + std::to_string(index));
+  const std::string name = std::to_string(reference.index);
+  if (static_cast<size_t>(reference.index) >= model.textures.size()) {
+    return Failure("has no texture " + name);
   }
-  const tinygltf::Texture& texture = model_.textures[static_cast<size_t>(index)];
+  const tinygltf::Texture& texture = model.textures[static_cast<size_t>(reference.index)];
   if (texture.sampler >= 0) {
-    if (static_cast<size_t>(texture.sampler) >= model_.samplers.size()) {
-      return Failure("has a texture without its sampler " + std::to_string(texture.sampler));
+    const std::string sampler_name = std::to_string(texture.sampler);
+    if (static_cast<size_t>(texture.sampler) >= model.samplers.size()) {
+      return Failure("has a texture without its sampler " + sampler_name);
     }
-    const auto sampler = read_sampler(model_.samplers[static_cast<size_t>(texture.sampler)]);
-    if (sampler) {
-      use.sampler = *sampler;
-    } else {
-      scene_.warnings.push_back("sampler " + std::to_string(texture.sampler) + " " +
-                                sampler.error() + " and is left out.");
+    const auto sampler = read_sampler(model.samplers[static_cast<size_t>(texture.sampler)]);
+    if (!sampler) {
+      scene.warnings.push_back("sampler " + sampler_name + " " + sampler.error() +
+                               " and is left out.");
     }
+    use.sampler = sampler.value_or(Sampler());
   }
-  const auto transform = texture_transform(*reference.extensions);
-  if (!transform) return Failure(transform.error());
-  use.texture_from_mesh_uv = *transform;
+  if (reference.transform != nullptr) {
+    const auto transform = texture_transform(*reference.transform);
+    if (!transform) return Failure(transform.error());
+    use.texture_from_mesh_uv = *transform;
+  }
   if (texture.source < 0) {
     // The texture may instead have its image in an extension that is not supported, such as
     // KHR_texture_basisu.
-    scene_.warnings.push_back("texture " + std::to_string(index) +
-                              " has no image that is read here and is left out.");
-    return use;
-  }
-  if (static_cast<size_t>(texture.source) >= model_.images.size()) {
+    scene.warnings.push_back("texture " + name +
+                             " has no image that is read here and is left out.");
+  } else if (static_cast<size_t>(texture.source) >= model.images.size()) {
     return Failure("has a texture without its image " + std::to_string(texture.source));
   }
   use.image = texture.source;
   return use;
 }
 
+float clamped(double value, double low, double high) {
+  return static_cast<float>(std::clamp(value, low, high));
+}
+
+// The error text is the end of a sentence that begins with the material's name.
+tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
+                                                  const tinygltf::Material& in, Scene& scene) {
+  Material out;
+  out.name = in.name;
+  const auto& pbr = in.pbrMetallicRoughness;
+  for (size_t c = 0; c < 4; ++c) {
+    out.base_color[static_cast<int>(c)] = clamped(pbr.baseColorFactor[c], 0.0, 1.0);
+  }
+  out.metallic = clamped(pbr.metallicFactor, 0.0, 1.0);
+  out.roughness = clamped(pbr.roughnessFactor, 0.0, 1.0);
+  for (size_t c = 0; c < 3 && !in.emissiveFactor.empty(); ++c) {
+    out.emissive[static_cast<int>(c)] = clamped(in.emissiveFactor[c], 0.0, 1e6);
+  }
+  out.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::mask
+                   : in.alphaMode == "BLEND" ? AlphaMode::blend
+                                             : AlphaMode::opaque;
+  out.double_sided = in.doubleSided;
+  out.alpha_cutoff = clamped(in.alphaCutoff, 0.0, 1e6);
+  const auto all = references(in);
+  const auto uses = out.textures();
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (all[i].index < 0) continue;
+    if (all[i].set > 1) {
+      scene.warnings.push_back("Material \"" + in.name + "\" has its " + all[i].role +
+                               " by texture coordinates " + std::to_string(all[i].set) +
+                               ", neither 0 nor 1: it is left out.");
+      continue;
+    }
+    const auto use = read_texture(model, all[i], scene);
+    if (!use) return Failure(use.error());
+    *uses[i] = *use;
+  }
+  if (!std::isfinite(static_cast<float>(in.normalTexture.scale))) {
+    return Failure("has a normal map whose scale is not finite");
+  }
+  out.normal_scale = clamped(in.normalTexture.scale, -1e6, 1e6);
+  return out;
+}
+
 }  // namespace
 
 tl::expected<void, std::string> add_materials(const tinygltf::Model& model, Scene& scene) {
-  MaterialReader reader(model, scene);
-  for (const tinygltf::Material& material : model.materials) {
-    const tinygltf::Value* extension = specular_glossiness(material);
-    auto added =
-        reader.add(extension == nullptr ? material : as_metallic_roughness(material, *extension));
-    if (!added) return added;
+  for (const tinygltf::Material& in : model.materials) {
+    auto material = read_material(model, in, scene);
+    if (!material) return Failure("material \"" + in.name + "\" " + material.error());
+    scene.materials.push_back(std::move(*material));
   }
   scene.materials.emplace_back();
   scene.materials.back().double_sided = false;

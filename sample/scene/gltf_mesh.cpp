@@ -7,19 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "scene/area.h"
-#include "scene/direction.h"
 #include "scene/gltf_accessor.h"
-#include "scene/gltf_placement.h"
+#include "scene/gltf_skin.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // Converts strips and fans to lists. Every second triangle of a strip is reversed, so that all
 // triangles have the same winding.
@@ -66,9 +60,9 @@ std::vector<uint32_t> compacted(std::vector<uint32_t>& indices) {
 }
 
 // Reverses the winding of triangles that their transform mirrors.
-void turn_mirrored(const VertexPlacement& placement, std::vector<uint32_t>& indices) {
+void turn_mirrored(const VertexTransforms& transforms, std::vector<uint32_t>& indices) {
   for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-    if (glm::determinant(glm::dmat3(placement.at(indices[i]))) < 0.0) {
+    if (glm::determinant(glm::dmat3(transforms.at(indices[i]))) < 0.0) {
       std::swap(indices[i + 1], indices[i + 2]);
     }
   }
@@ -88,29 +82,19 @@ void drop_flat_faces(Mesh& mesh) {
 
 // Gives each corner its own vertex with the normal of its triangle.
 void make_flat_normals(Mesh& mesh) {
-  Mesh flat;
-  const auto copy = [](auto& from, auto& to, uint32_t v) {
-    if (!from.empty()) to.push_back(from[v]);
-  };
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const glm::vec3 normal(glm::normalize(area_of(mesh, i)));
-    for (size_t c = 0; c < 3; ++c) {
-      const uint32_t v = mesh.indices[i + c];
-      flat.positions.push_back(mesh.positions[v]);
-      flat.normals.push_back(normal);
-      copy(mesh.uvs, flat.uvs, v);
-      copy(mesh.second_uvs, flat.second_uvs, v);
-      copy(mesh.colors, flat.colors, v);
-    }
+    mesh.normals.insert(mesh.normals.end(), 3, glm::vec3(glm::normalize(area_of(mesh, i))));
   }
-  flat.indices.resize(flat.positions.size());
-  std::iota(flat.indices.begin(), flat.indices.end(), 0u);
-  mesh.positions = std::move(flat.positions);
-  mesh.normals = std::move(flat.normals);
-  mesh.uvs = std::move(flat.uvs);
-  mesh.second_uvs = std::move(flat.second_uvs);
-  mesh.colors = std::move(flat.colors);
-  mesh.indices = std::move(flat.indices);
+  const auto expand = [&](auto& values) {
+    if (values.empty()) return;
+    const auto by_vertex = std::exchange(values, {});
+    for (const uint32_t v : mesh.indices) values.push_back(by_vertex[v]);
+  };
+  expand(mesh.positions);
+  expand(mesh.uvs);
+  expand(mesh.second_uvs);
+  expand(mesh.colors);
+  std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
 }
 
 // Replaces zero normals by the area-weighted mean normal of the triangles at the vertex.
@@ -146,7 +130,7 @@ class PrimitiveReader {
   using Read = tl::expected<void, std::string>;
 
   PrimitiveReader(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                  const PrimitivePlacement& placement, MeshBudget& budget, Scene& scene, Mesh begun)
+                  const PrimitivePlacement& placement, GltfLimits& budget, Scene& scene, Mesh begun)
       : mesh(std::move(begun)),
         model_(model),
         primitive_(primitive),
@@ -179,10 +163,10 @@ class PrimitiveReader {
   const tinygltf::Model& model_;
   const tinygltf::Primitive& primitive_;
   const PrimitivePlacement& placement_;
-  MeshBudget& budget_;
+  GltfLimits& budget_;
   Scene& scene_;
   const Material& material_;
-  VertexPlacement transforms_;
+  VertexTransforms transforms_;
   std::vector<uint32_t> vertices_;  // the vertices of the file that the triangles use
 };
 
@@ -269,8 +253,8 @@ PrimitiveReader::Read PrimitiveReader::read_positions() {
   // The squares of larger lengths overflow a float.
   constexpr float kFarthest = 1e15f;
   if (placement_.joints != nullptr) {
-    auto skinned = VertexPlacement::skinned(model_, primitive_, vertices_, *placement_.joints,
-                                            budget_.vertices);
+    auto skinned = VertexTransforms::skinned(model_, primitive_, vertices_, *placement_.joints,
+                                             budget_.vertices);
     if (!skinned) return Failure(skinned.error());
     transforms_ = std::move(*skinned);
   }
@@ -281,7 +265,7 @@ PrimitiveReader::Read PrimitiveReader::read_positions() {
     const float* in = &(*read)[3 * i];
     glm::vec3& out = mesh.positions[i];
     out = glm::vec3(transforms_.at(i) * glm::dvec4(in[0], in[1], in[2], 1.0));
-    if (!finite(out) || std::max({std::abs(out.x), std::abs(out.y), std::abs(out.z)}) > kFarthest) {
+    if (!glm::all(glm::lessThanEqual(glm::abs(out), glm::vec3(kFarthest)))) {
       return Failure("has a vertex " + std::to_string(vertices_[i]) +
                      " that is not a finite position within 1e15 of the origin");
     }
@@ -371,7 +355,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                                               const tinygltf::Primitive& primitive,
                                               const std::string& name,
                                               const PrimitivePlacement& placement,
-                                              MeshBudget& budget, Scene& scene) {
+                                              GltfLimits& budget, Scene& scene) {
   const auto refuse = [&](const std::string& why) { return Failure("mesh " + name + " " + why); };
   if (budget.primitives == 0) {
     return refuse("takes the scene past the number of parts that is read here");

@@ -2,25 +2,12 @@
 
 #include <tiny_gltf.h>
 
-#include <cstdint>
 #include <string>
 #include <tl/expected.hpp>
 
-#include "scene/scene.h"
+#include "scene/gltf.h"
 
 namespace alcove::sample {
-
-// The amounts of data that may still be read from a file. They limit the memory and the time that a
-// small file can consume by naming the same data many times. Everything that is read is subtracted,
-// even if it is not drawn.
-struct MeshBudget {
-  uint64_t primitives;
-  uint64_t vertices;
-  uint64_t indices;
-  uint64_t instances;        // counted once for each primitive of the mesh
-  uint64_t joints;           // sum over all skins
-  uint64_t drawn_triangles;  // counted once for each instance
-};
 
 // The transform of a primitive to world space, or its instances.
 struct PrimitivePlacement {
@@ -33,7 +20,8 @@ struct PrimitivePlacement {
 };
 
 // Adds the triangles of one primitive as a mesh, with the vertices that they use. Morph targets are
-// applied before the placement. Points and lines are left out with a warning.
+// applied before the placement. Points and lines are left out with a warning. All that is read is
+// subtracted from `budget`, even if it is not drawn.
 // Triangles without an area, and primitives whose material is alpha-blended with an alpha of 0, are
 // left out. A mirroring transform reverses the winding. Error texts are the end of a sentence whose
 // beginning the caller adds.
@@ -41,6 +29,6 @@ struct PrimitivePlacement {
                                                             const tinygltf::Primitive& primitive,
                                                             const std::string& name,
                                                             const PrimitivePlacement& placement,
-                                                            MeshBudget& budget, Scene& scene);
+                                                            GltfLimits& budget, Scene& scene);
 
 }  // namespace alcove::sample

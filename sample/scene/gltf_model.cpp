@@ -9,9 +9,8 @@
 #undef TINYGLTF_IMPLEMENTATION
 
 #include <algorithm>
-#include <charconv>
+#include <cstdio>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -42,21 +41,6 @@ tl::expected<json, std::string> parse(std::span<const uint8_t> text) {
   }
 }
 
-struct Version {
-  unsigned major = 0;
-  unsigned minor = 0;
-};
-
-std::optional<Version> version_of(const std::string& text) {
-  Version version;
-  const char* end = text.data() + text.size();
-  const auto major = std::from_chars(text.data(), end, version.major);
-  if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
-  const auto minor = std::from_chars(major.ptr + 1, end, version.minor);
-  if (minor.ec != std::errc() || minor.ptr != end) return std::nullopt;
-  return version;
-}
-
 // Checks the glTF version, before other properties, because those of glTF 1.0 are different. Files
 // of a later version 2.x are read, unless asset.minVersion says that readers of 2.0 cannot.
 Checked check_version(const json& root) {
@@ -66,12 +50,12 @@ Checked check_version(const json& root) {
     const auto found = asset->find(name);
     if (found == asset->end() || !found->is_string()) continue;
     const auto& text = found->get_ref<const std::string&>();
-    const auto version = version_of(text);
-    if (!version) {
+    unsigned major = 0, minor = 0;
+    if (std::sscanf(text.c_str(), "%4u.%4u", &major, &minor) != 2) {
       return Failure("asset." + std::string(name) + " is \"" + text +
                      "\"; it must be a version such as 2.0");
     }
-    if (version->major != 2 || (*name == 'm' && version->minor > 0)) {
+    if (major != 2 || (*name == 'm' && minor > 0)) {
       return Failure("it is glTF " + text + " (asset." + name +
                      "), and version 2.0 is read here; export it as glTF 2.0");
     }
@@ -115,18 +99,21 @@ tl::expected<std::vector<std::string>, std::string> check_extensions(const json&
   return notes;
 }
 
-// Checks that no scene lists a node twice.
-Checked check_scenes(const json& root) {
-  const json scenes = root.value("scenes", json::array());
-  for (size_t i = 0; i < scenes.size(); ++i) {
-    auto nodes = scenes[i].value("nodes", std::vector<size_t>());
-    std::ranges::sort(nodes);
-    const auto twice = std::ranges::adjacent_find(nodes);
-    if (twice == nodes.end()) continue;
-    return Failure("scenes[" + std::to_string(i) + "].nodes lists node " + std::to_string(*twice) +
-                   " twice; list each node once");
+// Converts specular-glossiness materials to metallic-roughness: the diffuse colour and texture
+// become the base colour of a dielectric, and 1 - glossiness becomes the roughness. The specular
+// colour is left out.
+void convert_specular_glossiness(json& root) {
+  const json::json_pointer extension("/extensions/KHR_materials_pbrSpecularGlossiness");
+  for (size_t i = 0; root.contains("materials") && i < root["materials"].size(); ++i) {
+    json& material = root["materials"][i];
+    if (!material.contains(extension)) continue;
+    const json& from = material[extension];
+    json to = {{"metallicFactor", 0.0},
+               {"roughnessFactor", 1.0 - from.value("glossinessFactor", 1.0)}};
+    if (from.contains("diffuseFactor")) to["baseColorFactor"] = from["diffuseFactor"];
+    if (from.contains("diffuseTexture")) to["baseColorTexture"] = from["diffuseTexture"];
+    material["pbrMetallicRoughness"] = std::move(to);
   }
-  return {};
 }
 
 // Converts the elements of an array of the JSON by a function of tinygltf.
@@ -231,13 +218,13 @@ tl::expected<GltfModel, std::string> read_gltf_model(std::vector<uint8_t> file,
   if (!parsed) return Failure(parsed.error());
   if (!parts->has_binary) file = {};
   if (auto checked = check_version(*parsed); !checked) return Failure(checked.error());
-  const auto root = checked_properties(std::move(*parsed));
+  auto root = checked_properties(std::move(*parsed));
   if (!root) return Failure(root.error());
+  convert_specular_glossiness(*root);
   auto notes = check_extensions(*root);
   if (!notes) return Failure(notes.error());
   GltfModel out{{}, GltfFiles(folder), std::move(*notes)};
-  const auto read = check_scenes(*root)
-                        .and_then([&] { return fill_model(*root, out.model); })
+  const auto read = fill_model(*root, out.model)
                         .and_then([&] {
                           return fill_buffers(root->value("buffers", json::array()),
                                               std::move(file), *parts, out.files, out.model);

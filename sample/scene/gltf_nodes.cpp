@@ -2,155 +2,272 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <map>
+#include <optional>
 #include <utility>
 
-#include "scene/gltf_layout.h"
+#include "scene/gltf_accessor.h"
+#include "support/median.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-// Returns whether a transform and its inverse can be stored as floats. The instances of a mesh need
-// both.
-bool can_be_instance(const glm::dmat4& m) {
-  double longest = 0.0;
-  for (int c = 0; c < 3; ++c) longest = std::max(longest, glm::length(glm::dvec3(m[c])));
-  constexpr double kFarthest = 1e12;
-  const double volume = std::abs(glm::determinant(glm::dmat3(m)));
-  return longest > 1e-9 && longest < 1e9 && volume > 1e-6 * longest * longest * longest &&
-         glm::length(glm::dvec3(m[3])) < kFarthest;
+glm::dmat4 transform_of(const glm::dvec3& translation, const glm::dquat& rotation,
+                        const glm::dvec3& scale) {
+  glm::dmat4 m(1.0);
+  const double length = glm::length(rotation);
+  if (length > 0.0) m = glm::mat4_cast(rotation / length);
+  for (int c = 0; c < 3; ++c) m[c] *= scale[c];
+  m[3] = glm::dvec4(translation, 1.0);
+  return m;
 }
 
-// Adds the meshes and cameras of nodes to a scene.
-class NodeReader {
- public:
-  NodeReader(const tinygltf::Model& model, const Layout& layout, MeshBudget& budget, Scene& scene)
-      : model_(model), layout_(layout), budget_(budget), scene_(scene) {
-    nodes_of_.resize(model.meshes.size());
-    for (const DrawnNode& drawn : layout.drawn) {
-      const tinygltf::Node& node = model.nodes[drawn.node];
-      // A node with morph weights of its own has a shape of its own.
-      if (node.skin >= 0 || node.mesh < 0 || !node.weights.empty()) continue;
-      if (static_cast<size_t>(node.mesh) >= model.meshes.size()) continue;
-      nodes_of_[static_cast<size_t>(node.mesh)].push_back(&drawn);
-    }
-  }
+// Returns a node's transform to its parent, from its matrix or from its translation, rotation and
+// scale.
+glm::dmat4 local_transform(const tinygltf::Node& node) {
+  if (!node.matrix.empty()) return glm::make_mat4(node.matrix.data());
+  const auto vector = [](const std::vector<double>& values, double otherwise) {
+    return values.empty() ? glm::dvec3(otherwise) : glm::make_vec3(values.data());
+  };
+  glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+  if (const auto& q = node.rotation; !q.empty()) rotation = {q[3], q[0], q[1], q[2]};
+  return transform_of(vector(node.translation, 0.0), rotation, vector(node.scale, 1.0));
+}
 
-  tl::expected<void, std::string> add(const DrawnNode& drawn_node) {
-    const tinygltf::Node& node = model_.nodes[drawn_node.node];
-    if (node.mesh < 0) return {};
-    if (static_cast<size_t>(node.mesh) >= model_.meshes.size()) {
-      return Failure("node \"" + node.name + "\" has no mesh " + std::to_string(node.mesh));
-    }
-    if (node.skin >= 0) return add_skinned(node);
-    if (!node.weights.empty()) return add_nodes({&drawn_node}, node);
-    // The first node of a mesh adds the instances of all nodes with that mesh.
-    return add_nodes(std::exchange(nodes_of_[static_cast<size_t>(node.mesh)], {}), node);
-  }
+// Returns whether KHR_node_visibility hides the node. Its descendants are then hidden too.
+bool is_hidden(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_node_visibility");
+  return found != node.extensions.end() && found->second.Has("visible") &&
+         !found->second.Get("visible").Get<bool>();
+}
 
- private:
-  tl::expected<void, std::string> add_nodes(const std::vector<const DrawnNode*>& nodes,
-                                            const tinygltf::Node& node) {
-    size_t count = 0;
-    for (const DrawnNode* drawn : nodes) count += std::max<size_t>(drawn->instances.size(), 1);
-    std::vector<glm::mat4x3> shared;
-    std::vector<glm::dmat4> apart;
-    const auto place = [&](const glm::dmat4& world) {
-      if (count > 1 && can_be_instance(world)) {
-        shared.emplace_back(world);
-      } else {
-        apart.push_back(world);
-      }
-    };
-    for (const DrawnNode* drawn : nodes) {
-      const glm::dmat4 world = world_of(drawn->node);
-      if (drawn->instances.size() == 0) place(world);
-      // Instances that coincide, such as those of attributes without data, are drawn once.
-      glm::dmat4 previous(0.0);
-      for (size_t i = 0; i < drawn->instances.size(); ++i) {
-        const glm::dmat4 instance = drawn->instances.at(i);
-        if (instance != previous) place(world * instance);
-        previous = instance;
-      }
-    }
-    for (const glm::dmat4& world : apart) {
-      if (auto added = add_mesh(node, PrimitivePlacement{world}); !added) return added;
-    }
-    if (shared.empty()) return {};
-    return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), nullptr, &shared});
-  }
-
-  glm::dmat4 world_of(size_t node) const {
-    glm::dmat4 world = layout_.world_from_node[node];
-    world[3] -= glm::dvec4(scene_.origin, 0.0);
-    return world;
-  }
-
-  std::string name_of(const tinygltf::Node& node) const {
-    const std::string& name = model_.meshes[static_cast<size_t>(node.mesh)].name;
-    return !name.empty() ? "\"" + name + "\"" : std::to_string(node.mesh);
-  }
-
-  tl::expected<void, std::string> add_skinned(const tinygltf::Node& node) {
-    const auto joints = joints_of(node.skin);
-    if (!joints) return Failure("mesh " + name_of(node) + " " + joints.error());
-    return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), *joints});
-  }
-
-  // Returns the joint matrices of a skin relative to the scene's origin. They are computed once,
-  // because many nodes may have the same skin.
-  tl::expected<const std::vector<glm::dmat4>*, std::string> joints_of(int skin) {
-    const auto [known, is_new] = joints_of_skin_.try_emplace(skin);
-    if (is_new) {
-      auto joints = joint_matrices(model_, skin, layout_.world_from_node, budget_.joints);
-      if (!joints) return Failure(joints.error());
-      budget_.joints -= joints->size();
-      for (glm::dmat4& joint : *joints) joint[3] -= glm::dvec4(scene_.origin, 0.0);
-      known->second = std::move(*joints);
-    }
-    return &known->second;
-  }
-
-  tl::expected<void, std::string> add_mesh(const tinygltf::Node& node,
-                                           PrimitivePlacement placement) {
-    const std::string name = name_of(node);
-    const tinygltf::Mesh& mesh = model_.meshes[static_cast<size_t>(node.mesh)];
-    placement.morph_weights = node.weights.empty() ? &mesh.weights : &node.weights;
-    for (const auto& primitive : mesh.primitives) {
-      auto added = add_primitive(model_, primitive, name, placement, budget_, scene_);
-      if (!added) return added;
-    }
-    return {};
-  }
-
-  const tinygltf::Model& model_;
-  const Layout& layout_;
-  MeshBudget& budget_;
-  Scene& scene_;
-  std::vector<std::vector<const DrawnNode*>> nodes_of_;  // by mesh; those not added yet
-  std::map<int, std::vector<glm::dmat4>> joints_of_skin_;
+// The nodes without a parent: first those that are drawn, then the others, whose transforms joints
+// may need.
+struct Roots {
+  std::vector<int> nodes;
+  size_t drawn;  // how many of them
 };
+
+tl::expected<Roots, std::string> find_roots(const tinygltf::Model& model) {
+  const auto missing = [](int node) {
+    return Failure("it names node " + std::to_string(node) + ", which does not exist");
+  };
+  const auto count = static_cast<int>(model.nodes.size());
+  std::vector<char> is_reached(model.nodes.size(), 0);
+  for (const tinygltf::Node& node : model.nodes) {
+    for (const int child : node.children) {
+      if (child >= count) return missing(child);
+      if (std::exchange(is_reached[static_cast<size_t>(child)], 1)) {
+        return Failure("node " + std::to_string(child) + " is reached twice: it has two parents");
+      }
+    }
+  }
+  Roots out;
+  if (!model.scenes.empty()) {
+    const std::string scene = std::to_string(std::max(model.defaultScene, 0));
+    const auto index = static_cast<size_t>(std::max(model.defaultScene, 0));
+    if (index >= model.scenes.size()) return Failure("it has no scene " + scene);
+    for (const int node : model.scenes[index].nodes) {
+      if (node >= count) return missing(node);
+      if (std::exchange(is_reached[static_cast<size_t>(node)], 1)) {
+        const bool twice = std::ranges::find(out.nodes, node) != out.nodes.end();
+        return twice ? Failure("scenes[" + scene + "].nodes lists node " + std::to_string(node) +
+                               " twice; list each node once")
+                     : Failure("node " + std::to_string(node) +
+                               " is reached twice: it is a root of the scene and has a parent");
+      }
+      out.nodes.push_back(node);
+    }
+  }
+  out.drawn = out.nodes.size();
+  for (int node = 0; node < count; ++node) {
+    if (!is_reached[static_cast<size_t>(node)]) out.nodes.push_back(node);
+  }
+  if (model.scenes.empty()) out.drawn = out.nodes.size();
+  return out;
+}
+
+// Checks that the mesh of a node exists, and its skin with all joints.
+tl::expected<void, std::string> check_references(const tinygltf::Model& model,
+                                                 const tinygltf::Node& node) {
+  const auto refuse = [&](const std::string& what, int index) {
+    return Failure("node \"" + node.name + "\" has no " + what + " " + std::to_string(index));
+  };
+  const auto exists = [](int index, const auto& elements) {
+    return index < 0 || static_cast<size_t>(index) < elements.size();
+  };
+  if (node.mesh < 0) return {};
+  if (!exists(node.mesh, model.meshes)) return refuse("mesh", node.mesh);
+  if (!exists(node.skin, model.skins)) return refuse("skin", node.skin);
+  if (node.skin < 0) return {};
+  for (const int joint : model.skins[static_cast<size_t>(node.skin)].joints) {
+    if (!exists(joint, model.nodes)) return refuse("joint", joint);
+  }
+  return {};
+}
+
+// Returns up to eight vertices of a primitive in mesh space, evenly spaced in the file. Vertices
+// that cannot be read are left out; add_primitive() reports the error later.
+std::vector<glm::dvec3> some_vertices(const tinygltf::Model& model,
+                                      const tinygltf::Primitive& primitive) {
+  constexpr uint64_t kMost = 8;
+  const int accessor = attribute(primitive.attributes, "POSITION");
+  if (accessor < 0 || static_cast<size_t>(accessor) >= model.accessors.size()) return {};
+  const uint64_t count = model.accessors[static_cast<size_t>(accessor)].count;
+  std::vector<uint32_t> chosen;
+  for (uint64_t i = 0; i < std::min(count, kMost); ++i) {
+    chosen.push_back(static_cast<uint32_t>(count <= kMost ? i : i * ((count - 1) / (kMost - 1))));
+  }
+  const auto values = read_floats(model, accessor, 3, 0, &chosen);
+  std::vector<glm::dvec3> out;
+  for (size_t i = 0; values && i + 2 < values->size(); i += 3) {
+    out.emplace_back((*values)[i], (*values)[i + 1], (*values)[i + 2]);
+  }
+  return out;
+}
+
+// Returns some vertices of the primitives of all drawn nodes in the space of the file. Of several
+// instances the middle one counts, and of a skin the first joint.
+std::vector<glm::dvec3> placed_vertices(const tinygltf::Model& model, const NodeTree& nodes) {
+  constexpr size_t kMost = 1'000'000;
+  std::map<const tinygltf::Primitive*, std::vector<glm::dvec3>> known;
+  std::vector<glm::dvec3> out;
+  for (const DrawnNode& drawn : nodes.drawn) {
+    const tinygltf::Node& node = model.nodes[drawn.node];
+    if (node.mesh < 0) continue;
+    size_t placed_by = drawn.node;
+    if (node.skin >= 0) {
+      const auto& joints = model.skins[static_cast<size_t>(node.skin)].joints;
+      if (!joints.empty()) placed_by = static_cast<size_t>(joints.front());
+    }
+    glm::dmat4 world = nodes.world_from_node[placed_by];
+    if (drawn.instances.size() > 0) world *= drawn.instances.at(drawn.instances.size() / 2);
+    for (const auto& primitive : model.meshes[static_cast<size_t>(node.mesh)].primitives) {
+      if (out.size() >= kMost) return out;
+      const auto [vertices, is_new] = known.try_emplace(&primitive);
+      if (is_new) vertices->second = some_vertices(model, primitive);
+      for (const glm::dvec3& vertex : vertices->second) {
+        const glm::dvec3 at(world * glm::dvec4(vertex, 1.0));
+        if (std::isfinite(glm::length(at))) out.push_back(at);
+      }
+    }
+  }
+  return out;
+}
 
 }  // namespace
 
-tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, MeshBudget& budget,
-                                          std::vector<PlacedCamera>& cameras, Scene& scene,
-                                          const Progress& progress) {
-  const auto layout = place_nodes(model, budget.instances);
-  if (!layout) return Failure(layout.error());
-  scene.origin = chosen_origin(model, *layout);
-  NodeReader reader(model, *layout, budget, scene);
-  size_t done = 0;
-  for (const DrawnNode& drawn : layout->drawn) {
-    if (auto added = reader.add(drawn); !added) return added;
-    if (progress) progress(double(++done) / double(layout->drawn.size()));
-    glm::dmat4 world_from_node = layout->world_from_node[drawn.node];
-    world_from_node[3] -= glm::dvec4(scene.origin, 0.0);
-    add_camera(model, model.nodes[drawn.node], world_from_node, cameras, scene);
+tl::expected<NodeTree, std::string> read_nodes(const tinygltf::Model& model,
+                                               uint64_t most_instances) {
+  const auto roots = find_roots(model);
+  if (!roots) return Failure(roots.error());
+  struct Step {
+    int node;
+    glm::dmat4 world_from_parent;
+    bool drawn;
+  };
+  std::vector<Step> open;  // a stack: the last one is visited next
+  for (size_t i = roots->nodes.size(); i-- > 0;) {
+    open.push_back({roots->nodes[i], glm::dmat4(1.0), i < roots->drawn});
   }
-  return {};
+  NodeTree out;
+  out.world_from_node.assign(model.nodes.size(), glm::dmat4(1.0));
+  size_t visited = 0;
+  for (; !open.empty(); ++visited) {
+    const Step step = open.back();
+    open.pop_back();
+    const auto index = static_cast<size_t>(step.node);
+    const tinygltf::Node& node = model.nodes[index];
+    const glm::dmat4 world = step.world_from_parent * local_transform(node);
+    out.world_from_node[index] = world;
+    const bool drawn = step.drawn && !is_hidden(node);
+    if (drawn) out.drawn.push_back({index, {}});
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      open.push_back({*child, world, drawn});
+    }
+  }
+  // Each node has one parent at most, so that only those of a cycle have not been visited.
+  if (visited < model.nodes.size()) return Failure("some of its nodes form a cycle");
+  for (DrawnNode& drawn : out.drawn) {
+    const tinygltf::Node& node = model.nodes[drawn.node];
+    if (auto checked = check_references(model, node); !checked) return Failure(checked.error());
+    if (node.mesh < 0 || node.skin >= 0) continue;
+    auto instances = NodeInstances::read(model, node, most_instances);
+    if (!instances) return Failure("node \"" + node.name + "\" " + instances.error());
+    most_instances -= instances->size();
+    drawn.instances = std::move(*instances);
+  }
+  return out;
+}
+
+glm::dvec3 chosen_origin(const tinygltf::Model& model, const NodeTree& nodes) {
+  constexpr double kFarthest = 256.0;  // in sizes of the scene
+  constexpr double kMostShift = 1e15;  // as positions
+  const std::vector<glm::dvec3> vertices = placed_vertices(model, nodes);
+  if (vertices.empty()) return glm::dvec3(0.0);
+  const auto quantile = [&](double share, const auto& value) {
+    std::vector<double> values(vertices.size());
+    std::ranges::transform(vertices, values.begin(), value);
+    return percentile(std::move(values), share);
+  };
+  glm::dvec3 centre(0.0);
+  for (int c = 0; c < 3; ++c) {
+    centre[c] = quantile(0.5, [c](const glm::dvec3& at) { return at[c]; });
+  }
+  const double size =
+      quantile(0.75, [&](const glm::dvec3& at) { return glm::distance(at, centre); });
+  const double away = glm::length(centre);
+  if (!(away > kFarthest * size) || !(size > 0.0) || away > kMostShift) return glm::dvec3(0.0);
+  // Whole units are used if they are precise enough, so that printed positions have few digits.
+  return size > 1.0 ? glm::round(centre) : centre;
+}
+
+tl::expected<NodeInstances, std::string> NodeInstances::read(const tinygltf::Model& model,
+                                                             const tinygltf::Node& node,
+                                                             uint64_t most) {
+  NodeInstances out;
+  const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
+  if (found == node.extensions.end()) return out;
+  const tinygltf::Value& accessors = found->second.Get("attributes");
+  struct Attribute {
+    const char* name;
+    int components;
+    std::vector<float>& values;
+  };
+  std::optional<size_t> count;
+  for (const Attribute& attribute :
+       {Attribute{"TRANSLATION", 3, out.translations_}, Attribute{"ROTATION", 4, out.rotations_},
+        Attribute{"SCALE", 3, out.scales_}}) {
+    if (!accessors.Has(attribute.name)) continue;
+    auto values = read_floats(model, accessors.Get(attribute.name).GetNumberAsInt(),
+                              attribute.components, most);
+    if (!values) return Failure("has instances whose " + values.error());
+    const size_t elements = values->size() / static_cast<size_t>(attribute.components);
+    if (count.value_or(elements) != elements) {
+      return Failure("has instances whose attributes differ in number");
+    }
+    count = elements;
+    attribute.values = std::move(*values);
+  }
+  out.count_ = count.value_or(0);
+  return out;
+}
+
+glm::dmat4 NodeInstances::at(size_t instance) const {
+  const auto vector = [&](const std::vector<float>& values, double otherwise) {
+    return values.empty() ? glm::dvec3(otherwise)
+                          : glm::dvec3(glm::make_vec3(&values[3 * instance]));
+  };
+  glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+  if (!rotations_.empty()) {
+    const float* q = &rotations_[4 * instance];
+    rotation = {q[3], q[0], q[1], q[2]};
+  }
+  return transform_of(vector(translations_, 0.0), rotation, vector(scales_, 1.0));
 }
 
 }  // namespace alcove::sample

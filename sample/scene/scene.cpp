@@ -34,6 +34,13 @@ glm::mat4x3 world_from_mesh(const Mesh& mesh, size_t instance) {
   return mesh.instances.empty() ? glm::mat4x3(1.0f) : mesh.instances[instance];
 }
 
+glm::dvec3 area_of(const Mesh& mesh, size_t first) {
+  const glm::dvec3 a(mesh.positions[mesh.indices[first]]);
+  const glm::dvec3 b(mesh.positions[mesh.indices[first + 1]]);
+  const glm::dvec3 c(mesh.positions[mesh.indices[first + 2]]);
+  return glm::cross(b - a, c - a);
+}
+
 const Camera* find_camera(const Scene& scene, const std::string& name) {
   if (name.empty()) return scene.cameras.empty() ? nullptr : &scene.cameras.front();
   for (const Camera& camera : scene.cameras) {

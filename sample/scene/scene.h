@@ -139,6 +139,11 @@ struct Scene {
   return mesh.instances.empty() ? 1 : mesh.instances.size();
 }
 
+// Returns the normal of the triangle whose indices begin at `first`, multiplied by twice its area.
+// It is computed in double, because the cross product of the edges of a narrow triangle cancels,
+// and because the squares of very small or large lengths are outside the range of floats.
+[[nodiscard]] glm::dvec3 area_of(const Mesh& mesh, size_t first);
+
 // The texture coordinates at a point of a mesh, indexed by TextureUse::uv_set.
 using MeshUvs = std::array<glm::vec2, 2>;
 [[nodiscard]] MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex);

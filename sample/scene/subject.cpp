@@ -1,13 +1,14 @@
 #include "scene/subject.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "scene/area.h"
 #include "scene/scene.h"
+#include "support/disjoint_sets.h"
 
 namespace alcove::sample {
 namespace {
@@ -31,47 +32,20 @@ struct WorldTriangle {
   bool double_sided;
 };
 
-// Sets of vertices that grow together.
-class DisjointSets {
- public:
-  explicit DisjointSets(size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), 0u);
-  }
-  uint32_t root(uint32_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) { parents_[root(a)] = root(b); }
-
- private:
-  std::vector<uint32_t> parents_;
-};
-
 // Joins vertices whose coordinates differ by a few units in the last place.
 void join_touching(const std::vector<glm::vec3>& positions, DisjointSets& sets) {
-  struct Key {
-    uint32_t x, y, z;
-    bool operator==(const Key&) const = default;
-  };
-  const auto key_of = [](const glm::vec3& p) {
-    const auto rounded = [](float value) {
-      return (std::bit_cast<uint32_t>(value + 0.0f) + 8u) & ~15u;  // -0 becomes 0
-    };
-    return Key{rounded(p.x), rounded(p.y), rounded(p.z)};
-  };
-  const size_t mask = std::bit_ceil(2 * positions.size() + 1) - 1;
-  std::vector<uint32_t> table(mask + 1, UINT32_MAX);
-  for (uint32_t v = 0; v < positions.size(); ++v) {
-    const Key key = key_of(positions[v]);
-    uint64_t hash = key.x * 0x9e3779b97f4a7c15u;
-    hash = (hash ^ (hash >> 29) ^ key.y) * 0xbf58476d1ce4e5b9u;
-    hash = (hash ^ (hash >> 32) ^ key.z) * 0x94d049bb133111ebu;
-    size_t slot = (hash ^ (hash >> 31)) & mask;
-    while (table[slot] != UINT32_MAX && key_of(positions[table[slot]]) != key) {
-      slot = (slot + 1) & mask;
-    }
-    if (table[slot] == UINT32_MAX) table[slot] = v;
-    sets.join(v, table[slot]);
+  std::vector<glm::uvec3> rounded;
+  rounded.reserve(positions.size());
+  for (const glm::vec3& p : positions) {
+    rounded.push_back((glm::floatBitsToUint(p + 0.0f) + 8u) & ~15u);  // -0 becomes 0
+  }
+  std::vector<uint32_t> remap(positions.size()), first(positions.size(), UINT32_MAX);
+  meshopt_generateVertexRemap(remap.data(), nullptr, rounded.size(), rounded.data(), rounded.size(),
+                              sizeof(glm::uvec3));
+  for (uint32_t v = 0; v < remap.size(); ++v) {
+    uint32_t& twin = first[remap[v]];
+    if (twin == UINT32_MAX) twin = v;
+    sets.join(v, twin);
   }
 }
 
@@ -376,32 +350,35 @@ Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidat
   return large && all_behind ? Kind::surroundings : Kind::subject;
 }
 
-}  // namespace
-
-Subject find_subject(const Scene& scene) {
-  const Parts found(scene);
-  const std::vector<Part>& parts = found.all();
-  if (parts.empty()) return {};
+// Returns the parts to group, the largest first. Of many parts these are the largest, which may be
+// surroundings, and evenly spaced ones of the others.
+std::vector<uint32_t> parts_to_group(const std::vector<Part>& parts) {
+  const auto size = [&](uint32_t p) { return diagonal(parts[p].bounds_ws); };
   std::vector<uint32_t> order(parts.size());
   std::iota(order.begin(), order.end(), 0u);
-  const bool sampled = order.size() > kMostGrouped;
-  if (sampled) {
-    // The largest parts, which may be surroundings, and evenly spaced ones of the others.
+  if (order.size() > kMostGrouped) {
     constexpr size_t kLargest = 1024;
-    std::ranges::nth_element(order, order.begin() + kLargest, std::greater<>(),
-                             [&](uint32_t p) { return diagonal(parts[p].bounds_ws); });
+    std::ranges::nth_element(order, order.begin() + kLargest, std::greater<>(), size);
     const size_t step = order.size() / kMostGrouped + 1;
     size_t count = kLargest;
     for (size_t i = kLargest; i < order.size(); i += step) order[count++] = order[i];
     order.resize(count);
   }
-  const auto size = [&](size_t i) { return diagonal(parts[order[i]].bounds_ws); };
-  std::ranges::stable_sort(order, std::greater<>(),
-                           [&](uint32_t p) { return diagonal(parts[p].bounds_ws); });
+  std::ranges::stable_sort(order, std::greater<>(), size);
+  return order;
+}
 
+struct Separation {
+  std::vector<uint32_t> subject;  // its parts
+  std::vector<char> shells;       // by part: whether it would hide the subject from outside
+};
+
+// Separates the subject from its surroundings. `order` has the parts, the largest first.
+Separation separate(const Parts& found, const std::vector<uint32_t>& order) {
+  const std::vector<Part>& parts = found.all();
+  const auto size = [&](size_t i) { return diagonal(parts[order[i]].bounds_ws); };
   const auto directions = ray_directions();
-  std::vector<uint32_t> group = greatest_group(parts, order);
-  std::vector<char> shells(parts.size(), 0);
+  Separation out{greatest_group(parts, order), std::vector<char>(parts.size(), 0)};
   constexpr size_t kMostSurroundings = 32;
   for (size_t k = 1; k < std::min(order.size(), kMostSurroundings); ++k) {
     constexpr double kLarger = 1.5;  // than the next part, and than the rest
@@ -423,26 +400,47 @@ Subject find_subject(const Scene& scene) {
     if (kind == Kind::subject) continue;
     // The eye stays inside of a sky, and of a room that hides its inside from eyes outside. A
     // ground or backdrop, which no ray up meets, hides nothing.
-    shells.assign(parts.size(), 0);
+    out.shells.assign(parts.size(), 0);
     for (size_t i = 0; i < k; ++i) {
-      shells[candidates[i]] = enclosures[i].is_sheet() &&
-                              enclosures[i].directions(kSides, kUp) > 0 &&
-                              (kind == Kind::surroundings || enclosures[i].double_sided);
+      out.shells[candidates[i]] = enclosures[i].is_sheet() &&
+                                  enclosures[i].directions(kSides, kUp) > 0 &&
+                                  (kind == Kind::surroundings || enclosures[i].double_sided);
     }
-    if (kind == Kind::surroundings) group = rest;
+    if (kind == Kind::surroundings) out.subject = rest;
   }
+  return out;
+}
+
+// Returns the distances from a point at which the parts of `shells` hide it from each side.
+std::array<float, 4> free_distances(const Parts& found, const std::vector<char>& shells,
+                                    const glm::dvec3& from) {
+  const auto directions = ray_directions();
+  Enclosure shell;
+  found.for_each_triangle(shells, [&](size_t, const WorldTriangle& triangle) {
+    shell.add(triangle, from, directions);
+  });
+  std::array<float, 4> out;
+  std::transform(shell.nearest.begin() + kToEyes, shell.nearest.end(), out.begin(),
+                 [](double d) { return static_cast<float>(d); });
+  return out;
+}
+
+}  // namespace
+
+Subject find_subject(const Scene& scene) {
+  const Parts found(scene);
+  const std::vector<Part>& parts = found.all();
+  if (parts.empty()) return {};
+  const std::vector<uint32_t> order = parts_to_group(parts);
+  const bool sampled = order.size() < parts.size();
+  const Separation separation = separate(found, order);
   Subject out{empty_bounds()};
   std::vector<char> grouped(parts.size(), 0);
-  for (const uint32_t p : group) {
+  for (const uint32_t p : separation.subject) {
     grouped[p] = 1;
     out.bounds_ws = united(out.bounds_ws, parts[p].bounds_ws);
   }
-  Enclosure shell;
-  found.for_each_triangle(shells, [&](size_t, const WorldTriangle& triangle) {
-    shell.add(triangle, centre_of(out.bounds_ws), directions);
-  });
-  std::transform(shell.nearest.begin() + kToEyes, shell.nearest.end(), out.free_distance_ws.begin(),
-                 [](double d) { return static_cast<float>(d); });
+  out.free_distance_ws = free_distances(found, separation.shells, centre_of(out.bounds_ws));
   // Parts that were not sampled belong to the subject if they lie in it or at its border.
   const float border = sampled ? static_cast<float>(0.05 * diagonal(out.bounds_ws)) : 0.0f;
   const Bounds around{out.bounds_ws.low - border, out.bounds_ws.high + border};

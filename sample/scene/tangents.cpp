@@ -1,13 +1,12 @@
 #include "scene/tangents.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <numeric>
-#include <unordered_map>
 
-#include "scene/direction.h"
+#include "support/disjoint_sets.h"
 
 namespace alcove::sample {
 namespace {
@@ -45,28 +44,14 @@ struct CornerValues {
   glm::vec3 position;
   glm::vec3 normal;
   glm::vec2 uv;
-  bool operator==(const CornerValues&) const = default;
-};
-
-struct CornerHash {
-  size_t operator()(const CornerValues& corner) const {
-    std::array<uint32_t, sizeof(CornerValues) / sizeof(uint32_t)> words;
-    std::memcpy(words.data(), &corner, sizeof(corner));
-    uint64_t hash = 0;
-    for (const uint32_t word : words) {
-      // 0 and -0 are equal and must hash alike.
-      hash = (hash ^ (word == 0x80000000u ? 0u : word)) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 29;
-    }
-    return static_cast<size_t>(hash);
-  }
 };
 
 // Computes the tangents of the corners of a mesh by the rules of MikkTSpace (Mikkelsen 2008,
 // "Simulation of Wrinkled Surfaces Revisited", and the notes of its reference implementation).
 class TangentBuilder {
  public:
-  TangentBuilder(const Mesh& mesh, const TextureUse& map) : mesh_(mesh) {
+  TangentBuilder(const Mesh& mesh, const TextureUse& map)
+      : mesh_(mesh), vertex_of_(mesh.indices.size()), groups_(mesh.indices.size()) {
     weld(map);
     group_corners();
   }
@@ -76,8 +61,6 @@ class TangentBuilder {
  private:
   void weld(const TextureUse& map);
   void group_corners();
-  void join(size_t corner, size_t other);
-  size_t group_of(size_t corner);
   glm::dvec3 position(size_t corner) const {
     return glm::dvec3(mesh_.positions[mesh_.indices[corner]]);
   }
@@ -86,16 +69,14 @@ class TangentBuilder {
   std::vector<FaceTangent> faces_;
   // For each corner, its vertex: corners with equal values have the same vertex.
   std::vector<uint32_t> vertex_of_;
-  // For each corner, its parent in a union-find forest: each tree is a group.
-  std::vector<uint32_t> parent_;
+  DisjointSets groups_;  // of corners
 };
 
-size_t next_corner(size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-size_t previous_corner(size_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+uint32_t next_corner(uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+uint32_t previous_corner(uint32_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
 
 void TangentBuilder::weld(const TextureUse& map) {
-  std::unordered_map<CornerValues, uint32_t, CornerHash> known;
-  vertex_of_.resize(mesh_.indices.size());
+  std::vector<CornerValues> values;
   for (size_t first = 0; first + 2 < mesh_.indices.size(); first += 3) {
     std::array<glm::dvec3, 3> corners;
     std::array<glm::dvec2, 3> uvs;
@@ -104,24 +85,13 @@ void TangentBuilder::weld(const TextureUse& map) {
       const glm::vec2 uv = texture_uv(map, uvs_at(mesh_, v));
       corners[k] = glm::dvec3(mesh_.positions[v]);
       uvs[k] = uv;
-      const CornerValues values{mesh_.positions[v], mesh_.normals[v], uv};
-      vertex_of_[first + k] =
-          known.try_emplace(values, static_cast<uint32_t>(first + k)).first->second;
+      // Adding 0 makes 0 of -0, because bytes are compared.
+      values.push_back({mesh_.positions[v] + 0.0f, mesh_.normals[v] + 0.0f, uv + 0.0f});
     }
     faces_.push_back(face_tangent(corners, uvs));
   }
-}
-
-size_t TangentBuilder::group_of(size_t corner) {
-  while (parent_[corner] != corner) {
-    parent_[corner] = parent_[parent_[corner]];
-    corner = parent_[corner];
-  }
-  return corner;
-}
-
-void TangentBuilder::join(size_t corner, size_t other) {
-  parent_[group_of(corner)] = static_cast<uint32_t>(group_of(other));
+  meshopt_generateVertexRemap(vertex_of_.data(), nullptr, values.size(), values.data(),
+                              values.size(), sizeof(CornerValues));
 }
 
 // Groups the corners of each vertex. Two corners are in one group if their triangles share an edge
@@ -135,16 +105,14 @@ void TangentBuilder::group_corners() {
   const auto key = [&](size_t from, size_t to) {
     return uint64_t{vertex_of_[from]} << 32 | vertex_of_[to];
   };
-  parent_.resize(vertex_of_.size());
-  std::iota(parent_.begin(), parent_.end(), 0u);
   std::vector<Edge> edges(vertex_of_.size());
-  for (size_t i = 0; i < edges.size(); ++i) {
-    edges[i] = {key(i, next_corner(i)), static_cast<uint32_t>(i)};
+  for (uint32_t i = 0; i < edges.size(); ++i) {
+    edges[i] = {key(i, next_corner(i)), i};
   }
   const auto by_key = [](const Edge& a, const Edge& b) { return a.key < b.key; };
   std::sort(edges.begin(), edges.end(), by_key);
   for (const bool known : {true, false}) {
-    for (size_t i = 0; i < vertex_of_.size(); ++i) {
+    for (uint32_t i = 0; i < vertex_of_.size(); ++i) {
       const auto [first, last] =
           std::equal_range(edges.begin(), edges.end(), Edge{key(next_corner(i), i), 0}, by_key);
       for (auto edge = first; edge != last; ++edge) {
@@ -154,8 +122,8 @@ void TangentBuilder::group_corners() {
                                  : here == Orientation::unknown && there != here;
         if (!alike) continue;
         // In the neighbouring triangle the edge has the opposite direction.
-        join(i, next_corner(edge->corner));
-        join(next_corner(i), edge->corner);
+        groups_.join(i, next_corner(edge->corner));
+        groups_.join(next_corner(i), edge->corner);
         if (!known) break;
       }
     }
@@ -165,20 +133,20 @@ void TangentBuilder::group_corners() {
 std::vector<glm::vec4> TangentBuilder::build() {
   std::vector<glm::dvec3> sums(vertex_of_.size(), glm::dvec3(0.0));
   std::vector<float> sides(vertex_of_.size(), 1.0f);
-  for (size_t i = 0; i < vertex_of_.size(); ++i) {
+  for (uint32_t i = 0; i < vertex_of_.size(); ++i) {
     const FaceTangent& face = faces_[i / 3];
     if (face.orientation == Orientation::unknown) continue;
     const glm::dvec3 normal(mesh_.normals[mesh_.indices[i]]);
     const glm::dvec3 a = in_plane(position(next_corner(i)) - position(i), normal);
     const glm::dvec3 b = in_plane(position(previous_corner(i)) - position(i), normal);
     const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
-    const size_t group = group_of(i);
+    const uint32_t group = groups_.root(i);
     sums[group] += in_plane(face.along_u, normal) * angle;
     sides[group] = face.orientation == Orientation::mirrored ? -1.0f : 1.0f;
   }
   std::vector<glm::vec4> out(vertex_of_.size());
-  for (size_t i = 0; i < out.size(); ++i) {
-    const size_t group = group_of(i);
+  for (uint32_t i = 0; i < out.size(); ++i) {
+    const uint32_t group = groups_.root(i);
     out[i] = glm::vec4(glm::vec3(direction_of(sums[group])), sides[group]);
   }
   return out;

@@ -1,7 +1,6 @@
 #include "support/decode_image.h"
 
-#include "support/decode_jpeg.h"
-#include "support/decode_png.h"
+#include "support/image_rows.h"
 
 namespace alcove::sample {
 

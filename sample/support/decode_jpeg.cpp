@@ -1,5 +1,3 @@
-#include "support/decode_jpeg.h"
-
 #include <cstdio>  // jpeglib.h needs it first
 
 #include <jerror.h>
@@ -7,7 +5,7 @@
 
 #include <csetjmp>
 
-#include "support/block_mean.h"
+#include "support/image_rows.h"
 
 namespace alcove::sample {
 namespace {
@@ -82,17 +80,14 @@ class JpegReader {
     return jpeg_start_decompress(&jpeg_) != FALSE;
   }
 
-  // Decodes all rows to RGBA. `row(y)` returns the memory for row y, and `take(y)` is called when
-  // the row is complete.
-  template <class Row, class Take>
-  bool read_rows(const Row& row, const Take& take) {
+  bool read_rows(ImageRows& rows) {
     if (setjmp(errors_.jump)) return false;
     while (jpeg_.output_scanline < jpeg_.output_height) {
       const uint32_t y = jpeg_.output_scanline;
-      JSAMPROW pointer = row(y);
+      JSAMPROW pointer = rows.row(y);
       if (jpeg_read_scanlines(&jpeg_, &pointer, 1) != 1) return false;
       if (jpeg_.out_color_space == JCS_CMYK) make_rgba(pointer);
-      take(y);
+      rows.complete(y);
     }
     return true;
   }
@@ -161,26 +156,9 @@ tl::expected<DecodedImage, std::string> decode_jpeg(Bytes bytes, uint32_t reduct
   JpegReader reader(bytes);
   const unsigned scale = libjpeg_scale(reduction);
   if (!reader.read_header() || !reader.start(scale)) return failure_of(reader);
-  const uint32_t width = reader.output_width(), height = reader.output_height();
-  const size_t row_bytes = 4 * size_t{width};
-  BlockMean<uint8_t, uint32_t, 4> mean(width, height, reduction / scale);
-  DecodedImage out{mean.reduced(width), mean.reduced(height), {}};
-  out.rgba.resize(4 * size_t{out.width} * out.height);
-  bool read = false;
-  if (reduction == scale) {
-    read = reader.read_rows([&](uint32_t y) { return out.rgba.data() + y * row_bytes; },
-                            [](uint32_t) {});
-  } else {
-    std::vector<uint8_t> row(row_bytes);
-    auto* next = out.rgba.data();
-    read = reader.read_rows(
-        [&](uint32_t) { return row.data(); },
-        [&](uint32_t) {
-          mean.add_row(row, [&](size_t, uint32_t value) { *next++ = static_cast<uint8_t>(value); });
-        });
-  }
-  if (!read) return failure_of(reader);
-  return out;
+  ImageRows rows(reader.output_width(), reader.output_height(), reduction / scale, false);
+  if (!reader.read_rows(rows)) return failure_of(reader);
+  return rows.take();
 }
 
 }  // namespace alcove::sample

@@ -1,11 +1,9 @@
-#include "support/decode_png.h"
-
 #include <png.h>
 
 #include <csetjmp>
 #include <cstring>
 
-#include "support/block_mean.h"
+#include "support/image_rows.h"
 
 namespace alcove::sample {
 namespace {
@@ -49,10 +47,7 @@ class PngReader {
     return true;
   }
 
-  // Decodes all rows. If `stride`, the bytes from one row to the next, is 0, `rows` has room for
-  // one row of RGBA, otherwise for all of them. `take(y)` is called when row y is complete.
-  template <class Take>
-  bool read_rows(uint8_t* rows, size_t stride, const Take& take) {
+  bool read_rows(ImageRows& rows) {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_expand(png_);    // palettes, fewer than 8 bits, transparent colours
     png_set_scale_16(png_);  // to 8 bits
@@ -62,8 +57,8 @@ class PngReader {
     png_read_update_info(png_, info_);
     for (int pass = 0; pass < passes; ++pass) {
       for (uint32_t y = 0; y < height(); ++y) {
-        png_read_row(png_, rows + y * stride, nullptr);
-        if (pass == passes - 1) take(y);
+        png_read_row(png_, rows.row(y), nullptr);
+        if (pass == passes - 1) rows.complete(y);
       }
     }
     return true;
@@ -111,26 +106,10 @@ tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
 tl::expected<DecodedImage, std::string> decode_png(Bytes bytes, uint32_t reduction) {
   PngReader reader(bytes);
   if (!reader.read_header()) return Failure(kDamaged);
-  const uint32_t width = reader.width(), height = reader.height();
-  const size_t row_bytes = 4 * size_t{width};
-  BlockMean<uint8_t, uint32_t, 4> mean(width, height, reduction);
-  DecodedImage out{mean.reduced(width), mean.reduced(height), {}};
-  out.rgba.resize(4 * size_t{out.width} * out.height);
-  bool read = false;
-  if (reduction == 1) {
-    read = reader.read_rows(out.rgba.data(), row_bytes, [](uint32_t) {});
-  } else {
-    // Rows of an interlaced image are complete only at its end.
-    const size_t stride = reader.interlaced() ? row_bytes : 0;
-    std::vector<uint8_t> rows(stride == 0 ? row_bytes : row_bytes * height);
-    auto* next = out.rgba.data();
-    read = reader.read_rows(rows.data(), stride, [&](uint32_t y) {
-      mean.add_row({rows.data() + y * stride, row_bytes},
-                   [&](size_t, uint32_t value) { *next++ = static_cast<uint8_t>(value); });
-    });
-  }
-  if (!read) return Failure(kDamaged);
-  return out;
+  // Rows of an interlaced image are complete only at its end.
+  ImageRows rows(reader.width(), reader.height(), reduction, reader.interlaced());
+  if (!reader.read_rows(rows)) return Failure(kDamaged);
+  return rows.take();
 }
 
 }  // namespace alcove::sample

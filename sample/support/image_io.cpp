@@ -8,7 +8,6 @@
 #include <png.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <span>
@@ -28,11 +27,24 @@ tl::unexpected<std::string> failure(const std::filesystem::path& file, const std
   return tl::unexpected<std::string>("cannot write " + file.string() + ": " + why);
 }
 
-Outcome check_writable_image(uint32_t width, uint32_t height, size_t pixels) {
-  if (width == 0 || height == 0 || pixels != size_t{width} * height) {
-    return tl::unexpected<std::string>("the image has no pixels");
+// An image as its channels, interleaved.
+struct Channels {
+  uint32_t width;
+  uint32_t height;
+  size_t count;  // of channels
+  std::span<const float> values;
+
+  bool has_pixels() const {
+    return !values.empty() && values.size() == count * size_t{width} * height;
   }
-  return {};
+};
+
+Channels channels(const Image<float>& image) {
+  return {image.width, image.height, 1, image.pixels};
+}
+Channels channels(const Image<glm::vec3>& image) {
+  const auto* first = reinterpret_cast<const float*>(image.pixels.data());
+  return {image.width, image.height, 3, {first, 3 * image.pixels.size()}};
 }
 
 // Checks that a file is complete by reading it back. OpenEXR's destructor ignores errors when it
@@ -47,23 +59,24 @@ Outcome check_complete_exr(const std::filesystem::path& file) {
   return {};
 }
 
-// `channels`: the names of the channels, in the order of the floats of a pixel.
-Outcome write_exr_channels(const std::filesystem::path& file, uint32_t width, uint32_t height,
-                           const float* values, std::span<const char* const> channels) {
+// `names`: of the channels.
+Outcome write_exr_channels(const std::filesystem::path& file, const Channels& image,
+                           const std::vector<const char*>& names) {
+  if (!image.has_pixels()) return failure(file, "the image has no pixels");
   return write_whole(file, [&](const std::filesystem::path& temporary) -> Outcome {
     try {
-      Imf::Header header(static_cast<int>(width), static_cast<int>(height));
+      Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
       header.compression() = Imf::ZIP_COMPRESSION;
       Imf::FrameBuffer frame;
-      const size_t pixel = channels.size() * sizeof(float);
-      for (size_t c = 0; c < channels.size(); ++c) {
-        header.channels().insert(channels[c], Imf::Channel(Imf::FLOAT));
-        auto* base = const_cast<char*>(reinterpret_cast<const char*>(values + c));
-        frame.insert(channels[c], Imf::Slice(Imf::FLOAT, base, pixel, pixel * width));
+      const size_t pixel = image.count * sizeof(float);
+      for (size_t c = 0; c < image.count; ++c) {
+        header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+        auto* base = const_cast<char*>(reinterpret_cast<const char*>(image.values.data() + c));
+        frame.insert(names[c], Imf::Slice(Imf::FLOAT, base, pixel, pixel * image.width));
       }
       Imf::OutputFile output(temporary.string().c_str(), header);
       output.setFrameBuffer(frame);
-      output.writePixels(static_cast<int>(height));
+      output.writePixels(static_cast<int>(image.height));
     } catch (const std::exception& error) {
       return tl::unexpected<std::string>(error.what());
     }
@@ -105,13 +118,15 @@ uint8_t byte_of(float value) {
   return static_cast<uint8_t>(std::lround(std::min(value, 1.0f) * 255.0f));
 }
 
-Outcome write_png_bytes(const std::filesystem::path& file, uint32_t width, uint32_t height,
-                        png_uint_32 format, const std::vector<uint8_t>& pixels) {
+Outcome write_png_channels(const std::filesystem::path& file, const Channels& in) {
+  if (!in.has_pixels()) return failure(file, "the image has no pixels");
+  std::vector<uint8_t> pixels(in.values.size());
+  std::ranges::transform(in.values, pixels.begin(), byte_of);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  image.width = width;
-  image.height = height;
-  image.format = format;
+  image.width = in.width;
+  image.height = in.height;
+  image.format = in.count == 1 ? PNG_FORMAT_GRAY : PNG_FORMAT_RGB;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::vector<uint8_t> encoded(size);
   if (png_image_write_to_memory(&image, encoded.data(), &size, 0, pixels.data(), 0, nullptr) == 0) {
@@ -123,19 +138,10 @@ Outcome write_png_bytes(const std::filesystem::path& file, uint32_t width, uint3
 }  // namespace
 
 Outcome write_exr(const std::filesystem::path& file, const Image<float>& image) {
-  constexpr std::array<const char*, 1> kNames = {"Y"};
-  if (auto fine = check_writable_image(image.width, image.height, image.pixels.size()); !fine) {
-    return failure(file, fine.error());
-  }
-  return write_exr_channels(file, image.width, image.height, image.pixels.data(), kNames);
+  return write_exr_channels(file, channels(image), {"Y"});
 }
-
 Outcome write_exr(const std::filesystem::path& file, const Image<glm::vec3>& image) {
-  constexpr std::array<const char*, 3> kNames = {"R", "G", "B"};
-  if (auto fine = check_writable_image(image.width, image.height, image.pixels.size()); !fine) {
-    return failure(file, fine.error());
-  }
-  return write_exr_channels(file, image.width, image.height, &image.pixels[0].x, kNames);
+  return write_exr_channels(file, channels(image), {"R", "G", "B"});
 }
 
 tl::expected<Image<float>, std::string> read_exr_grey(const std::filesystem::path& file) {
@@ -161,25 +167,10 @@ tl::expected<Image<glm::vec3>, std::string> read_exr_rgb(const std::filesystem::
 }
 
 Outcome write_png(const std::filesystem::path& file, const Image<float>& image) {
-  if (auto fine = check_writable_image(image.width, image.height, image.pixels.size()); !fine) {
-    return failure(file, fine.error());
-  }
-  std::vector<uint8_t> pixels;
-  pixels.reserve(image.pixels.size());
-  for (const float value : image.pixels) pixels.push_back(byte_of(value));
-  return write_png_bytes(file, image.width, image.height, PNG_FORMAT_GRAY, pixels);
+  return write_png_channels(file, channels(image));
 }
-
 Outcome write_png(const std::filesystem::path& file, const Image<glm::vec3>& image) {
-  if (auto fine = check_writable_image(image.width, image.height, image.pixels.size()); !fine) {
-    return failure(file, fine.error());
-  }
-  std::vector<uint8_t> pixels;
-  pixels.reserve(image.pixels.size() * 3);
-  for (const glm::vec3& value : image.pixels) {
-    for (int c = 0; c < 3; ++c) pixels.push_back(byte_of(value[c]));
-  }
-  return write_png_bytes(file, image.width, image.height, PNG_FORMAT_RGB, pixels);
+  return write_png_channels(file, channels(image));
 }
 
 }  // namespace alcove::sample

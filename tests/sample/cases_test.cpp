@@ -174,39 +174,5 @@ TEST_F(RenderedFile, SpecularGlossinessTextureGivesColourAndCutsOutTransparentTe
   EXPECT_LT(glm::distance(drawn->images.albedo.at(70, 45), glm::vec3(1, 0, 0)), 0.02f);
 }
 
-TEST_F(RenderedFile, EveryInstanceOfAnInstancedNodeIsDrawn) {
-  Triangles post;
-  post.add_box({-0.2f, 0, -0.2f}, {0.2f, 1, 0.2f});
-  ModelMaker maker;
-  std::vector<float> places;
-  for (int i = 0; i < 49; ++i) {
-    places.insert(places.end(),
-                  {static_cast<float>(i % 7) - 3.0f, 0.0f, static_cast<float>(i / 7) - 3.0f});
-  }
-  GltfMaker& gltf = maker.gltf;
-  const int translations = gltf.accessor(gltf.view(places), 5126, "VEC3", 49);
-  maker.node({{"mesh", maker.mesh(post)},
-              {"extensions",
-               {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", translations}}}}}}}});
-  gltf.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
-  // From straight above: runs of surface along a row of the image are posts.
-  Options options = view_from({0, 20, 0}, {0, 0, 0});
-  options.view.up_ws = glm::vec3(0, 0, -1);
-  options.view.ortho_height = 8.0f;
-  const auto drawn = draw_file(maker.write(folder_, "posts"), options);
-  ASSERT_TRUE(drawn);
-  EXPECT_EQ(triangle_count(drawn->scene), 49u * 12u);
-  const Image<float> depth = linear_depth(*drawn);
-  const auto is_post = [&](int column, int row) {
-    const auto pixel = [](int cell, float middle) {
-      return static_cast<uint32_t>(middle + 90.0f / 8.0f * static_cast<float>(cell));
-    };
-    return std::isfinite(depth.at(pixel(column, 80.0f), pixel(row, 45.0f)));
-  };
-  for (int i = 0; i < 49; ++i) {
-    EXPECT_TRUE(is_post(i % 7 - 3, i / 7 - 3)) << "post " << i;
-  }
-}
-
 }  // namespace
 }  // namespace alcove::sample

@@ -18,9 +18,25 @@ namespace {
 
 using testing::HasSubstr;
 
-void write_file(const std::filesystem::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
-}
+class EnvironmentFile : public testing::Test {
+ protected:
+  tl::expected<EnvironmentImage, std::string> load(const std::string& name,
+                                                   const std::string& bytes) {
+    std::ofstream(folder_.path / name, std::ios::binary) << bytes;
+    return load_environment(folder_.path / name);
+  }
+  tl::expected<EnvironmentImage, std::string> load(const EnvironmentImage& exr) {
+    EXPECT_TRUE(write_exr(folder_.path / "a.exr", exr));
+    return load_environment(folder_.path / "a.exr");
+  }
+  std::string exr_bytes(const EnvironmentImage& exr) {
+    EXPECT_TRUE(write_exr(folder_.path / "a.exr", exr));
+    std::ifstream in(folder_.path / "a.exr", std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  TemporaryFolder folder_;
+};
 
 // Returns an uncompressed Radiance file of one colour, given as three mantissas and an exponent.
 std::string radiance_file(int width, int height, const std::string& pixel) {
@@ -50,73 +66,63 @@ TEST(Environment, DirectionPlusXIsAtAQuarterOfTheImageWidthAndColumnsWrapAround)
   EXPECT_NEAR(radiance(image, seam).x, 2.5f, 0.3f);
 }
 
-TEST(Environment, EnvironmentMapsInExrAndRadianceHdrFormatAreRead) {
-  const TemporaryFolder folder;
+TEST_F(EnvironmentFile, EnvironmentMapsInExrAndRadianceHdrFormatAreRead) {
   EnvironmentImage image(8, 4, glm::vec3(0.5f, 1.0f, 2.0f));
   image.at(3, 1) = {std::numeric_limits<float>::quiet_NaN(), -1.0f,
                     std::numeric_limits<float>::infinity()};
   image.at(5, 1) = glm::vec3(std::numeric_limits<float>::max());
-  ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
-  const auto exr = load_environment(folder.path / "a.exr");
+  const auto exr = load(image);
   ASSERT_TRUE(exr) << exr.error();
   EXPECT_EQ(exr->at(0, 0), glm::vec3(0.5f, 1.0f, 2.0f));
   EXPECT_EQ(exr->at(3, 1), glm::vec3(0.0f)) << "negative, infinite and NaN radiance becomes 0";
   EXPECT_EQ(exr->at(5, 1), glm::vec3(65504.0f)) << "the largest 16-bit float";
 
-  write_file(folder.path / "b.HDR", radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4)));
-  const auto hdr = load_environment(folder.path / "b.HDR");
+  const auto hdr = load("b.HDR", radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4)));
   ASSERT_TRUE(hdr) << hdr.error();
   EXPECT_NEAR(hdr->at(5, 2).x, 0.5f, 0.01f);
   EXPECT_NEAR(hdr->at(5, 2).y, 1.0f, 0.01f);
 }
 
-TEST(Environment, LargeEnvironmentMapsAreReducedByAveragingPixels) {
-  const TemporaryFolder folder;
+TEST_F(EnvironmentFile, LargeEnvironmentMapsAreReducedByAveragingPixels) {
   EnvironmentImage image(4096, 4);
   for (uint32_t y = 0; y < 4; ++y) {
     for (uint32_t x = 0; x < 4096; ++x) image.at(x, y) = glm::vec3(x % 2 ? 3.0f : 1.0f);
   }
-  ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
-  const auto loaded = load_environment(folder.path / "a.exr");
+  const auto loaded = load(image);
   ASSERT_TRUE(loaded) << loaded.error();
   EXPECT_EQ(loaded->width, 2048u);
   for (const glm::vec3& pixel : loaded->pixels) ASSERT_EQ(pixel, glm::vec3(2.0f));
 }
 
 // Rows are coded by channel: a run of one value, then single values.
-TEST(Environment, RunLengthEncodedRadianceRowsByChannelAreRead) {
-  const TemporaryFolder folder;
+TEST_F(EnvironmentFile, RunLengthEncodedRadianceRowsByChannelAreRead) {
   std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
   text += std::string("\x02\x02\x00\x08", 4);
   text += std::string("\x88\x80", 2);                              // red: eight times
   text += std::string("\x08\x10\x20\x30\x40\x50\x60\x70\x80", 9);  // green: each its own
   text += std::string("\x84\x00\x84\x40", 4);                      // blue: two runs
   text += std::string("\x88\x81", 2);                              // exponent: 1 is 128/256 * 2
-  write_file(folder.path / "a.hdr", text);
-  const auto image = load_environment(folder.path / "a.hdr");
+  const auto image = load("a.hdr", text);
   ASSERT_TRUE(image) << image.error();
   EXPECT_EQ(image->at(0, 0), glm::vec3(1.0f, 0.125f, 0.0f));
   EXPECT_EQ(image->at(7, 0), glm::vec3(1.0f, 1.0f, 0.5f));
 }
 
 // In the older coding, the pixel (1, 1, 1, n) repeats the previous pixel n times.
-TEST(Environment, OldStyleRadianceRunsOfWholePixelsAreRead) {
-  const TemporaryFolder folder;
+TEST_F(EnvironmentFile, OldStyleRadianceRunsOfWholePixelsAreRead) {
   std::string text = "#?RGBE\n\n-Y 2 +X 300\n";
   const std::string pixel("\x80\x40\x00\x81", 4), other("\x40\x40\x40\x81", 4);
   // 300 is 1 + 42 + 256 + 1: the count's second digit is in units of 256.
   text += pixel + std::string("\x01\x01\x01\x2a\x01\x01\x01\x01", 8) + other;
   for (int i = 0; i < 300; ++i) text += other;
-  write_file(folder.path / "a.hdr", text);
-  const auto image = load_environment(folder.path / "a.hdr");
+  const auto image = load("a.hdr", text);
   ASSERT_TRUE(image) << image.error();
   EXPECT_EQ(image->at(298, 0), glm::vec3(1.0f, 0.5f, 0.0f));
   EXPECT_EQ(image->at(299, 0), glm::vec3(0.5f));
   EXPECT_EQ(image->at(0, 1), glm::vec3(0.5f));
 }
 
-TEST(Environment, EveryTruncationOfARadianceHdrFileIsRefused) {
-  const TemporaryFolder folder;
+TEST_F(EnvironmentFile, EveryTruncationOfARadianceHdrFileIsRefused) {
   std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n";
   for (int row = 0; row < 2; ++row) {
     text += std::string("\x02\x02\x00\x08", 4);
@@ -125,64 +131,50 @@ TEST(Environment, EveryTruncationOfARadianceHdrFileIsRefused) {
     }
   }
   for (size_t size = 0; size <= text.size(); ++size) {
-    write_file(folder.path / "a.hdr", text.substr(0, size));
-    EXPECT_EQ(load_environment(folder.path / "a.hdr").has_value(), size == text.size()) << size;
+    EXPECT_EQ(load("a.hdr", text.substr(0, size)).has_value(), size == text.size()) << size;
   }
 }
 
-TEST(Environment, RadianceRunsPastTheEndOfARowAreRefused) {
-  const TemporaryFolder folder;
+TEST_F(EnvironmentFile, RadianceRunsPastTheEndOfARowAreRefused) {
   const std::string header = "#?RADIANCE\n\n-Y 1 +X 8\n";
   for (const std::string& row :
        {std::string("\x02\x02\x00\x08\x89\x80", 6), std::string("\x02\x02\x00\x08\x09\x80", 6),
         std::string("\x02\x02\x00\x08\x00\x80", 6), std::string("\x02\x02\x00\x09\x88\x80", 6),
         std::string("\x80\x80\x80\x80\x01\x01\x01\xff", 8), std::string("\x01\x01\x01\x01", 4)}) {
-    write_file(folder.path / "a.hdr", header + row + std::string(200, '\x05'));
-    const auto image = load_environment(folder.path / "a.hdr");
+    const auto image = load("a.hdr", header + row + std::string(200, '\x05'));
     ASSERT_FALSE(image);
     EXPECT_THAT(image.error(), HasSubstr("row 0 of 1"));
   }
 }
 
-TEST(Environment, ImagesWithASideOverTheLimitAreRefusedFromTheirHeader) {
-  const TemporaryFolder folder;
-  write_file(folder.path / "a.hdr", "#?RADIANCE\n\n-Y 20000 +X 40000\n");
-  const auto image = load_environment(folder.path / "a.hdr");
+TEST_F(EnvironmentFile, ImagesWithASideOverTheLimitAreRefusedFromTheirHeader) {
+  const auto image = load("a.hdr", "#?RADIANCE\n\n-Y 20000 +X 40000\n");
   ASSERT_FALSE(image);
   EXPECT_THAT(image.error(), HasSubstr("40000x20000"));
 }
 
 // OpenEXR would allocate as much memory as the attribute's size field says.
-TEST(Environment, ExrFileWithAnAttributeOfWrongSizeIsRefused) {
-  const TemporaryFolder folder;
-  ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4)));
-  std::ifstream in(folder.path / "a.exr", std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+TEST_F(EnvironmentFile, ExrFileWithAnAttributeOfWrongSizeIsRefused) {
+  const std::string bytes = exr_bytes(EnvironmentImage(8, 4));
   const size_t size = bytes.find(std::string("screenWindowWidth\0float\0", 24)) + 24;
   ASSERT_LT(size, bytes.size());
   for (const auto& [offset, value] : {std::pair<size_t, char>{3, 0x70}, {0, 0}, {0, 8}}) {
     std::string damaged = bytes;
     damaged[size + offset] = value;
-    write_file(folder.path / "b.exr", damaged);
-    const auto image = load_environment(folder.path / "b.exr");
+    const auto image = load("b.exr", damaged);
     ASSERT_FALSE(image);
     EXPECT_THAT(image.error(), HasSubstr("its attribute screenWindowWidth has a wrong size"));
   }
 }
 
-TEST(Environment, EveryTruncationOfAnExrFileIsRefused) {
-  const TemporaryFolder folder;
-  ASSERT_TRUE(write_exr(folder.path / "a.exr", EnvironmentImage(8, 4, glm::vec3(0.5f))));
-  std::ifstream in(folder.path / "a.exr", std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+TEST_F(EnvironmentFile, EveryTruncationOfAnExrFileIsRefused) {
+  const std::string bytes = exr_bytes(EnvironmentImage(8, 4, glm::vec3(0.5f)));
   for (size_t size = 0; size < bytes.size(); ++size) {
-    write_file(folder.path / "b.exr", bytes.substr(0, size));
-    EXPECT_FALSE(load_environment(folder.path / "b.exr")) << size;
+    EXPECT_FALSE(load("b.exr", bytes.substr(0, size))) << size;
   }
 }
 
-TEST(Environment, InvalidEnvironmentFilesAreRefusedInOneSentence) {
-  const TemporaryFolder folder;
+TEST_F(EnvironmentFile, InvalidEnvironmentFilesAreRefusedInOneSentence) {
   const std::string good = radiance_file(8, 4, std::string("\x40\x80\x20\x81", 4));
   const std::vector<std::pair<std::string, std::string>> files{
       {"empty.hdr", ""},
@@ -196,20 +188,19 @@ TEST(Environment, InvalidEnvironmentFilesAreRefusedInOneSentence) {
       {"picture.png", good},
       {"noending", good}};
   for (const auto& [name, bytes] : files) {
-    write_file(folder.path / name, bytes);
-    const auto loaded = load_environment(folder.path / name);
+    const auto loaded = load(name, bytes);
     ASSERT_FALSE(loaded) << name;
     EXPECT_THAT(loaded.error(), HasSubstr(name));
     EXPECT_EQ(loaded.error().find('\n'), std::string::npos) << loaded.error();
   }
-  std::filesystem::create_directory(folder.path / "folder.exr");
-  ASSERT_EQ(mkfifo((folder.path / "pipe.hdr").c_str(), 0600), 0);
+  std::filesystem::create_directory(folder_.path / "folder.exr");
+  ASSERT_EQ(mkfifo((folder_.path / "pipe.hdr").c_str(), 0600), 0);
   for (const char* name : {"folder.exr", "pipe.hdr"}) {
-    const auto loaded = load_environment(folder.path / name);
+    const auto loaded = load_environment(folder_.path / name);
     ASSERT_FALSE(loaded) << name;
     EXPECT_THAT(loaded.error(), HasSubstr("not a regular file"));
   }
-  const auto missing = load_environment(folder.path / "missing.hdr");
+  const auto missing = load_environment(folder_.path / "missing.hdr");
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error(), HasSubstr("missing.hdr"));
 }

@@ -345,6 +345,16 @@ double height_of_subject(const Scene& scene, const Camera& camera, double aspect
   return static_cast<double>(std::ranges::count(rows, 1)) / with.depth.height;
 }
 
+// Whether the box of the subject lies within the image.
+bool is_whole_subject_in_view(const Scene& scene, const Camera& camera, double aspect) {
+  const auto width = static_cast<uint32_t>(100.0 * aspect);
+  const CameraMatrices matrices = camera_matrices(camera, width, 100);
+  return std::ranges::all_of(corners_of(scene.subject.bounds_ws), [&](const glm::vec3& corner) {
+    const glm::vec4 clip = matrices.clip_from_world * glm::vec4(corner, 1.0f);
+    return clip.w > 0.0f && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w;
+  });
+}
+
 class FirstPicture : public testing::TestWithParam<Newcomer> {};
 
 TEST_P(FirstPicture, SubjectFillsTheImageAndRadiusIsATwentiethOfItsSize) {
@@ -363,6 +373,9 @@ TEST_P(FirstPicture, SubjectFillsTheImageAndRadiusIsATwentiethOfItsSize) {
   EXPECT_GT(choice.radius, 0.05f * file.size / 1.5f) << choice.reason;
   EXPECT_LT(choice.radius, 0.05f * file.size * 1.5f) << choice.reason;
   EXPECT_GT(height, 0.25);
+  // The eye is inside of a closed room.
+  EXPECT_TRUE(contains(scene.subject.bounds_ws, camera->eye_ws) ||
+              is_whole_subject_in_view(scene, *camera, aspect));
   EXPECT_NEAR(diagonal(scene.subject.bounds_ws), file.size, 0.1 * file.size);
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "gltf_maker.h"
-#include "scene/area.h"
 
 namespace alcove::sample {
 namespace {

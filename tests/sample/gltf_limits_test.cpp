@@ -135,13 +135,15 @@ TEST(GltfRepeatedData, OnlyTheVerticesThatIndicesUseAreReadAndKept) {
               testing::ElementsAre(glm::vec3(0, 1, 0), glm::vec3(0, 0, 0), glm::vec3(1, 0, 0)));
 }
 
-TEST(GltfRepeatedData, UnusedVertexThatIsNotFiniteIsNoReasonToRefuseAFile) {
+TEST(GltfRepeatedData, UnusedVerticesNeedNotBeFiniteAndDoNotExtendTheScene) {
   GltfMaker maker = GltfMaker::triangle();
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const int positions = maker.view<float>({nan, nan, nan, 0, 0, 0, 1, 0, 0, 0, 1, 0});
-  maker.primitive()["attributes"]["POSITION"] = maker.accessor(positions, 5126, "VEC3", 4);
+  const int positions = maker.view<float>({nan, nan, nan, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1e6, 0, 0});
+  maker.primitive()["attributes"]["POSITION"] = maker.accessor(positions, 5126, "VEC3", 5);
   maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({1, 2, 3}), 5123, "SCALAR", 3);
-  EXPECT_EQ(triangle_count(parsed(maker.gltf())), 1u);
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(scene.bounds_ws.low, glm::vec3(0));
+  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
 }
 
 TEST(GltfRepeatedData, VerticesWithoutDataAndWithoutIndicesAreLimited) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "glb_file.h"
 #include "scene/gltf.h"
 
 namespace alcove::sample {
@@ -82,26 +83,7 @@ class GltfMaker {
   std::vector<uint8_t> glb() const {
     nlohmann::json out = json;
     out["buffers"] = {{{"byteLength", bytes.size()}}};
-    std::string text = out.dump();
-    while (text.size() % 4) text += ' ';
-    std::vector<uint8_t> binary = bytes;
-    while (binary.size() % 4) binary.push_back(0);
-    std::vector<uint8_t> file;
-    const auto word = [&](uint32_t value) {
-      for (int shift = 0; shift < 32; shift += 8) {
-        file.push_back(static_cast<uint8_t>(value >> shift));
-      }
-    };
-    word(0x46546c67);
-    word(2);
-    word(static_cast<uint32_t>(28 + text.size() + binary.size()));
-    word(static_cast<uint32_t>(text.size()));
-    word(0x4e4f534a);
-    file.insert(file.end(), text.begin(), text.end());
-    word(static_cast<uint32_t>(binary.size()));
-    word(0x004e4942);
-    file.insert(file.end(), binary.begin(), binary.end());
-    return file;
+    return glb_file(out.dump(), bytes);
   }
 
   static std::string base64(const std::vector<uint8_t>& in) {

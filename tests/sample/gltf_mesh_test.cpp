@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "gltf_maker.h"
-#include "scene/area.h"
 
 namespace alcove::sample {
 namespace {
@@ -74,18 +73,6 @@ TEST(GltfMesh, TangentsAreMirroredWithTheNodeAndInvalidOnesBecomeZero) {
   EXPECT_EQ(scene.meshes[0].tangents[0], glm::vec4(-1, 0, 0, -1));
   EXPECT_EQ(scene.meshes[0].tangents[1], glm::vec4(0, 0, 0, -1));
   EXPECT_EQ(scene.meshes[0].tangents[2], glm::vec4(0, 0, 0, 1));
-}
-
-TEST(GltfMesh, SceneBoundsContainOnlyVerticesThatTrianglesUse) {
-  GltfMaker maker = GltfMaker::triangle();
-  const int positions = maker.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e6, 0, 0});
-  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
-  maker.primitive()["attributes"] = {{"POSITION", maker.accessor(positions, 5126, "VEC3", 4)},
-                                     {"NORMAL", maker.accessor(normals, 5126, "VEC3", 4)}};
-  maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({0, 1, 2}), 5123, "SCALAR", 3);
-  const Scene scene = parsed(maker.gltf());
-  EXPECT_EQ(scene.bounds_ws.low, glm::vec3(0));
-  EXPECT_EQ(scene.bounds_ws.high, glm::vec3(1, 1, 0));
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "draco_maker.h"
-#include "scene/area.h"
 
 namespace alcove::sample {
 namespace {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "scene/area.h"
-#include "scene/direction.h"
 #include "support/result.h"
 
 namespace alcove::sample {

@@ -1,0 +1,153 @@
+#include "scene/gltf_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "scene/gltf_nodes.h"
+#include "scene/gltf_skin.h"
+
+namespace alcove::sample {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+// Returns whether a transform and its inverse can be stored as floats. The instances of a mesh need
+// both.
+bool can_be_instance(const glm::dmat4& m) {
+  double longest = 0.0;
+  for (int c = 0; c < 3; ++c) longest = std::max(longest, glm::length(glm::dvec3(m[c])));
+  constexpr double kFarthest = 1e12;
+  const double volume = std::abs(glm::determinant(glm::dmat3(m)));
+  return longest > 1e-9 && longest < 1e9 && volume > 1e-6 * longest * longest * longest &&
+         glm::length(glm::dvec3(m[3])) < kFarthest;
+}
+
+// Adds the meshes and cameras of nodes to a scene.
+class NodeReader {
+ public:
+  NodeReader(const tinygltf::Model& model, const NodeTree& nodes, GltfLimits& budget, Scene& scene)
+      : model_(model), nodes_(nodes), budget_(budget), scene_(scene) {
+    nodes_of_.resize(model.meshes.size());
+    for (const DrawnNode& drawn : nodes.drawn) {
+      const tinygltf::Node& node = model.nodes[drawn.node];
+      // A node with morph weights of its own has a shape of its own.
+      if (node.skin >= 0 || node.mesh < 0 || !node.weights.empty()) continue;
+      nodes_of_[static_cast<size_t>(node.mesh)].push_back(&drawn);
+    }
+  }
+
+  tl::expected<void, std::string> add(const DrawnNode& drawn_node) {
+    const tinygltf::Node& node = model_.nodes[drawn_node.node];
+    if (node.mesh < 0) return {};
+    if (node.skin >= 0) return add_skinned(node);
+    if (!node.weights.empty()) return add_nodes({&drawn_node}, node);
+    // The first node of a mesh adds the instances of all nodes with that mesh.
+    return add_nodes(std::exchange(nodes_of_[static_cast<size_t>(node.mesh)], {}), node);
+  }
+
+ private:
+  tl::expected<void, std::string> add_nodes(const std::vector<const DrawnNode*>& nodes,
+                                            const tinygltf::Node& node) {
+    size_t count = 0;
+    for (const DrawnNode* drawn : nodes) count += std::max<size_t>(drawn->instances.size(), 1);
+    std::vector<glm::mat4x3> shared;
+    std::vector<glm::dmat4> apart;
+    const auto place = [&](const glm::dmat4& world) {
+      if (count > 1 && can_be_instance(world)) {
+        shared.emplace_back(world);
+      } else {
+        apart.push_back(world);
+      }
+    };
+    for (const DrawnNode* drawn : nodes) {
+      const glm::dmat4 world = world_of(drawn->node);
+      if (drawn->instances.size() == 0) place(world);
+      // Instances that coincide, such as those of attributes without data, are drawn once.
+      glm::dmat4 previous(0.0);
+      for (size_t i = 0; i < drawn->instances.size(); ++i) {
+        const glm::dmat4 instance = drawn->instances.at(i);
+        if (instance != previous) place(world * instance);
+        previous = instance;
+      }
+    }
+    for (const glm::dmat4& world : apart) {
+      if (auto added = add_mesh(node, PrimitivePlacement{world}); !added) return added;
+    }
+    if (shared.empty()) return {};
+    return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), nullptr, &shared});
+  }
+
+  glm::dmat4 world_of(size_t node) const {
+    glm::dmat4 world = nodes_.world_from_node[node];
+    world[3] -= glm::dvec4(scene_.origin, 0.0);
+    return world;
+  }
+
+  std::string name_of(const tinygltf::Node& node) const {
+    const std::string& name = model_.meshes[static_cast<size_t>(node.mesh)].name;
+    return !name.empty() ? "\"" + name + "\"" : std::to_string(node.mesh);
+  }
+
+  tl::expected<void, std::string> add_skinned(const tinygltf::Node& node) {
+    const auto joints = joints_of(node.skin);
+    if (!joints) return Failure("mesh " + name_of(node) + " " + joints.error());
+    return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), *joints});
+  }
+
+  // Returns the joint matrices of a skin relative to the scene's origin. They are computed once,
+  // because many nodes may have the same skin.
+  tl::expected<const std::vector<glm::dmat4>*, std::string> joints_of(int skin) {
+    const auto [known, is_new] = joints_of_skin_.try_emplace(skin);
+    if (is_new) {
+      auto joints = joint_matrices(model_, skin, nodes_.world_from_node, budget_.joints);
+      if (!joints) return Failure(joints.error());
+      budget_.joints -= joints->size();
+      for (glm::dmat4& joint : *joints) joint[3] -= glm::dvec4(scene_.origin, 0.0);
+      known->second = std::move(*joints);
+    }
+    return &known->second;
+  }
+
+  tl::expected<void, std::string> add_mesh(const tinygltf::Node& node,
+                                           PrimitivePlacement placement) {
+    const std::string name = name_of(node);
+    const tinygltf::Mesh& mesh = model_.meshes[static_cast<size_t>(node.mesh)];
+    placement.morph_weights = node.weights.empty() ? &mesh.weights : &node.weights;
+    for (const auto& primitive : mesh.primitives) {
+      auto added = add_primitive(model_, primitive, name, placement, budget_, scene_);
+      if (!added) return added;
+    }
+    return {};
+  }
+
+  const tinygltf::Model& model_;
+  const NodeTree& nodes_;
+  GltfLimits& budget_;
+  Scene& scene_;
+  std::vector<std::vector<const DrawnNode*>> nodes_of_;  // by mesh; those not added yet
+  std::map<int, std::vector<glm::dmat4>> joints_of_skin_;
+};
+
+}  // namespace
+
+tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, GltfLimits& budget,
+                                          std::vector<PlacedCamera>& cameras, Scene& scene,
+                                          const Progress& progress) {
+  const auto nodes = read_nodes(model, budget.instances);
+  if (!nodes) return Failure(nodes.error());
+  scene.origin = chosen_origin(model, *nodes);
+  NodeReader reader(model, *nodes, budget, scene);
+  size_t done = 0;
+  for (const DrawnNode& drawn : nodes->drawn) {
+    if (auto added = reader.add(drawn); !added) return added;
+    if (progress) progress(double(++done) / double(nodes->drawn.size()));
+    glm::dmat4 world_from_node = nodes->world_from_node[drawn.node];
+    world_from_node[3] -= glm::dvec4(scene.origin, 0.0);
+    add_camera(model, model.nodes[drawn.node], world_from_node, cameras, scene);
+  }
+  return {};
+}
+
+}  // namespace alcove::sample
