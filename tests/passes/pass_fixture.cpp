@@ -194,23 +194,16 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
                       .previous_view = given.previous_view,
                       .largest_size = given.largest_size,
                       .previous_size = given.previous_size};
-    OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
-                           .normals_in_view_space = true};
-    if (given.normal_vs != nullptr) {
-      inputs.normals = upload(graph, *given.normal_vs);
-    }
-    if (given.motion != nullptr) {
-      inputs.motion = upload(graph, *given.motion);
-    }
-    if (given.roughness != nullptr) {
-      inputs.roughness = upload(graph, *given.roughness);
-    }
-    if (given.back_depth_ndc != nullptr) {
-      inputs.back_depth_ndc = upload(graph, *given.back_depth_ndc);
-    }
-    if (given.second_depth_ndc != nullptr) {
-      inputs.second_depth_ndc = upload(graph, *given.second_depth_ndc);
-    }
+    const auto upload_of = [&](const HostImage* image) {
+      return image == nullptr ? Texture{} : upload(graph, *image);
+    };
+    const OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
+                                 .normals = upload_of(given.normal_vs),
+                                 .normals_in_view_space = true,
+                                 .motion = upload_of(given.motion),
+                                 .roughness = upload_of(given.roughness),
+                                 .back_depth_ndc = upload_of(given.back_depth_ndc),
+                                 .second_depth_ndc = upload_of(given.second_depth_ndc)};
     const auto outputs = add_occlusion(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);
