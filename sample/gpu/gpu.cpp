@@ -76,23 +76,31 @@ framegraph::ImportedBuffer HostBuffer::import() const {
 tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
     const DeviceOptions& options, const framegraph::ExecutorOptions& executor_options) {
   std::unique_ptr<Gpu> made(new Gpu);
-  made->frames_in_flight_ = executor_options.frames_in_flight;
+  made->executor_options_ = executor_options;
   if (auto opened = assign(made->device_, VulkanDevice::create(options)); !opened) {
     return Failure(std::move(opened.error()));
   }
-  framegraph::DeviceHandles handles = handles_of(*made->device_);
-  handles.debug_utils = options.validation;
-  auto executor = framegraph::Executor::create(handles, executor_options);
-  if (!executor) {
-    return Failure(framegraph::to_string(executor.error()));
+  made->handles_ = handles_of(*made->device_);
+  made->handles_.debug_utils = options.validation;
+  if (auto started = made->restart(); !started) {
+    return Failure(std::move(started.error()));
   }
-  made->executor_.emplace(std::move(*executor));
-  auto kernels = passes::Kernels::create(handles, executor_options.frames_in_flight);
+  auto kernels = passes::Kernels::create(made->handles_, executor_options.frames_in_flight);
   if (!kernels) {
     return Failure(std::move(kernels.error().message));
   }
   made->kernels_.emplace(std::move(*kernels));
   return made;
+}
+
+tl::expected<void, std::string> Gpu::restart() {
+  vkDeviceWaitIdle(device_->device());
+  auto executor = framegraph::Executor::create(handles_, executor_options_);
+  if (!executor) {
+    return Failure(framegraph::to_string(executor.error()));
+  }
+  executor_.emplace(std::move(*executor));
+  return {};
 }
 
 Gpu::~Gpu() {

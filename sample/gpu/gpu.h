@@ -58,6 +58,8 @@ class Gpu {
   [[nodiscard]] static tl::expected<std::unique_ptr<Gpu>, std::string> create(
       const DeviceOptions& options = {}, const framegraph::ExecutorOptions& executor = {});
   ~Gpu();
+  // Waits for the device and starts again without histories and resources. Pipelines stay.
+  [[nodiscard]] tl::expected<void, std::string> restart();
 
   const VulkanDevice& device() const { return *device_; }
   passes::Kernels& kernels() { return *kernels_; }
@@ -73,7 +75,7 @@ class Gpu {
       const Declare& declare, const framegraph::FrameInfo& frame = {});
   // Waits until the device has finished the last frame of a slot.
   [[nodiscard]] tl::expected<void, std::string> wait(std::uint32_t slot = 0);
-  std::uint32_t frames_in_flight() const { return frames_in_flight_; }
+  std::uint32_t frames_in_flight() const { return executor_options_.frames_in_flight; }
 
   // Timings of the passes of the last frame of a slot, which the device must have finished.
   std::span<const framegraph::PassTiming> timings(std::uint32_t slot = 0) {
@@ -87,7 +89,8 @@ class Gpu {
   std::optional<framegraph::Executor> executor_;
   std::optional<passes::Kernels> kernels_;
   framegraph::Graph graph_;
-  std::uint32_t frames_in_flight_ = 1;
+  framegraph::DeviceHandles handles_;
+  framegraph::ExecutorOptions executor_options_;
 };
 
 // Adds a pass that fills mip 0 of `target` from tightly packed texels in `source`, and returns the

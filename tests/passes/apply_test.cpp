@@ -124,6 +124,7 @@ TEST_F(LightingPass, SurfacesReflectNoMoreLightThanTheyReceiveAndWhiteDielectric
 }
 
 TEST_F(LightingPass, ReflectanceTableIsCreatedOnlyIfAnEnvironmentMapIsGiven) {
+  open_gpu();
   const LitSurfaces inputs = random_surfaces();
   const auto transients = [&](bool map, const ApplySettings& settings) {
     Kept kept;
@@ -155,6 +156,7 @@ TEST_F(LightingPass, ReflectanceTableIsCreatedOnlyIfAnEnvironmentMapIsGiven) {
 // A frame from depth to lit surfaces without specular light: it must have no bent normal, no
 // specular occlusion pass, no environment map and no table.
 TEST_F(LightingPass, FrameWithoutSpecularLightHasNoSpecularPassesTexturesOrTables) {
+  open_gpu();
   const PlaneScene plane = plane_scene(test_views()[2], kWidth, kHeight, 30.0f);
   const LitSurfaces inputs = random_surfaces();
   Kept kept;

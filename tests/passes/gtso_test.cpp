@@ -264,6 +264,7 @@ TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
 }
 
 TEST_F(GtsoPass, LookupTableIsCreatedOnlyForTheSpecularModelTable) {
+  open_gpu();
   const Inputs inputs = random_inputs();
   const auto run_with = [&](Specular model) {
     run([&](Graph& graph) {

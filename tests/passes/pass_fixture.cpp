@@ -86,22 +86,51 @@ double rms(const HostImage& a, const HostImage& b) {
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
+namespace {
+
+// All tests of a program use one device, and the pipelines that earlier tests created.
+class SharedGpu : public testing::Environment {
+ public:
+  void TearDown() override { gpu.reset(); }
+
+  std::unique_ptr<sample::Gpu> gpu;
+  std::size_t messages = 0;  // of the validation layers that earlier tests reported
+};
+
+SharedGpu& shared = static_cast<SharedGpu&>(*testing::AddGlobalTestEnvironment(new SharedGpu));
+
+}  // namespace
+
 void PassTest::SetUp() {
+  if (!shared.gpu) {
+    open_gpu();
+    return;
+  }
+  const auto restarted = shared.gpu->restart();
+  ASSERT_TRUE(restarted) << restarted.error();
+}
+
+void PassTest::open_gpu() {
+  shared.gpu.reset();
+  shared.messages = 0;
   auto made =
       sample::Gpu::create({.validation = true}, {.verify = framegraph::verify, .check_uses = true});
   ASSERT_TRUE(made) << made.error();
-  gpu_ = std::move(*made);
+  shared.gpu = std::move(*made);
 }
 
 void PassTest::TearDown() {
-  if (gpu_) {
-    for (const std::string& message : gpu_->device().validation_messages()) {
-      ADD_FAILURE() << message;
+  if (shared.gpu) {
+    const std::vector<std::string>& messages = shared.gpu->device().validation_messages();
+    for (; shared.messages < messages.size(); ++shared.messages) {
+      ADD_FAILURE() << messages[shared.messages];
     }
   }
   uploads_.clear();
   downloads_.clear();
 }
+
+sample::Gpu& PassTest::gpu() { return *shared.gpu; }
 
 Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) {
   return fill(
@@ -114,7 +143,7 @@ Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) 
 
 Texture PassTest::fill(Graph& graph, Texture target, const HostImage& image) {
   const std::size_t bytes = image.texels.size() * sizeof(float);
-  auto buffer = sample::HostBuffer::create(gpu_->device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  auto buffer = sample::HostBuffer::create(gpu().device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   EXPECT_TRUE(buffer) << buffer.error();
   std::memcpy((*buffer)->bytes().data(), image.texels.data(), bytes);
   uploads_.push_back(std::move(*buffer));
@@ -129,7 +158,7 @@ void PassTest::read_back(Graph& graph, Texture texture, std::uint32_t mip) {
   image.height = std::max(extent.height >> mip, 1u);
   image.channels = layout_of(format).channels;
   image.texels.resize(std::size_t{image.width} * image.height * image.channels);
-  auto buffer = sample::HostBuffer::create(gpu_->device(),
+  auto buffer = sample::HostBuffer::create(gpu().device(),
                                            image.texels.size() * layout_of(format).channel_bytes,
                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   ASSERT_TRUE(buffer) << buffer.error();
@@ -142,7 +171,7 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
   uploads_.clear();
   downloads_.clear();
   results_.clear();
-  const auto report = gpu_->run([&](Graph& graph) -> tl::expected<void, std::string> {
+  const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
     declare(graph);
     return {};
   });
@@ -159,29 +188,22 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
       graph.reset_histories();
     }
     const Frame frame{.graph = graph,
-                      .kernels = gpu_->kernels(),
+                      .kernels = gpu().kernels(),
                       .view = given.view,
                       .index = given.index,
                       .previous_view = given.previous_view,
                       .largest_size = given.largest_size,
                       .previous_size = given.previous_size};
-    OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
-                           .normals_in_view_space = true};
-    if (given.normal_vs != nullptr) {
-      inputs.normals = upload(graph, *given.normal_vs);
-    }
-    if (given.motion != nullptr) {
-      inputs.motion = upload(graph, *given.motion);
-    }
-    if (given.roughness != nullptr) {
-      inputs.roughness = upload(graph, *given.roughness);
-    }
-    if (given.back_depth_ndc != nullptr) {
-      inputs.back_depth_ndc = upload(graph, *given.back_depth_ndc);
-    }
-    if (given.second_depth_ndc != nullptr) {
-      inputs.second_depth_ndc = upload(graph, *given.second_depth_ndc);
-    }
+    const auto upload_of = [&](const HostImage* image) {
+      return image == nullptr ? Texture{} : upload(graph, *image);
+    };
+    const OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
+                                 .normals = upload_of(given.normal_vs),
+                                 .normals_in_view_space = true,
+                                 .motion = upload_of(given.motion),
+                                 .roughness = upload_of(given.roughness),
+                                 .back_depth_ndc = upload_of(given.back_depth_ndc),
+                                 .second_depth_ndc = upload_of(given.second_depth_ndc)};
     const auto outputs = add_occlusion(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);

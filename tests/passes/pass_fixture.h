@@ -32,7 +32,7 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 double rms(const HostImage& a, const HostImage& b);
 
 // Runs passes on the machine's Vulkan device under the validation layers. Any message of the layers
-// fails the test.
+// fails the test. The tests of a program share the device and its pipelines, but no resources.
 class PassTest : public testing::Test {
  protected:
   void SetUp() override;
@@ -82,14 +82,15 @@ class PassTest : public testing::Test {
   // notices texels that a pass does not write.
   void poison_memory(std::uint32_t width, std::uint32_t height);
 
-  sample::Gpu& gpu() { return *gpu_; }
+  static sample::Gpu& gpu();
+  // Replaces the device that tests share by another, for tests that count pipelines and tables.
+  static void open_gpu();
 
  private:
   struct Download {
     std::unique_ptr<sample::HostBuffer> buffer;
     VkFormat format = VK_FORMAT_UNDEFINED;
   };
-  std::unique_ptr<sample::Gpu> gpu_;
   std::vector<std::unique_ptr<sample::HostBuffer>> uploads_;
   std::vector<Download> downloads_;
   std::vector<HostImage> results_;

@@ -44,6 +44,8 @@ void expect_same(const Kept& a, const Kept& b) {
 
 class OcclusionPlan : public PassTest {
  protected:
+  void SetUp() override { open_gpu(); }
+
   Kept kept(const OcclusionSettings& settings, Reads reads = {}, Given given = {}) {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
     Kept found;
