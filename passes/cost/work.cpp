@@ -26,6 +26,8 @@ struct Samples {
   // Image loads of a half-slice whose loops over steps are unrolled. A texel of back faces that
   // both depth layers need is then loaded once.
   std::uint32_t unrolled_half_slice = 1;
+  // Image loads of a half-slice that shares them in the steps outside of its loops only.
+  std::uint32_t rolled_half_slice = 1;
 };
 
 Samples samples_of(const OcclusionSettings& settings) {
@@ -40,6 +42,10 @@ Samples samples_of(const OcclusionSettings& settings) {
   // With connected samples the first two steps, and a remainder, are outside of the loop.
   samples.iterations =
       connected ? (settings.steps - 2) / samples.steps_per_iteration : settings.steps;
+  const std::uint32_t rolled = samples.iterations * samples.steps_per_iteration;
+  samples.rolled_half_slice =
+      (rolled * samples.half_slice + (settings.steps - rolled) * samples.unrolled_half_slice) /
+      settings.steps;
   return samples;
 }
 
@@ -76,7 +82,8 @@ std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loo
   if (!loads) {
     return std::nullopt;
   }
-  for (const std::uint32_t half_slice : {samples.half_slice, samples.unrolled_half_slice}) {
+  for (const std::uint32_t half_slice :
+       {samples.half_slice, samples.unrolled_half_slice, samples.rolled_half_slice}) {
     if (*loads == half_slice) {
       return 2.0;
     }

@@ -28,15 +28,13 @@ std::string names_of(const std::vector<Camera>& cameras) {
   for (std::size_t i = 0; i < listed; ++i) {
     names += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", cameras[i].name);
   }
-  if (listed < cameras.size()) {
-    names += fmt::format(" and {} more", cameras.size() - listed);
-  }
+  if (listed < cameras.size()) names += fmt::format(" and {} more", cameras.size() - listed);
   return names;
 }
 
 }  // namespace
 
-tl::expected<Camera, std::string> camera_of(const ViewOptions& view, const Scene& scene) {
+Result<Camera> camera_of(const ViewOptions& view, const Scene& scene) {
   const Camera* named = find_camera(scene, view.camera);
   if (!named && !view.camera.empty()) {
     return tl::unexpected(

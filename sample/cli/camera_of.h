@@ -1,11 +1,11 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 
 #include "cli/options.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -16,7 +16,6 @@ namespace alcove::sample {
 // perspective views unless the options say otherwise. Errors: the scene has no camera of that name
 // (its cameras are listed), the eye is at the target, the near plane is not in front of the far
 // plane or, in perspective, not in front of the eye.
-[[nodiscard]] tl::expected<Camera, std::string> camera_of(const ViewOptions& view,
-                                                          const Scene& scene);
+[[nodiscard]] Result<Camera> camera_of(const ViewOptions& view, const Scene& scene);
 
 }  // namespace alcove::sample

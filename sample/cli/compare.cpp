@@ -12,6 +12,7 @@
 #include "evaluate/truths.h"
 #include "evaluate/weave.h"
 #include "support/image_io.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -30,7 +31,7 @@ struct Errors {
 };
 
 // Renders the last camera of an orbit without motion.
-tl::expected<Weave, std::string> static_weave(Options options, const Truths& truths) {
+Result<Weave> static_weave(Options options, const Truths& truths) {
   options.view.orbit_start += options.view.orbit * static_cast<float>(options.view.frames - 1);
   options.view.orbit = 0.0f;
   return render(options).map([&](const Rendering& rendering) {
@@ -59,9 +60,7 @@ nlohmann::ordered_json errors_json(const Errors& errors) {
                               {"surface_normal", to_json(errors.surface_normal)},
                               {"open_surfaces", to_json(errors.open)},
                               {"weave", to_json(errors.weave)}};
-  if (errors.static_weave) {
-    json["static_weave"] = to_json(*errors.static_weave);
-  }
+  if (errors.static_weave) json["static_weave"] = to_json(*errors.static_weave);
   return json;
 }
 
@@ -82,102 +81,69 @@ std::string error_table(const Errors& errors) {
          (errors.static_weave ? "Static: " + weave_line(*errors.static_weave) : "");
 }
 
-tl::expected<void, std::string> write_truths(const Rendering& rendering, const Truths& truths,
-                                             const std::filesystem::path& folder) {
+Result<void> write_truths(const Rendering& rendering, const Truths& truths,
+                          const std::filesystem::path& folder) {
   const Image<float>& scene = truths.scene.visibility;
   const Image<float>& result = rendering.images.visibility;
-  return write_exr(folder / "truth_scene.exr", scene)
-      .and_then([&] { return write_png(folder / "truth_scene.png", scene); })
-      .and_then([&] {
-        return write_exr(folder / "truth_height_field.exr", truths.height_field.visibility);
-      })
-      .and_then(
-          [&] { return write_exr(folder / "truth_bent_normal.exr", truths.scene.bent_normal_ws); })
-      .and_then([&] { return write_png(folder / "error.png", error_colours(result, scene)); });
+  ALCOVE_TRY_VOID(write_exr(folder / "truth_scene.exr", scene));
+  ALCOVE_TRY_VOID(write_png(folder / "truth_scene.png", scene));
+  ALCOVE_TRY_VOID(write_exr(folder / "truth_height_field.exr", truths.height_field.visibility));
+  ALCOVE_TRY_VOID(write_exr(folder / "truth_bent_normal.exr", truths.scene.bent_normal_ws));
+  return write_png(folder / "error.png", error_colours(result, scene));
 }
 
 // Splits the error, writes its pictures and returns its table. Adds it to `report`.
-tl::expected<std::string, std::string> split_table(const Options& options,
-                                                   const Rendering& rendering, const Truths& truths,
-                                                   nlohmann::ordered_json& report) {
-  const auto gpu = open_gpu({options.device, options.validation});
-  if (!gpu) {
-    return tl::unexpected(gpu.error());
-  }
-  const auto split = split_error(**gpu, rendering.scene, static_setup(options, rendering.camera),
-                                 rendering.settings, truths.scene.visibility, truths.surfaces);
-  if (!split) {
-    return tl::unexpected(split.error());
-  }
-  report["split"] = to_json(*split);
-  return check_validation(**gpu)
-      .and_then([&] { return write_pictures(*split, options.out); })
-      .map([&] { return table_of(*split); });
+Result<std::string> split_table(const Options& options, const Rendering& rendering,
+                                const Truths& truths, nlohmann::ordered_json& report) {
+  ALCOVE_TRY(const auto gpu, open_gpu({options.device, options.validation}));
+  ALCOVE_TRY(const ErrorSplit split,
+             split_error(*gpu, rendering.scene, static_setup(options, rendering.camera),
+                         rendering.settings, truths.scene.visibility, truths.surfaces));
+  report["split"] = to_json(split);
+  ALCOVE_TRY_VOID(check_validation(*gpu));
+  ALCOVE_TRY_VOID(write_pictures(split, options.out));
+  return table_of(split);
 }
 
 }  // namespace
 
-tl::expected<void, std::string> run_compare(const Options& options) {
+Result<void> run_compare(const Options& options) {
   // The folder is created first, because the comparison takes minutes.
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
-  const auto rendering = render(options);
-  if (!rendering) {
-    return tl::unexpected(rendering.error());
-  }
-  const FrameImages& images = rendering->images;
-  const auto truths = truths_of({rendering->scene, rendering->camera, rendering->settings.radius,
-                                 images.depth_ndc, images.normal_ws},
-                                truth_options(options));
-  if (!truths) {
-    return tl::unexpected(truths.error());
-  }
-  const auto light = indirect_truths_of(*rendering, truth_options(options));
-  if (!light) {
-    return tl::unexpected(light.error());
-  }
-  Errors errors = errors_of(*rendering, *truths);
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY(const auto rendering, render(options));
+  const FrameImages& images = rendering.images;
+  ALCOVE_TRY(const auto truths,
+             truths_of({rendering.scene, rendering.camera, rendering.settings.radius,
+                        images.depth_ndc, images.normal_ws},
+                       truth_options(options)));
+  ALCOVE_TRY(const auto light, indirect_truths_of(rendering, truth_options(options)));
+  Errors errors = errors_of(rendering, truths);
   if (options.view.orbit != 0.0f) {
-    auto standing = static_weave(options, *truths);
-    if (!standing) {
-      return tl::unexpected(standing.error());
-    }
-    errors.static_weave = std::move(*standing);
+    ALCOVE_TRY(errors.static_weave, static_weave(options, truths));
   }
-  const IndirectErrors indirect_errors = indirect_errors_of(*rendering, *truths, *light);
-  nlohmann::ordered_json report = report_of(*rendering, options);
+  const IndirectErrors indirect_errors = indirect_errors_of(rendering, truths, light);
+  nlohmann::ordered_json report = report_of(rendering, options);
   report["spp"] = options.occlusion.spp;
   report["errors"] = errors_json(errors);
   report["errors"].update(to_json(indirect_errors));
   std::string lit_table;
-  if (light->lit) {
-    const LitErrors lit_errors = lit_errors_of(*rendering, *light);
+  if (light.lit) {
+    const LitErrors lit_errors = lit_errors_of(rendering, light);
     report["errors"].update(to_json(lit_errors));
     lit_table = lit_error_table(lit_errors);
   }
   std::string causes;
   if (options.split) {
-    auto table = split_table(options, *rendering, *truths, report);
-    if (!table) {
-      return tl::unexpected(std::move(table.error()));
-    }
-    causes = std::move(*table);
+    ALCOVE_TRY(causes, split_table(options, rendering, truths, report));
   }
-  return write_images(*rendering, options.out)
-      .and_then([&] { return write_truths(*rendering, *truths, options.out); })
-      .and_then([&] {
-        return light->lit ? write_lit_steps(*rendering, *light, options.out)
-                          : tl::expected<void, std::string>();
-      })
-      .and_then([&] { return write_text(options.out / "report.json", report.dump(2) + "\n"); })
-      .map([&] {
-        std::cout << time_table(*rendering) << error_table(errors)
-                  << indirect_error_table(indirect_errors) << lit_table << causes
-                  << "Images and report.json are in " << options.out.string()
-                  << "; in error.png red is too dark and blue too bright\n";
-      });
+  ALCOVE_TRY_VOID(write_images(rendering, options.out));
+  ALCOVE_TRY_VOID(write_truths(rendering, truths, options.out));
+  if (light.lit) ALCOVE_TRY_VOID(write_lit_steps(rendering, light, options.out));
+  ALCOVE_TRY_VOID(write_text(options.out / "report.json", report.dump(2) + "\n"));
+  std::cout << time_table(rendering) << error_table(errors) << indirect_error_table(indirect_errors)
+            << lit_table << causes << "Images and report.json are in " << options.out.string()
+            << "; in error.png red is too dark and blue too bright\n";
+  return {};
 }
 
 }  // namespace alcove::sample

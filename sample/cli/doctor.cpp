@@ -14,6 +14,7 @@
 #include "evaluate/mistakes.h"
 #include "gpu/vulkan_device.h"
 #include "support/image_io.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -21,14 +22,11 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-tl::expected<void, std::string> list_all_devices() {
-  const auto devices = list_devices();
-  if (!devices) {
-    return Failure(devices.error());
-  }
+Result<void> list_all_devices() {
+  ALCOVE_TRY(const auto devices, list_devices());
   bool usable = false;
-  for (std::size_t i = 0; i < devices->size(); ++i) {
-    const DeviceSummary& device = (*devices)[i];
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const DeviceSummary& device = devices[i];
     std::cout << "device " << i << ": " << device.name << ", " << device.driver << ", Vulkan "
               << VK_API_VERSION_MAJOR(device.api_version) << "."
               << VK_API_VERSION_MINOR(device.api_version) << "\n  "
@@ -46,9 +44,7 @@ tl::expected<void, std::string> list_all_devices() {
 
 // The lines of a text without their ends, joined.
 std::string in_one_line(std::string text) {
-  while (!text.empty() && text.back() == '\n') {
-    text.pop_back();
-  }
+  while (!text.empty() && text.back() == '\n') text.pop_back();
   std::ranges::replace(text, '\n', ' ');
   return text.empty() ? "nothing" : text;
 }
@@ -68,44 +64,33 @@ double rmse_of(const Image<float>& a, const Image<float>& b) {
 }
 
 // Prints a table of planted mistakes. An error names those that alcoveDiagnose should have named.
-tl::expected<void, std::string> print_mistakes(const Options& options, const Session& session) {
-  auto run =
-      MistakeRun::create(*session.gpu, session.scene, session.camera, course_of(options, session));
-  if (!run) {
-    return Failure(std::move(run.error()));
-  }
+Result<void> print_mistakes(const Options& options, const Session& session) {
+  ALCOVE_TRY(auto run, MistakeRun::create(*session.gpu, session.scene, session.camera,
+                                          course_of(options, session)));
   std::optional<OutputFolder> folder;
   if (!options.pictures.empty()) {
-    auto made = OutputFolder::create(options.pictures);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    folder.emplace(std::move(*made));
+    ALCOVE_TRY(auto made, OutputFolder::create(options.pictures));
+    folder.emplace(std::move(made));
   }
   const auto write = [&](const std::string& name, const Image<float>& picture) {
     return folder && !name.empty()
                ? write_png(std::filesystem::path(options.pictures) / (name + ".png"), picture)
-               : tl::expected<void, std::string>();
+               : Result<void>();
   };
   std::cout << fmt::format("{:<52} {:>5}  {}\n", "mistake", "RMSE", "the library says");
   std::string failed;
   std::array<EngineResult, 2> right;
   for (const bool reversed : {false, true}) {
-    auto drawn = run->draw_right(reversed);
-    if (!drawn) {
-      return Failure(std::move(drawn.error()));
-    }
+    ALCOVE_TRY(auto drawn, run.draw_right(reversed));
     std::cout << fmt::format("{:<52} {:>5}  {}\n", reversed ? "none, reversed depth" : "none", "",
-                             in_one_line(drawn->said));
-    failed = drawn->said.empty() ? failed : "frames without a mistake";
-    right.at(reversed ? 1 : 0) = std::move(*drawn);
+                             in_one_line(drawn.said));
+    failed = drawn.said.empty() ? failed : "frames without a mistake";
+    right.at(reversed ? 1 : 0) = std::move(drawn);
   }
   auto written = write("right", right[0].visibility);
   for (const PlantedMistake& mistake : planted_mistakes()) {
-    auto drawn = run->draw(mistake, 0);
-    if (!drawn) {
-      return Failure(std::string(mistake.name) + ": " + drawn.error());
-    }
+    auto drawn = run.draw(mistake, 0);
+    if (!drawn) return Failure(std::string(mistake.name) + ": " + drawn.error());
     const bool refused = drawn->visibility.empty();
     written = written && !refused ? write(mistake.picture, drawn->visibility) : written;
     const double rmse = rmse_of(drawn->visibility, right.at(mistake.reversed ? 1 : 0).visibility);
@@ -115,9 +100,7 @@ tl::expected<void, std::string> print_mistakes(const Options& options, const Ses
       failed += (failed.empty() ? "" : "; ") + std::string(mistake.name);
     }
   }
-  if (!written) {
-    return written;
-  }
+  if (!written) return written;
   if (!failed.empty()) {
     return Failure("alcoveDiagnose does not say what it promises of: " + failed + ".");
   }
@@ -125,13 +108,11 @@ tl::expected<void, std::string> print_mistakes(const Options& options, const Ses
 }
 
 // Prints the output of alcoveDiagnose for frames of a scene without mistakes. It should be empty.
-tl::expected<void, std::string> check_scene(const Options& options, const Session& session) {
+Result<void> check_scene(const Options& options, const Session& session) {
   std::vector<std::string> names{options.view.camera};
   if (options.view.camera.empty() && !options.view.eye && !options.view.target) {
     names.clear();
-    for (const Camera& camera : session.scene.cameras) {
-      names.push_back(camera.name);
-    }
+    for (const Camera& camera : session.scene.cameras) names.push_back(camera.name);
     if (names.empty()) {
       names.emplace_back();  // the default view
     }
@@ -141,32 +122,26 @@ tl::expected<void, std::string> check_scene(const Options& options, const Sessio
     ViewOptions view = options.view;
     view.camera = name;
     const auto camera = camera_of(view, session.scene);
-    if (!camera) {
-      return Failure(camera.error());
-    }
+    if (!camera) return Failure(camera.error());
     EngineCourse course = course_of(options, session);
     course.quick = true;
     for (const RightCourse& right : right_courses(course)) {
       auto run = EngineRun::create(*session.gpu, session.scene, *camera, right.course);
       const auto said = run ? said_of_right_frames(**run) : Failure(run.error());
-      if (!said) {
-        return Failure(said.error());
-      }
+      if (!said) return Failure(said.error());
       std::cout << fmt::format("camera \"{}\", {}: {}\n", name, right.name, in_one_line(*said));
       reported = reported || !said->empty();
     }
   }
-  return reported ? tl::expected<void, std::string>(
-                        Failure("alcoveDiagnose reports mistakes in frames that have none."))
-                  : tl::expected<void, std::string>();
+  return reported
+             ? Result<void>(Failure("alcoveDiagnose reports mistakes in frames that have none."))
+             : Result<void>();
 }
 
 }  // namespace
 
-tl::expected<void, std::string> run_doctor(const Options& options) {
-  if (!options.mistakes && options.scene.empty()) {
-    return list_all_devices();
-  }
+Result<void> run_doctor(const Options& options) {
+  if (!options.mistakes && options.scene.empty()) return list_all_devices();
   Options of_scene = options;
   if (options.mistakes) {
     of_scene.scene.clear();
@@ -176,11 +151,8 @@ tl::expected<void, std::string> run_doctor(const Options& options) {
       of_scene.view.camera = "plant";
     }
   }
-  const auto session = open_session(of_scene);
-  if (!session) {
-    return Failure(session.error());
-  }
-  return options.mistakes ? print_mistakes(options, *session) : check_scene(options, *session);
+  ALCOVE_TRY(const auto session, open_session(of_scene));
+  return options.mistakes ? print_mistakes(options, session) : check_scene(options, session);
 }
 
 }  // namespace alcove::sample

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "render/surfaces.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 namespace {
@@ -20,8 +21,7 @@ passes::Frame frame_of(framegraph::Graph& graph, const Session& session, const O
 }
 
 // Declares the frame of the occlusion, with placeholders for the images of the g-buffer.
-tl::expected<void, std::string> declare(framegraph::Graph& graph, const Session& session,
-                                        const Options& options) {
+Result<void> declare(framegraph::Graph& graph, const Session& session, const Options& options) {
   const auto extent = framegraph::Extent::absolute(options.view.width, options.view.height);
   const auto texture = [&](const char* name, VkFormat format) {
     auto pass = graph.add_pass(name);
@@ -46,21 +46,17 @@ tl::expected<void, std::string> declare(framegraph::Graph& graph, const Session&
   if (hidden.second_layer) {
     surfaces.gbuffer.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
   }
-  const auto outputs = add_occlusion(frame_of(graph, session, options), surfaces, session.settings);
-  if (!outputs) {
-    return tl::unexpected(outputs.error());
-  }
+  ALCOVE_TRY(const auto outputs,
+             add_occlusion(frame_of(graph, session, options), surfaces, session.settings));
   for (const framegraph::Texture output :
-       {outputs->visibility, outputs->bent_normal, outputs->specular}) {
-    if (output) {
-      graph.output(output);
-    }
+       {outputs.visibility, outputs.bent_normal, outputs.specular}) {
+    if (output) graph.output(output);
   }
   return {};
 }
 
 // Prints the work of the occlusion as data.
-tl::expected<void, std::string> print_work(const Session& session, const Options& options) {
+Result<void> print_work(const Session& session, const Options& options) {
   const auto work = std::make_unique<AlcoveWork>();
   passes::WorkList list(*work);
   const auto image = [&](bool wanted, AlcoveResourceKind kind, const char* name, VkFormat format) {
@@ -88,39 +84,28 @@ tl::expected<void, std::string> print_work(const Session& session, const Options
   framegraph::Graph graph;
   const auto outputs = passes::describe_occlusion(
       list, {.view = frame_of(graph, session, options).view}, inputs, settings);
-  if (!outputs) {
-    return tl::unexpected(outputs.error().message);
-  }
+  if (!outputs) return tl::unexpected(outputs.error().message);
   std::cout << passes::print_work(*work);
   return {};
 }
 
 }  // namespace
 
-tl::expected<std::string, std::string> plan_text(const Session& session, const Options& options) {
+Result<std::string> plan_text(const Session& session, const Options& options) {
   framegraph::Graph graph;
-  if (auto declared = declare(graph, session, options); !declared) {
-    return tl::unexpected(declared.error());
-  }
+  ALCOVE_TRY_VOID(declare(graph, session, options));
   const framegraph::GraphDescription& description = graph.description();
   const auto plan = framegraph::compile(description, session.gpu->executor().limits());
-  if (!plan) {
-    return tl::unexpected(framegraph::to_string(plan.error()));
-  }
+  if (!plan) return tl::unexpected(framegraph::to_string(plan.error()));
   const bool dot = options.graph_format == GraphFormat::dot;
   return dot ? framegraph::print_dot(description, *plan)
              : framegraph::print_text(description, *plan);
 }
 
-tl::expected<void, std::string> run_graph(const Options& options) {
-  const auto session = open_session(options);
-  if (!session) {
-    return tl::unexpected(session.error());
-  }
-  if (options.graph_format == GraphFormat::work) {
-    return print_work(*session, options);
-  }
-  return plan_text(*session, options).map([](const std::string& text) { std::cout << text; });
+Result<void> run_graph(const Options& options) {
+  ALCOVE_TRY(const auto session, open_session(options));
+  if (options.graph_format == GraphFormat::work) return print_work(session, options);
+  return plan_text(session, options).map([](const std::string& text) { std::cout << text; });
 }
 
 }  // namespace alcove::sample

@@ -9,14 +9,16 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "support/printable.h"
+#include "support/result.h"
 
 namespace {
 
 using alcove::sample::Command;
 using alcove::sample::Options;
+using alcove::sample::Result;
 using alcove::sample::Stop;
 
-tl::expected<void, std::string> run(const Options& options) {
+Result<void> run(const Options& options) {
   switch (options.command) {
     case Command::render:
       return alcove::sample::run_render(options);
@@ -77,9 +79,7 @@ int stop(const Stop& stop) {
 int main(int argc, char** argv) {
   try {
     const auto options = alcove::sample::parse_options(argc, argv);
-    if (!options) {
-      return stop(options.error());
-    }
+    if (!options) return stop(options.error());
     const auto done = run(*options);
     return done ? flush_output() : fail(done.error());
   } catch (const std::bad_alloc&) {

@@ -31,73 +31,52 @@ void print_notes(const std::vector<std::string>& notes) {
 
 }  // namespace
 
-tl::expected<Session, std::string> load_session(const Options& options) {
+Result<Session> load_session(const Options& options) {
   Session session;
   const auto start = std::chrono::steady_clock::now();
   auto scene = load_scene(options.scene, options.materials, print_progress("loading"));
   session.load_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!scene) {
-    return Failure(std::move(scene.error()));
-  }
+  if (!scene) return Failure(std::move(scene.error()));
   session.scene = std::move(*scene);
   print_notes(session.scene.warnings);
-  const auto camera = camera_of(options.view, session.scene);
-  if (!camera) {
-    return Failure(camera.error());
-  }
-  session.camera = *camera;
+  ALCOVE_TRY(const auto camera, camera_of(options.view, session.scene));
+  session.camera = camera;
   RadiusChoice radius{0.0f, "--radius"};
   if (!options.occlusion.radius) {
     const double aspect = static_cast<double>(options.view.width) / options.view.height;
     radius = radius_for_view(session.scene, session.camera, aspect);
   }
   session.radius_reason = radius.reason;
-  const auto settings = occlusion_settings(options.occlusion, radius.radius);
-  if (!settings) {
-    return Failure(settings.error());
-  }
-  session.settings = *settings;
+  ALCOVE_TRY(const auto settings, occlusion_settings(options.occlusion, radius.radius));
+  session.settings = settings;
   return session;
 }
 
-tl::expected<Session, std::string> open_session(
-    const Options& options, const std::vector<const char*>& surface_extensions) {
+Result<Session> open_session(const Options& options,
+                             const std::vector<const char*>& surface_extensions) {
   auto session = load_session(options);
-  if (!session) {
-    return session;
-  }
+  if (!session) return session;
   session->device = {options.device, options.validation, surface_extensions};
-  auto gpu = open_gpu(session->device);
-  if (!gpu) {
-    return Failure(std::move(gpu.error()));
-  }
-  session->gpu = std::move(*gpu);
+  ALCOVE_TRY(auto gpu, open_gpu(session->device));
+  session->gpu = std::move(gpu);
   return session;
 }
 
-tl::expected<Rendering, std::string> render(const Options& options) {
-  auto session = open_session(options);
-  if (!session) {
-    return Failure(std::move(session.error()));
-  }
-  auto environment = load_environment(options.environment);
-  if (!environment) {
-    return Failure(std::move(environment.error()));
-  }
+Result<Rendering> render(const Options& options) {
+  ALCOVE_TRY(auto session, open_session(options));
+  ALCOVE_TRY(auto environment, load_environment(options.environment));
   const std::string radius =
-      "Radius " + shown(session->settings.radius) + ": " + session->radius_reason + "\n";
-  auto rendering = render(std::move(*session),
+      "Radius " + shown(session.settings.radius) + ": " + session.radius_reason + "\n";
+  auto rendering = render(std::move(session),
                           {options.view.width,
                            options.view.height,
                            options.view.frames,
                            options.view.orbit,
                            options.view.orbit_start,
                            options.occlusion.normals,
-                           {options.occlusion.roughness, std::move(*environment), options.lit}});
-  if (rendering && shows_surfaces(*rendering)) {
-    std::cout << radius;
-  }
+                           {options.occlusion.roughness, std::move(environment), options.lit}});
+  if (rendering && shows_surfaces(*rendering)) std::cout << radius;
   return rendering;
 }
 
@@ -106,7 +85,7 @@ StaticSetup static_setup(const Options& options, const Camera& camera) {
           options.occlusion.normals};
 }
 
-tl::expected<ModelledTimes, std::string> modelled_times(const Options& options) {
+Result<ModelledTimes> modelled_times(const Options& options) {
   return ModelledTimes::create(*options.gpu,
                                {.width = options.target_width,
                                 .height = options.target_height,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "cli/options.h"
@@ -11,27 +10,28 @@
 #include "evaluate/variant.h"
 #include "render/rendering.h"
 #include "render/session.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
 // Loads the scene and chooses camera and settings; the session has no device. Prints notes about
 // the scene, and progress if loading takes long, on stderr.
-[[nodiscard]] tl::expected<Session, std::string> load_session(const Options& options);
+[[nodiscard]] Result<Session> load_session(const Options& options);
 
 // Loads the scene, chooses camera and settings and opens the device, in this order, so that errors
 // that are quick to find are reported first. `surface_extensions` are the instance extensions for
 // presenting to a window.
-[[nodiscard]] tl::expected<Session, std::string> open_session(
-    const Options& options, const std::vector<const char*>& surface_extensions = {});
+[[nodiscard]] Result<Session> open_session(const Options& options,
+                                           const std::vector<const char*>& surface_extensions = {});
 
 // Opens the session that the options describe, renders it and reads the images back.
-[[nodiscard]] tl::expected<Rendering, std::string> render(const Options& options);
+[[nodiscard]] Result<Rendering> render(const Options& options);
 
 // The static view of `camera` with the options' size, frames and normals.
 [[nodiscard]] StaticSetup static_setup(const Options& options, const Camera& camera);
 
 // The modelled times on the options' GPU at the size for which they are wanted.
-[[nodiscard]] tl::expected<ModelledTimes, std::string> modelled_times(const Options& options);
+[[nodiscard]] Result<ModelledTimes> modelled_times(const Options& options);
 
 [[nodiscard]] TruthOptions truth_options(const Options& options);
 

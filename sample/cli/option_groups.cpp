@@ -47,15 +47,21 @@ class Group {
         ->expected(1)
         ->group(heading_);
   }
-  void add_flag(const std::string& option, const std::string& help, bool& flag,
-                bool meaning = true) const {
-    app_.add_flag_callback(
-            option, [&flag, meaning] { flag = meaning; }, help)
-        ->group(heading_);
+  // Adds an option with the name of a file or folder.
+  void add_path(const std::string& option, const std::string& type, const std::string& help,
+                std::filesystem::path& path) const {
+    add(option, type, help, [&path](const OptionValue& given) { path = given.text; });
   }
-
-  void add_optional_flag(const std::string& option, const std::string& help,
-                         std::optional<bool>& flag, bool meaning) const {
+  // Adds an option with the size of an image.
+  void add_size(const std::string& option, const std::string& help, std::uint32_t& width,
+                std::uint32_t& height) const {
+    add(option, "WxH", help,
+        [&](const OptionValue& given) { std::tie(width, height) = given.size(); });
+  }
+  // Adds an option without a value, which sets `flag`, a bool or an optional one, to `meaning`.
+  template <class Flag>
+  void add_flag(const std::string& option, const std::string& help, Flag& flag,
+                bool meaning = true) const {
     app_.add_flag_callback(
             option, [&flag, meaning] { flag = meaning; }, help)
         ->group(heading_);
@@ -68,11 +74,9 @@ class Group {
 
 void add_frames(const Group& group, ViewOptions& view, std::int64_t fewest,
                 const std::string& help) {
-  constexpr std::int64_t kMost = 100000;
   group.add("--frames", "N", help, [&view, fewest](const OptionValue& given) {
-    const std::string wanted =
-        "a number from " + std::to_string(fewest) + " to " + std::to_string(kMost);
-    view.frames = static_cast<std::uint32_t>(given.whole_number(fewest, kMost, wanted));
+    const std::string wanted = fmt::format("a number from {} to 100000", fewest);
+    view.frames = static_cast<std::uint32_t>(given.whole_number(fewest, 100000, wanted));
   });
 }
 
@@ -163,15 +167,15 @@ void add_view(CLI::App& app, ViewOptions& view) {
                                         : static_cast<float>(given.number(
                                               -kLargest, kLargest, "a length above 0, or inf"));
             });
-  group.add_optional_flag("--reversed-z",
-                          "near plane at depth 1, far plane at 0. Default in perspective views",
-                          view.reversed_z, true);
-  group.add_optional_flag("--standard-z",
-                          "near plane at depth 0, far plane at 1. Default in orthographic views",
-                          view.reversed_z, false);
-  group.add("--size", "WxH",
-            fmt::format("size of the image in pixels. Default: {}x{}", view.width, view.height),
-            [&](const OptionValue& given) { std::tie(view.width, view.height) = given.size(); });
+  group.add_flag("--reversed-z",
+                 "near plane at depth 1, far plane at 0. Default in perspective views",
+                 view.reversed_z, true);
+  group.add_flag("--standard-z",
+                 "near plane at depth 0, far plane at 1. Default in orthographic views",
+                 view.reversed_z, false);
+  group.add_size(
+      "--size", fmt::format("size of the image in pixels. Default: {}x{}", view.width, view.height),
+      view.width, view.height);
 }
 
 void add_course(CLI::App& app, ViewOptions& view, const std::string& frames_help) {
@@ -200,11 +204,7 @@ void add_motion(CLI::App& app, Options& options) {
             "is added near the eye), object (static camera, a block slides over the ground), cut "
             "(the camera jumps to another place) or all. Default: all",
             [&](const OptionValue& given) {
-              std::vector<std::string_view> names(kMotionKindNames.begin(), kMotionKindNames.end());
-              names.emplace_back("all");
-              const std::size_t which = given.one_of(names);
-              options.path =
-                  which < kMotionKinds.size() ? std::optional(kMotionKinds[which]) : std::nullopt;
+              options.path = given.one_of_or<MotionKind>(kMotionKindNames, "all");
             });
   constexpr std::int64_t kFewest = 12;  // with fewer frames there is nothing to compare
   options.view.frames = 48;
@@ -216,7 +216,7 @@ void add_motion(CLI::App& app, Options& options) {
 void add_occlusion(CLI::App& app, OcclusionOptions& occlusion) {
   const Group group(app, "Occlusion");
   group.add("--quality", "NAME",
-            "preset: console, low, medium, high, ultra or reference. Default: medium",
+            "preset: " + passes::names_text<passes::Quality>() + ". Default: medium",
             [&](const OptionValue& given) {
               occlusion.quality_given = true;
               occlusion.quality =
@@ -302,19 +302,13 @@ void add_limits(CLI::App& app, Options& options) {
             "(camera) or mix. Default: mix, in which the moving camera counts 60 %, the standing "
             "30 % and the first frame 10 %",
             [&](const OptionValue& given) {
-              std::vector<std::string_view> names(kSituationNames.begin(), kSituationNames.end());
-              names.emplace_back("mix");
-              const std::size_t which = given.one_of(names);
-              options.situation = which < kSituationNames.size()
-                                      ? std::optional(static_cast<Situation>(which))
-                                      : std::nullopt;
+              options.situation = given.one_of_or<Situation>(kSituationNames, "mix");
             });
   group.add_flag("--exhaustive",
                  "also measure each number of samples with and without a second depth layer, and "
                  "compare the best of them with the result. Takes minutes",
                  options.exhaustive);
-  group.add("--out", "FILE", "also write the settings, for --settings",
-            [&](const OptionValue& given) { options.settings_out = given.text; });
+  group.add_path("--out", "FILE", "also write the settings, for --settings", options.settings_out);
   group.add(
       "--tolerance", "E", "find the fastest setting whose RMSE of visibility is at most this error",
       [&](const OptionValue& given) { options.tolerance = given.positive("an error above 0"); });
@@ -322,12 +316,10 @@ void add_limits(CLI::App& app, Options& options) {
 
 void add_target(CLI::App& app, Options& options) {
   const Group group(app);
-  group.add("--target-size", "WxH",
-            "size of the image whose time counts; errors are measured at --size. Default: "
-            "1920x1080",
-            [&](const OptionValue& given) {
-              std::tie(options.target_width, options.target_height) = given.size();
-            });
+  group.add_size("--target-size",
+                 "size of the image whose time counts; errors are measured at --size. Default: "
+                 "1920x1080",
+                 options.target_width, options.target_height);
   group.add(
       "--gpu", "NAME", "the GPU whose time is modelled: ps4 or rdna2. Default: rdna2",
       [&](const OptionValue& given) {
@@ -361,10 +353,8 @@ void add_cost(CLI::App& app, Options& options) {
               constexpr std::array<std::string_view, 2> kFamilies{"bonaire", "navi21"};
               options.cost.family = kFamilies[given.one_of(kFamilies)];
             });
-  group.add("--size", "WxH", "size of the image in pixels. Default: 1920x1080",
-            [&](const OptionValue& given) {
-              std::tie(options.view.width, options.view.height) = given.size();
-            });
+  group.add_size("--size", "size of the image in pixels. Default: 1920x1080", options.view.width,
+                 options.view.height);
   group.add_flag("--motion-vectors",
                  "model the passes with motion vectors as an input, which moving objects need",
                  options.cost.motion_vectors);
@@ -382,13 +372,12 @@ void add_cost(CLI::App& app, Options& options) {
       "also print the instructions of a wave by kind, and each loop that the compiler did "
       "not unroll with its iterations",
       options.cost.loops);
-  group.add("--json", "FILE", "also write all figures as JSON",
-            [&](const OptionValue& given) { options.cost.json = given.text; });
-  group.add("--write-budget", "FILE",
-            "only write the costs of all presets into the file of limits that the tests check",
-            [&](const OptionValue& given) { options.cost.budget = given.text; });
-  group.add("--chart", "FILE", "also write an SVG chart of the time of each pass",
-            [&](const OptionValue& given) { options.cost.chart = given.text; });
+  group.add_path("--json", "FILE", "also write all figures as JSON", options.cost.json);
+  group.add_path("--write-budget", "FILE",
+                 "only write the costs of all presets into the file of limits that the tests check",
+                 options.cost.budget);
+  group.add_path("--chart", "FILE", "also write an SVG chart of the time of each pass",
+                 options.cost.chart);
 }
 
 void add_sizes(CLI::App& app, Options& options) {
@@ -423,9 +412,9 @@ void add_doctor(CLI::App& app, Options& options) {
 
 void add_light(CLI::App& app, Options& options) {
   Group(app, "Light")
-      .add("--environment", "FILE",
-           "equirectangular image of the light, .hdr or .exr. Default: a generated sky",
-           [&](const OptionValue& given) { options.environment = given.text; });
+      .add_path("--environment", "FILE",
+                "equirectangular image of the light, .hdr or .exr. Default: a generated sky",
+                options.environment);
 }
 
 void add_materials(CLI::App& app, MaterialTreatment& materials) {
@@ -446,8 +435,7 @@ void add_split(CLI::App& app, bool& split) {
       "--split",
       "also render the view without each cause of the error, and print and draw the part of the "
       "squared error that is noise, filter and tiles, hidden surfaces, unknown thickness, "
-      "occluders "
-      "outside the image, and the rest",
+      "occluders outside the image, and the rest",
       split);
 }
 
@@ -469,8 +457,7 @@ void add_lit(CLI::App& app, bool& lit, std::uint32_t& points) {
 
 void add_format(CLI::App& app, GraphFormat& format) {
   Group(app).add("--format", "NAME",
-                 "text, dot (Graphviz), or work (the work as\n"
-                 "data). Default: text",
+                 "text, dot (Graphviz), or work (the work as data). Default: text",
                  [&](const OptionValue& given) {
                    format = static_cast<GraphFormat>(given.one_of(kGraphFormatNames));
                  });

@@ -111,9 +111,7 @@ std::pair<std::uint32_t, std::uint32_t> OptionValue::size() const {
 
 std::size_t OptionValue::one_of(std::span<const std::string_view> names) const {
   const auto found = std::ranges::find(names, text);
-  if (found == names.end()) {
-    refuse(fmt::format("one of {}", fmt::join(names, ", ")));
-  }
+  if (found == names.end()) refuse(fmt::format("one of {}", fmt::join(names, ", ")));
   return static_cast<std::size_t>(found - names.begin());
 }
 

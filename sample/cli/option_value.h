@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,6 +42,15 @@ struct OptionValue {
   std::pair<std::uint32_t, std::uint32_t> size() const;
   // Returns the index of the value in a list of names.
   std::size_t one_of(std::span<const std::string_view> names) const;
+  // Returns the enumerator of the value, whose names are in order, or nothing for the name `all`.
+  template <class Choice>
+  std::optional<Choice> one_of_or(std::span<const std::string_view> names,
+                                  std::string_view all) const {
+    std::vector<std::string_view> allowed(names.begin(), names.end());
+    allowed.push_back(all);
+    const std::size_t which = one_of(allowed);
+    return which < names.size() ? std::optional(static_cast<Choice>(which)) : std::nullopt;
+  }
 };
 
 // Returns the shortest text that is parsed as the same float.

@@ -13,7 +13,7 @@
 
 #include "alcove/passes/occlusion.h"
 #include "evaluate/clock.h"
-#include "evaluate/motion_kind.h"
+#include "evaluate/motion_paths.h"
 #include "evaluate/recommendation.h"
 #include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"

@@ -3,43 +3,26 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "alcove/passes/setting_names.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/render_command.h"
 #include "evaluate/measured_trade.h"
+#include "evaluate/output_needs.h"
 #include "evaluate/situations.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/progress.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 
 std::string shown(const TradePoint& point) {
   return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.name, point.rmse,
                      point.time_ms, mib(point.bytes));
-}
-
-const TradePoint* chosen_of(const Trade& trade, const Options& options) {
-  return options.budget_ms ? least_error_within_ms(trade.points, *options.budget_ms)
-                           : fastest_within_rmse(trade.points, *options.tolerance);
-}
-
-// The message if no setting is within the budget or tolerance. It names the closest one.
-std::string no_choice_message(const Trade& trade, const Options& options) {
-  if (options.budget_ms) {
-    return fmt::format("no setting takes at most {:g} ms in this view; the fastest is {}",
-                       *options.budget_ms, shown(trade.points.front()));
-  }
-  const TradePoint& nearest = *std::ranges::min_element(trade.points, {}, &TradePoint::rmse);
-  return fmt::format(
-      "no setting has an error of at most {:g} in this view; the most accurate is {}",
-      *options.tolerance, shown(nearest));
 }
 
 // Prints the next faster and the next more accurate point of the Pareto front.
@@ -59,36 +42,19 @@ void print_neighbours(const Trade& trade, const TradePoint& chosen) {
   }
 }
 
-// Chooses among numbers of samples by times that are measured on the device.
-Done recommend_by_clock(const Options& options, const Session& session) {
-  auto measured = measure_trade(session, static_setup(options, session.camera),
-                                truth_options(options), options.clock);
-  if (!measured) {
-    return Failure(std::move(measured.error()));
-  }
-  const Trade trade = trade_of(std::move(measured->points));
-  const TradePoint* chosen = chosen_of(trade, options);
-  if (chosen == nullptr) {
-    return Failure(no_choice_message(trade, options));
-  }
-  std::cout << measured->note << shown(*chosen) << "\n";
-  print_neighbours(trade, *chosen);
-  const Shot shot{session.camera,     chosen->settings,    std::nullopt,
-                  options.view.width, options.view.height, options.view.frames};
-  std::cout << fmt::format("RMSE of visibility against ray-traced truth; {} at {}x{} on {}\n{}\n",
-                           measured->clock_title, options.view.width, options.view.height,
-                           session.gpu->device().properties().deviceName,
-                           shell_line(render_arguments(options, shot)));
-  return {};
-}
-
 SituationWeights weights_of(const Options& options) {
-  if (!options.situation) {
-    return kMixedWeights;
-  }
+  if (!options.situation) return kMixedWeights;
   SituationWeights weights{};
   weights[static_cast<std::size_t>(*options.situation)] = 1.0;
   return weights;
+}
+
+// The command line that renders the view with these settings.
+std::string render_line(const Options& options, const Session& session,
+                        const passes::OcclusionSettings& settings) {
+  return shell_line(
+      render_arguments(options, {session.camera, settings, std::nullopt, options.view.width,
+                                 options.view.height, options.view.frames}));
 }
 
 std::string samples_text(const passes::OcclusionSettings& settings) {
@@ -123,14 +89,12 @@ std::vector<Camera> other_views(const Session& session) {
 }
 
 // Prints the errors of the chosen settings in two other views, and whether the tolerance holds.
-Done check_other_views(const Options& options, const Session& session,
+void check_other_views(const Options& options, const Session& session,
                        const RecommendationGoal& goal, const Achievement& chosen) {
   for (const Camera& camera : other_views(session)) {
-    auto errors =
-        SituationErrors::create(session, static_setup(options, camera), truth_options(options));
     const auto rmse =
-        errors ? errors->measure(chosen.settings)
-               : tl::expected<std::array<double, 3>, std::string>(Failure(errors.error()));
+        SituationErrors::create(session, static_setup(options, camera), truth_options(options))
+            .and_then([&](SituationErrors errors) { return errors.measure(chosen.settings); });
     if (!rmse) {
       std::cout << "  view " << camera.name << ": not checked (" << rmse.error() << ")\n";
       continue;
@@ -145,13 +109,10 @@ Done check_other_views(const Options& options, const Session& session,
     }
     std::cout << "\n" << std::flush;
   }
-  return {};
 }
 
-Done write_settings(const Options& options, const passes::OcclusionSettings& settings) {
-  if (options.settings_out.empty()) {
-    return {};
-  }
+Result<void> write_settings(const Options& options, const passes::OcclusionSettings& settings) {
+  if (options.settings_out.empty()) return {};
   nlohmann::ordered_json json{{"settings", to_json(settings)}};
   json["settings"].erase("radius");  // it belongs to the scene
   return write_text(options.settings_out, json.dump(2) + "\n").map([&] {
@@ -161,29 +122,23 @@ Done write_settings(const Options& options, const passes::OcclusionSettings& set
 }
 
 // The message if nothing meets the goal.
-std::string unmet_message(const RecommendationGoal& goal, const Achievement& closest) {
-  const std::string shown =
-      fmt::format("{}: RMSE {:.4f} in {:.4f} ms", samples_text(closest.settings),
-                  goal.rmse(closest), goal.ms(closest));
+std::string unmet_message(const RecommendationGoal& goal, const std::string& closest) {
   return goal.budget_ms
              ? fmt::format("no setting takes at most {:g} ms in this view; the fastest is {}",
-                           *goal.budget_ms, shown)
+                           *goal.budget_ms, closest)
              : fmt::format(
-                   "no setting has an error of at most {:g} in this view; the most "
-                   "accurate is {}",
-                   *goal.tolerance, shown);
+                   "no setting has an error of at most {:g} in this view; the most accurate "
+                   "is {}",
+                   *goal.tolerance, closest);
 }
 
 // Measures all settings of measure_all(), and prints them and the best of them.
-Done compare_with_all(const passes::OcclusionSettings& base, const RecommendationGoal& goal,
-                      const RecommendationWorld& world, const Achievement& chosen) {
-  const auto all = measure_all(base, world);
-  if (!all) {
-    return Failure(all.error());
-  }
+Result<void> compare_with_all(const passes::OcclusionSettings& base, const RecommendationGoal& goal,
+                              const RecommendationWorld& world, const Achievement& chosen) {
+  ALCOVE_TRY(const auto all, measure_all(base, world));
   const Achievement* best = nullptr;
   std::cout << fmt::format("  all settings: {:47}RMSE       ms\n", "");
-  for (const Achievement& one : *all) {
+  for (const Achievement& one : all) {
     std::cout << fmt::format("    {:56} {:.4f} {:.4f}\n", samples_text(one.settings),
                              goal.rmse(one), goal.ms(one));
     best = best == nullptr || goal.prefers(one, *best) ? &one : best;
@@ -197,89 +152,83 @@ Done compare_with_all(const passes::OcclusionSettings& base, const Recommendatio
   return {};
 }
 
-Done recommend_by_model(const Options& options, const Session& session,
-                        const ModelledTimes& times) {
-  const RecommendationGoal goal{options.budget_ms, options.tolerance, weights_of(options)};
-  auto errors = SituationErrors::create(session, static_setup(options, session.camera),
-                                        truth_options(options));
-  if (!errors) {
-    return Failure(std::move(errors.error()));
-  }
+Result<void> recommend_by_model(const Options& options, const Session& session,
+                                const ModelledTimes& times, const RecommendationGoal& goal) {
+  ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(options, session.camera),
+                                                  truth_options(options)));
   constexpr double kExpected = 60;  // calls; their number depends on what they find
   double calls = 0;
   const Progress progress = print_progress("settings");
   const auto advance = [&] { progress(std::min(++calls / kExpected, 0.99)); };
-  const RecommendationWorld world{
-      [&](const passes::OcclusionSettings& settings) -> tl::expected<Achievement, std::string> {
-        advance();
-        const auto ms = times.measure(settings);
-        if (!ms) {
-          return Failure(ms.error());
-        }
-        const auto rmse = errors->measure(settings);
-        if (!rmse) {
-          return Failure(rmse.error());
-        }
-        return Achievement{settings, *rmse, *ms};
-      },
-      [&](const passes::OcclusionSettings& settings) {
-        advance();
-        return times.measure(settings);
-      }};
-  const auto found = recommend(session.settings, goal, world);
-  if (!found) {
-    return Failure(found.error());
-  }
-  if (auto valid = check_validation(*session.gpu); !valid) {
-    return valid;
-  }
-  const Achievement& chosen = found->chosen;
-  if (!goal.met(chosen)) {
-    return Failure(unmet_message(goal, chosen));
-  }
-  std::cout << fmt::format("{}: RMSE {:.4f} in {:.4f} ms\n", samples_text(chosen.settings),
-                           goal.rmse(chosen), goal.ms(chosen));
+  const RecommendationWorld measured = recommendation_world(errors, times);
+  const RecommendationWorld world{[&](const passes::OcclusionSettings& settings) {
+                                    advance();
+                                    return measured.measure(settings);
+                                  },
+                                  [&](const passes::OcclusionSettings& settings) {
+                                    advance();
+                                    return measured.time(settings);
+                                  }};
+  ALCOVE_TRY(const Recommendation found, recommend(session.settings, goal, world));
+  ALCOVE_TRY_VOID(check_validation(*session.gpu));
+  const Achievement& chosen = found.chosen;
+  const std::string text =
+      fmt::format("{}: RMSE {:.4f} in {:.4f} ms", samples_text(chosen.settings), goal.rmse(chosen),
+                  goal.ms(chosen));
+  if (!goal.met(chosen)) return Failure(unmet_message(goal, text));
+  std::cout << text << "\n";
   print_achievement(chosen);
-  for (const FeatureEffect& feature : found->features) {
+  for (const FeatureEffect& feature : found.features) {
     std::cout << "  " << feature.sentence() << "\n";
   }
+  ALCOVE_TRY(const auto needs, view_needs(session, errors, times, goal, chosen));
+  for (const std::string& need : needs) std::cout << "  " << need << "\n";
   std::cout << std::flush;
-  if (auto checked = check_other_views(options, session, goal, chosen); !checked) {
-    return checked;
-  }
-  if (options.exhaustive) {
-    if (auto compared = compare_with_all(session.settings, goal, world, chosen); !compared) {
-      return compared;
-    }
-  }
-  const Shot shot{session.camera,     chosen.settings,     std::nullopt,
-                  options.view.width, options.view.height, options.view.frames};
+  check_other_views(options, session, goal, chosen);
+  if (options.exhaustive) ALCOVE_TRY_VOID(compare_with_all(session.settings, goal, world, chosen));
   std::cout << fmt::format(
       "RMSE of visibility against ray-traced truth at {}x{}; modelled time at {}x{} on {}\n{}\n",
       options.view.width, options.view.height, options.target_width, options.target_height,
-      options.gpu->title, shell_line(render_arguments(options, shot)));
+      options.gpu->title, render_line(options, session, chosen.settings));
   return write_settings(options, chosen.settings);
+}
+
+// Chooses among numbers of samples by times that are measured on the device.
+Result<void> recommend_by_clock(const Options& options, const Session& session,
+                                const RecommendationGoal& goal) {
+  ALCOVE_TRY(MeasuredTrade measured, measure_trade(session, static_setup(options, session.camera),
+                                                   truth_options(options), options.clock));
+  const Trade trade = trade_of(std::move(measured.points));
+  const auto achievement = [](const TradePoint& point) {
+    return Achievement{point.settings,
+                       {point.rmse, point.rmse, point.rmse},
+                       {point.time_ms, point.time_ms, point.time_ms}};
+  };
+  const TradePoint& chosen = *std::ranges::min_element(
+      trade.points, [&](const Achievement& a, const Achievement& b) { return goal.prefers(a, b); },
+      achievement);
+  if (!goal.met(achievement(chosen))) return Failure(unmet_message(goal, shown(chosen)));
+  std::cout << measured.note << shown(chosen) << "\n";
+  print_neighbours(trade, chosen);
+  std::cout << fmt::format("RMSE of visibility against ray-traced truth; {} at {}x{} on {}\n{}\n",
+                           measured.clock_title, options.view.width, options.view.height,
+                           session.gpu->device().properties().deviceName,
+                           render_line(options, session, chosen.settings));
+  return {};
 }
 
 }  // namespace
 
-Done run_recommend(const Options& options) {
-  const auto session = open_session(options);
-  if (!session) {
-    return Failure(session.error());
-  }
-  if (options.clock.value_or(Clock::modelled) != Clock::modelled) {
-    return recommend_by_clock(options, *session);
-  }
+Result<void> run_recommend(const Options& options) {
+  ALCOVE_TRY(const Session session, open_session(options));
+  const RecommendationGoal goal{options.budget_ms, options.tolerance, weights_of(options)};
+  if (options.clock.value_or(Clock::modelled) != Clock::modelled)
+    return recommend_by_clock(options, session, goal);
   const auto times = modelled_times(options);
-  if (times) {
-    return recommend_by_model(options, *session, *times);
-  }
-  if (options.clock) {
-    return Failure(times.error());
-  }
+  if (times) return recommend_by_model(options, session, *times, goal);
+  if (options.clock) return Failure(times.error());
   std::cerr << "note: " << times.error() << " Times are measured on the device instead.\n";
-  return recommend_by_clock(options, *session);
+  return recommend_by_clock(options, session, goal);
 }
 
 }  // namespace alcove::sample

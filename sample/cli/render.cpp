@@ -3,28 +3,21 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/report.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
-tl::expected<void, std::string> run_render(const Options& options) {
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
-  const auto rendering = render(options);
-  if (!rendering) {
-    return tl::unexpected(rendering.error());
-  }
-  return write_images(*rendering, options.out)
+Result<void> run_render(const Options& options) {
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY(const auto rendering, render(options));
+  return write_images(rendering, options.out)
       .and_then([&] {
         return write_text(options.out / "report.json",
-                          report_of(*rendering, options).dump(2) + "\n");
+                          report_of(rendering, options).dump(2) + "\n");
       })
       .map([&] {
-        if (!shows_surfaces(*rendering)) {
-          std::cerr << "note: The view shows nothing but sky.\n";
-        }
-        std::cout << time_table(*rendering) << "Images and report.json are in "
+        if (!shows_surfaces(rendering)) std::cerr << "note: The view shows nothing but sky.\n";
+        std::cout << time_table(rendering) << "Images and report.json are in "
                   << options.out.string() << "\n";
       });
 }

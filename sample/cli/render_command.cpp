@@ -31,9 +31,7 @@ std::string degrees_text(float radians) {
   std::string text;
   for (int digits = 3; digits <= 9; ++digits) {
     text = fmt::format("{:.{}g}", glm::degrees(radians), digits);
-    if (glm::radians(std::strtof(text.c_str(), nullptr)) == radians) {
-      break;
-    }
+    if (glm::radians(std::strtof(text.c_str(), nullptr)) == radians) break;
   }
   return text;
 }
@@ -88,24 +86,16 @@ void append_settings(const OcclusionSettings& settings, std::vector<std::string>
   }
   to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
                        text_of(settings.radius)});
-  for (const std::string& change : fewest) {
-    to.insert(to.end(), {"--set", change});
-  }
+  for (const std::string& change : fewest) to.insert(to.end(), {"--set", change});
 }
 
 }  // namespace
 
 std::vector<std::string> render_arguments(const Options& options, const Shot& shot) {
   std::vector<std::string> arguments{"alcove", "render"};
-  if (!options.scene.empty()) {
-    arguments.push_back(options.scene);
-  }
-  if (options.materials.cut_blends) {
-    arguments.emplace_back("--cut-blends");
-  }
-  if (options.materials.both_sides) {
-    arguments.emplace_back("--both-sides");
-  }
+  if (!options.scene.empty()) arguments.push_back(options.scene);
+  if (options.materials.cut_blends) arguments.emplace_back("--cut-blends");
+  if (options.materials.both_sides) arguments.emplace_back("--both-sides");
   if (!options.view.camera.empty()) {
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
   }
@@ -116,16 +106,12 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
   }
-  if (shot.roughness) {
-    arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
-  }
+  if (shot.roughness) arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
   if (!options.environment.empty()) {
     arguments.insert(arguments.end(), {"--environment", options.environment.string()});
   }
   const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
-  if (frames > 1) {
-    arguments.insert(arguments.end(), {"--frames", text_of(frames)});
-  }
+  if (frames > 1) arguments.insert(arguments.end(), {"--frames", text_of(frames)});
   if (options.device >= 0) {
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   }
@@ -143,9 +129,7 @@ std::string shell_line(const std::vector<std::string>& arguments) {
       continue;
     }
     line += '\'';
-    for (const char c : argument) {
-      line += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
+    for (const char c : argument) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
     line += '\'';
   }
   return line;

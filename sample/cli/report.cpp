@@ -41,9 +41,7 @@ Json camera_json(const Camera& camera) {
 
 Json costs_json(const Costs& costs) {
   Json json;
-  for (const PassTime& pass : costs.passes) {
-    json["timings_ms"][pass.pass] = pass.milliseconds;
-  }
+  for (const PassTime& pass : costs.passes) json["timings_ms"][pass.pass] = pass.milliseconds;
   json["timings_ms"]["total"] = costs.occlusion_ms;
   json["cpu_ms"] = costs.cpu_ms;
   return json;
@@ -69,9 +67,7 @@ Json report_of(const Rendering& rendering, const Options& options) {
                       {"history_bytes", rendering.memory.history},
                       {"allocated_bytes", rendering.memory.allocated}};
   // Includes the main memory that the driver uses.
-  if (const auto peak = peak_memory()) {
-    report["memory"]["peak_process_bytes"] = *peak;
-  }
+  if (const auto peak = peak_memory()) report["memory"]["peak_process_bytes"] = *peak;
   report["scene_triangles"] = triangle_count(rendering.scene);
   report["load_seconds"] = rendering.load_seconds;
   return report;
@@ -82,9 +78,7 @@ std::string time_table(const Rendering& rendering) {
   const auto row = [&](const std::string& name, double milliseconds) {
     text += fmt::format("  {:34}{:9.3f} ms\n", name, milliseconds);
   };
-  for (const PassTime& pass : rendering.costs.passes) {
-    row(pass.pass, pass.milliseconds);
-  }
+  for (const PassTime& pass : rendering.costs.passes) row(pass.pass, pass.milliseconds);
   row("occlusion, by GPU timestamps", rendering.costs.occlusion_ms);
   row("occlusion, processor time", rendering.costs.cpu_ms);
   row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);

@@ -15,9 +15,7 @@ SceneViewRequest scene_view_request(const Options& options) {
   request.title = "alcove: " + (options.scene.empty() ? "builtin" : options.scene);
   request.orbit = options.view.orbit;
   request.normals = options.occlusion.normals;
-  if (!options.occlusion.roughness.empty()) {
-    request.roughness = options.occlusion.roughness.front();
-  }
+  if (!options.occlusion.roughness.empty()) request.roughness = options.occlusion.roughness.front();
   request.environment = options.environment;
   request.screenshots = options.out;
   request.open_session = [options](const std::vector<const char*>& surface_extensions) {
@@ -37,9 +35,7 @@ SceneViewRequest scene_view_request(const Options& options) {
     other.view.far_plane.reset();
     other.occlusion.radius.reset();
     auto session = load_session(other);
-    if (session) {
-      *shown = std::move(other);
-    }
+    if (session) *shown = std::move(other);
     return session;
   };
   request.command = [shown](const Shot& shot) {

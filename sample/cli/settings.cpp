@@ -11,6 +11,7 @@
 
 #include "alcove/passes/setting_table.h"
 #include "cli/option_value.h"
+#include "gpu_cost/presets.h"
 #include "support/printable.h"
 #include "support/regular_file.h"
 
@@ -30,9 +31,7 @@ std::string parse_number(const std::string& text, const SettingInfo& info, const
   Number read = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  if (!whole || !info.range.contains(read)) {
-    return kind + info.range.text();
-  }
+  if (!whole || !info.range.contains(read)) return kind + info.range.text();
   value = read;
   return "";
 }
@@ -49,9 +48,7 @@ template <typename Choice>
 std::string parse(const std::string& text, const SettingInfo& /*info*/, Choice& value) {
   const auto& names = passes::kNames<Choice>;
   const auto found = std::ranges::find(names, text);
-  if (found == names.end()) {
-    return passes::names_text<Choice>();
-  }
+  if (found == names.end()) return passes::names_text<Choice>();
   value = static_cast<Choice>(found - names.begin());
   return "";
 }
@@ -76,9 +73,7 @@ std::string value_text(Choice value) {
 template <typename Settings, typename Visit>
 void for_each_option(Settings& settings, const Visit& visit) {
   passes::for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
-    if (info.group != SettingGroup::surface) {
-      visit(info, field);
-    }
+    if (info.group != SettingGroup::surface) visit(info, field);
   });
 }
 
@@ -95,9 +90,7 @@ std::optional<std::string> set(OcclusionSettings& settings, const std::string& n
       wanted = parse(value, info, field);
     }
   });
-  if (!known) {
-    return "one of " + names;
-  }
+  if (!known) return "one of " + names;
   return wanted.empty() ? std::nullopt : std::optional(wanted);
 }
 
@@ -125,8 +118,8 @@ std::string settings_help() {
   return text.str();
 }
 
-tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionOptions& options,
-                                                                float default_radius) {
+Result<OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
+                                             float default_radius) {
   OcclusionSettings settings =
       passes::quality_settings(options.quality, options.radius.value_or(default_radius));
   for (const auto* list : {&options.file, &options.set}) {
@@ -142,13 +135,10 @@ tl::expected<OcclusionSettings, std::string> occlusion_settings(const OcclusionO
   return settings;
 }
 
-tl::expected<std::vector<std::pair<std::string, std::string>>, std::string> read_settings(
-    const std::string& file) {
+Result<std::vector<std::pair<std::string, std::string>>> read_settings(const std::string& file) {
   constexpr std::size_t kMost = 64 << 10;  // bytes
   const auto opened = open_regular_file(file);
-  if (!opened) {
-    return Failure("cannot read " + printable(file) + ": " + opened.error());
-  }
+  if (!opened) return Failure("cannot read " + printable(file) + ": " + opened.error());
   std::string text(kMost + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), opened->get()));
   const auto json = text.size() > kMost ? nlohmann::ordered_json()
@@ -169,6 +159,10 @@ tl::expected<std::vector<std::pair<std::string, std::string>>, std::string> read
     found.emplace_back(name, shown_value);
   }
   return found;
+}
+
+std::vector<passes::Quality> chosen_presets(const OcclusionOptions& options) {
+  return options.quality_given ? std::vector{options.quality} : presets();
 }
 
 }  // namespace alcove::sample

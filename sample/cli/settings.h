@@ -2,19 +2,19 @@
 
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
 #include "cli/options.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
 // Returns the occlusion settings of the options: a quality, a radius in scene units (by default
 // `default_radius`), and the changes by --set. Errors name the setting and its allowed values.
-[[nodiscard]] tl::expected<passes::OcclusionSettings, std::string> occlusion_settings(
-    const OcclusionOptions& options, float default_radius);
+[[nodiscard]] Result<passes::OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
+                                                                   float default_radius);
 
 // Checks NAME and VALUE of an option --set. Returns the allowed names if the name is unknown, the
 // allowed values if the value is out of range, and nothing if both are valid. Settings that depend
@@ -28,7 +28,10 @@ namespace alcove::sample {
 // Reads the names and values of settings from a file that `alcove recommend --out` wrote: a JSON
 // object `settings` with a value for each name of --set. Errors: the file cannot be read, it is not
 // such an object, or a name or value is not allowed.
-[[nodiscard]] tl::expected<std::vector<std::pair<std::string, std::string>>, std::string>
-read_settings(const std::string& file);
+[[nodiscard]] Result<std::vector<std::pair<std::string, std::string>>> read_settings(
+    const std::string& file);
+
+// The preset of --quality, or all presets for frames in real time if it was not given.
+[[nodiscard]] std::vector<passes::Quality> chosen_presets(const OcclusionOptions& options);
 
 }  // namespace alcove::sample

@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "evaluate/errors.h"
 #include "evaluate/weave.h"
 #include "gpu_test.h"
-#include "reference/ray_scene.h"
-#include "reference/surface_points.h"
-#include "reference/truth.h"
 #include "scene/builtin_scene.h"
 #include "scene/shapes.h"
+#include "traced_truth.h"
 
 namespace alcove::sample {
 namespace {
@@ -71,132 +70,97 @@ Scene fence_scene() {
   return scene;
 }
 
-// Ray-traced visibility of the surfaces that images of a frame show, and the mask of these
-// surfaces.
-struct Truth {
-  Image<float> visibility;
-  Mask surfaces;
-};
-
-Truth truth_of(const Scene& scene, const Camera& camera, float radius, const FrameImages& images) {
-  const Image<float> depth = linear_depth(camera, images.depth_ndc);
-  Truth truth{{}, Mask(depth.width, depth.height)};
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-    truth.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
-  }
-  const auto rays = RayScene::create(scene);
-  EXPECT_TRUE(rays);
-  truth.visibility = occlusion_truth(*rays, surface_points(*rays, camera, images.normal_ws, depth),
-                                     {.radius = radius, .spp = 64}, nullptr)
-                         .visibility;
-  return truth;
-}
-
-TEST(StepLadder, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
-  for (const Scene& scene : {builtin_scene(), fence_scene()}) {
-    SCOPED_TRACE(scene.name);
-    const StaticSetup setup{scene.cameras.front(), 240, 135, 1, NormalSource::geometric};
-    OcclusionSettings base = passes::quality_settings(Quality::medium, scene.suggested_radius);
-    base.tile_size = 1;
-    base.slices = 8;
-    base.steps = 16;
-    base.history_frames = 0;
-    base.advanced.filter_radius = 0;
-    const auto gpu = open_validated();
-    ASSERT_TRUE(gpu);
-    auto runner = VariantRunner::create(*gpu, scene, setup, base);
-    ASSERT_TRUE(runner) << runner.error();
-    const Truth truth = truth_of(scene, setup.camera, base.radius, runner->base());
-    const double sixteen =
-        compare_images(runner->base().visibility, truth.visibility, truth.surfaces).rmse;
-    Variant more{"work", "64 steps", base};
-    more.settings.steps = 64;
-    const auto other = open_validated();
-    ASSERT_TRUE(other);
-    const auto result = runner->run(*other, more);
-    ASSERT_TRUE(result) << result.error();
-    EXPECT_GT(sixteen, 0.01);
-    // A change of 1 % is within the noise of one frame at this size.
-    EXPECT_LE(compare_images(result->visibility, truth.visibility, truth.surfaces).rmse,
-              1.01 * sixteen);
-  }
-}
-
-class AblationTest : public testing::Test {
+class AblationTest : public GpuTest {
  protected:
-  Truth truth_of(const FrameImages& images) const {
-    return alcove::sample::truth_of(scene_, setup_.camera, base_.radius, images);
+  static FrameImages draw(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                          const OcclusionSettings& settings) {
+    auto images = draw_static(gpu, scene, setup, settings);
+    EXPECT_TRUE(images) << images.error();
+    return std::move(*images);
+  }
+  FrameImages draw(const OcclusionSettings& settings) {
+    return draw(gpu(), scene_, setup_, settings);
+  }
+  TracedTruth truth_of(const FrameImages& images) const {
+    return trace_truth(scene_, setup_.camera, base_.radius, images);
   }
 
   const Scene scene_ = builtin_scene();
-  const StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::geometric};
+  StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::geometric};
   const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
 };
 
-TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
-  const auto gpu = open_validated();
-  ASSERT_TRUE(gpu);
-  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
-  ASSERT_TRUE(ablation) << ablation.error();
-  const auto [truth, surfaces] = truth_of(ablation->base());
-  const double connected = compare_images(ablation->base().visibility, truth, surfaces).rmse;
-  EXPECT_GT(connected, 0.01);
-  for (const Variant& variant : variants_of(base_)) {
-    if (variant.part != "estimator") {
-      continue;
-    }
-    SCOPED_TRACE(variant.name);
-    const auto other = open_validated();
-    ASSERT_TRUE(other);
-    const auto result = ablation->run(*other, variant);
-    ASSERT_TRUE(result) << result.error();
-    EXPECT_GT(compare_images(result->visibility, truth, surfaces).rmse, 1.02 * connected);
-    EXPECT_GT(result->cost.processor, 0.0);
-    EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
+TEST_F(AblationTest, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
+  for (const Scene& scene : {builtin_scene(), fence_scene()}) {
+    SCOPED_TRACE(scene.name);
+    const StaticSetup setup{scene.cameras.front(), 240, 135, 1, NormalSource::geometric};
+    OcclusionSettings settings = passes::quality_settings(Quality::medium, scene.suggested_radius);
+    settings.tile_size = 1;
+    settings.slices = 8;
+    settings.steps = 16;
+    settings.history_frames = 0;
+    settings.advanced.filter_radius = 0;
+    const FrameImages sixteen = draw(gpu(), scene, setup, settings);
+    const TracedTruth truth = trace_truth(scene, setup.camera, settings.radius, sixteen);
+    settings.steps = 64;
+    EXPECT_GT(truth.rmse(sixteen.visibility), 0.01);
+    // A change of 1 % is within the noise of one frame at this size.
+    EXPECT_LE(truth.rmse(draw(gpu(), scene, setup, settings).visibility),
+              1.01 * truth.rmse(sixteen.visibility));
   }
+}
+
+TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
+  std::vector<Variant> estimators = variants_of(base_);
+  std::erase_if(estimators, [](const Variant& v) { return v.part != "estimator"; });
+  ASSERT_GE(estimators.size(), 2u);
+  Session session{scene_, setup_.camera, base_};
+  session.device.validation = true;
+  auto gpu = open_gpu(session.device);
+  ASSERT_TRUE(gpu) << gpu.error();
+  session.gpu = std::move(*gpu);
+  const auto report = run_variants(session, setup_, {64, 1, false}, estimators, "estimators", 3);
+  ASSERT_TRUE(report) << report.error();
+  const VariantErrors& connected = report->rows.front();
+  EXPECT_GT(connected.scene.rmse, 0.01);
+  EXPECT_GT(report->base_times.processor_ms, 0.0);
+  for (std::size_t i = 1; i < report->rows.size(); ++i) {
+    const VariantErrors& other = report->rows[i];
+    EXPECT_GT(other.scene.rmse, 1.02 * connected.scene.rmse) << other.variant.name;
+    EXPECT_GT(other.cost.processor, 0.0) << other.variant.name;
+    EXPECT_EQ(other.cost.bytes, connected.cost.bytes) << other.variant.name;
+  }
+  Variant without_history{"history", "none", base_};
+  without_history.settings.history_frames = 0;
+  const auto less = run_variants(session, setup_, {64, 1, false}, {without_history}, "history", 0);
+  ASSERT_TRUE(less) << less.error();
+  EXPECT_LT(less->rows[1].cost.bytes, less->rows[0].cost.bytes / 2);
 }
 
 // The noise of few traces per pixel must not form a regular pattern. The limit is an eighth of the
 // weave that a lattice of directions over the whole image has here, .019.
 TEST_F(AblationTest, FirstFramesOfAHistoryHaveNoWeave) {
-  const auto gpu = open_validated();
-  ASSERT_TRUE(gpu);
-  StaticSetup setup = setup_;
-  setup.width = 480;
-  setup.height = 270;
-  setup.frames = 8;
-  auto ablation = VariantRunner::create(*gpu, scene_, setup, base_);
-  ASSERT_TRUE(ablation) << ablation.error();
-  const auto [truth, surfaces] = truth_of(ablation->base());
-  const Weave weave = weave_of(ablation->base().visibility, truth, surfaces);
+  setup_.width = 480;
+  setup_.height = 270;
+  setup_.frames = 8;
+  const FrameImages images = draw(base_);
+  const TracedTruth truth = truth_of(images);
+  const Weave weave = weave_of(images.visibility, truth.visibility, truth.surfaces);
   EXPECT_GT(weave.windows, 30u);
   EXPECT_LT(weave.rms(), 0.0024);
 }
 
+// Back faces may increase the error by 2 % in this scene; the second layer must reduce it by 10 %.
 TEST_F(AblationTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesTheError) {
-  const auto gpu = open_validated();
-  ASSERT_TRUE(gpu);
-  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
-  ASSERT_TRUE(ablation) << ablation.error();
-  const Truth truth = truth_of(ablation->base());
-  const auto error_of = [&](const Image<float>& visibility) {
-    return compare_images(visibility, truth.visibility, truth.surfaces).rmse;
-  };
-  const double base = error_of(ablation->base().visibility);
-  Variant back_faces{"occluders", "back faces", base_};
-  back_faces.settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
-  Variant second_layer{"occluders", "second layer", base_};
-  second_layer.settings.depth_layers = 2;
-  // Back faces may increase the error by 2 % in this scene; the second layer must reduce it by 10
-  // %.
-  for (const auto& [variant, gain] : {std::pair(back_faces, 0.98), {second_layer, 1.1}}) {
-    SCOPED_TRACE(variant.name);
-    const auto other = open_validated();
-    ASSERT_TRUE(other);
-    const auto result = ablation->run(*other, variant);
-    ASSERT_TRUE(result) << result.error();
-    EXPECT_LT(gain * error_of(result->visibility), base);
-  }
+  const FrameImages images = draw(base_);
+  const TracedTruth truth = truth_of(images);
+  OcclusionSettings back_faces = base_;
+  back_faces.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  OcclusionSettings second_layer = base_;
+  second_layer.depth_layers = 2;
+  const double base = truth.rmse(images.visibility);
+  EXPECT_LT(0.98 * truth.rmse(draw(back_faces).visibility), base);
+  EXPECT_LT(1.1 * truth.rmse(draw(second_layer).visibility), base);
 }
 
 // More steps or slices may raise the error by at most the factor kRise, relative to the smallest
@@ -205,19 +169,15 @@ TEST_F(AblationTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesT
 // table for any view; in larger images the error rises by 3 to 8 % up to 64 steps.
 TEST_F(AblationTest, MoreStepsAndSlicesDoNotRaiseTheErrorByMoreThanTwoPercent) {
   constexpr double kRise = 1.02;
-  const auto gpu = open_validated();
-  ASSERT_TRUE(gpu);
-  StaticSetup setup = setup_;
-  setup.frames = 4;
-  std::optional<Truth> truth;
+  setup_.frames = 4;
+  std::optional<TracedTruth> truth;
   const auto error_of = [&](std::uint32_t steps, std::uint32_t slices) {
     OcclusionSettings settings = base_;
     settings.steps = steps;
     settings.slices = slices;
-    const auto images = draw_static(*gpu, scene_, setup, settings);
-    EXPECT_TRUE(images);
-    if (!truth) truth = truth_of(*images);
-    return compare_images(images->visibility, truth->visibility, truth->surfaces).rmse;
+    const FrameImages images = draw(settings);
+    if (!truth) truth = truth_of(images);
+    return truth->rmse(images.visibility);
   };
   const auto check = [&](const std::vector<double>& errors) {
     double least = errors.front();
@@ -231,36 +191,28 @@ TEST_F(AblationTest, MoreStepsAndSlicesDoNotRaiseTheErrorByMoreThanTwoPercent) {
 }
 
 TEST_F(AblationTest, SnappingToTexelCentresKeepsUnoccludedSurfacesUnoccluded) {
-  const auto gpu = open_validated();
-  const auto other = open_validated();
-  ASSERT_TRUE(gpu && other);
-  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
-  ASSERT_TRUE(ablation) << ablation.error();
-  auto [truth, open_surfaces] = truth_of(ablation->base());
+  const FrameImages images = draw(base_);
+  const auto [truth, surfaces] = truth_of(images);
+  Mask open = surfaces;
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
-    open_surfaces.pixels[i] = open_surfaces.pixels[i] != 0 && truth.pixels[i] >= 1.0f ? 1 : 0;
+    open.pixels[i] = surfaces.pixels[i] != 0 && truth.pixels[i] >= 1.0f ? 1 : 0;
   }
-  Variant variant{"snap_to_texels", "none", base_};
-  variant.settings.advanced.snap_to_texels = false;
-  const auto result = ablation->run(*other, variant);
-  ASSERT_TRUE(result) << result.error();
-  const double with = compare_images(ablation->base().visibility, truth, open_surfaces).bias;
-  const double without = compare_images(result->visibility, truth, open_surfaces).bias;
+  OcclusionSettings settings = base_;
+  settings.advanced.snap_to_texels = false;
+  const double with = compare_images(images.visibility, truth, open).bias;
+  const double without = compare_images(draw(settings).visibility, truth, open).bias;
   EXPECT_GT(with, -0.01);
   EXPECT_LT(without, 2.0 * with - 0.003);
-  EXPECT_EQ(result->cost.bytes, ablation->base_bytes());
 }
 
 // One renderer alternates between settings with and without hidden depths.
 TEST_F(AblationTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThem) {
-  const auto gpu = open_validated();
-  ASSERT_TRUE(gpu);
   OcclusionSettings backs = base_;
   backs.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   OcclusionSettings layers = base_;
   layers.depth_layers = 2;
   const auto renderer =
-      FrameRenderer::create(*gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
+      FrameRenderer::create(gpu(), scene_, {setup_.width, setup_.height}, setup_.normals);
   ASSERT_TRUE(renderer) << renderer.error();
   const CameraMatrices m = camera_matrices(setup_.camera, setup_.width, setup_.height);
   FrameRequest request;
@@ -281,36 +233,18 @@ TEST_F(AblationTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThe
   EXPECT_NE(images[1].pixels, images[3].pixels);
 }
 
-TEST_F(AblationTest, DisablingHistoryReducesMemoryToLessThanHalf) {
-  const auto gpu = open_validated();
-  const auto other = open_validated();
-  ASSERT_TRUE(gpu && other);
-  auto ablation = VariantRunner::create(*gpu, scene_, setup_, base_);
-  ASSERT_TRUE(ablation) << ablation.error();
-  Variant variant{"history", "none", base_};
-  variant.settings.history_frames = 0;
-  const auto result = ablation->run(*other, variant);
-  ASSERT_TRUE(result) << result.error();
-  EXPECT_LT(result->cost.bytes, ablation->base_bytes() / 2);
-}
-
 TEST_F(AblationTest, PairsOfViewsThatShouldLookEqualGiveNearlyEqualImages) {
-  const auto gpu = open_validated();
-  ASSERT_TRUE(gpu);
-  for (const InvariancePair& pairs : invariance_pairs_of(setup_.camera, setup_.height)) {
-    if (pairs.scale != 1 || pairs.further > 0.0f) {
-      continue;
-    }
-    SCOPED_TRACE(pairs.name);
-    StaticSetup first = setup_;
-    first.camera = pairs.first;
+  for (const InvariancePair& pair : invariance_pairs_of(setup_.camera, setup_.height)) {
+    if (pair.scale != 1 || pair.further > 0.0f) continue;
     StaticSetup second = setup_;
-    second.camera = pairs.second;
-    const auto images = draw_static(*gpu, scene_, first, base_);
-    const auto others = draw_static(*gpu, scene_, second, base_);
-    ASSERT_TRUE(images && others);
+    setup_.camera = pair.first;
+    second.camera = pair.second;
     const Mask all(setup_.width, setup_.height, 1);
-    EXPECT_LT(compare_images(images->visibility, others->visibility, all).rmse, 0.004);
+    EXPECT_LT(
+        compare_images(draw(base_).visibility, draw(gpu(), scene_, second, base_).visibility, all)
+            .rmse,
+        0.004)
+        << pair.name;
   }
 }
 

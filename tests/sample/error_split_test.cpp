@@ -4,14 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "gpu_test.h"
-#include "reference/ray_scene.h"
-#include "reference/surface_points.h"
-#include "reference/truth.h"
 #include "scene/builtin_scene.h"
 #include "scene/shapes.h"
+#include "traced_truth.h"
 
 namespace alcove::sample {
 namespace {
@@ -24,22 +21,12 @@ class ErrorSplitTest : public GpuTest {
   ErrorSplit split(const Scene& scene, const OcclusionSettings& settings, std::uint32_t frames) {
     const StaticSetup setup{scene.cameras.front(), 160, 90, frames, NormalSource::geometric};
     const auto images = draw_static(gpu(), scene, setup, settings);
-    const auto rays = RayScene::create(scene);
-    EXPECT_TRUE(images && rays);
-    const Image<float> depth = linear_depth(setup.camera, images->depth_ndc);
-    Mask surfaces(depth.width, depth.height);
-    std::ranges::transform(depth.pixels, surfaces.pixels.begin(),
-                           [](float z) { return std::isfinite(z) ? 1 : 0; });
-    const Image<float> truth =
-        occlusion_truth(*rays, surface_points(*rays, setup.camera, images->normal_ws, depth),
-                        {.radius = settings.radius, .spp = 64}, nullptr)
-            .visibility;
-    const auto found = split_error(gpu(), scene, setup, settings, truth, surfaces);
+    EXPECT_TRUE(images) << images.error();
+    const TracedTruth truth = trace_truth(scene, setup.camera, settings.radius, *images);
+    const auto found = split_error(gpu(), scene, setup, settings, truth.visibility, truth.surfaces);
     EXPECT_TRUE(found) << found.error();
     double sum = 0;
-    for (const ErrorCause& cause : found->causes) {
-      sum += std::max(cause.share, 0.0);
-    }
+    for (const ErrorCause& cause : found->causes) sum += std::max(cause.share, 0.0);
     EXPECT_EQ(found->causes.size(), 6u);
     EXPECT_NEAR(sum, 1.0, 1e-6);
     return *found;

@@ -139,6 +139,11 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
   EXPECT_THAT(search_iterations(settings, {loop(1, 48), loop(2, 48)}), ElementsAre(2, 2))
       << "both depth layers share the loads of back faces";
+  settings.slices = 1;
+  settings.steps = 24;
+  EXPECT_THAT(search_iterations(settings, {loop(1, 28), loop(2, 8), loop(2, 8)}),
+              ElementsAre(2, 5, 5))
+      << "both layers share the loads of the steps outside of the loops, but not of those inside";
 }
 
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
@@ -396,9 +401,7 @@ std::ostream& operator<<(std::ostream& out, const BudgetCase& budgeted) {
 std::vector<BudgetCase> all_budgeted() {
   std::vector<BudgetCase> all;
   for (const GpuPart& part : kGpuParts) {
-    for (const LabelledSettings& settings : budgeted_settings()) {
-      all.push_back({&part, settings});
-    }
+    for (const LabelledSettings& settings : budgeted_settings()) all.push_back({&part, settings});
   }
   return all;
 }
@@ -414,17 +417,13 @@ class ShippedPresets : public testing::TestWithParam<BudgetCase> {};
 
 TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   const auto device = create_null_device(GetParam().part->family);
-  if (!device) {
-    GTEST_SKIP() << device.error();
-  }
+  if (!device) GTEST_SKIP() << device.error();
   std::ifstream file(ALCOVE_GPU_BUDGET);
   const std::string budget{std::istreambuf_iterator<char>(file), {}};
   const auto cost = cost_of(*GetParam().part, *device, GetParam().settings);
   ASSERT_TRUE(cost) << cost.error();
   const auto complaints = over_budget(budget, compiler_name(*device), {*cost});
-  if (!complaints) {
-    GTEST_SKIP() << complaints.error();
-  }
+  if (!complaints) GTEST_SKIP() << complaints.error();
   for (const std::string& complaint : *complaints) {
     ADD_FAILURE() << complaint << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;
   }
@@ -434,14 +433,10 @@ TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
 tl::expected<double, std::string> instructions_of(const GpuPart& part, const NullDevice& device,
                                                   const CostInputs& inputs) {
   const auto frames = modelled_frames(part, device, inputs);
-  if (!frames) {
-    return tl::unexpected(frames.error());
-  }
+  if (!frames) return tl::unexpected(frames.error());
   const auto moving = std::ranges::find(*frames, FrameState::moving, &ModelledFrame::state);
   double sum = 0.0;
-  for (const ModelledPass& pass : moving->passes) {
-    sum += pass.instructions_per_pixel;
-  }
+  for (const ModelledPass& pass : moving->passes) sum += pass.instructions_per_pixel;
   return sum;
 }
 
@@ -449,9 +444,7 @@ tl::expected<double, std::string> instructions_of(const GpuPart& part, const Nul
 TEST(GpuCost, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
   const GpuPart& part = kGpuParts.front();
   const auto device = create_null_device(part.family);
-  if (!device) {
-    GTEST_SKIP() << device.error();
-  }
+  if (!device) GTEST_SKIP() << device.error();
   for (const passes::Quality quality : {passes::Quality::low, passes::Quality::medium}) {
     CostInputs inputs;
     inputs.settings = passes::quality_settings(quality, 0.5f);
@@ -478,9 +471,7 @@ TEST(NormalEncodings, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPi
       {"unsigned octahedral", NormalEncoding::unsigned_octahedral, 23.0}};
   for (const GpuPart& part : kGpuParts) {
     const auto device = create_null_device(part.family);
-    if (!device) {
-      GTEST_SKIP() << device.error();
-    }
+    if (!device) GTEST_SKIP() << device.error();
     for (const bool bent_normal : {false, true}) {
       CostInputs inputs;
       inputs.settings = passes::quality_settings(passes::Quality::medium, 0.5f);

@@ -99,9 +99,7 @@ TEST(MotionErrors, MovingSurfaceIsReprojectedFromItsPreviousPosition) {
   const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
   RenderedFrame now = before;
   // The wall moved to the right by a unit, and its visibility with it.
-  for (float& visibility : now.visibility.pixels) {
-    visibility -= 0.03f;
-  }
+  for (float& visibility : now.visibility.pixels) visibility -= 0.03f;
   const auto wall_before = [](const glm::vec3& position) { return position - glm::vec3(1, 0, 0); };
   const auto change = [&](const PositionBefore& position_before) {
     const Reprojection reprojection = reproject(now, before, position_before);

@@ -58,9 +58,7 @@ Achievement best_of_all(const RecommendationGoal& goal, World world) {
       OcclusionSettings settings = variant.settings;
       settings.depth_layers = layers;
       const Achievement found = functions.measure(settings).value();
-      if (!best || goal.prefers(found, *best)) {
-        best = found;
-      }
+      if (!best || goal.prefers(found, *best)) best = found;
     }
   }
   return *best;
@@ -131,6 +129,23 @@ TEST(Recommendation, EachFeatureHasASentenceAboutItsErrorAndTime) {
   ASSERT_NE(horizons, found->features.end());
   EXPECT_THAT(horizons->sentence(), testing::HasSubstr("60.0 % more error"));
   EXPECT_THAT(horizons->sentence(), testing::HasSubstr("not needed here"));
+  // Thickness changes nothing in this world, so it is not chosen.
+  const auto thickness =
+      std::ranges::find(found->features, "a thickness of 0.05", &FeatureEffect::name);
+  ASSERT_NE(thickness, found->features.end());
+  EXPECT_EQ(
+      thickness->sentence(),
+      "a thickness of 0.05: no difference in error for no difference in time; not needed here");
+  EXPECT_NE(found->chosen.settings.thickness, 0.05f);
+}
+
+TEST(Recommendation, FeatureThatGainsLessThanOnePercentIsNotUsed) {
+  for (const auto& [gain, layers] : {std::pair(0.008, 1u), {0.03, 2u}}) {
+    World world{gain};
+    const auto found = recommend({}, within_ms(1000), world.functions());
+    ASSERT_TRUE(found) << found.error();
+    EXPECT_EQ(found->chosen.settings.depth_layers, layers) << gain;
+  }
 }
 
 TEST(Recommendation, FeatureThatFailsIsNamedAndTheOthersAreStillTried) {
@@ -138,9 +153,7 @@ TEST(Recommendation, FeatureThatFailsIsNamedAndTheOthersAreStillTried) {
   RecommendationWorld functions = world.functions();
   const auto measure = functions.measure;
   functions.measure = [&](const OcclusionSettings& s) -> tl::expected<Achievement, std::string> {
-    if (passes::needs_back_depth(s)) {
-      return tl::unexpected<std::string>("no back faces");
-    }
+    if (passes::needs_back_depth(s)) return tl::unexpected<std::string>("no back faces");
     return measure(s);
   };
   const auto found = recommend({}, within_ms(4), functions);

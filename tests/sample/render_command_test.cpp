@@ -18,9 +18,7 @@ const Options kDefaults;
 tl::expected<Options, Stop> parse(const std::vector<std::string>& arguments) {
   std::vector<const char*> texts;
   texts.reserve(arguments.size());
-  for (const std::string& argument : arguments) {
-    texts.push_back(argument.c_str());
-  }
+  for (const std::string& argument : arguments) texts.push_back(argument.c_str());
   return parse_options(static_cast<int>(texts.size()), texts.data());
 }
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/setting_names.h"
 #include "evaluate/trade_plot.h"
+#include "gpu_cost/presets.h"
 
 namespace alcove::sample {
 namespace {
@@ -23,11 +23,8 @@ TradePoint point(const std::string& name, double time_ms, double rmse, double sp
   return {name, {}, rmse, 0.5 * rmse, time_ms, spread_ms, 2.0 * time_ms, 1000};
 }
 
-constexpr std::array kPresets{passes::Quality::console, passes::Quality::low,
-                              passes::Quality::medium, passes::Quality::high};
-
 TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
-  for (const passes::Quality quality : kPresets) {
+  for (const passes::Quality quality : presets()) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     const std::vector<Variant> ways = preset_sweep(base);
     EXPECT_GE(ways.size(), 16u);
@@ -36,9 +33,10 @@ TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
       EXPECT_EQ(std::ranges::count(seen, way.settings), 0) << way.name;
       seen.push_back(way.settings);
     }
-    for (const passes::Quality preset : kPresets) {
-      EXPECT_EQ(std::ranges::count(seen, passes::quality_settings(preset, base.radius)), 1)
-          << passes::name_of(preset);
+    for (const passes::Quality preset : presets()) {
+      OcclusionSettings settings = passes::quality_settings(preset, base.radius);
+      settings.depth_layers = std::max(settings.depth_layers, base.depth_layers);
+      EXPECT_EQ(std::ranges::count(seen, settings), 1) << passes::name_of(preset);
     }
   }
 }
@@ -79,9 +77,7 @@ TEST(SpeedErrorTrade, ParetoFrontOfTimeAndErrorExcludesDominatedSettings) {
       trade_of({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
                 point("fair", 3, 0.05), point("equal", 5, 0.05)});
   std::vector<std::string> names;
-  for (const TradePoint& each : trade.points) {
-    names.push_back(each.name);
-  }
+  for (const TradePoint& each : trade.points) names.push_back(each.name);
   EXPECT_EQ(names, (std::vector<std::string>{"fast", "fair", "worse", "equal", "slow"}));
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
@@ -143,9 +139,7 @@ std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> 
 std::vector<std::string> sorted_front(const Trade& trade) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
-    if (trade.on_pareto_front[i]) {
-      names.push_back(trade.points[i].name);
-    }
+    if (trade.on_pareto_front[i]) names.push_back(trade.points[i].name);
   }
   std::ranges::sort(names);
   return names;
@@ -206,17 +200,6 @@ TEST(SamplingGrid, GridHasEveryPairOfStepsAndSlicesOrderedBySteps) {
     expected.slices = kGridSlices[i % kGridSlices.size()];
     EXPECT_EQ(grid[i].settings, expected);
   }
-}
-
-TEST(SpeedErrorTrade, RecommendedSettingIsTheBestWithinATimeBudgetOrAnErrorTolerance) {
-  const std::vector<TradePoint> points{point("fast", 1, 0.1), point("fair", 3, 0.05),
-                                       point("slow", 9, 0.01)};
-  EXPECT_EQ(least_error_within_ms(points, 3.0)->name, "fair");
-  EXPECT_EQ(least_error_within_ms(points, 100.0)->name, "slow");
-  EXPECT_EQ(least_error_within_ms(points, 0.5), nullptr);
-  EXPECT_EQ(fastest_within_rmse(points, 0.05)->name, "fair");
-  EXPECT_EQ(fastest_within_rmse(points, 1.0)->name, "fast");
-  EXPECT_EQ(fastest_within_rmse(points, 0.005), nullptr);
 }
 
 TEST(SpeedErrorTrade, SeveralScenesAreCombinedByMeanTimeAndRootMeanSquareError) {

@@ -15,9 +15,7 @@ constexpr std::uint32_t kSize = 256;
 Image<float> image_of(const std::function<float(std::uint32_t x, std::uint32_t y)>& value) {
   Image<float> image(kSize, kSize);
   for (std::uint32_t y = 0; y < kSize; ++y) {
-    for (std::uint32_t x = 0; x < kSize; ++x) {
-      image.at(x, y) = value(x, y);
-    }
+    for (std::uint32_t x = 0; x < kSize; ++x) image.at(x, y) = value(x, y);
   }
   return image;
 }
@@ -114,9 +112,7 @@ TEST(WeavePattern, NoiseThatWasFilteredHasNoPattern) {
   std::mt19937 random(13);
   std::normal_distribution<float> noise(0.0f, 0.03f);
   Image<float> white(kSize + 4, kSize + 4);
-  for (float& value : white.pixels) {
-    value = noise(random);
-  }
+  for (float& value : white.pixels) value = noise(random);
   const Weave weave = weave_of_error([&](std::uint32_t x, std::uint32_t y) {
     constexpr std::array<float, 5> kBinomial{1 / 16.0f, 4 / 16.0f, 6 / 16.0f, 4 / 16.0f, 1 / 16.0f};
     float sum = 0.0f;

@@ -10,17 +10,16 @@
 #include "evaluate/ablation.h"
 #include "evaluate/errors.h"
 #include "evaluate/situations.h"
-#include "evaluate/variant_errors.h"
+#include "evaluate/variant.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/progress.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 // The difference between two images that should be equal.
@@ -61,41 +60,28 @@ Mask common_surfaces(const InvariancePair& pair, const FrameImages& images,
   return mask;
 }
 
-tl::expected<InvariancePairRow, std::string> run_invariance_pair(Gpu& gpu, const Session& session,
-                                                                 const Options& options,
-                                                                 const InvariancePair& pair) {
+Result<InvariancePairRow> run_invariance_pair(Gpu& gpu, const Session& session,
+                                              const Options& options, const InvariancePair& pair) {
   const StaticSetup first = static_setup(options, pair.first);
   StaticSetup second = static_setup(options, pair.second);
   second.width *= pair.scale;
   second.height *= pair.scale;
-  const auto images = draw_static(gpu, session.scene, first, session.settings);
-  if (!images) {
-    return Failure(images.error());
-  }
-  const auto others = draw_static(gpu, session.scene, second, session.settings);
-  if (!others) {
-    return Failure(others.error());
-  }
-  return InvariancePairRow{
-      pair.name, compare_images(shrunk(others->visibility, pair.scale), images->visibility,
-                                common_surfaces(pair, *images, *others))};
+  ALCOVE_TRY(const auto images, draw_static(gpu, session.scene, first, session.settings));
+  ALCOVE_TRY(const auto others, draw_static(gpu, session.scene, second, session.settings));
+  return InvariancePairRow{pair.name,
+                           compare_images(shrunk(others.visibility, pair.scale), images.visibility,
+                                          common_surfaces(pair, images, others))};
 }
 
 // Replaces the ratios of device timestamps by those of the modelled times of a moving frame.
-Done model_times(const Options& options, std::vector<VariantErrors>& rows) {
-  const auto times = modelled_times(options);
-  if (!times) {
-    return Failure(times.error());
-  }
+Result<void> model_times(const Options& options, std::vector<VariantErrors>& rows) {
+  ALCOVE_TRY(const auto times, modelled_times(options));
   constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
   double base_ms = 0;
   for (VariantErrors& row : rows) {
-    const auto ms = times->measure(row.variant.settings);
-    if (!ms) {
-      return Failure(ms.error());
-    }
-    base_ms = &row == rows.data() ? (*ms)[kMoving] : base_ms;
-    row.cost.gpu = (*ms)[kMoving] / base_ms;
+    ALCOVE_TRY(const auto ms, times.measure(row.variant.settings));
+    base_ms = &row == rows.data() ? ms[kMoving] : base_ms;
+    row.cost.gpu = ms[kMoving] / base_ms;
   }
   return {};
 }
@@ -140,56 +126,35 @@ Json to_json(const VariantErrors& row) {
 
 }  // namespace
 
-Done run_ablate(const Options& options) {
-  auto session = open_session(options);
-  if (!session) {
-    return Failure(std::move(session.error()));
-  }
+Result<void> run_ablate(const Options& options) {
+  ALCOVE_TRY(auto session, open_session(options));
   // The folder is created first, because the measurement takes minutes.
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
-  const auto clock = choose_clock(session->gpu->device().properties(), *options.gpu, options.clock);
-  if (!clock) {
-    return Failure(clock.error());
-  }
-  auto variants = run_variants(*session, static_setup(options, session->camera),
-                               truth_options(options), variants_of(session->settings), "changes");
-  if (!variants) {
-    return Failure(variants.error());
-  }
-  if (*clock == Clock::modelled) {
-    if (auto modelled = model_times(options, variants->rows); !modelled) {
-      return modelled;
-    }
-  }
-  std::cout << table_of(variants->rows, *clock) << std::flush;
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY(const auto clock,
+             choose_clock(session.gpu->device().properties(), *options.gpu, options.clock));
+  ALCOVE_TRY(auto variants,
+             run_variants(session, static_setup(options, session.camera), truth_options(options),
+                          variants_of(session.settings), "changes"));
+  if (clock == Clock::modelled) ALCOVE_TRY_VOID(model_times(options, variants.rows));
+  std::cout << table_of(variants.rows, clock) << std::flush;
   std::vector<InvariancePairRow> invariance_pair_rows;
-  const std::uint32_t largest = session->gpu->device().properties().limits.maxImageDimension2D;
-  for (const InvariancePair& pair : invariance_pairs_of(session->camera, options.view.height)) {
+  const std::uint32_t largest = session.gpu->device().properties().limits.maxImageDimension2D;
+  for (const InvariancePair& pair : invariance_pairs_of(session.camera, options.view.height)) {
     if (pair.scale * std::max(options.view.width, options.view.height) > largest) {
       std::cout << "Skipped: " << pair.name
                 << ": the device does not support images of that size\n";
       continue;
     }
-    auto row = run_invariance_pair(*session->gpu, *session, options, pair);
-    if (!row) {
-      return Failure(std::move(row.error()));
-    }
-    invariance_pair_rows.push_back(std::move(*row));
+    ALCOVE_TRY(auto row, run_invariance_pair(*session.gpu, session, options, pair));
+    invariance_pair_rows.push_back(std::move(row));
   }
-  if (auto valid = check_validation(*session->gpu); !valid) {
-    return valid;
-  }
+  ALCOVE_TRY_VOID(check_validation(*session.gpu));
   std::cout << table_of(invariance_pair_rows);
   Json report;
-  report["device"] = session->gpu->device().properties().deviceName;
-  report["settings"] = to_json(session->settings);
+  report["device"] = session.gpu->device().properties().deviceName;
+  report["settings"] = to_json(session.settings);
   report["frames"] = options.view.frames;
-  for (const VariantErrors& row : variants->rows) {
-    report["changes"].push_back(to_json(row));
-  }
+  for (const VariantErrors& row : variants.rows) report["changes"].push_back(to_json(row));
   for (const InvariancePairRow& row : invariance_pair_rows) {
     report["differences"].push_back(
         {{"between", row.name}, {"visibility", to_json(row.difference)}});

@@ -9,13 +9,12 @@
 #include "evaluate/trade_plot.h"
 #include "scene/load_scene.h"
 #include "support/printable.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 std::string title_of(const Options& options, const std::string& scene) {
@@ -25,15 +24,10 @@ std::string title_of(const Options& options, const std::string& scene) {
 
 // Checks that every scene can be loaded and viewed. This is done for all scenes before the first
 // one is measured, because measuring takes minutes.
-Done check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
+Result<void> check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
   for (const std::string& name : scenes) {
-    const auto scene = load_scene(name);
-    if (!scene) {
-      return Failure(scene.error());
-    }
-    if (const auto camera = camera_of(view, *scene); !camera) {
-      return Failure(camera.error());
-    }
+    ALCOVE_TRY(const auto scene, load_scene(name));
+    ALCOVE_TRY_VOID(camera_of(view, scene));
   }
   return {};
 }
@@ -46,31 +40,23 @@ void print_trade(const Trade& trade, const std::string& title, const std::string
 }
 
 // Measures the grid of steps and slices, prints it and adds it to `report`.
-Done print_grid(const Session& session, const StaticSetup& setup, const Options& options,
-                Json& report) {
-  const auto rmse = measure_grid(session, setup, truth_options(options));
-  if (!rmse) {
-    return Failure(rmse.error());
-  }
+Result<void> print_grid(const Session& session, const StaticSetup& setup, const Options& options,
+                        Json& report) {
+  ALCOVE_TRY(const auto rmse, measure_grid(session, setup, truth_options(options)));
   const std::string title = title_of(options, options.scene);
-  std::cout << title << "\n" << grid_table(*rmse) << std::flush;
+  std::cout << title << "\n" << grid_table(rmse) << std::flush;
   report["grids"].push_back(
-      {{"of", title}, {"steps", kGridSteps}, {"slices", kGridSlices}, {"rmse_by_steps", *rmse}});
+      {{"of", title}, {"steps", kGridSteps}, {"slices", kGridSlices}, {"rmse_by_steps", rmse}});
   return {};
 }
 
 }  // namespace
 
-Done run_bench(const Options& options) {
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
+Result<void> run_bench(const Options& options) {
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   const std::vector<std::string> scenes =
       options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;
-  if (auto valid = check_scenes(scenes, options.view); !valid) {
-    return valid;
-  }
+  ALCOVE_TRY_VOID(check_scenes(scenes, options.view));
   Json report;
   report["frames"] = options.view.frames;
   std::string clock;
@@ -78,40 +64,25 @@ Done run_bench(const Options& options) {
   for (const std::string& scene : scenes) {
     Options one = options;
     one.scene = scene;
-    const auto session = open_session(one);
-    if (!session) {
-      return Failure(session.error());
-    }
-    report["device"] = session->gpu->device().properties().deviceName;
-    const StaticSetup setup = static_setup(one, session->camera);
+    ALCOVE_TRY(const auto session, open_session(one));
+    report["device"] = session.gpu->device().properties().deviceName;
+    const StaticSetup setup = static_setup(one, session.camera);
     if (options.grid) {
-      if (auto done = print_grid(*session, setup, one, report); !done) {
-        return done;
-      }
+      ALCOVE_TRY_VOID(print_grid(session, setup, one, report));
       continue;
     }
-    auto trade = measure_trade(*session, setup, truth_options(one), one.clock);
-    if (!trade) {
-      return Failure(std::move(trade.error()));
-    }
-    report["time"] = clock = trade->clock_title;
-    std::cout << trade->note;
-    print_trade(trade_of(trade->points), title_of(options, scene), clock, report);
-    measured.push_back(std::move(trade->points));
+    ALCOVE_TRY(auto trade, measure_trade(session, setup, truth_options(one), one.clock));
+    report["time"] = clock = trade.clock_title;
+    std::cout << trade.note;
+    print_trade(trade_of(trade.points), title_of(options, scene), clock, report);
+    measured.push_back(std::move(trade.points));
   }
-  if (options.grid) {
-    return write_text(options.out / "report.json", report.dump(2) + "\n");
-  }
+  if (options.grid) return write_text(options.out / "report.json", report.dump(2) + "\n");
   const Trade overall = trade_of(over_scenes(measured));
   const std::string title = scenes.size() == 1 ? title_of(options, scenes.front())
                                                : fmt::format("mean of {} scenes", scenes.size());
-  if (scenes.size() > 1) {
-    print_trade(overall, title, clock, report);
-  }
-  if (auto written = write_text(options.out / "trade.svg", plot_of(overall, title, clock));
-      !written) {
-    return written;
-  }
+  if (scenes.size() > 1) print_trade(overall, title, clock, report);
+  ALCOVE_TRY_VOID(write_text(options.out / "trade.svg", plot_of(overall, title, clock)));
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
     std::cout << "trade.svg and report.json are in " << options.out.string() << "\n";
   });

@@ -8,32 +8,21 @@
 #include "gpu_cost/cost_report.h"
 #include "scene/scene.h"
 #include "support/progress.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
-
-std::vector<passes::Quality> qualities_of(const Options& options) {
-  if (options.occlusion.quality_given) {
-    return {options.occlusion.quality};
-  }
-  return {passes::Quality::console, passes::Quality::low, passes::Quality::medium,
-          passes::Quality::high};
-}
 
 // The preset with the changes of --set. With --outputs, also with each further output.
-tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Options& options,
-                                                                     passes::Quality quality) {
+Result<std::vector<LabelledSettings>> settings_of(const Options& options, passes::Quality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
   one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
   const auto settings = occlusion_settings(one, 1.0f);
-  if (!settings) {
-    return Failure(settings.error());
-  }
+  if (!settings) return Failure(settings.error());
   LabelledSettings given{std::string(passes::name_of(quality)),
                          {.width = options.view.width,
                           .height = options.view.height,
@@ -44,12 +33,8 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
                           .samples = options.cost.samples,
                           .settings = *settings},
                          ""};
-  for (const auto& [name, value] : options.occlusion.set) {
-    given.label += " " + name + "=" + value;
-  }
-  if (!options.cost.outputs) {
-    return std::vector{std::move(given)};
-  }
+  for (const auto& [name, value] : options.occlusion.set) given.label += " " + name + "=" + value;
+  if (!options.cost.outputs) return std::vector{std::move(given)};
   if (settings->bent_normal || settings->specular != passes::Specular::none) {
     return Failure(
         "--outputs compares settings with and without bent normals and specular occlusion; leave "
@@ -59,62 +44,40 @@ tl::expected<std::vector<LabelledSettings>, std::string> settings_of(const Optio
   return std::vector{std::move(given), std::move(bent), std::move(specular)};
 }
 
-tl::expected<std::vector<SettingsCost>, std::string> measure(const Options& options) {
+Result<std::vector<SettingsCost>> measure(const Options& options) {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
-    if (!options.cost.family.empty() && options.cost.family != part.family) {
-      continue;
-    }
-    const auto device = create_null_device(part.family);
-    if (!device) {
-      return Failure(device.error());
-    }
-    for (const passes::Quality quality : qualities_of(options)) {
-      const auto all = settings_of(options, quality);
-      if (!all) {
-        return Failure(all.error());
-      }
-      for (const LabelledSettings& settings : *all) {
-        auto cost = cost_of(part, *device, settings);
-        if (!cost) {
-          return Failure(std::move(cost.error()));
-        }
-        costs.push_back(std::move(*cost));
+    if (!options.cost.family.empty() && options.cost.family != part.family) continue;
+    ALCOVE_TRY(const auto device, create_null_device(part.family));
+    for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+      ALCOVE_TRY(const auto all, settings_of(options, quality));
+      for (const LabelledSettings& settings : all) {
+        ALCOVE_TRY(auto cost, cost_of(part, device, settings));
+        costs.push_back(std::move(cost));
       }
     }
   }
   return costs;
 }
 
-Done write_budget(const std::filesystem::path& file) {
-  const auto device = create_null_device(kGpuParts.front().family);
-  if (!device) {
-    return Failure(device.error());
-  }
-  const auto costs = budgeted_costs();
-  if (!costs) {
-    return Failure(costs.error());
-  }
-  return write_text(file, budget_of(*costs, compiler_name(*device)));
+Result<void> write_budget(const std::filesystem::path& file) {
+  ALCOVE_TRY(const auto device, create_null_device(kGpuParts.front().family));
+  ALCOVE_TRY(const auto costs, budgeted_costs());
+  return write_text(file, budget_of(costs, compiler_name(device)));
 }
 
 }  // namespace
 
-Done run_cost(const Options& options) {
-  if (!options.cost.budget.empty()) {
-    return write_budget(options.cost.budget);
-  }
-  const auto costs = measure(options);
-  if (!costs) {
-    return Failure(costs.error());
-  }
-  std::cout << table_of(*costs, options.cost.loops);
-  Done written;
+Result<void> run_cost(const Options& options) {
+  if (!options.cost.budget.empty()) return write_budget(options.cost.budget);
+  ALCOVE_TRY(const auto costs, measure(options));
+  std::cout << table_of(costs, options.cost.loops);
+  Result<void> written;
   if (!options.cost.json.empty()) {
-    written = write_text(options.cost.json, to_json(*costs).dump(2) + "\n");
+    written = write_text(options.cost.json, to_json(costs).dump(2) + "\n");
   }
   if (written && !options.cost.chart.empty()) {
-    written = write_text(options.cost.chart, chart_of(*costs));
+    written = write_text(options.cost.chart, chart_of(costs));
   }
   return written;
 }

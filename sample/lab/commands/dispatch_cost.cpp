@@ -43,12 +43,8 @@ VkResult Objects::create_pipeline() {
                                       .pCode = kEmpty};
   const VkPipelineLayoutCreateInfo empty{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
   VkResult result = vkCreateShaderModule(device, &code, nullptr, &module);
-  if (result == VK_SUCCESS) {
-    result = vkCreatePipelineLayout(device, &empty, nullptr, &layout);
-  }
-  if (result != VK_SUCCESS) {
-    return result;
-  }
+  if (result == VK_SUCCESS) result = vkCreatePipelineLayout(device, &empty, nullptr, &layout);
+  if (result != VK_SUCCESS) return result;
   const VkComputePipelineCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
       .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -64,9 +60,7 @@ VkResult Objects::create(std::uint32_t queue_family) {
   const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                           .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                           .queueFamilyIndex = queue_family};
-  if (result == VK_SUCCESS) {
-    result = vkCreateCommandPool(device, &pool_info, nullptr, &pool);
-  }
+  if (result == VK_SUCCESS) result = vkCreateCommandPool(device, &pool_info, nullptr, &pool);
   if (result == VK_SUCCESS) {
     const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                            .commandPool = pool,
@@ -86,9 +80,7 @@ VkResult Objects::create(std::uint32_t queue_family) {
 VkResult record(const Objects& objects, bool barriers) {
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   const VkResult result = vkBeginCommandBuffer(objects.commands, &begin);
-  if (result != VK_SUCCESS) {
-    return result;
-  }
+  if (result != VK_SUCCESS) return result;
   vkCmdResetQueryPool(objects.commands, objects.queries, 0, 2);
   vkCmdBindPipeline(objects.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
   vkCmdWriteTimestamp2(objects.commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, objects.queries,
@@ -102,9 +94,7 @@ VkResult record(const Objects& objects, bool barriers) {
                                     .memoryBarrierCount = 1,
                                     .pMemoryBarriers = &written};
   for (std::uint32_t i = 0; i < kDispatches; ++i) {
-    if (barriers) {
-      vkCmdPipelineBarrier2(objects.commands, &dependency);
-    }
+    if (barriers) vkCmdPipelineBarrier2(objects.commands, &dependency);
     vkCmdDispatch(objects.commands, 1, 1, 1);
   }
   vkCmdWriteTimestamp2(objects.commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, objects.queries,
@@ -114,7 +104,7 @@ VkResult record(const Objects& objects, bool barriers) {
 
 }  // namespace
 
-tl::expected<DispatchCost, std::string> measure_dispatch_cost(const VulkanDevice& device) {
+Result<DispatchCost> measure_dispatch_cost(const VulkanDevice& device) {
   Objects objects(device.device());
   VkResult result = objects.create(device.queue_family());
   std::array<double, 2> medians{};
@@ -126,12 +116,8 @@ tl::expected<DispatchCost, std::string> measure_dispatch_cost(const VulkanDevice
                                 .pCommandBuffers = &objects.commands};
       std::array<std::uint64_t, 2> ticks{};
       result = record(objects, barriers);
-      if (result == VK_SUCCESS) {
-        result = vkQueueSubmit(device.queue(), 1, &submit, VK_NULL_HANDLE);
-      }
-      if (result == VK_SUCCESS) {
-        result = vkQueueWaitIdle(device.queue());
-      }
+      if (result == VK_SUCCESS) result = vkQueueSubmit(device.queue(), 1, &submit, VK_NULL_HANDLE);
+      if (result == VK_SUCCESS) result = vkQueueWaitIdle(device.queue());
       if (result == VK_SUCCESS) {
         result = vkGetQueryPoolResults(device.device(), objects.queries, 0, 2, sizeof ticks,
                                        ticks.data(), sizeof ticks[0], VK_QUERY_RESULT_64_BIT);
@@ -141,9 +127,7 @@ tl::expected<DispatchCost, std::string> measure_dispatch_cost(const VulkanDevice
     }
     medians.at(barriers ? 1 : 0) = median(microseconds);
   }
-  if (result != VK_SUCCESS) {
-    return device_failure("time an empty dispatch", result);
-  }
+  if (result != VK_SUCCESS) return device_failure("time an empty dispatch", result);
   return DispatchCost{medians[0], medians[1]};
 }
 

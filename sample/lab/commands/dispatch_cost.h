@@ -1,9 +1,9 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 
 #include "gpu/vulkan_device.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -13,7 +13,6 @@ struct DispatchCost {
   double behind_barrier_us = 0;  // of one that waits for the memory writes of the one before
 };
 
-[[nodiscard]] tl::expected<DispatchCost, std::string> measure_dispatch_cost(
-    const VulkanDevice& device);
+[[nodiscard]] Result<DispatchCost> measure_dispatch_cost(const VulkanDevice& device);
 
 }  // namespace alcove::sample

@@ -13,13 +13,12 @@
 #include "gpu_cost/cost_report.h"
 #include "render/frame_renderer.h"
 #include "support/median.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 constexpr float kOrbit = 0.007f;  // radians per frame
@@ -46,42 +45,26 @@ FrameRequest moving_request(const Session& session, const CostInputs& inputs, st
 }
 
 // Renders frames of a moving camera. The first ones, which compile shaders, are not counted.
-tl::expected<MeasuredFrame, std::string> measure(const Session& session, const Options& options,
-                                                 const LabelledSettings& settings) {
+Result<MeasuredFrame> measure(const Session& session, const Options& options,
+                              const LabelledSettings& settings) {
   const CostInputs& inputs = settings.inputs;
-  const auto gpu = open_gpu(session.device);
-  if (!gpu) {
-    return Failure(gpu.error());
-  }
-  const auto renderer = FrameRenderer::create(**gpu, session.scene, {inputs.width, inputs.height},
-                                              options.occlusion.normals);
-  if (!renderer) {
-    return Failure(renderer.error());
-  }
+  ALCOVE_TRY(const auto gpu, open_gpu(session.device));
+  ALCOVE_TRY(const auto renderer,
+             FrameRenderer::create(*gpu, session.scene, {inputs.width, inputs.height},
+                                   options.occlusion.normals));
   constexpr std::uint32_t kWarmUp = 4;
   std::vector<std::string> order;
   std::map<std::string, std::vector<double>> times;
   for (std::uint32_t i = 0; i < kWarmUp + options.view.frames; ++i) {
-    const auto cost = (*renderer)->draw(moving_request(session, inputs, i));
-    if (!cost) {
-      return Failure(cost.error());
-    }
-    for (const PassTime& pass : cost->gpu) {
-      if (i == 0) {
-        order.push_back(pass.pass);
-      }
-      if (i >= kWarmUp) {
-        times[pass.pass].push_back(pass.milliseconds);
-      }
+    ALCOVE_TRY(const auto cost, renderer->draw(moving_request(session, inputs, i)));
+    for (const PassTime& pass : cost.gpu) {
+      if (i == 0) order.push_back(pass.pass);
+      if (i >= kWarmUp) times[pass.pass].push_back(pass.milliseconds);
     }
   }
-  if (auto valid = check_validation(**gpu); !valid) {
-    return Failure(std::move(valid.error()));
-  }
+  ALCOVE_TRY_VOID(check_validation(*gpu));
   MeasuredFrame frame{settings, {}};
-  for (const std::string& name : order) {
-    frame.passes.push_back({name, median(times[name])});
-  }
+  for (const std::string& name : order) frame.passes.push_back({name, median(times[name])});
   return frame;
 }
 
@@ -90,9 +73,7 @@ std::vector<std::pair<const GpuPart*, ModelledFrame>> modelled(const CostInputs&
   std::vector<std::pair<const GpuPart*, ModelledFrame>> all;
   for (const GpuPart& part : kGpuParts) {
     const auto device = create_null_device(part.family);
-    if (!device) {
-      continue;
-    }
+    if (!device) continue;
     const auto frames = modelled_frames(part, *device, inputs);
     if (frames) {
       const auto moving =
@@ -160,77 +141,47 @@ Json print_registers(const Session& session) {
 }
 
 // Draws a few frames on the session's own device, so that its pipelines are captured.
-Done compile(const Session& session, const Options& options, const CostInputs& inputs) {
-  const auto renderer = FrameRenderer::create(
-      *session.gpu, session.scene, {inputs.width, inputs.height}, options.occlusion.normals);
-  if (!renderer) {
-    return Failure(renderer.error());
-  }
+Result<void> compile(const Session& session, const Options& options, const CostInputs& inputs) {
+  ALCOVE_TRY(const auto renderer,
+             FrameRenderer::create(*session.gpu, session.scene, {inputs.width, inputs.height},
+                                   options.occlusion.normals));
   for (std::uint32_t i = 0; i < 3; ++i) {
-    if (auto cost = (*renderer)->draw(moving_request(session, inputs, i)); !cost) {
-      return Failure(std::move(cost.error()));
-    }
+    ALCOVE_TRY_VOID(renderer->draw(moving_request(session, inputs, i)));
   }
   return {};
 }
 
 }  // namespace
 
-Done run_measure(const Options& options) {
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
-  auto session = load_session(options);
-  if (!session) {
-    return Failure(std::move(session.error()));
-  }
-  session->device = {options.device, options.validation, {}, true};
-  auto gpu = open_gpu(session->device);
-  if (!gpu) {
-    return Failure(std::move(gpu.error()));
-  }
-  session->gpu = std::move(*gpu);
-  const VulkanDevice& device = session->gpu->device();
+Result<void> run_measure(const Options& options) {
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY(auto session, load_session(options));
+  session.device = {options.device, options.validation, {}, true};
+  ALCOVE_TRY(session.gpu, open_gpu(session.device));
+  const VulkanDevice& device = session.gpu->device();
   std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
-  const auto dispatch = measure_dispatch_cost(device);
-  if (!dispatch) {
-    return Failure(dispatch.error());
-  }
+  ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(device));
   std::cout << fmt::format("An empty dispatch takes {:.2f} microseconds, behind a barrier {:.2f}\n",
-                           dispatch->alone_us, dispatch->behind_barrier_us);
+                           dispatch.alone_us, dispatch.behind_barrier_us);
   Json report{{"device", device.properties().deviceName},
               {"driver", device.driver()},
               {"frames", options.view.frames},
-              {"dispatch_us", dispatch->alone_us},
-              {"dispatch_behind_barrier_us", dispatch->behind_barrier_us}};
-  std::vector<passes::Quality> qualities{passes::Quality::console, passes::Quality::low,
-                                         passes::Quality::medium, passes::Quality::high};
-  if (options.occlusion.quality_given) {
-    qualities = {options.occlusion.quality};
-  }
+              {"dispatch_us", dispatch.alone_us},
+              {"dispatch_behind_barrier_us", dispatch.behind_barrier_us}};
   std::optional<CostInputs> last;
   for (const auto& [width, height] : options.sizes) {
-    for (const passes::Quality quality : qualities) {
+    for (const passes::Quality quality : chosen_presets(options.occlusion)) {
       OcclusionOptions one = options.occlusion;
       one.quality = quality;
-      const auto settings = occlusion_settings(one, session->settings.radius);
-      if (!settings) {
-        return Failure(settings.error());
-      }
-      last = CostInputs{.width = width, .height = height, .settings = *settings};
-      const auto frame =
-          measure(*session, options, {std::string(passes::name_of(quality)), *last, ""});
-      if (!frame) {
-        return Failure(frame.error());
-      }
-      report["measured"].push_back(print(*frame));
+      ALCOVE_TRY(const auto settings, occlusion_settings(one, session.settings.radius));
+      last = CostInputs{.width = width, .height = height, .settings = settings};
+      ALCOVE_TRY(const auto frame,
+                 measure(session, options, {std::string(passes::name_of(quality)), *last, ""}));
+      report["measured"].push_back(print(frame));
     }
   }
-  if (auto compiled = compile(*session, options, *last); !compiled) {
-    return compiled;
-  }
-  report["pipelines"] = print_registers(*session);
+  ALCOVE_TRY_VOID(compile(session, options, *last));
+  report["pipelines"] = print_registers(session);
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
     std::cout << "report.json is in " << options.out.string() << "\n";
   });

@@ -10,13 +10,13 @@
 #include "render/settings_json.h"
 #include "support/image_io.h"
 #include "support/progress.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
 using Json = nlohmann::ordered_json;
 
 // The inputs that all paths of a run share.
@@ -26,29 +26,20 @@ struct MotionInputs {
   MotionSetup setup;
 };
 
-tl::expected<MotionInputs, std::string> motion_inputs(const Options& options) {
-  auto session = open_session(options);
-  if (!session) {
-    return Failure(std::move(session.error()));
-  }
-  MotionInputs inputs{std::move(*session), {}, {}};
+Result<MotionInputs> motion_inputs(const Options& options) {
+  ALCOVE_TRY(auto session, open_session(options));
+  MotionInputs inputs{std::move(session), {}, {}};
   const passes::OcclusionSettings& settings = inputs.session.settings;
   if (settings.history_frames == 0) {
     return Failure(
         "The occlusion keeps no history, so there is nothing to follow in motion: give another "
         "--quality, or --set history_frames=32.");
   }
-  const auto rays = RayScene::create(inputs.session.scene);
-  if (!rays) {
-    return Failure(rays.error());
-  }
+  ALCOVE_TRY(const auto rays, RayScene::create(inputs.session.scene));
   const float aspect =
       static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
-  auto start = motion_start(*rays, inputs.session.camera, aspect, settings.radius);
-  if (!start) {
-    return Failure(std::move(start.error()));
-  }
-  inputs.start = std::move(*start);
+  ALCOVE_TRY(auto start, motion_start(rays, inputs.session.camera, aspect, settings.radius));
+  inputs.start = std::move(start);
   inputs.setup = {settings,
                   options.occlusion.normals,
                   options.view.width,
@@ -59,25 +50,16 @@ tl::expected<MotionInputs, std::string> motion_inputs(const Options& options) {
   return inputs;
 }
 
-Done write_pictures(const std::filesystem::path& folder, MotionKind kind,
-                    const std::vector<MotionPicture>& pictures) {
+Result<void> write_pictures(const std::filesystem::path& folder, MotionKind kind,
+                            const std::vector<MotionPicture>& pictures) {
   for (const MotionPicture& picture : pictures) {
     const std::string name = fmt::format("{}_{}", name_of(kind), picture.frame);
-    auto written = write_png(folder / (name + ".png"), picture.visibility)
-                       .and_then([&] {
-                         return write_png(folder / (name + "_static.png"), picture.static_camera);
-                       })
-                       .and_then([&] {
-                         return write_png(folder / (name + "_error.png"),
-                                          error_colours(picture.visibility, picture.truth));
-                       })
-                       .and_then([&] {
-                         return write_png(folder / (name + "_trails.png"),
-                                          error_colours(picture.visibility, picture.static_camera));
-                       });
-    if (!written) {
-      return written;
-    }
+    ALCOVE_TRY_VOID(write_png(folder / (name + ".png"), picture.visibility));
+    ALCOVE_TRY_VOID(write_png(folder / (name + "_static.png"), picture.static_camera));
+    ALCOVE_TRY_VOID(write_png(folder / (name + "_error.png"),
+                              error_colours(picture.visibility, picture.truth)));
+    ALCOVE_TRY_VOID(write_png(folder / (name + "_trails.png"),
+                              error_colours(picture.visibility, picture.static_camera)));
   }
   return {};
 }
@@ -122,9 +104,7 @@ Json to_json(const CutReport& report) {
 }
 
 std::string error_row(const std::string& name, const ErrorPair& errors, int digits = 4) {
-  if (errors.pixels == 0) {
-    return fmt::format("  {:34}none\n", name);
-  }
+  if (errors.pixels == 0) return fmt::format("  {:34}none\n", name);
   return fmt::format("  {:34}{:6.{}f}   {:6.{}f}{:8.2f}{:10}\n", name, errors.moving, digits,
                      errors.static_camera, digits, errors.ratio(), errors.pixels);
 }
@@ -161,56 +141,39 @@ std::string table_of(const CutReport& report) {
 }
 
 // Measures one path; prints the result and adds it to `report`.
-Done run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Json& report) {
+Result<void> run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Json& report) {
   const MotionPath path(kind, inputs.start, options.view.frames);
   std::vector<MotionPicture> pictures;
   std::string table;
   if (kind == MotionKind::cut) {
-    auto made = run_cut(*inputs.session.gpu, inputs.session.scene, path, inputs.setup);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    report[std::string(name_of(kind))] = to_json(*made);
-    table = table_of(*made);
-    pictures = std::move(made->pictures);
+    ALCOVE_TRY(auto made, run_cut(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
+    report[std::string(name_of(kind))] = to_json(made);
+    table = table_of(made);
+    pictures = std::move(made.pictures);
   } else {
-    auto made = run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    report[std::string(name_of(kind))] = to_json(*made);
-    table = table_of(kind, *made);
-    pictures = std::move(made->pictures);
+    ALCOVE_TRY(auto made,
+               run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
+    report[std::string(name_of(kind))] = to_json(made);
+    table = table_of(kind, made);
+    pictures = std::move(made.pictures);
   }
-  if (auto valid = check_validation(*inputs.session.gpu); !valid) {
-    return valid;
-  }
+  ALCOVE_TRY_VOID(check_validation(*inputs.session.gpu));
   std::cout << table << std::flush;
   return write_pictures(options.out, kind, pictures);
 }
 
 }  // namespace
 
-Done run_motion(const Options& options) {
-  auto inputs = motion_inputs(options);
-  if (!inputs) {
-    return Failure(std::move(inputs.error()));
-  }
-  const auto folder = OutputFolder::create(options.out);
-  if (!folder) {
-    return tl::unexpected(folder.error());
-  }
+Result<void> run_motion(const Options& options) {
+  ALCOVE_TRY(auto inputs, motion_inputs(options));
+  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   Json report;
-  report["device"] = inputs->session.gpu->device().properties().deviceName;
-  report["settings"] = to_json(inputs->setup.occlusion);
+  report["device"] = inputs.session.gpu->device().properties().deviceName;
+  report["settings"] = to_json(inputs.setup.occlusion);
   report["frames"] = options.view.frames;
   for (const MotionKind kind : kMotionKinds) {
-    if (options.path && *options.path != kind) {
-      continue;
-    }
-    if (auto done = run_path(*inputs, kind, options, report["paths"]); !done) {
-      return done;
-    }
+    if (options.path && *options.path != kind) continue;
+    ALCOVE_TRY_VOID(run_path(inputs, kind, options, report["paths"]));
   }
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
     std::cout

@@ -18,9 +18,7 @@ class VariantList {
   void add(const char* part, const std::string& name, const Change& change) {
     OcclusionSettings settings = base_;
     change(settings);
-    if (settings != base_) {
-      variants_.push_back({part, name, settings});
-    }
+    if (settings != base_) variants_.push_back({part, name, settings});
   }
   std::vector<Variant> take() { return std::move(variants_); }
 
@@ -32,9 +30,7 @@ class VariantList {
 // Selects an estimator, without the falloff that only horizons have.
 void use(OcclusionSettings& settings, Estimator estimator) {
   settings.advanced.estimator = estimator;
-  if (passes::has_thickness(estimator)) {
-    settings.advanced.falloff = 0.0f;
-  }
+  if (passes::has_thickness(estimator)) settings.advanced.falloff = 0.0f;
 }
 
 void add_estimators(VariantList& list) {
@@ -51,9 +47,7 @@ void add_estimators(VariantList& list) {
 }
 
 void add_occluders(VariantList& list, const OcclusionSettings& base) {
-  if (!passes::has_thickness(base.advanced.estimator)) {
-    return;
-  }
+  if (!passes::has_thickness(base.advanced.estimator)) return;
   const char* part = "occluders";
   list.add(part, "hidden occlusion 0", [](OcclusionSettings& s) { s.hidden_occlusion = 0.0f; });
   list.add(part, "hidden occlusion 1", [](OcclusionSettings& s) { s.hidden_occlusion = 1.0f; });
@@ -127,9 +121,7 @@ InvariancePair orthographic_pair(const Camera& camera, std::uint32_t height) {
     flat.orthographic = true;
     flat.ortho_height = 2.0f * distance * std::tan(0.5f * camera.fov_y);
   }
-  if (std::isinf(flat.far_plane)) {
-    flat.far_plane = 1000.0f * flat.ortho_height;
-  }
+  if (std::isinf(flat.far_plane)) flat.far_plane = 1000.0f * flat.ortho_height;
   Camera& away = pair.second;
   away.orthographic = false;
   away.eye_ws = camera.target_ws + back * kFarAway;

@@ -56,20 +56,19 @@ struct EngineRun::State {
       : gpu(on), scene(of), camera(from), course(along) {}
   ~State();
 
-  tl::expected<void, std::string> create();
-  tl::expected<void, std::string> create_context();
-  tl::expected<AlcoveImage, std::string> create_image(VkFormat format, VkExtent2D size,
-                                                      VkImageUsageFlags usage);
+  Result<void> create();
+  Result<void> create_context();
+  Result<AlcoveImage> create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usage);
   template <typename Texel>
-  tl::expected<AlcoveImage, std::string> create_filled(VkFormat format, VkExtent2D size,
-                                                       const std::vector<Texel>& texels);
+  Result<AlcoveImage> create_filled(VkFormat format, VkExtent2D size,
+                                    const std::vector<Texel>& texels);
   framegraph::Texture import(Graph& graph, const AlcoveImage& image, bool fill) const;
   template <typename Texel>
-  tl::expected<std::vector<Texel>, std::string> read(const AlcoveImage& image);
+  Result<std::vector<Texel>> read(const AlcoveImage& image);
   VkExtent2D size_at(std::uint32_t frame) const;
   CameraMatrices matrices_at(std::uint32_t frame, bool with_jitter) const;
-  tl::expected<void, std::string> draw_frame(std::uint32_t frame);
-  tl::expected<void, std::string> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
+  Result<void> draw_frame(std::uint32_t frame);
+  Result<void> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
   EngineFrame describe(std::uint32_t frame) const;
   VkResult begin(VkCommandBuffer commands_of_slot) const;
   VkResult submit(VkCommandBuffer recorded) const;
@@ -93,15 +92,13 @@ EngineRun::State::~State() {
   vkDestroyCommandPool(device, pool, nullptr);
 }
 
-tl::expected<AlcoveImage, std::string> EngineRun::State::create_image(VkFormat format,
-                                                                      VkExtent2D size,
-                                                                      VkImageUsageFlags usage) {
-  auto made = GpuImage::create(
-      gpu.device(), {format, framegraph::Extent::absolute(size.width, size.height)}, usage);
-  if (!made) {
-    return Failure(std::move(made.error()));
-  }
-  images.push_back(std::move(*made));
+Result<AlcoveImage> EngineRun::State::create_image(VkFormat format, VkExtent2D size,
+                                                   VkImageUsageFlags usage) {
+  ALCOVE_TRY(
+      auto made,
+      GpuImage::create(gpu.device(),
+                       {format, framegraph::Extent::absolute(size.width, size.height)}, usage));
+  images.push_back(std::move(made));
   AlcoveImage image{};
   image.image = images.back()->image();
   image.format = format;
@@ -120,17 +117,15 @@ framegraph::Texture EngineRun::State::import(Graph& graph, const AlcoveImage& im
 }
 
 template <typename Texel>
-tl::expected<AlcoveImage, std::string> EngineRun::State::create_filled(
-    VkFormat format, VkExtent2D size, const std::vector<Texel>& texels) {
+Result<AlcoveImage> EngineRun::State::create_filled(VkFormat format, VkExtent2D size,
+                                                    const std::vector<Texel>& texels) {
   const VkDeviceSize bytes = texels.size() * sizeof(Texel);
   auto buffer = HostBuffer::create(gpu.device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   auto image = create_image(format, size, kFilledUsage);
-  if (!buffer || !image) {
-    return Failure(buffer ? image.error() : buffer.error());
-  }
+  if (!buffer || !image) return Failure(buffer ? image.error() : buffer.error());
   std::memcpy((*buffer)->bytes().data(), texels.data(), bytes);
   return gpu
-      .run([&](Graph& graph) -> tl::expected<void, std::string> {
+      .run([&](Graph& graph) -> Result<void> {
         (void)add_copy(graph, **buffer, import(graph, *image, true));
         return {};
       })
@@ -138,25 +133,22 @@ tl::expected<AlcoveImage, std::string> EngineRun::State::create_filled(
 }
 
 template <typename Texel>
-tl::expected<std::vector<Texel>, std::string> EngineRun::State::read(const AlcoveImage& image) {
+Result<std::vector<Texel>> EngineRun::State::read(const AlcoveImage& image) {
   std::vector<Texel> texels(std::size_t{image.width} * image.height);
-  auto buffer = HostBuffer::create(gpu.device(), texels.size() * sizeof(Texel),
-                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  if (!buffer) {
-    return Failure(std::move(buffer.error()));
-  }
+  ALCOVE_TRY(auto buffer, HostBuffer::create(gpu.device(), texels.size() * sizeof(Texel),
+                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT));
   return gpu
-      .run([&](Graph& graph) -> tl::expected<void, std::string> {
-        add_read_back(graph, import(graph, image, false), **buffer);
+      .run([&](Graph& graph) -> Result<void> {
+        add_read_back(graph, import(graph, image, false), *buffer);
         return {};
       })
       .map([&](const framegraph::FrameReport&) {
-        std::memcpy(texels.data(), (*buffer)->bytes().data(), texels.size() * sizeof(Texel));
+        std::memcpy(texels.data(), buffer->bytes().data(), texels.size() * sizeof(Texel));
         return texels;
       });
 }
 
-tl::expected<void, std::string> EngineRun::State::create() {
+Result<void> EngineRun::State::create() {
   const VkDevice device = gpu.device().device();
   const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                           .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
@@ -169,22 +161,15 @@ tl::expected<void, std::string> EngineRun::State::create() {
                                            .commandBufferCount = kSlots};
     result = vkAllocateCommandBuffers(device, &info, commands.data());
   }
-  if (result != VK_SUCCESS) {
-    return device_failure("create a command buffer", result);
-  }
-  auto made = GbufferRenderer::create(gpu, scene, course.geometric);
-  if (!made) {
-    return Failure(std::move(made.error()));
-  }
-  gbuffer = std::move(*made);
+  if (result != VK_SUCCESS) return device_failure("create a command buffer", result);
+  ALCOVE_TRY(auto made, GbufferRenderer::create(gpu, scene, course.geometric));
+  gbuffer = std::move(made);
   auto done = create_context();
-  for (std::uint32_t frame = 0; done && frame < course.frames; ++frame) {
-    done = draw_frame(frame);
-  }
+  for (std::uint32_t frame = 0; done && frame < course.frames; ++frame) done = draw_frame(frame);
   return done;
 }
 
-tl::expected<void, std::string> EngineRun::State::create_context() {
+Result<void> EngineRun::State::create_context() {
   AlcoveContextInfo info{.struct_size = sizeof info};
   info.queue_family = gpu.device().queue_family();
   info.instance = gpu.device().instance();
@@ -218,7 +203,7 @@ CameraMatrices EngineRun::State::matrices_at(std::uint32_t frame, bool with_jitt
   return camera_matrices(now, size.width, size.height);
 }
 
-tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame) {
+Result<void> EngineRun::State::draw_frame(std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
   const CameraMatrices before = matrices_at(frame == 0 ? 0 : frame - 1, true);
@@ -244,15 +229,12 @@ tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame
                                       kDepthFormat,
                                       {size.width / 2, size.height / 2},
                                       kDepthUsage}}) {
-    auto made = create_image(target.format, target.size, target.usage);
-    if (!made) {
-      return Failure(std::move(made.error()));
-    }
-    target.image = *made;
+    ALCOVE_TRY(auto made, create_image(target.format, target.size, target.usage));
+    target.image = made;
   }
   drawn.other.half_depth.width = size.width;
   drawn.other.half_depth.height = size.height;
-  const auto report = gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {
+  const auto report = gpu.run([&](Graph& graph) -> Result<void> {
     (void)gbuffer->add(graph, seen,
                        {.depth = import(graph, view.depth, true),
                         .normal = import(graph, view.normals, true),
@@ -263,9 +245,7 @@ tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame
     }
     return {};
   });
-  if (!report) {
-    return Failure(report.error());
-  }
+  if (!report) return Failure(report.error());
   view.struct_size = sizeof view;
   view.camera = to_camera(now);
   view.previous_camera = to_camera(before);
@@ -274,21 +254,17 @@ tl::expected<void, std::string> EngineRun::State::draw_frame(std::uint32_t frame
   view.reset_history = changes ? VK_TRUE : VK_FALSE;
   view.static_frames = course.orbit != 0.0f || course.jitter ? 0 : frame;
   drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false));
-  auto done =
-      course.other_inputs ? create_other_inputs(drawn, frame) : tl::expected<void, std::string>();
+  auto done = course.other_inputs ? create_other_inputs(drawn, frame) : Result<void>();
   frames.push_back(drawn);
   return done;
 }
 
-tl::expected<void, std::string> EngineRun::State::create_other_inputs(DrawnFrame& drawn,
-                                                                      std::uint32_t frame) {
+Result<void> EngineRun::State::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
   const auto depths = read<float>(drawn.view.depth);
   const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.normals);
-  if (!depths || !halves) {
-    return Failure(depths ? halves.error() : depths.error());
-  }
+  if (!depths || !halves) return Failure(depths ? halves.error() : depths.error());
   std::vector<float> linear, coarse;
   std::vector<glm::vec4> octahedral, in_view;
   for (std::size_t i = 0; i < depths->size(); ++i) {
@@ -358,17 +334,16 @@ VkResult EngineRun::State::submit(VkCommandBuffer recorded) const {
 EngineRun::EngineRun(std::unique_ptr<State> state) : state_(std::move(state)) {}
 EngineRun::~EngineRun() = default;
 
-tl::expected<std::unique_ptr<EngineRun>, std::string> EngineRun::create(
-    Gpu& gpu, const Scene& scene, const Camera& camera, const EngineCourse& course) {
+Result<std::unique_ptr<EngineRun>> EngineRun::create(Gpu& gpu, const Scene& scene,
+                                                     const Camera& camera,
+                                                     const EngineCourse& course) {
   auto state = std::make_unique<State>(gpu, scene, camera, course);
-  if (auto made = state->create(); !made) {
-    return Failure(std::move(made.error()));
-  }
+  ALCOVE_TRY_VOID(state->create());
   return std::unique_ptr<EngineRun>(new EngineRun(std::move(state)));
 }
 
-tl::expected<EngineResult, std::string> EngineRun::draw(const ChangeFrame& change,
-                                                        std::uint32_t begin, bool submit_late) {
+Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
+                                     bool submit_late) {
   State& s = *state_;
   AlcoveContext* const context = s.context.get();
   EngineResult result;
@@ -379,12 +354,8 @@ tl::expected<EngineResult, std::string> EngineRun::draw(const ChangeFrame& chang
   for (std::uint32_t i = 0; result.said.empty() && i < s.course.frames; ++i) {
     EngineFrame described = s.describe(i);
     const bool late = submit_late && i >= begin;
-    if (late) {
-      described.frame.slot = 0;
-    }
-    if (change && i >= begin) {
-      change(described);
-    }
+    if (late) described.frame.slot = 0;
+    if (change && i >= begin) change(described);
     ids.push_back(described.view.id);
     visibility = s.frames.at(i).view.visibility;
     described.view.settings = &described.settings;
@@ -396,16 +367,10 @@ tl::expected<EngineResult, std::string> EngineRun::draw(const ChangeFrame& chang
       result.said = std::string(alcoveGetMessage(context)) + "\n";
     }
     device = device == VK_SUCCESS ? vkEndCommandBuffer(commands) : device;
-    if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) {
-      device = s.submit(waiting);
-    }
+    if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) device = s.submit(waiting);
     waiting = late ? commands : VK_NULL_HANDLE;
-    if (device == VK_SUCCESS && !late) {
-      device = s.submit(commands);
-    }
-    if (device != VK_SUCCESS) {
-      return device_failure("run a frame", device);
-    }
+    if (device == VK_SUCCESS && !late) device = s.submit(commands);
+    if (device != VK_SUCCESS) return device_failure("run a frame", device);
   }
   if (waiting != VK_NULL_HANDLE && s.submit(waiting) != VK_SUCCESS) {
     return Failure("The last frame could not be run.");
@@ -414,24 +379,17 @@ tl::expected<EngineResult, std::string> EngineRun::draw(const ChangeFrame& chang
     result.said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
     alcoveDiagnose(context, result.said.data(), result.said.size());
     result.said.pop_back();
-    auto texels = s.read<std::uint8_t>(visibility);
-    if (!texels) {
-      return Failure(std::move(texels.error()));
-    }
+    ALCOVE_TRY(auto texels, s.read<std::uint8_t>(visibility));
     result.visibility = Image<float>(visibility.width, visibility.height);
-    std::ranges::transform(*texels, result.visibility.pixels.begin(),
+    std::ranges::transform(texels, result.visibility.pixels.begin(),
                            [](std::uint8_t texel) { return static_cast<float>(texel) / 255.0f; });
   }
   ++s.next_id;
   if (submit_late) {
     // Memory of a slot that is recorded too early may be freed too early.
-    if (auto made = s.create_context(); !made) {
-      return Failure(std::move(made.error()));
-    }
+    ALCOVE_TRY_VOID(s.create_context());
   } else {
-    for (const std::uint32_t id : ids) {
-      alcoveDropView(context, id);
-    }
+    for (const std::uint32_t id : ids) alcoveDropView(context, id);
   }
   return result;
 }

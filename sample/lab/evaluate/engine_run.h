@@ -4,13 +4,13 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 
 #include "alcove/alcove.h"
 #include "gpu/gpu.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -68,8 +68,9 @@ struct EngineResult {
 class EngineRun {
  public:
   // `gpu` and `scene` must outlive the object.
-  [[nodiscard]] static tl::expected<std::unique_ptr<EngineRun>, std::string> create(
-      Gpu& gpu, const Scene& scene, const Camera& camera, const EngineCourse& course);
+  [[nodiscard]] static Result<std::unique_ptr<EngineRun>> create(Gpu& gpu, const Scene& scene,
+                                                                 const Camera& camera,
+                                                                 const EngineCourse& course);
   ~EngineRun();
   EngineRun(const EngineRun&) = delete;
   EngineRun& operator=(const EngineRun&) = delete;
@@ -77,9 +78,8 @@ class EngineRun {
   // Records the frames from 0 to `frames` as a new view. `change`, if it is given, changes them
   // from the frame `begin` on. If `submit_late` is true, each of these is submitted after the next
   // one was recorded.
-  [[nodiscard]] tl::expected<EngineResult, std::string> draw(const ChangeFrame& change = {},
-                                                             std::uint32_t begin = 0,
-                                                             bool submit_late = false);
+  [[nodiscard]] Result<EngineResult> draw(const ChangeFrame& change = {}, std::uint32_t begin = 0,
+                                          bool submit_late = false);
 
  private:
   struct State;

@@ -21,28 +21,6 @@ double mean_squared_error(const Image<float>& image, const Image<float>& truth, 
   return rmse * rmse;
 }
 
-// The view with a border of half its width and height on each side. Its middle has the same pixels.
-StaticSetup widened(StaticSetup setup) {
-  const glm::vec2 size(setup.width, setup.height);
-  setup.width += 2 * (setup.width / 2);
-  setup.height += 2 * (setup.height / 2);
-  const glm::vec2 scale = glm::vec2(setup.width, setup.height) / size;
-  Camera& camera = setup.camera;
-  camera.fov_y = 2.0f * std::atan(scale.y * std::tan(0.5f * camera.fov_y));
-  camera.ortho_height *= scale.y;
-  camera.offset_ndc /= scale;
-  return setup;
-}
-
-// The image of widened() without the border.
-Image<float> middle_of(const Image<float>& wide, std::uint32_t width, std::uint32_t height) {
-  Image<float> middle(width, height);
-  for (std::uint32_t y = 0; y < height; ++y) {
-    std::copy_n(&wide.at(width / 2, y + height / 2), width, &middle.at(0, y));
-  }
-  return middle;
-}
-
 // The error's limit for the given model of occluders: nothing is interpolated, and samples are
 // many.
 OcclusionSettings sampled_fully(OcclusionSettings settings) {
@@ -62,15 +40,11 @@ class Splitter {
   Splitter(Gpu& gpu, const Scene& scene, const Image<float>& truth, const Mask& surfaces)
       : gpu_(gpu), scene_(scene), truth_(truth), surfaces_(surfaces) {}
 
-  tl::expected<ErrorSplit, std::string> split(const StaticSetup& setup,
-                                              const OcclusionSettings& settings);
+  Result<ErrorSplit> split(const StaticSetup& setup, const OcclusionSettings& settings);
 
  private:
-  using Done = tl::expected<void, std::string>;
-  using Picture = tl::expected<Image<float>, std::string>;
-
-  Picture draw(const StaticSetup& setup, const OcclusionSettings& settings);
-  Done add_noise(const StaticSetup& setup, const OcclusionSettings& settings);
+  Result<Image<float>> draw(const StaticSetup& setup, const OcclusionSettings& settings);
+  Result<void> add_noise(const StaticSetup& setup, const OcclusionSettings& settings);
   // Adds a cause whose remedy changes the current visibility to `after`. Returns whether it lowers
   // the error.
   bool add(const char* key, const char* name, Image<float> after);
@@ -87,34 +61,28 @@ class Splitter {
   Progress progress_ = print_progress("causes of the error");
 };
 
-Splitter::Picture Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings) {
-  constexpr int kDrawings = 6;
+Result<Image<float>> Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings) {
+  constexpr int kDrawings = 5;
   progress_(static_cast<double>(drawn_++) / kDrawings);
   return draw_static(gpu_, scene_, setup, settings).map([](FrameImages images) {
     return std::move(images.visibility);
   });
 }
 
-Splitter::Done Splitter::add_noise(const StaticSetup& setup, const OcclusionSettings& settings) {
-  const Picture own = draw(setup, settings);
-  if (!own) {
-    return Failure(own.error());
-  }
+Result<void> Splitter::add_noise(const StaticSetup& setup, const OcclusionSettings& settings) {
+  ALCOVE_TRY(const Image<float> own, draw(setup, settings));
   StaticSetup other_setup = setup;
   other_setup.first_frame += 1001;  // any odd number of frames later
-  Picture other = draw(other_setup, settings);
-  if (!other) {
-    return Failure(std::move(other.error()));
-  }
-  const double noise = 0.5 * mean_squared_error(*own, *other, surfaces_);
-  whole_error_ = std::max(mean_squared_error(*own, truth_, surfaces_), 1e-12);
+  ALCOVE_TRY(Image<float> other, draw(other_setup, settings));
+  const double noise = 0.5 * mean_squared_error(own, other, surfaces_);
+  whole_error_ = std::max(mean_squared_error(own, truth_, surfaces_), 1e-12);
   split_.rmse = std::sqrt(whole_error_);
   current_error_ = whole_error_ - noise;
-  current_ = std::move(*other);
+  current_ = std::move(other);
   for (std::size_t i = 0; i < current_.pixels.size(); ++i) {
-    current_.pixels[i] = 0.5f * (current_.pixels[i] + own->pixels[i]);
+    current_.pixels[i] = 0.5f * (current_.pixels[i] + own.pixels[i]);
   }
-  split_.causes.push_back({"noise", "noise", noise / whole_error_, *own, current_});
+  split_.causes.push_back({"noise", "noise", noise / whole_error_, own, current_});
   return {};
 }
 
@@ -129,57 +97,40 @@ bool Splitter::add(const char* key, const char* name, Image<float> after) {
   return lowers;
 }
 
-tl::expected<ErrorSplit, std::string> Splitter::split(const StaticSetup& setup,
-                                                      const OcclusionSettings& settings) {
-  if (auto added = add_noise(setup, settings); !added) {
-    return Failure(std::move(added.error()));
-  }
+Result<ErrorSplit> Splitter::split(const StaticSetup& setup, const OcclusionSettings& settings) {
+  ALCOVE_TRY_VOID(add_noise(setup, settings));
   StaticSetup averaged = setup;
   averaged.frames = kAveragedFrames;
   OcclusionSettings best = sampled_fully(settings);
   const auto try_settings = [&](const char* key, const char* name,
-                                const OcclusionSettings& changed) -> Done {
+                                const OcclusionSettings& changed) -> Result<void> {
     if (!passes::validate(changed)) {  // an estimator without thickness
       split_.causes.push_back({key, name, 0.0, current_, current_});
       return {};
     }
-    Picture drawn = draw(averaged, changed);
-    if (!drawn) {
-      return Failure(std::move(drawn.error()));
-    }
-    best = add(key, name, std::move(*drawn)) ? changed : best;
+    ALCOVE_TRY(Image<float> drawn, draw(averaged, changed));
+    best = add(key, name, std::move(drawn)) ? changed : best;
     return {};
   };
-  if (auto tried = try_settings("sampling", "filter, tiles and few steps", best); !tried) {
-    return Failure(std::move(tried.error()));
-  }
+  ALCOVE_TRY_VOID(try_settings("sampling", "filter, tiles and few steps", best));
   OcclusionSettings layers = best;
   layers.depth_layers = 2;
-  if (auto tried = try_settings("layer", "hidden surfaces, which a second layer shows", layers);
-      !tried) {
-    return Failure(std::move(tried.error()));
-  }
+  ALCOVE_TRY_VOID(try_settings("layer", "hidden surfaces, which a second layer shows", layers));
   OcclusionSettings back_faces = best;
   back_faces.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
-  if (auto tried = try_settings("back_faces", "thickness, which back faces tell", back_faces);
-      !tried) {
-    return Failure(std::move(tried.error()));
-  }
-  const Picture wide = draw(widened(averaged), best);
-  if (!wide) {
-    return Failure(wide.error());
-  }
-  add("outside", "occluders outside the image", middle_of(*wide, setup.width, setup.height));
+  ALCOVE_TRY_VOID(try_settings("back_faces", "thickness, which back faces tell", back_faces));
+  ALCOVE_TRY(auto wide, draw_with_guard_band(gpu_, scene_, averaged, best,
+                                             {setup.width / 2, setup.height / 2}));
+  add("outside", "occluders outside the image", std::move(wide));
   split_.causes.push_back({"rest", "the rest", current_error_ / whole_error_, current_, truth_});
   return std::move(split_);
 }
 
 }  // namespace
 
-tl::expected<ErrorSplit, std::string> split_error(Gpu& gpu, const Scene& scene,
-                                                  const StaticSetup& setup,
-                                                  const OcclusionSettings& settings,
-                                                  const Image<float>& truth, const Mask& surfaces) {
+Result<ErrorSplit> split_error(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                               const OcclusionSettings& settings, const Image<float>& truth,
+                               const Mask& surfaces) {
   return Splitter(gpu, scene, truth, surfaces).split(setup, settings);
 }
 
@@ -204,13 +155,9 @@ Image<glm::vec3> picture_of(const ErrorCause& cause) {
   return error_colours(cause.before, cause.after);
 }
 
-tl::expected<void, std::string> write_pictures(const ErrorSplit& split,
-                                               const std::filesystem::path& folder) {
+Result<void> write_pictures(const ErrorSplit& split, const std::filesystem::path& folder) {
   for (const ErrorCause& cause : split.causes) {
-    if (auto written = write_png(folder / ("split_" + cause.key + ".png"), picture_of(cause));
-        !written) {
-      return written;
-    }
+    ALCOVE_TRY_VOID(write_png(folder / ("split_" + cause.key + ".png"), picture_of(cause)));
   }
   return {};
 }

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
@@ -13,6 +12,7 @@
 #include "scene/scene.h"
 #include "support/glm.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -40,9 +40,9 @@ struct ErrorSplit {
 // slices of at least 16 steps in each pixel without filter, averaged over 8 frames; the same with a
 // second depth layer; with back faces; and as the middle of an image of twice the width and height.
 // Errors: the settings do not allow a remedy, or a rendering fails.
-[[nodiscard]] tl::expected<ErrorSplit, std::string> split_error(
-    Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-    const passes::OcclusionSettings& settings, const Image<float>& truth, const Mask& surfaces);
+[[nodiscard]] Result<ErrorSplit> split_error(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                                             const passes::OcclusionSettings& settings,
+                                             const Image<float>& truth, const Mask& surfaces);
 
 // A line for each cause.
 [[nodiscard]] std::string table_of(const ErrorSplit& split);
@@ -52,7 +52,7 @@ struct ErrorSplit {
 // changes of all remedies that lower the error add up to the error.
 [[nodiscard]] Image<glm::vec3> picture_of(const ErrorCause& cause);
 // Writes the picture of each cause as split_*.png.
-[[nodiscard]] tl::expected<void, std::string> write_pictures(const ErrorSplit& split,
-                                                             const std::filesystem::path& folder);
+[[nodiscard]] Result<void> write_pictures(const ErrorSplit& split,
+                                          const std::filesystem::path& folder);
 
 }  // namespace alcove::sample

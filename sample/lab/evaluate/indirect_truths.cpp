@@ -85,24 +85,12 @@ class CachedTracer {
     const std::uint32_t width = points_.normal_ws.width;
     const std::uint32_t height = points_.normal_ws.height;
     LitTruth truth{{width, height}, {width, height}, {width, height}, {width, height}};
-    const std::array<std::pair<const char*, Image<glm::vec3>*>, 4> parts{
-        {{"diffuse", &truth.diffuse},
-         {"specular", &truth.specular},
-         {"diffuse noise", &truth.diffuse_noise},
-         {"specular noise", &truth.specular_noise}}};
-    const auto key_of = [&](const char* part) {
-      CacheKey own = key;
-      own.add(part);
-      return own;
-    };
-    if (!std::ranges::all_of(parts, [&](const auto& part) {
-          return cache_.read(key_of(part.first), *part.second);
-        })) {
+    if (!cache_.read_all(key, truth.diffuse, truth.specular, truth.diffuse_noise,
+                         truth.specular_noise)) {
       truth = lit_truth(rays_, points_, materials, viewer_of(rendering_.camera),
                         rendering_.light.environment, settings_, print_progress("lit truth"));
-      for (const auto& [name, image] : parts) {
-        cache_.write(key_of(name), *image);
-      }
+      cache_.write_all(key, truth.diffuse, truth.specular, truth.diffuse_noise,
+                       truth.specular_noise);
     }
     return truth;
   }
@@ -120,9 +108,7 @@ class CachedTracer {
 
 std::vector<Image<float>> roughness_images(const Rendering& rendering) {
   const Image<float>& materials = rendering.images.roughness;
-  if (rendering.light.roughness.empty()) {
-    return {materials};
-  }
+  if (rendering.light.roughness.empty()) return {materials};
   std::vector<Image<float>> images;
   for (const float roughness : rendering.light.roughness) {
     images.emplace_back(materials.width, materials.height, roughness);
@@ -130,30 +116,22 @@ std::vector<Image<float>> roughness_images(const Rendering& rendering) {
   return images;
 }
 
-tl::expected<IndirectTruths, std::string> indirect_truths_of(const Rendering& rendering,
-                                                             const TruthOptions& options) {
-  const auto rays = RayScene::create(rendering.scene);
-  if (!rays) {
-    return tl::unexpected(rays.error());
-  }
+Result<IndirectTruths> indirect_truths_of(const Rendering& rendering, const TruthOptions& options) {
+  ALCOVE_TRY(const auto rays, RayScene::create(rendering.scene));
   const Image<float> depth = linear_depth(rendering);
   IndirectTruths truths;
   truths.block = block_size(depth, options.indirect_points);
   truths.sampled = choose_pixels(depth, truths.block);
-  truths.points = surface_points(*rays, rendering.camera, rendering.images.normal_ws, depth);
+  truths.points = surface_points(rays, rendering.camera, rendering.images.normal_ws, depth);
   for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {
-    if (truths.sampled.pixels[i] == 0) {
-      truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
-    }
+    if (truths.sampled.pixels[i] == 0) truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
   }
-  const CachedTracer tracer(rendering, options, *rays, truths.points);
+  const CachedTracer tracer(rendering, options, rays, truths.points);
   truths.interreflection = tracer.interreflection();
   for (const Image<float>& roughness : roughness_images(rendering)) {
     truths.specular.push_back(tracer.specular(roughness));
   }
-  if (rendering.light.lit_steps) {
-    truths.lit = tracer.lit(roughness_images(rendering).front());
-  }
+  if (rendering.light.lit_steps) truths.lit = tracer.lit(roughness_images(rendering).front());
   return truths;
 }
 

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "evaluate/truths.h"
@@ -10,6 +9,7 @@
 #include "reference/truth.h"
 #include "render/rendering.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -28,7 +28,7 @@ struct IndirectTruths {
 [[nodiscard]] std::vector<Image<float>> roughness_images(const Rendering& rendering);
 
 // Computes them, or takes them from the cache on disk. Progress on stderr.
-[[nodiscard]] tl::expected<IndirectTruths, std::string> indirect_truths_of(
-    const Rendering& rendering, const TruthOptions& options);
+[[nodiscard]] Result<IndirectTruths> indirect_truths_of(const Rendering& rendering,
+                                                        const TruthOptions& options);
 
 }  // namespace alcove::sample

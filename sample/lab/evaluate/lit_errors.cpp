@@ -15,9 +15,7 @@ namespace {
 
 Image<glm::vec3> sum(const Image<glm::vec3>& a, const Image<glm::vec3>& b) {
   Image<glm::vec3> result = a;
-  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
-    result.pixels[i] += b.pixels[i];
-  }
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] += b.pixels[i];
   return result;
 }
 
@@ -28,9 +26,7 @@ double mean_over(const Mask& mask, const Image<glm::vec3>& image, const Value& v
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
     if (mask.pixels[i] != 0) {
-      for (int c = 0; c < 3; ++c) {
-        total += value(double{image.pixels[i][c]});
-      }
+      for (int c = 0; c < 3; ++c) total += value(double{image.pixels[i][c]});
       count += 3;
     }
   }
@@ -57,9 +53,7 @@ Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths
 void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
            Image<glm::vec3>& canvas) {
   for (std::uint32_t y = 0; y < tile.height; ++y) {
-    for (std::uint32_t x = 0; x < tile.width; ++x) {
-      canvas.at(left + x, top + y) = tile.at(x, y);
-    }
+    for (std::uint32_t x = 0; x < tile.width; ++x) canvas.at(left + x, top + y) = tile.at(x, y);
   }
 }
 
@@ -117,9 +111,7 @@ nlohmann::ordered_json to_json(const LitErrors& errors) {
   const auto add = [](const LitStep& step) {
     return nlohmann::ordered_json{{"rmse", step.rmse}, {"bias", step.bias}};
   };
-  for (const LitStep& step : errors.steps) {
-    json["steps"][step.name] = add(step);
-  }
+  for (const LitStep& step : errors.steps) json["steps"][step.name] = add(step);
   json["visibility_alone"] = add(errors.visibility_only);
   json["diffuse"] = add(errors.diffuse);
   json["specular"] = add(errors.specular);
@@ -133,15 +125,12 @@ std::string lit_error_table(const LitErrors& errors) {
       errors.pixels, errors.mean_radiance, errors.noise);
   std::vector<LitStep> steps = errors.steps;
   steps.insert(steps.end(), {errors.visibility_only, errors.diffuse, errors.specular});
-  for (const LitStep& step : steps) {
-    text += error_row(step.name, step.rmse, step.bias);
-  }
+  for (const LitStep& step : steps) text += error_row(step.name, step.rmse, step.bias);
   return text;
 }
 
-tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
-                                                const IndirectTruths& light,
-                                                const std::filesystem::path& folder) {
+Result<void> write_lit_steps(const Rendering& rendering, const IndirectTruths& light,
+                             const std::filesystem::path& folder) {
   const LitImages& images = rendering.images.lit;
   const float exposure = exposure_of(rendering.light.environment);
   const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
@@ -166,15 +155,13 @@ tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
     paste(tiles[i], i % kColumns * width, i / kColumns * height, canvas);
   }
-  return write_png(folder / "lit_steps.png", canvas)
-      .and_then([&] { return write_png(folder / "truth_lit.png", tiles[kTruth]); })
-      .and_then([&] {
-        Image<glm::vec3> comparison(width * 3 - 2, tiles[0].height, glm::vec3(1.0f));
-        paste(tiles[0], 0, 0, comparison);
-        paste(tiles[3], width, 0, comparison);
-        paste(tiles[kTruth], 2 * width, 0, comparison);
-        return write_png(folder / "lit_comparison.png", comparison);
-      });
+  ALCOVE_TRY_VOID(write_png(folder / "lit_steps.png", canvas));
+  ALCOVE_TRY_VOID(write_png(folder / "truth_lit.png", tiles[kTruth]));
+  Image<glm::vec3> comparison(width * 3 - 2, tiles[0].height, glm::vec3(1.0f));
+  paste(tiles[0], 0, 0, comparison);
+  paste(tiles[3], width, 0, comparison);
+  paste(tiles[kTruth], 2 * width, 0, comparison);
+  return write_png(folder / "lit_comparison.png", comparison);
 }
 
 }  // namespace alcove::sample

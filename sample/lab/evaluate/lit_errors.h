@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "evaluate/errors.h"
 #include "evaluate/indirect_truths.h"
 #include "render/rendering.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -38,8 +38,7 @@ struct LitErrors {
 // truth, and the error of the last step (grey for none). Also writes truth_lit.png, the truth
 // alone, and lit_comparison.png: without occlusion, the last step and the truth. The images have
 // one pixel for each block of pixels (IndirectTruths::block).
-[[nodiscard]] tl::expected<void, std::string> write_lit_steps(const Rendering& rendering,
-                                                              const IndirectTruths& light,
-                                                              const std::filesystem::path& folder);
+[[nodiscard]] Result<void> write_lit_steps(const Rendering& rendering, const IndirectTruths& light,
+                                           const std::filesystem::path& folder);
 
 }  // namespace alcove::sample

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "evaluate/situations.h"
-#include "evaluate/variant_errors.h"
+#include "evaluate/variant.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 
@@ -32,18 +32,15 @@ std::string title_of(Clock clock) {
 }
 
 // The point of a variant. `times` is null unless they are modelled.
-tl::expected<TradePoint, std::string> point_of(const VariantErrors& errors, const BaseTimes& base,
-                                               Clock clock, const ModelledTimes* times) {
+Result<TradePoint> point_of(const VariantErrors& errors, const FrameTimes& base, Clock clock,
+                            const ModelledTimes* times) {
   TradePoint point{errors.variant.name, errors.variant.settings, errors.scene.rmse,
                    errors.height_field.rmse};
   point.processor_ms = errors.cost.processor * base.processor_ms;
   point.bytes = errors.cost.bytes;
   if (clock == Clock::modelled) {
-    const auto ms = times->measure(point.settings);
-    if (!ms) {
-      return Failure(ms.error());
-    }
-    point.time_ms = (*ms)[static_cast<std::size_t>(Situation::moving)];
+    ALCOVE_TRY(const auto ms, times->measure(point.settings));
+    point.time_ms = ms[static_cast<std::size_t>(Situation::moving)];
   } else if (clock == Clock::timestamps) {
     point.time_ms = errors.cost.gpu * base.gpu_ms;
     point.spread_ms = errors.cost.gpu_spread * base.gpu_ms;
@@ -64,10 +61,9 @@ bool can_store_half_resolution(VkPhysicalDevice device) {
 
 }  // namespace
 
-tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
-                                                       const StaticSetup& setup,
-                                                       const TruthOptions& truth_options,
-                                                       std::optional<Clock> wanted) {
+Result<MeasuredTrade> measure_trade(const Session& session, const StaticSetup& setup,
+                                    const TruthOptions& truth_options,
+                                    std::optional<Clock> wanted) {
   std::vector<Variant> variants = preset_sweep(session.settings);
   MeasuredTrade trade;
   const VulkanDevice& device = session.gpu->device();
@@ -84,36 +80,25 @@ tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
     own_name = own->name;
     variants.erase(own);
   }
-  const auto clock = choose_clock(device.properties(), kModelledPart, wanted);
-  if (!clock) {
-    return Failure(clock.error());
-  }
-  trade.clock = *clock;
-  trade.clock_title = title_of(*clock);
+  ALCOVE_TRY(const auto clock, choose_clock(device.properties(), kModelledPart, wanted));
+  trade.clock = clock;
+  trade.clock_title = title_of(clock);
   std::optional<ModelledTimes> times;
-  if (*clock == Clock::modelled) {
-    auto created = ModelledTimes::create(kModelledPart,
-                                         {.width = setup.width,
-                                          .height = setup.height,
-                                          .normals = setup.normals != NormalSource::depth},
-                                         truth_options.use_cache);
-    if (!created) {
-      return Failure(std::move(created.error()));
-    }
-    times = std::move(*created);
+  if (clock == Clock::modelled) {
+    ALCOVE_TRY(auto created,
+               ModelledTimes::create(kModelledPart,
+                                     {.width = setup.width,
+                                      .height = setup.height,
+                                      .normals = setup.normals != NormalSource::depth},
+                                     truth_options.use_cache));
+    times = std::move(created);
   }
-  const auto report =
-      run_variants(session, setup, truth_options, variants, "trade",
-                   trade.clock == Clock::modelled ? kInformativePairs : kDecidingPairs);
-  if (!report) {
-    return tl::unexpected(report.error());
-  }
-  for (const VariantErrors& errors : report->rows) {
-    auto point = point_of(errors, report->base_times, *clock, times ? &*times : nullptr);
-    if (!point) {
-      return Failure(std::move(point.error()));
-    }
-    trade.points.push_back(std::move(*point));
+  ALCOVE_TRY(const auto report,
+             run_variants(session, setup, truth_options, variants, "trade",
+                          trade.clock == Clock::modelled ? kInformativePairs : kDecidingPairs));
+  for (const VariantErrors& errors : report.rows) {
+    ALCOVE_TRY(auto point, point_of(errors, report.base_times, clock, times ? &*times : nullptr));
+    trade.points.push_back(std::move(point));
   }
   trade.points.front().name = own_name;
   if (!std::ranges::all_of(trade.points, [](const TradePoint& p) { return p.time_ms > 0; })) {
@@ -123,16 +108,12 @@ tl::expected<MeasuredTrade, std::string> measure_trade(const Session& session,
   return trade;
 }
 
-tl::expected<std::vector<double>, std::string> measure_grid(const Session& session,
-                                                            const StaticSetup& setup,
-                                                            const TruthOptions& truth_options) {
-  const auto report =
-      run_variants(session, setup, truth_options, sampling_grid(session.settings), "grid", 0);
-  if (!report) {
-    return Failure(report.error());
-  }
+Result<std::vector<double>> measure_grid(const Session& session, const StaticSetup& setup,
+                                         const TruthOptions& truth_options) {
+  ALCOVE_TRY(const auto report, run_variants(session, setup, truth_options,
+                                             sampling_grid(session.settings), "grid", 0));
   std::vector<double> rmse;
-  for (auto row = report->rows.begin() + 1; row != report->rows.end(); ++row) {
+  for (auto row = report.rows.begin() + 1; row != report.rows.end(); ++row) {
     rmse.push_back(row->scene.rmse);
   }
   return rmse;

@@ -3,13 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "evaluate/trade.h"
 #include "evaluate/truths.h"
 #include "evaluate/variant.h"
 #include "render/session.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -25,13 +25,14 @@ struct MeasuredTrade {
 // truths. choose_clock() says by which clock; modelled times are those of an RDNA2 part. Leaves out
 // half resolution if the device cannot store its format. Errors: `clock` is `modelled` and the
 // driver is not installed, or a rendering fails.
-[[nodiscard]] tl::expected<MeasuredTrade, std::string> measure_trade(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
-    std::optional<Clock> clock);
+[[nodiscard]] Result<MeasuredTrade> measure_trade(const Session& session, const StaticSetup& setup,
+                                                  const TruthOptions& truth_options,
+                                                  std::optional<Clock> clock);
 
 // The errors of sampling_grid() against scene truth, in its order. Nothing is timed.
-[[nodiscard]] tl::expected<std::vector<double>, std::string> measure_grid(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options);
+[[nodiscard]] Result<std::vector<double>> measure_grid(const Session& session,
+                                                       const StaticSetup& setup,
+                                                       const TruthOptions& truth_options);
 [[nodiscard]] std::string grid_table(const std::vector<double>& rmse);
 
 // A line for each point; points on the Pareto front are marked.

@@ -66,9 +66,7 @@ void change_view_matrices(F& frame, const Change& change) {
 
 void transpose(float* matrix, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      std::swap(matrix[4 * i + k], matrix[4 * k + i]);
-    }
+    for (std::size_t k = 0; k < i; ++k) std::swap(matrix[4 * i + k], matrix[4 * k + i]);
   }
 }
 
@@ -352,7 +350,7 @@ std::vector<RightCourse> right_courses(const EngineCourse& base) {
   return courses;
 }
 
-tl::expected<std::string, std::string> said_of_right_frames(EngineRun& run) {
+Result<std::string> said_of_right_frames(EngineRun& run) {
   const ChangeFrame ways[] = {{},
                               [](F& f) { scale_motion(f, 1.0f, 1.0f); },
                               [](F& f) { f.view.normals = {}; },
@@ -362,18 +360,14 @@ tl::expected<std::string, std::string> said_of_right_frames(EngineRun& run) {
                               }};
   std::string said;
   for (const ChangeFrame& way : ways) {
-    auto drawn = run.draw(way);
-    if (!drawn) {
-      return Failure(std::move(drawn.error()));
-    }
-    said += drawn->said;
+    ALCOVE_TRY(auto drawn, run.draw(way));
+    said += drawn.said;
   }
   return said;
 }
 
-tl::expected<MistakeRun, std::string> MistakeRun::create(Gpu& gpu, const Scene& scene,
-                                                         const Camera& camera,
-                                                         EngineCourse course) {
+Result<MistakeRun> MistakeRun::create(Gpu& gpu, const Scene& scene, const Camera& camera,
+                                      EngineCourse course) {
   course.orbit = 0.02f;
   course.jitter = true;
   course.other_inputs = true;
@@ -386,20 +380,17 @@ tl::expected<MistakeRun, std::string> MistakeRun::create(Gpu& gpu, const Scene& 
   from.reversed_z = true;
   from.far_plane = std::numeric_limits<float>::infinity();
   auto reversed = EngineRun::create(gpu, scene, from, course);
-  if (!plain || !reversed) {
-    return Failure(plain ? reversed.error() : plain.error());
-  }
+  if (!plain || !reversed) return Failure(plain ? reversed.error() : plain.error());
   result.plain_ = std::move(*plain);
   result.reversed_ = std::move(*reversed);
   return result;
 }
 
-tl::expected<EngineResult, std::string> MistakeRun::draw(const PlantedMistake& mistake,
-                                                         std::uint32_t begin) {
+Result<EngineResult> MistakeRun::draw(const PlantedMistake& mistake, std::uint32_t begin) {
   return (mistake.reversed ? reversed_ : plain_)->draw(mistake.plant, begin, !mistake.plant);
 }
 
-tl::expected<EngineResult, std::string> MistakeRun::draw_right(bool reversed) {
+Result<EngineResult> MistakeRun::draw_right(bool reversed) {
   return (reversed ? reversed_ : plain_)->draw();
 }
 

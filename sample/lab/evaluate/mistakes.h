@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "evaluate/engine_run.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -30,20 +30,18 @@ struct RightCourse {
 
 // Returns what alcoveDiagnose says of frames without a mistake: as they are, with motion vectors,
 // without normals, and with dynamic resolution. It should be nothing.
-[[nodiscard]] tl::expected<std::string, std::string> said_of_right_frames(EngineRun& run);
+[[nodiscard]] Result<std::string> said_of_right_frames(EngineRun& run);
 
 // Draws frames without and with mistakes, of a camera that moves and has jitter.
 class MistakeRun {
  public:
   // `course` has the size and the radius, and says when the size changes.
-  [[nodiscard]] static tl::expected<MistakeRun, std::string> create(Gpu& gpu, const Scene& scene,
-                                                                    const Camera& camera,
-                                                                    EngineCourse course);
+  [[nodiscard]] static Result<MistakeRun> create(Gpu& gpu, const Scene& scene, const Camera& camera,
+                                                 EngineCourse course);
 
   // Makes a mistake from the frame `begin` on.
-  [[nodiscard]] tl::expected<EngineResult, std::string> draw(const PlantedMistake& mistake,
-                                                             std::uint32_t begin);
-  [[nodiscard]] tl::expected<EngineResult, std::string> draw_right(bool reversed);
+  [[nodiscard]] Result<EngineResult> draw(const PlantedMistake& mistake, std::uint32_t begin);
+  [[nodiscard]] Result<EngineResult> draw_right(bool reversed);
 
  private:
   std::unique_ptr<EngineRun> plain_;

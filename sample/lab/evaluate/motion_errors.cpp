@@ -70,9 +70,7 @@ constexpr glm::vec2 kNowhere(-1e6f);
 
 glm::vec2 project(const Eye& eye, const glm::vec3& position_ws) {
   const glm::vec4 clip = eye.matrices.clip_from_world * glm::vec4(position_ws, 1.0f);
-  if (!(clip.w > 1e-6f)) {
-    return kNowhere;
-  }
+  if (!(clip.w > 1e-6f)) return kNowhere;
   const glm::vec2 px = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) *
                        glm::vec2(static_cast<float>(eye.width), static_cast<float>(eye.height));
   // Positions are clamped to a little outside the image, so that their coordinates fit an integer.
@@ -86,9 +84,7 @@ std::uint8_t same_surface(const Eye& eye, const RenderedFrame& before, glm::vec2
   std::uint8_t found = 0;
   for (int i = 0; i < 4; ++i) {
     const std::int64_t index = texels.index(i, before.depth);
-    if (index < 0 || !std::isfinite(before.depth.pixels[static_cast<std::size_t>(index)])) {
-      continue;
-    }
+    if (index < 0 || !std::isfinite(before.depth.pixels[static_cast<std::size_t>(index)])) continue;
     const float depth = before.depth.pixels[static_cast<std::size_t>(index)];
     const glm::vec3 there =
         eye.position(static_cast<std::uint32_t>(index % before.depth.width),
@@ -137,9 +133,7 @@ Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
   parallel_rows(now.depth.height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < now.depth.width; ++x) {
       const float depth = now.depth.at(x, y);
-      if (!std::isfinite(depth)) {
-        continue;
-      }
+      if (!std::isfinite(depth)) continue;
       const glm::vec3 position = eye.position(x, y, depth);
       // The normal is reprojected as the difference of two points, because `position_before` moves
       // points. They are close together, so that both belong to one object.
@@ -228,9 +222,7 @@ Speed speed_of(const Reprojection& reprojection) {
   std::vector<float> speeds;
   RunningMean mean;
   for (std::size_t i = 0; i < reprojection.texels.pixels.size(); ++i) {
-    if (reprojection.texels.pixels[i] == 0) {
-      continue;
-    }
+    if (reprojection.texels.pixels[i] == 0) continue;
     const auto width = static_cast<std::size_t>(reprojection.texels.width);
     const std::size_t row = i / width;
     const glm::vec2 here(static_cast<float>(i - row * width) + 0.5f,
@@ -256,9 +248,7 @@ RunningMean squared_error(const Image<float>& result, const SplitTruth<float>& t
                           const Mask& mask) {
   RunningMean squares;
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
-    if (mask.pixels[i] == 0) {
-      continue;
-    }
+    if (mask.pixels[i] == 0) continue;
     const double first = truth.first.pixels[i];
     const double second = truth.second.pixels[i];
     const double given = result.pixels[i];
@@ -274,9 +264,7 @@ RunningMean squared_error(const Image<glm::vec3>& result, const SplitTruth<glm::
                           const Mask& mask) {
   RunningMean squares;
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
-    if (mask.pixels[i] == 0) {
-      continue;
-    }
+    if (mask.pixels[i] == 0) continue;
     const glm::dvec3 given(result.pixels[i]);
     const double length = glm::length(given);
     const glm::dvec3 first(truth.first.pixels[i]);

@@ -104,17 +104,15 @@ bool is_surface(const GBuffer& view, std::size_t pixel) {
 float median_depth(const GBuffer& view) {
   std::vector<float> depths;
   for (std::size_t i = 0; i < view.material.pixels.size(); ++i) {
-    if (is_surface(view, i)) {
-      depths.push_back(view.depth_vs.pixels[i]);
-    }
+    if (is_surface(view, i)) depths.push_back(view.depth_vs.pixels[i]);
   }
   return median(std::move(depths));
 }
 
 }  // namespace
 
-tl::expected<MotionStart, std::string> motion_start(const RayScene& rays, const Camera& camera,
-                                                    float aspect, float radius) {
+Result<MotionStart> motion_start(const RayScene& rays, const Camera& camera, float aspect,
+                                 float radius) {
   constexpr std::uint32_t kHeight = 45;
   const auto width = static_cast<std::uint32_t>(
       std::clamp(std::round(aspect * static_cast<float>(kHeight)), 1.0f, 1000.0f));
@@ -167,9 +165,7 @@ Camera MotionPath::camera(std::uint32_t frame) const {
     case MotionKind::cut:
       break;
   }
-  if (frame < frames_ / 2) {
-    return start_.camera;
-  }
+  if (frame < frames_ / 2) return start_.camera;
   Camera elsewhere = moved(start_.camera, axes.forward * (kCutStep * start_.depth));
   const glm::mat3 rotation(glm::rotate(glm::mat4(1.0f), kCutAngle, axes.up));
   elsewhere.target_ws = elsewhere.eye_ws + rotation * axes.forward;
@@ -177,9 +173,7 @@ Camera MotionPath::camera(std::uint32_t frame) const {
 }
 
 glm::mat4 MotionPath::world_from_moving(std::uint32_t frame) const {
-  if (kind_ != MotionKind::object) {
-    return glm::mat4(1.0f);
-  }
+  if (kind_ != MotionKind::object) return glm::mat4(1.0f);
   const Axes axes = axes_of(start_.camera);
   const glm::vec3& up = start_.ground_normal_ws;
   // Rightwards along the ground, or upwards if the ground faces right or left.
@@ -199,9 +193,7 @@ std::optional<std::uint32_t> MotionPath::cut() const {
 }
 
 void MotionPath::add_to(Scene& scene) const {
-  if (kind_ != MotionKind::strafe && kind_ != MotionKind::object) {
-    return;
-  }
+  if (kind_ != MotionKind::strafe && kind_ != MotionKind::object) return;
   Mesh mesh = kind_ == MotionKind::strafe ? column_mesh(start_, frames_)
                                           : block_mesh(object_half_width(start_));
   mesh.material = static_cast<std::uint32_t>(scene.materials.size());
@@ -211,9 +203,7 @@ void MotionPath::add_to(Scene& scene) const {
 }
 
 void MotionPath::pose(Scene& scene, std::uint32_t frame) const {
-  if (kind_ != MotionKind::object) {
-    return;
-  }
+  if (kind_ != MotionKind::object) return;
   const glm::mat4 placed = world_from_moving(frame);
   const Mesh at_rest = block_mesh(object_half_width(start_));
   Mesh& mesh = scene.meshes.back();
@@ -225,9 +215,7 @@ void MotionPath::pose(Scene& scene, std::uint32_t frame) const {
 
 bool MotionPath::is_near_object(const glm::vec3& position_ws, std::uint32_t frame,
                                 std::uint32_t frames) const {
-  if (kind_ != MotionKind::object) {
-    return false;
-  }
+  if (kind_ != MotionKind::object) return false;
   const float half = object_half_width(start_);
   for (std::uint32_t i = 0; i <= std::min(frames, frame); ++i) {
     const glm::mat4 placed = world_from_moving(frame - i);
@@ -235,17 +223,13 @@ bool MotionPath::is_near_object(const glm::vec3& position_ws, std::uint32_t fram
     const glm::vec3 offset =
         glm::transpose(glm::mat3(placed)) * (position_ws - glm::vec3(placed[3]));
     const glm::vec3 beyond = glm::max(glm::abs(offset) - half, glm::vec3(0.0f));
-    if (glm::dot(beyond, beyond) < start_.radius * start_.radius) {
-      return true;
-    }
+    if (glm::dot(beyond, beyond) < start_.radius * start_.radius) return true;
   }
   return false;
 }
 
 glm::vec3 MotionPath::position_before(const glm::vec3& position_ws, std::uint32_t frame) const {
-  if (kind_ != MotionKind::object) {
-    return position_ws;
-  }
+  if (kind_ != MotionKind::object) return position_ws;
   const glm::vec4 position(position_ws, 1.0f);
   const glm::vec4 at_rest = glm::inverse(world_from_moving(frame)) * position;
   const float half = 1.02f * object_half_width(start_);

@@ -1,17 +1,39 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
+#include <string_view>
 
-#include "evaluate/motion_kind.h"
 #include "reference/truth.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/glm.h"
+#include "support/result.h"
 
 namespace alcove::sample {
+
+// The camera and object paths that `alcove motion` measures.
+enum class MotionKind : std::uint8_t {
+  orbit,   // The camera orbits a point in the middle of the view at the median surface depth.
+  dolly,   // The camera moves towards that point.
+  strafe,  // The camera moves to the right, past a column that is added near the eye.
+  object,  // The camera is static and an added object slides over the ground.
+  cut,     // The camera is static and jumps to another place in the middle of the path.
+};
+
+inline constexpr std::array kMotionKinds{MotionKind::orbit, MotionKind::dolly, MotionKind::strafe,
+                                         MotionKind::object, MotionKind::cut};
+
+// Names in the order of the enumerators.
+inline constexpr std::array<std::string_view, 5> kMotionKindNames{"orbit", "dolly", "strafe",
+                                                                  "object", "cut"};
+
+constexpr std::string_view name_of(MotionKind kind) {
+  return kMotionKindNames[static_cast<std::size_t>(kind)];
+}
 
 // The view that a path starts from, and the lengths that its steps are proportional to.
 struct MotionStart {
@@ -23,9 +45,8 @@ struct MotionStart {
 };
 // Measures the surfaces in view. `aspect` is width over height. Error: the view shows nothing but
 // sky.
-[[nodiscard]] tl::expected<MotionStart, std::string> motion_start(const RayScene& rays,
-                                                                  const Camera& camera,
-                                                                  float aspect, float radius);
+[[nodiscard]] Result<MotionStart> motion_start(const RayScene& rays, const Camera& camera,
+                                               float aspect, float radius);
 
 // The camera and the moving object in each frame. Steps are proportional to the depth and to the
 // height of the view, and do not depend on the size of the image in pixels. Immutable.

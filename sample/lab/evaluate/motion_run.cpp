@@ -1,17 +1,140 @@
 #include "evaluate/motion_run.h"
 
+#include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <string_view>
 #include <utility>
+
+#include "reference/surface_points.h"
+#include "reference/truth_cache.h"
+#include "render/frame_renderer.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-using Done = tl::expected<void, std::string>;
+// Increment when the computation of a truth changes, so that old cache entries are not used.
+constexpr std::uint32_t kMotionTruthVersion = 3;
 
 constexpr std::uint32_t kCompared = 3;  // frames of a path
+
+// How raw occlusion is filtered: not at all, over neighbouring pixels, or also over frames.
+enum class Filtering : std::uint8_t { none, spatial, spatial_and_temporal };
+
+// The parameters of one rendered frame.
+struct Step {
+  std::uint32_t frame = 0;   // frame of the path whose camera and object positions are used
+  std::uint32_t before = 0;  // frame of the path that was rendered last; motion is relative to it
+  std::uint32_t index = 0;   // frame index that selects the sampling pattern
+  bool restart = false;      // whether the history is discarded
+  Filtering filtering = Filtering::spatial_and_temporal;
+  bool moving = true;  // whether the pass is given motion vectors
+};
+
+// The truth at the surfaces that a frame shows, in two independent halves.
+struct MotionTruth {
+  SplitTruth<float> visibility;
+  SplitTruth<glm::vec3> bent_normal_ws;
+};
+
+// Renders the frames of one path and traces their truths.
+class MotionRenderer {
+ public:
+  static Result<MotionRenderer> create(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                                       const MotionSetup& setup) {
+    MotionRenderer made(path, setup);
+    made.scene_ = std::make_unique<Scene>(scene);
+    path.add_to(*made.scene_);
+    ALCOVE_TRY(made.renderer_, FrameRenderer::create(gpu, *made.scene_, {setup.width, setup.height},
+                                                     setup.normals));
+    return made;
+  }
+
+  Result<RenderedFrame> draw_and_read(const Step& step) {
+    ALCOVE_TRY(auto images, renderer_->draw_and_read(request(step)));
+    const Camera camera = path_.camera(step.frame);
+    return RenderedFrame{camera, linear_depth(camera, images.depth_ndc),
+                         std::move(images.normal_ws), std::move(images.visibility),
+                         std::move(images.bent_normal_ws)};
+  }
+  Result<void> draw(const Step& step) {
+    return renderer_->draw(request(step)).map([](const FrameCost&) {});
+  }
+
+  Result<MotionTruth> truth(std::uint32_t frame, const RenderedFrame& seen);
+
+  const MotionPath& path() const { return path_; }
+  Progress progress(const std::string& name) const {
+    return setup_.progress ? setup_.progress(name) : Progress([](double) {});
+  }
+
+ private:
+  MotionRenderer(const MotionPath& path, const MotionSetup& setup) : path_(path), setup_(setup) {}
+
+  FrameRequest request(const Step& step) const {
+    const auto matrices = [&](std::uint32_t frame) {
+      return camera_matrices(path_.camera(frame), setup_.width, setup_.height);
+    };
+    const CameraMatrices now = matrices(step.frame);
+    const CameraMatrices before = matrices(step.before);
+    FrameRequest request;
+    request.view = {now.view_from_world,
+                    now.clip_from_view,
+                    before.view_from_world,
+                    before.clip_from_view,
+                    path_.camera(step.frame).reversed_z,
+                    path_.world_from_moving(step.frame),
+                    path_.world_from_moving(step.before)};
+    request.index = step.index;
+    request.restart = step.restart;
+    request.motion_vectors = step.moving;
+    request.occlusion = setup_.occlusion;
+    request.occlusion.specular = passes::Specular::none;
+    request.occlusion.bent_normal = true;
+    if (step.filtering != Filtering::spatial_and_temporal) request.occlusion.history_frames = 0;
+    if (step.filtering == Filtering::none) request.occlusion.advanced.filter_radius = 0;
+    return request;
+  }
+
+  MotionPath path_;
+  MotionSetup setup_;
+  std::unique_ptr<Scene> scene_;  // at a fixed address, which renderer_ keeps
+  std::unique_ptr<FrameRenderer> renderer_;
+};
+
+Result<MotionTruth> MotionRenderer::truth(std::uint32_t frame, const RenderedFrame& seen) {
+  path_.pose(*scene_, frame);
+  const TruthCache cache(setup_.cache);
+  const std::uint32_t half = std::max(setup_.spp / 2, 1u);
+  CacheKey key;
+  key.add("motion truth", kMotionTruthVersion, *scene_, seen.camera, setup_.occlusion.radius, half,
+          seen.depth, seen.normal_ws);
+  const Image<float> no_visibility(setup_.width, setup_.height);
+  const Image<glm::vec3> no_directions(setup_.width, setup_.height);
+  MotionTruth truth{{no_visibility, no_visibility}, {no_directions, no_directions}};
+  auto& [visibility, bent_normal_ws] = truth;
+  if (cache.read_all(key, visibility.first, visibility.second, bent_normal_ws.first,
+                     bent_normal_ws.second)) {
+    return truth;
+  }
+  ALCOVE_TRY(const auto rays, RayScene::create(*scene_));
+  const SurfacePoints points = surface_points(rays, seen.camera, seen.normal_ws, seen.depth);
+  const Progress whole = progress(fmt::format("truth of frame {}", frame));
+  const auto trace = [&](std::uint32_t index) {
+    const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + index};
+    return occlusion_truth(rays, points, settings,
+                           [&](double done) { whole(0.5 * (index + done)); });
+  };
+  OcclusionTruth first = trace(0);
+  OcclusionTruth second = trace(1);
+  truth = {{std::move(first.visibility), std::move(second.visibility)},
+           {std::move(first.bent_normal_ws), std::move(second.bent_normal_ws)}};
+  cache.write_all(key, visibility.first, visibility.second, bent_normal_ws.first,
+                  bent_normal_ws.second);
+  return truth;
+}
 
 Mask surfaces_of(const RenderedFrame& seen) {
   return surfaces_where(seen, [](const glm::vec3&) { return true; });
@@ -47,63 +170,48 @@ std::uint32_t first_converged(const MotionPath& path) { return path.frames() / k
 
 bool is_compared(const MotionPath& path, std::uint32_t frame) {
   for (std::uint32_t i = 1; i <= kCompared; ++i) {
-    if (frame + 1 == i * path.frames() / kCompared) {
-      return true;
-    }
+    if (frame + 1 == i * path.frames() / kCompared) return true;
   }
   return false;
 }
 
-// The suffix of a path's name in progress messages.
-std::string_view name_of(MotionRenderer::Filtering filtering) {
-  switch (filtering) {
-    case MotionRenderer::Filtering::none:
-      return " without history and filter";
-    case MotionRenderer::Filtering::spatial:
-      return " without history";
-    case MotionRenderer::Filtering::spatial_and_temporal:
-      break;
-  }
-  return "";
-}
+// The suffixes of a path's name in progress messages.
+constexpr std::array<const char*, 3> kFilteringNames{" without history and filter",
+                                                     " without history", ""};
 
-tl::expected<PathResult, std::string> render_path(MotionRenderer& renderer,
-                                                  MotionRenderer::Filtering filtering) {
-  const bool history = filtering == MotionRenderer::Filtering::spatial_and_temporal;
+Result<PathResult> render_path(MotionRenderer& renderer, Filtering filtering) {
+  const bool history = filtering == Filtering::spatial_and_temporal;
   PathResult passed;
   const MotionPath& path = renderer.path();
-  const Progress progress =
-      renderer.progress(std::string(name_of(path.kind())) + std::string(name_of(filtering)));
+  const Progress progress = renderer.progress(
+      std::string(name_of(path.kind())) + kFilteringNames.at(static_cast<std::size_t>(filtering)));
   // Frames before the first measured one are rendered only if there is a history to fill.
   const std::uint32_t first = history ? 0 : first_converged(path) - 1;
   RenderedFrame before;
   Image<Age> ages;
   for (std::uint32_t frame = first; frame < path.frames(); ++frame) {
-    auto seen = renderer.draw_and_read({.frame = frame,
-                                        .before = frame - (frame > first ? 1 : 0),
-                                        .index = frame,
-                                        .filtering = filtering});
-    if (!seen) {
-      return Failure(std::move(seen.error()));
-    }
+    ALCOVE_TRY(auto seen, renderer.draw_and_read({.frame = frame,
+                                                  .before = frame - (frame > first ? 1 : 0),
+                                                  .index = frame,
+                                                  .filtering = filtering}));
     if (frame == first) {
-      ages = first_ages(*seen);
+      ages = first_ages(seen);
     } else {
-      const Reprojection reprojection = reproject(*seen, before, [&](const glm::vec3& position) {
+      const Reprojection reprojection = reproject(seen, before, [&](const glm::vec3& position) {
         return path.position_before(position, frame);
       });
-      ages = next_ages(*seen, reprojection, ages);
+      ages = next_ages(seen, reprojection, ages);
       if (frame >= first_converged(path)) {
-        passed.change += visibility_change(seen->visibility, before.visibility, reprojection);
+        passed.change += visibility_change(seen.visibility, before.visibility, reprojection);
       }
       const Speed speed = speed_of(reprojection);
       passed.speed += {speed.mean, 1};
       passed.fast += {speed.percentile_95, 1};
       if (history && is_compared(path, frame)) {
-        passed.compared.push_back({frame, *seen, ages, std::move(before), reprojection});
+        passed.compared.push_back({frame, seen, ages, std::move(before), reprojection});
       }
     }
-    before = std::move(*seen);
+    before = std::move(seen);
     progress(static_cast<double>(frame + 1 - first) / (path.frames() - first));
   }
   return passed;
@@ -116,35 +224,25 @@ struct StaticResult {
   RunningMean change;
 };
 
-tl::expected<StaticResult, std::string> render_static(MotionRenderer& renderer,
-                                                      std::uint32_t frame) {
+Result<StaticResult> render_static(MotionRenderer& renderer, std::uint32_t frame) {
   for (std::uint32_t index = 0; index + 1 < frame; ++index) {
-    if (auto drawn =
-            renderer.draw({.frame = frame, .before = frame, .index = index, .moving = false});
-        !drawn) {
-      return Failure(std::move(drawn.error()));
-    }
+    ALCOVE_TRY_VOID(
+        renderer.draw({.frame = frame, .before = frame, .index = index, .moving = false}));
   }
   const auto read = [&](std::uint32_t index) {
     return renderer.draw_and_read(
         {.frame = frame, .before = frame, .index = index, .moving = false});
   };
-  const auto before = read(frame - 1);
-  if (!before) {
-    return Failure(before.error());
-  }
-  auto last = read(frame);
-  if (!last) {
-    return Failure(std::move(last.error()));
-  }
+  ALCOVE_TRY(const auto before, read(frame - 1));
+  ALCOVE_TRY(auto last, read(frame));
   StaticResult standing;
-  for (std::size_t i = 0; i < last->depth.pixels.size(); ++i) {
-    if (std::isfinite(last->depth.pixels[i])) {
-      standing.change += {std::abs(last->visibility.pixels[i] - before->visibility.pixels[i]), 1};
+  for (std::size_t i = 0; i < last.depth.pixels.size(); ++i) {
+    if (std::isfinite(last.depth.pixels[i])) {
+      standing.change += {std::abs(last.visibility.pixels[i] - before.visibility.pixels[i]), 1};
     }
   }
-  standing.visibility = std::move(last->visibility);
-  standing.bent_normal_ws = std::move(last->bent_normal_ws);
+  standing.visibility = std::move(last.visibility);
+  standing.bent_normal_ws = std::move(last.bent_normal_ws);
   return standing;
 }
 
@@ -176,66 +274,52 @@ struct Comparison {
   std::vector<MotionPicture> pictures;
 };
 
-Done compare(MotionRenderer& renderer, const Compared& compared, Comparison& sums) {
-  auto standing = render_static(renderer, compared.frame);
-  if (!standing) {
-    return Failure(std::move(standing.error()));
-  }
-  const auto truth = renderer.truth(compared.frame, compared.seen);
-  if (!truth) {
-    return Failure(truth.error());
-  }
-  const auto truth_before = renderer.truth(compared.frame - 1, compared.before);
-  if (!truth_before) {
-    return Failure(truth_before.error());
-  }
+Result<void> compare(MotionRenderer& renderer, const Compared& compared, Comparison& sums) {
+  ALCOVE_TRY(auto standing, render_static(renderer, compared.frame));
+  ALCOVE_TRY(const auto truth, renderer.truth(compared.frame, compared.seen));
+  ALCOVE_TRY(const auto truth_before, renderer.truth(compared.frame - 1, compared.before));
   const auto is_near_object = [&](const glm::vec3& position) {
     return renderer.path().is_near_object(position, compared.frame, kTrailFrames);
   };
   const RenderedFrame& seen = compared.seen;
   const Mask surfaces = surfaces_of(seen);
   const auto add = [&](SquaresPair& squares, const Mask& mask) {
-    squares.add(seen.visibility, standing->visibility, truth->visibility, mask);
+    squares.add(seen.visibility, standing.visibility, truth.visibility, mask);
   };
   add(sums.all, surfaces);
   add(sums.uncovered, pixels_of_age(compared.ages, true));
   add(sums.entered, pixels_of_age(compared.ages, false));
   add(sums.near_object, surfaces_where(seen, is_near_object));
-  sums.bent_normals.add(seen.bent_normal_ws, standing->bent_normal_ws, truth->bent_normal_ws,
+  sums.bent_normals.add(seen.bent_normal_ws, standing.bent_normal_ws, truth.bent_normal_ws,
                         surfaces);
-  sums.static_change += standing->change;
+  sums.static_change += standing.change;
   sums.truth_change +=
-      change_lower_bound(truth->visibility, truth_before->visibility, compared.reprojection);
-  Image<float> mean_truth = mean_of(truth->visibility);
+      change_lower_bound(truth.visibility, truth_before.visibility, compared.reprojection);
+  Image<float> mean_truth = mean_of(truth.visibility);
   sums.weave += weave_of(seen.visibility, mean_truth, surfaces);
-  sums.static_weave += weave_of(standing->visibility, mean_truth, surfaces);
+  sums.static_weave += weave_of(standing.visibility, mean_truth, surfaces);
   sums.pictures.push_back(
-      {compared.frame, seen.visibility, std::move(standing->visibility), std::move(mean_truth)});
+      {compared.frame, seen.visibility, std::move(standing.visibility), std::move(mean_truth)});
   return {};
 }
 
 // The frames 1, 2, 4, ... after the cut; with `restart` the history is discarded at the cut.
-tl::expected<std::vector<RenderedFrame>, std::string> after_cut(MotionRenderer& renderer,
-                                                                bool restart) {
+Result<std::vector<RenderedFrame>> after_cut(MotionRenderer& renderer, bool restart) {
   const MotionPath& path = renderer.path();
   const std::uint32_t cut = path.cut().value_or(0);
   std::vector<RenderedFrame> seen;
   for (std::uint32_t frame = restart ? cut : 0; frame < path.frames(); ++frame) {
     const std::uint32_t since = frame + 1 - std::min(cut, frame + 1);
-    const MotionRenderer::Step step{
-        .frame = frame,
-        .before = frame == 0 || (restart && frame == cut) ? frame : frame - 1,
-        .index = frame,
-        .restart = restart && frame == cut};
+    const Step step{.frame = frame,
+                    .before = frame == 0 || (restart && frame == cut) ? frame : frame - 1,
+                    .index = frame,
+                    .restart = restart && frame == cut};
     // 1, 2, 4, ...
     if (since > 0 && (since & (since - 1)) == 0) {
-      auto images = renderer.draw_and_read(step);
-      if (!images) {
-        return Failure(std::move(images.error()));
-      }
-      seen.push_back(std::move(*images));
-    } else if (auto drawn = renderer.draw(step); !drawn) {
-      return Failure(std::move(drawn.error()));
+      ALCOVE_TRY(auto images, renderer.draw_and_read(step));
+      seen.push_back(std::move(images));
+    } else {
+      ALCOVE_TRY_VOID(renderer.draw(step));
     }
   }
   return seen;
@@ -243,72 +327,44 @@ tl::expected<std::vector<RenderedFrame>, std::string> after_cut(MotionRenderer& 
 
 }  // namespace
 
-tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
-                                                   const MotionPath& path,
-                                                   const MotionSetup& setup) {
-  auto renderer = MotionRenderer::create(gpu, scene, path, setup);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
-  using Filtering = MotionRenderer::Filtering;
-  const auto passed = render_path(*renderer, Filtering::spatial_and_temporal);
-  if (!passed) {
-    return Failure(passed.error());
-  }
-  const auto unkept = render_path(*renderer, Filtering::spatial);
-  if (!unkept) {
-    return Failure(unkept.error());
-  }
-  const auto unfiltered = render_path(*renderer, Filtering::none);
-  if (!unfiltered) {
-    return Failure(unfiltered.error());
-  }
+Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                                const MotionSetup& setup) {
+  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
+  ALCOVE_TRY(const auto passed, render_path(renderer, Filtering::spatial_and_temporal));
+  ALCOVE_TRY(const auto unkept, render_path(renderer, Filtering::spatial));
+  ALCOVE_TRY(const auto unfiltered, render_path(renderer, Filtering::none));
   Comparison sums;
-  for (const Compared& compared : passed->compared) {
-    if (auto done = compare(*renderer, compared, sums); !done) {
-      return Failure(std::move(done.error()));
-    }
+  for (const Compared& compared : passed.compared) {
+    ALCOVE_TRY_VOID(compare(renderer, compared, sums));
   }
   return MotionReport{
-      .speed = {passed->speed.mean(), passed->fast.mean()},
+      .speed = {passed.speed.mean(), passed.fast.mean()},
       .all = sums.all.errors(),
       .uncovered = sums.uncovered.errors(),
       .entered = sums.entered.errors(),
       .near_object = sums.near_object.errors(),
       .bent_normals = sums.bent_normals.errors(),
-      .flicker = {passed->change.mean(), unkept->change.mean(), unfiltered->change.mean(),
+      .flicker = {passed.change.mean(), unkept.change.mean(), unfiltered.change.mean(),
                   sums.static_change.mean(), sums.truth_change.mean()},
       .weave = sums.weave,
       .static_weave = sums.static_weave,
       .pictures = std::move(sums.pictures)};
 }
 
-tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
-                                             const MotionSetup& setup) {
-  auto renderer = MotionRenderer::create(gpu, scene, path, setup);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
-  auto kept_frames = after_cut(*renderer, false);
-  if (!kept_frames) {
-    return Failure(std::move(kept_frames.error()));
-  }
-  auto restarted_frames = after_cut(*renderer, true);
-  if (!restarted_frames) {
-    return Failure(std::move(restarted_frames.error()));
-  }
+Result<CutReport> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                          const MotionSetup& setup) {
+  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
+  ALCOVE_TRY(auto kept_frames, after_cut(renderer, false));
+  ALCOVE_TRY(auto restarted_frames, after_cut(renderer, true));
   const std::uint32_t cut = path.cut().value_or(0);
-  const auto truth = renderer->truth(cut, kept_frames->front());
-  if (!truth) {
-    return Failure(truth.error());
-  }
+  ALCOVE_TRY(const auto truth, renderer.truth(cut, kept_frames.front()));
   CutReport report;
-  const Mask surfaces = surfaces_of(kept_frames->front());
-  for (std::size_t i = 0; i < kept_frames->size(); ++i) {
-    RenderedFrame& kept = (*kept_frames)[i];
-    RenderedFrame& restarted = (*restarted_frames)[i];
+  const Mask surfaces = surfaces_of(kept_frames.front());
+  for (std::size_t i = 0; i < kept_frames.size(); ++i) {
+    RenderedFrame& kept = kept_frames[i];
+    RenderedFrame& restarted = restarted_frames[i];
     const std::uint32_t frames = 1u << i;
-    const SplitTruth<float>& visibility = truth->visibility;
+    const SplitTruth<float>& visibility = truth.visibility;
     report.after.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
                             root(squared_error(restarted.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),

@@ -1,19 +1,34 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
+#include "alcove/passes/occlusion.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
-#include "evaluate/motion_renderer.h"
 #include "evaluate/weave.h"
 #include "gpu/gpu.h"
+#include "render/normal_source.h"
 #include "scene/scene.h"
 #include "support/image.h"
+#include "support/progress.h"
+#include "support/result.h"
 
 namespace alcove::sample {
+
+// The inputs of a run other than its path.
+struct MotionSetup {
+  passes::OcclusionSettings occlusion;  // with a history
+  NormalSource normals = NormalSource::shading;
+  std::uint32_t width = 960;
+  std::uint32_t height = 540;
+  std::uint32_t spp = 256;                        // rays per pixel of the truth, at least 2
+  std::filesystem::path cache;                    // folder of cached truths; empty: no cache
+  std::function<Progress(std::string)> progress;  // makes the progress of a named task; may be null
+};
 
 // The number of frames after which surfaces that were uncovered are measured. Their errors should
 // then be nearly as small as those of other surfaces.
@@ -68,9 +83,8 @@ struct MotionReport {
 // Renders a path other than a cut. Three of its frames are compared with the truth: one after a
 // third of the path, one after two thirds, and the last. Flicker is measured over the last two
 // thirds.
-[[nodiscard]] tl::expected<MotionReport, std::string> run_motion(Gpu& gpu, const Scene& scene,
-                                                                 const MotionPath& path,
-                                                                 const MotionSetup& setup);
+[[nodiscard]] Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                                              const MotionSetup& setup);
 
 // RMSE of visibility a number of frames after a cut.
 struct CutErrors {
@@ -82,8 +96,7 @@ struct CutReport {
   std::vector<CutErrors> after;         // after 1, 2, 4, ... frames
   std::vector<MotionPicture> pictures;  // `static_camera` holds the image of the restarted history
 };
-[[nodiscard]] tl::expected<CutReport, std::string> run_cut(Gpu& gpu, const Scene& scene,
-                                                           const MotionPath& path,
-                                                           const MotionSetup& setup);
+[[nodiscard]] Result<CutReport> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                                        const MotionSetup& setup);
 
 }  // namespace alcove::sample

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "evaluate/trade.h"
@@ -11,11 +12,7 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using passes::OcclusionSettings;
-
-// A smaller relative change of the error is not worth a feature.
-constexpr double kWorthwhile = 0.01;
 
 struct Feature {
   const char* name;
@@ -52,11 +49,19 @@ double weighted(const std::array<double, 3>& values, const SituationWeights& wei
   return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
 }
 
-// A number of samples, and the time that it takes with the base's features.
+// A number of samples, and the time that it takes with the base's features. Modelling a time takes
+// seconds, so it is done when the time is needed.
 struct Rung {
   OcclusionSettings settings;
-  double ms = 0;
+  std::optional<double> ms;
 };
+
+// The number of samples for each pixel of the image.
+double samples_of(const OcclusionSettings& settings) {
+  const double pixels =
+      settings.tile_size * settings.tile_size * (settings.half_resolution ? 4 : 1);
+  return settings.slices * settings.steps / pixels;
+}
 
 class Search {
  public:
@@ -64,16 +69,14 @@ class Search {
          const RecommendationWorld& world)
       : base_(base), goal_(goal), world_(world) {}
 
-  tl::expected<Recommendation, std::string> run() {
-    if (auto made = make_ladder(); !made) {
-      return Failure(std::move(made.error()));
+  Result<Recommendation> run() {
+    for (Variant& variant : preset_sweep(base_)) {
+      variant.settings.depth_layers = base_.depth_layers;  // a second depth layer is a feature
+      ladder_.push_back({variant.settings, {}});
     }
-    if (auto chosen = choose_samples(); !chosen) {
-      return Failure(std::move(chosen.error()));
-    }
-    for (const Feature& feature : kFeatures) {
-      try_feature(feature);
-    }
+    std::ranges::stable_sort(ladder_, {}, [](const Rung& r) { return samples_of(r.settings); });
+    ALCOVE_TRY_VOID(choose_samples());
+    for (const Feature& feature : kFeatures) try_feature(feature);
     if (goal_.tolerance && goal_.met(found_.chosen)) {
       try_with_fewer_samples(found_.chosen.settings, 1.0);
     }
@@ -82,18 +85,31 @@ class Search {
   }
 
  private:
-  // Every number of samples in order of time. A second depth layer is a feature.
-  tl::expected<void, std::string> make_ladder() {
-    for (Variant& variant : preset_sweep(base_)) {
-      variant.settings.depth_layers = base_.depth_layers;
-      const auto ms = world_.time(variant.settings);
-      if (!ms) {
-        return Failure(ms.error());
-      }
-      ladder_.push_back({variant.settings, weighted(*ms, goal_.weights)});
+  Result<double> time(Rung& rung) const {
+    if (!rung.ms) {
+      ALCOVE_TRY(const auto ms, world_.time(rung.settings));
+      rung.ms = weighted(ms, goal_.weights);
     }
-    std::ranges::stable_sort(ladder_, {}, &Rung::ms);
-    return {};
+    return *rung.ms;
+  }
+
+  // Returns the slowest numbers of samples that take at most `ms`, at most `most` of them. Times
+  // nearly rise with the number of samples, so that few of them are modelled.
+  Result<std::vector<OcclusionSettings>> slowest_within(double ms, std::size_t most) {
+    constexpr std::size_t kOutOfOrder = 2;  // faster ones among those with more samples
+    std::size_t low = 0;
+    for (std::size_t high = ladder_.size(); low < high;) {
+      const std::size_t middle = (low + high) / 2;
+      ALCOVE_TRY(const double middle_ms, time(ladder_[middle]));
+      (middle_ms <= ms ? low : high) = middle_ms <= ms ? middle + 1 : middle;
+    }
+    std::vector<OcclusionSettings> found;
+    for (std::size_t i = std::min(low + kOutOfOrder, ladder_.size());
+         i-- > 0 && found.size() < most;) {
+      ALCOVE_TRY(const double rung_ms, time(ladder_[i]));
+      if (rung_ms <= ms) found.push_back(ladder_[i].settings);
+    }
+    return found;
   }
 
   const Achievement* measured(const OcclusionSettings& settings) const {
@@ -101,53 +117,38 @@ class Search {
     return known == found_.measured.end() ? nullptr : &*known;
   }
 
-  tl::expected<Achievement, std::string> measure(const OcclusionSettings& settings) {
-    if (const Achievement* known = measured(settings)) {
-      return *known;
-    }
+  Result<Achievement> measure(const OcclusionSettings& settings) {
+    if (const Achievement* known = measured(settings)) return *known;
     auto result = world_.measure(settings);
-    if (result) {
-      found_.measured.push_back(*result);
-    }
+    if (result) found_.measured.push_back(*result);
     return result;
   }
 
-  // Measures settings and chooses them if the goal prefers them.
-  tl::expected<Achievement, std::string> consider(const OcclusionSettings& settings) {
+  // Measures settings and chooses them if the goal prefers them by the margin.
+  Result<Achievement> consider(const OcclusionSettings& settings, double margin = 0) {
     auto result = measure(settings);
-    if (result && (found_.measured.size() == 1 || goal_.prefers(*result, found_.chosen))) {
+    if (result && (found_.measured.size() == 1 || goal_.prefers(*result, found_.chosen, margin))) {
       found_.chosen = *result;
     }
     return result;
   }
 
-  // Within a budget, the numbers of samples that nearly use it up. For a tolerance, those in order
-  // of time until a few meet it: the error does not fall with each step.
-  tl::expected<void, std::string> choose_samples() {
+  // Within a budget, considers the numbers of samples that nearly use it up. For a tolerance,
+  // considers growing numbers until a few meet it, because the error does not fall with each step.
+  Result<void> choose_samples() {
     constexpr std::size_t kWithinBudget = 6;
     constexpr int kWithinTolerance = 2;
     if (goal_.budget_ms) {
-      auto last = std::ranges::partition_point(
-          ladder_, [&](const Rung& rung) { return rung.ms <= *goal_.budget_ms; });
-      last = last == ladder_.begin() ? last + 1 : last;
-      const auto count = std::min<std::ptrdiff_t>(last - ladder_.begin(), kWithinBudget);
-      for (auto rung = last - count; rung != last; ++rung) {
-        if (auto result = consider(rung->settings); !result) {
-          return Failure(std::move(result.error()));
-        }
-      }
+      ALCOVE_TRY(auto within, slowest_within(*goal_.budget_ms, kWithinBudget));
+      if (within.empty()) within.push_back(ladder_.front().settings);
+      for (const OcclusionSettings& settings : within) ALCOVE_TRY_VOID(consider(settings));
       return {};
     }
     int met = 0;
     for (const Rung& rung : ladder_) {
-      const auto result = consider(rung.settings);
-      if (!result) {
-        return Failure(result.error());
-      }
-      met += goal_.met(*result) ? 1 : 0;
-      if (met == kWithinTolerance) {
-        break;
-      }
+      ALCOVE_TRY(const Achievement result, consider(rung.settings));
+      met += goal_.met(result) ? 1 : 0;
+      if (met == kWithinTolerance) break;
     }
     return {};
   }
@@ -156,70 +157,60 @@ class Search {
     const Achievement before = found_.chosen;
     OcclusionSettings with = before.settings;
     feature.use(with);
-    if (with == before.settings || !passes::validate(with)) {
-      return;
-    }
-    FeatureEffect effect{feature.name};
-    const auto result = consider(with);
+    if (with == before.settings || !passes::validate(with)) return;
+    const auto result = consider(with, kWorthwhile);
     if (!result) {
-      effect.problem = result.error();
-      found_.features.push_back(std::move(effect));
+      found_.features.push_back({.name = feature.name, .problem = result.error()});
       return;
     }
-    effect.rmse_change = goal_.rmse(*result) / goal_.rmse(before) - 1.0;
-    effect.ms_change = goal_.ms(*result) / goal_.ms(before) - 1.0;
-    if (effect.rmse_change < -kWorthwhile) {
-      try_with_fewer_samples(with, 1.0 + effect.ms_change);
-    }
+    FeatureEffect effect = effect_of(feature.name, goal_, *result, before);
+    if (effect.rmse_change < -kWorthwhile)
+      try_with_fewer_samples(with, 1.0 + effect.ms_change, kWorthwhile);
     OcclusionSettings chosen = found_.chosen.settings;
     feature.use(chosen);
-    effect.chosen = chosen == found_.chosen.settings && found_.chosen.settings != before.settings;
+    if (chosen == found_.chosen.settings && chosen != before.settings) effect.verdict = "used";
     found_.features.push_back(std::move(effect));
   }
 
   // Tries `with` at numbers of samples that take less time. `ratio` is the time with the feature
   // over that without.
-  void try_with_fewer_samples(const OcclusionSettings& with, double ratio) {
+  void try_with_fewer_samples(const OcclusionSettings& with, double ratio, double margin = 0) {
     const std::size_t most = goal_.budget_ms ? 4 : 8;
-    std::size_t tried = 0;
-    for (auto rung = ladder_.rbegin(); rung != ladder_.rend() && tried < most; ++rung) {
-      const double limit =
-          goal_.budget_ms ? *goal_.budget_ms / ratio : goal_.ms(found_.chosen) / ratio;
-      if (rung->ms > limit) {
-        continue;
-      }
+    const double limit = (goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen)) / ratio;
+    const auto within = slowest_within(limit, most);
+    if (!within) return;
+    for (const OcclusionSettings& samples : *within) {
       OcclusionSettings fewer = with;
-      use_samples_of(rung->settings, fewer);
-      ++tried;
-      consider_if_promising(fewer);
+      use_samples_of(samples, fewer);
+      consider_if_promising(fewer, margin);
     }
   }
 
   // Measures settings only if their time does not rule them out. Settings that fail are left out.
-  void consider_if_promising(const OcclusionSettings& settings) {
-    if (!passes::validate(settings) || measured(settings) != nullptr) {
-      return;
-    }
+  void consider_if_promising(const OcclusionSettings& settings, double margin = 0) {
+    if (!passes::validate(settings) || measured(settings) != nullptr) return;
     const auto times = world_.time(settings);
-    if (!times) {
-      return;
-    }
+    if (!times) return;
     const double ms = weighted(*times, goal_.weights);
     const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen);
-    if (!goal_.met(found_.chosen) || ms <= limit) {
-      (void)consider(settings);
-    }
+    if (!goal_.met(found_.chosen) || ms <= limit) (void)consider(settings, margin);
   }
 
   // Changes one number of samples at a time, as long as that helps.
   void refine() {
     constexpr int kRounds = 3;
     for (int round = 0; round < kRounds; ++round) {
-      const OcclusionSettings from = found_.chosen.settings;
+      const Achievement before = found_.chosen;
+      const OcclusionSettings& from = before.settings;
+      // A tenth of a frame at least is the search, whose time is proportional to the samples. More
+      // samples that exceed the limit even so are left out without modelling their time.
+      const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(before);
       const auto change = [&](auto OcclusionSettings::*field, auto value) {
         OcclusionSettings changed = from;
         changed.*field = value;
-        consider_if_promising(changed);
+        const double more = samples_of(changed) / samples_of(from) - 1.0;
+        const bool too_slow = more > 0 && goal_.ms(before) * (1.0 + 0.1 * more) > limit;
+        if (!goal_.met(before) || !too_slow) consider_if_promising(changed);
       };
       for (const std::uint32_t steps :
            {from.steps * 3 / 4, from.steps - 1, from.steps + 1, (from.steps * 4 + 2) / 3}) {
@@ -229,9 +220,7 @@ class Search {
       change(&OcclusionSettings::slices, from.slices + 1);
       change(&OcclusionSettings::tile_size, from.tile_size / 2);
       change(&OcclusionSettings::tile_size, from.tile_size * 2);
-      if (found_.chosen.settings == from) {
-        return;
-      }
+      if (found_.chosen.settings == from) return;
     }
   }
 
@@ -252,44 +241,44 @@ bool RecommendationGoal::met(const Achievement& by) const {
   return budget_ms ? ms(by) <= *budget_ms : rmse(by) <= *tolerance;
 }
 
-bool RecommendationGoal::prefers(const Achievement& a, const Achievement& b) const {
-  if (met(a) != met(b)) {
-    return met(a);
-  }
+bool RecommendationGoal::prefers(const Achievement& a, const Achievement& b, double margin) const {
+  if (met(a) != met(b)) return met(a);
   const bool by_error = budget_ms.has_value() == met(a);
-  return by_error ? rmse(a) < rmse(b) : ms(a) < ms(b);
+  return by_error ? rmse(a) < (1 - margin) * rmse(b) : ms(a) < (1 - margin) * ms(b);
 }
 
 std::string FeatureEffect::sentence() const {
-  if (!problem.empty()) {
-    return fmt::format("{}: not measured ({})", name, problem);
-  }
-  const auto change = [](double relative, const char* less, const char* more) {
-    return fmt::format("{:.1f} % {}", 100.0 * std::abs(relative), relative < 0 ? less : more);
+  if (!problem.empty()) return fmt::format("{}: not measured ({})", name, problem);
+  const auto change = [](double relative, const char* quantity) {
+    const double per_cent = 100.0 * std::abs(relative);
+    return per_cent < 0.05
+               ? fmt::format("no difference in {}", quantity)
+               : fmt::format("{:.1f} % {} {}", per_cent, relative < 0 ? "less" : "more", quantity);
   };
-  return fmt::format("{}: {} for {}; {}", name, change(rmse_change, "less error", "more error"),
-                     change(ms_change, "less time", "more time"),
-                     chosen ? "used" : "not needed here");
+  return fmt::format("{}: {} for {}; {}", name, change(rmse_change, "error"),
+                     change(ms_change, "time"), verdict);
 }
 
-tl::expected<Recommendation, std::string> recommend(const OcclusionSettings& base,
-                                                    const RecommendationGoal& goal,
-                                                    const RecommendationWorld& world) {
+FeatureEffect effect_of(const std::string& feature, const RecommendationGoal& goal,
+                        const Achievement& with, const Achievement& without) {
+  return {feature, goal.rmse(with) / goal.rmse(without) - 1.0,
+          goal.ms(with) / goal.ms(without) - 1.0};
+}
+
+Result<Recommendation> recommend(const OcclusionSettings& base, const RecommendationGoal& goal,
+                                 const RecommendationWorld& world) {
   return Search(base, goal, world).run();
 }
 
-tl::expected<std::vector<Achievement>, std::string> measure_all(const OcclusionSettings& base,
-                                                                const RecommendationWorld& world) {
+Result<std::vector<Achievement>> measure_all(const OcclusionSettings& base,
+                                             const RecommendationWorld& world) {
   std::vector<Achievement> all;
   for (const Variant& variant : preset_sweep(base)) {
     for (const std::uint32_t layers : {1u, 2u}) {
       OcclusionSettings settings = variant.settings;
       settings.depth_layers = layers;
-      const auto measured = world.measure(settings);
-      if (!measured) {
-        return Failure(measured.error());
-      }
-      all.push_back(*measured);
+      ALCOVE_TRY(const auto measured, world.measure(settings));
+      all.push_back(measured);
     }
   }
   return all;

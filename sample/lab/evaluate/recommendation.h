@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -38,7 +38,9 @@ struct RecommendationGoal {
   double rmse(const Achievement& of) const;
   double ms(const Achievement& of) const;
   bool met(const Achievement& by) const;
-  bool prefers(const Achievement& a, const Achievement& b) const;
+  // Whether `a` is better than `b`, by more than the fraction `margin` if both meet the goal or
+  // neither does.
+  bool prefers(const Achievement& a, const Achievement& b, double margin = 0) const;
 };
 
 // The effect of one feature at otherwise equal settings.
@@ -46,11 +48,19 @@ struct FeatureEffect {
   std::string name;
   double rmse_change = 0;  // relative: -0.2 for 20 % less
   double ms_change = 0;
-  bool chosen = false;
+  std::string verdict = "not needed here";
   std::string problem;  // an error if the feature could not be measured; empty otherwise
 
   std::string sentence() const;
 };
+
+// Compares results with and without a feature.
+[[nodiscard]] FeatureEffect effect_of(const std::string& feature, const RecommendationGoal& goal,
+                                      const Achievement& with, const Achievement& without);
+
+// A feature is not used unless it lowers the error, or the time within a tolerance, by more than
+// this fraction.
+inline constexpr double kWorthwhile = 0.01;
 
 struct Recommendation {
   Achievement chosen;
@@ -60,23 +70,22 @@ struct Recommendation {
 
 // Functions that a search calls. `time` gives Achievement::ms alone and takes much less time.
 struct RecommendationWorld {
-  std::function<tl::expected<Achievement, std::string>(const passes::OcclusionSettings&)> measure;
-  std::function<tl::expected<std::array<double, 3>, std::string>(const passes::OcclusionSettings&)>
-      time;
+  std::function<Result<Achievement>(const passes::OcclusionSettings&)> measure;
+  std::function<Result<std::array<double, 3>>(const passes::OcclusionSettings&)> time;
 };
 
 // Searches from `base`, whose settings beyond those that the search changes are kept. First it
 // measures numbers of samples near the limit, then each feature with the best of them; a feature
 // that lowers the error is also tried with fewer samples. Last it changes slices, steps and tile
-// size a little, one at a time. If nothing meets the goal, the result is
-// the closest. Errors: those of `measure` and `time` for numbers of samples.
-[[nodiscard]] tl::expected<Recommendation, std::string> recommend(
-    const passes::OcclusionSettings& base, const RecommendationGoal& goal,
-    const RecommendationWorld& world);
+// size a little, one at a time. If nothing meets the goal, the result is the closest. Errors: those
+// of `measure` and `time` for numbers of samples.
+[[nodiscard]] Result<Recommendation> recommend(const passes::OcclusionSettings& base,
+                                               const RecommendationGoal& goal,
+                                               const RecommendationWorld& world);
 
 // Measures each number of samples with and without a second depth layer: what a search is compared
 // with.
-[[nodiscard]] tl::expected<std::vector<Achievement>, std::string> measure_all(
-    const passes::OcclusionSettings& base, const RecommendationWorld& world);
+[[nodiscard]] Result<std::vector<Achievement>> measure_all(const passes::OcclusionSettings& base,
+                                                           const RecommendationWorld& world);
 
 }  // namespace alcove::sample

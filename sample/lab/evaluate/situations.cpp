@@ -36,25 +36,27 @@ std::string program_hash() {
 // the shaders; the model's searches have a fixed length.
 OcclusionSettings timed_settings(OcclusionSettings settings) {
   const OcclusionSettings defaults;
-  settings.specular = passes::Specular::none;
-  settings.bent_normal = false;
   settings.radius = defaults.radius;
   settings.thickness = defaults.thickness;
   settings.hidden_occlusion = defaults.hidden_occlusion;
   return settings;
 }
 
+// The width of a guard band in pixels, which is even.
+std::uint32_t guard_band(std::uint32_t height) {
+  return 2 * static_cast<std::uint32_t>(0.5 * kGuardBand * height);
+}
+
 // Reads three values from the cache, or computes and writes them.
 template <typename Compute>
-tl::expected<std::array<double, 3>, std::string> cached(const TruthCache& cache,
-                                                        const CacheKey& key,
-                                                        const Compute& compute) {
+Result<std::array<double, 3>> cached(const TruthCache& cache, const CacheKey& key,
+                                     const Compute& compute) {
   std::array<double, 3> values{};
   if (const auto known = cache.read(key, values.size())) {
     std::ranges::copy(*known, values.begin());
     return values;
   }
-  const tl::expected<std::array<double, 3>, std::string> computed = compute();
+  const Result<std::array<double, 3>> computed = compute();
   if (computed) {
     const std::vector<float> floats(computed->begin(), computed->end());
     cache.write(key, floats);
@@ -66,26 +68,17 @@ tl::expected<std::array<double, 3>, std::string> cached(const TruthCache& cache,
 
 }  // namespace
 
-tl::expected<SituationErrors, std::string> SituationErrors::create(
-    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options) {
-  SituationErrors made(setup);
-  auto renderer = FrameRenderer::create(*session.gpu, session.scene, {setup.width, setup.height},
-                                        setup.normals);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
-  made.renderer_ = std::move(*renderer);
-  const auto images = draw_static(*session.gpu, session.scene, setup, session.settings);
-  if (!images) {
-    return Failure(images.error());
-  }
-  auto truths = truths_of(
-      {session.scene, setup.camera, session.settings.radius, images->depth_ndc, images->normal_ws},
-      truth_options);
-  if (!truths) {
-    return Failure(std::move(truths.error()));
-  }
-  made.truths_ = std::move(*truths);
+Result<SituationErrors> SituationErrors::create(const Session& session, const StaticSetup& setup,
+                                                const TruthOptions& truth_options) {
+  SituationErrors made(session, setup);
+  ALCOVE_TRY(auto renderer, FrameRenderer::create(*session.gpu, session.scene,
+                                                  {setup.width, setup.height}, setup.normals));
+  made.renderer_ = std::move(renderer);
+  ALCOVE_TRY(const auto images, draw_static(*session.gpu, session.scene, setup, session.settings));
+  ALCOVE_TRY(auto truths, truths_of({session.scene, setup.camera, session.settings.radius,
+                                     images.depth_ndc, images.normal_ws},
+                                    truth_options));
+  made.truths_ = std::move(truths);
   if (truth_options.use_cache && !program_hash().empty()) {
     made.cache_ = TruthCache(TruthCache::default_folder());
   }
@@ -97,8 +90,8 @@ tl::expected<SituationErrors, std::string> SituationErrors::create(
   return made;
 }
 
-tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSettings& settings,
-                                                              std::uint32_t frames, float orbit) {
+Result<Image<float>> SituationErrors::draw(const OcclusionSettings& settings, std::uint32_t frames,
+                                           float orbit) {
   StaticSetup setup = setup_;
   setup.frames = frames;
   setup.orbit = orbit;
@@ -107,15 +100,24 @@ tl::expected<Image<float>, std::string> SituationErrors::draw(const OcclusionSet
   });
 }
 
-tl::expected<std::array<double, 3>, std::string> SituationErrors::measure(
-    const OcclusionSettings& settings) {
+Result<std::array<double, 3>> SituationErrors::measure(const OcclusionSettings& settings) {
   CacheKey key = key_;
   key.add(std::string_view(to_json(settings).dump()));
-  return cached(cache_, key, [&] { return compute(settings); });
+  return cached(cache_, key, [&] {
+    return compute(
+        [&](const StaticSetup& setup) { return draw(settings, setup.frames, setup.orbit); });
+  });
 }
 
-tl::expected<std::array<double, 3>, std::string> SituationErrors::compute(
-    const OcclusionSettings& settings) {
+Result<std::array<double, 3>> SituationErrors::measure_with_guard_band(
+    const OcclusionSettings& settings) const {
+  const std::uint32_t band = guard_band(setup_.height);
+  return compute([&](const StaticSetup& setup) {
+    return draw_with_guard_band(*session_->gpu, session_->scene, setup, settings, {band, band});
+  });
+}
+
+Result<std::array<double, 3>> SituationErrors::compute(const Draw& draw) const {
   struct Course {
     std::uint32_t frames;
     float orbit;
@@ -123,61 +125,60 @@ tl::expected<std::array<double, 3>, std::string> SituationErrors::compute(
   const std::array<Course, 3> courses{{{1, 0.0f}, {kMovingFrames, kOrbit}, {setup_.frames, 0.0f}}};
   std::array<double, 3> rmse{};
   for (std::size_t i = 0; i < courses.size(); ++i) {
-    const auto visibility = draw(settings, courses[i].frames, courses[i].orbit);
-    if (!visibility) {
-      return Failure(visibility.error());
-    }
-    rmse[i] = compare_images(*visibility, truths_.scene.visibility, truths_.surfaces).rmse;
+    StaticSetup setup = setup_;
+    setup.frames = courses[i].frames;
+    setup.orbit = courses[i].orbit;
+    ALCOVE_TRY(const Image<float> visibility, draw(setup));
+    rmse[i] = compare_images(visibility, truths_.scene.visibility, truths_.surfaces).rmse;
   }
   return rmse;
 }
 
-tl::expected<ModelledTimes, std::string> ModelledTimes::create(const GpuPart& part,
-                                                               const CostInputs& inputs,
-                                                               bool use_cache) {
-  auto device = create_null_device(part.family);
-  if (!device) {
-    return Failure(std::move(device.error()));
-  }
+Result<ModelledTimes> ModelledTimes::create(const GpuPart& part, const CostInputs& inputs,
+                                            bool use_cache) {
+  ALCOVE_TRY(auto device, create_null_device(part.family));
   ModelledTimes made(part, inputs, use_cache && !program_hash().empty());
-  made.device_ = std::move(*device);
+  made.device_ = std::move(device);
   return made;
 }
 
-tl::expected<std::array<double, 3>, std::string> ModelledTimes::measure(
-    const OcclusionSettings& settings) const {
+Result<std::array<double, 3>> ModelledTimes::measure(const OcclusionSettings& settings,
+                                                     bool with_guard_band) const {
   CostInputs inputs = inputs_;
+  inputs.guard_band = with_guard_band ? guard_band(inputs.height) : 0;
   inputs.settings = timed_settings(settings);
   CacheKey key;
   key.add(std::string_view("modelled times"), std::string_view(program_hash()), part_->family,
-          inputs.width, inputs.height, inputs.normals, inputs.motion,
+          inputs.width, inputs.height, inputs.normals, inputs.motion, inputs.guard_band,
           std::string_view(to_json(inputs.settings).dump()));
-  return cached(cache_, key, [&]() -> tl::expected<std::array<double, 3>, std::string> {
-    const auto frames = modelled_frames(*part_, device_, inputs);
-    if (!frames) {
-      return Failure(frames.error());
-    }
+  return cached(cache_, key, [&]() -> Result<std::array<double, 3>> {
+    ALCOVE_TRY(const auto frames, modelled_frames(*part_, device_, inputs));
     constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
                                                 FrameState::converged};
     std::array<double, 3> ms{};
     for (std::size_t i = 0; i < kStates.size(); ++i) {
-      ms[i] = std::ranges::find(*frames, kStates[i], &ModelledFrame::state)->milliseconds();
+      ms[i] = std::ranges::find(frames, kStates[i], &ModelledFrame::state)->milliseconds();
     }
     return ms;
   });
 }
 
-tl::expected<Clock, std::string> choose_clock(const VkPhysicalDeviceProperties& device,
-                                              const GpuPart& part, std::optional<Clock> wanted) {
+RecommendationWorld recommendation_world(SituationErrors& errors, const ModelledTimes& times) {
+  return {[&](const OcclusionSettings& settings) -> Result<Achievement> {
+            ALCOVE_TRY(const auto ms, times.measure(settings));
+            ALCOVE_TRY(const auto rmse, errors.measure(settings));
+            return Achievement{settings, rmse, ms};
+          },
+          [&](const OcclusionSettings& settings) { return times.measure(settings); }};
+}
+
+Result<Clock> choose_clock(const VkPhysicalDeviceProperties& device, const GpuPart& part,
+                           std::optional<Clock> wanted) {
   const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const Clock clock = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
-  if (clock != Clock::modelled) {
-    return clock;
-  }
+  if (clock != Clock::modelled) return clock;
   const auto driver = create_null_device(part.family);
-  if (!driver && wanted) {
-    return Failure(driver.error());
-  }
+  if (!driver && wanted) return Failure(driver.error());
   return driver ? Clock::modelled : Clock::processor;
 }
 

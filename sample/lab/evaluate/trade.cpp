@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
+#include "gpu_cost/presets.h"
 
 namespace alcove::sample {
 namespace {
@@ -50,9 +50,7 @@ class SweepList {
     settings.depth_layers = std::max(base_.depth_layers, point.depth_layers);
     const bool known = std::ranges::any_of(
         variants_, [&](const Variant& variant) { return variant.settings == settings; });
-    if (!known) {
-      variants_.push_back({"", name, settings});
-    }
+    if (!known) variants_.push_back({"", name, settings});
   }
   std::vector<Variant> take() { return std::move(variants_); }
 
@@ -61,29 +59,7 @@ class SweepList {
   std::vector<Variant> variants_;
 };
 
-// The point with the smallest `minimised` among those with `limited` of at most `limit`.
-const TradePoint* smallest_within(std::span<const TradePoint> points, double TradePoint::*minimised,
-                                  double TradePoint::*limited, double limit) {
-  const TradePoint* best = nullptr;
-  for (const TradePoint& point : points) {
-    if (point.*limited <= limit && (best == nullptr || point.*minimised < best->*minimised)) {
-      best = &point;
-    }
-  }
-  return best;
-}
-
 }  // namespace
-
-std::vector<Quality> presets() {
-  std::vector<Quality> all;
-  for (std::size_t i = 0; i < passes::kNames<Quality>.size(); ++i) {
-    if (const auto quality = static_cast<Quality>(i); quality != Quality::reference) {
-      all.push_back(quality);
-    }
-  }
-  return all;
-}
 
 std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   SweepList list(base);
@@ -92,9 +68,7 @@ std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
     list.add(std::string(passes::name_of(quality)), {preset.tile_size, preset.slices, preset.steps,
                                                      preset.half_resolution, preset.depth_layers});
   }
-  for (const SweepPoint& point : kSweepPoints) {
-    list.add(name_of(point), point);
-  }
+  for (const SweepPoint& point : kSweepPoints) list.add(name_of(point), point);
   return list.take();
 }
 
@@ -137,9 +111,7 @@ std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> sce
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto mean = [&](const auto& of) {
       double sum = 0;
-      for (const std::vector<TradePoint>& points : scenes) {
-        sum += of(points[i]);
-      }
+      for (const std::vector<TradePoint>& points : scenes) sum += of(points[i]);
       return sum / count;
     };
     all[i].rmse = std::sqrt(mean([](const TradePoint& p) { return p.rmse * p.rmse; }));
@@ -153,14 +125,6 @@ std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> sce
     }
   }
   return all;
-}
-
-const TradePoint* least_error_within_ms(std::span<const TradePoint> points, double ms) {
-  return smallest_within(points, &TradePoint::rmse, &TradePoint::time_ms, ms);
-}
-
-const TradePoint* fastest_within_rmse(std::span<const TradePoint> points, double rmse) {
-  return smallest_within(points, &TradePoint::time_ms, &TradePoint::rmse, rmse);
 }
 
 }  // namespace alcove::sample

@@ -1,5 +1,4 @@
-// Error against time over many settings: the sweep, its Pareto front, and the choice of a setting
-// by a budget or by a tolerance.
+// Error against time over many settings: the sweep, and its Pareto front.
 #pragma once
 
 #include <array>
@@ -13,9 +12,6 @@
 #include "evaluate/variant.h"
 
 namespace alcove::sample {
-
-// The presets in order of cost, without `reference`, which is not meant for frames in real time.
-[[nodiscard]] std::vector<passes::Quality> presets();
 
 // Returns the presets, and other settings with tile sizes, numbers of slices and steps, and half
 // resolution between and beyond those of the presets. Everything else is as in `base`, except that
@@ -54,12 +50,5 @@ struct Trade {
 // root mean square of errors, and the largest number of bytes. There must be at least one list. All
 // lists must have one length and one order of settings.
 [[nodiscard]] std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes);
-
-// Return the point with the smallest error among those that take at most `ms`, and the fastest
-// point among those with an error of at most `rmse`. The result is null if there is no such point.
-[[nodiscard]] const TradePoint* least_error_within_ms(std::span<const TradePoint> points,
-                                                      double ms);
-[[nodiscard]] const TradePoint* fastest_within_rmse(std::span<const TradePoint> points,
-                                                    double rmse);
 
 }  // namespace alcove::sample

@@ -64,9 +64,7 @@ void draw_axes(Svg& svg, const Axes& axes, const std::string& clock_title) {
   for (int power = first_power; std::pow(10.0, power) <= axes.last_ms; ++power) {
     for (const double lead : {1.0, 2.0, 5.0}) {
       const double ms = lead * std::pow(10.0, power);
-      if (ms < axes.first_ms || ms > axes.last_ms) {
-        continue;
-      }
+      if (ms < axes.first_ms || ms > axes.last_ms) continue;
       svg.line({axes.x(ms), kTop}, {axes.x(ms), kHeight - kBottom}, kGridLine);
       svg.text({axes.x(ms), kHeight - kBottom + 18}, "middle", number(ms));
     }
@@ -111,9 +109,7 @@ class Labels {
       for (const bool right : {true, false}) {
         if (const Box box = box_of(x, base, right, text); is_free(box)) {
           taken_.push_back(box);
-          if (row > 1) {
-            svg.line({x, y}, {x + (right ? 8 : -8), base - 4}, kGridLine);
-          }
+          if (row > 1) svg.line({x, y}, {x + (right ? 8 : -8), base - 4}, kGridLine);
           svg.text({x + (right ? 9 : -9), base}, right ? "start" : "end", text);
           return;
         }

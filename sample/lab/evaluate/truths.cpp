@@ -13,61 +13,42 @@ namespace alcove::sample {
 namespace {
 
 // Increment when the computation of a truth changes, so that old cache entries are not used.
-constexpr std::uint32_t kTruthVersion = 1;
+constexpr std::uint32_t kTruthVersion = 2;
 constexpr std::uint32_t kHeightFieldSlices = 24;
 
-// Reads a truth from the cache, or computes it and writes it to the cache.
-template <typename Truth, typename Compute>
-tl::expected<Truth, std::string> cached(const TruthOptions& options, const Image<float>& depth,
-                                        const CacheKey& key, const Compute& compute) {
-  CacheKey bent_key = key;
-  bent_key.add("bent");
-  const TruthCache cache(options.use_cache ? TruthCache::default_folder()
-                                           : std::filesystem::path());
-  tl::expected<Truth, std::string> truth =
-      Truth{{depth.width, depth.height}, {depth.width, depth.height}};
-  if (cache.read(key, truth->visibility) && cache.read(bent_key, truth->bent_normal_ws)) {
-    return truth;
-  }
-  truth = compute();
-  if (truth) {
-    cache.write(key, truth->visibility);
-    cache.write(bent_key, truth->bent_normal_ws);
-  }
-  return truth;
-}
-
-tl::expected<OcclusionTruth, std::string> scene_truth(const TruthFrame& frame,
-                                                      const TruthOptions& options,
-                                                      const Image<float>& depth) {
+Result<OcclusionTruth> scene_truth(const TruthFrame& frame, const TruthOptions& options,
+                                   const TruthCache& cache, const Image<float>& depth) {
   const TruthSettings settings{.radius = frame.radius, .spp = options.spp};
   CacheKey key;
   key.add("scene truth", kTruthVersion, frame.scene, frame.camera, settings.radius, settings.spp,
           depth, frame.normal_ws);
-  return cached<OcclusionTruth>(options, depth, key, [&] {
-    return RayScene::create(frame.scene).map([&](const RayScene& rays) {
-      return occlusion_truth(rays, surface_points(rays, frame.camera, frame.normal_ws, depth),
-                             settings, print_progress("scene truth"));
-    });
-  });
+  OcclusionTruth truth{{depth.width, depth.height}, {depth.width, depth.height}};
+  if (cache.read_all(key, truth.visibility, truth.bent_normal_ws)) return truth;
+  ALCOVE_TRY(const auto rays, RayScene::create(frame.scene));
+  truth = occlusion_truth(rays, surface_points(rays, frame.camera, frame.normal_ws, depth),
+                          settings, print_progress("scene truth"));
+  cache.write_all(key, truth.visibility, truth.bent_normal_ws);
+  return truth;
 }
 
-HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthOptions& options,
+HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthCache& cache,
                              const Image<float>& depth) {
   const HeightFieldSettings settings{frame.radius, kHeightFieldSlices};
   CacheKey key;
   key.add("height-field truth", kTruthVersion, frame.camera, settings.radius, settings.slices,
           depth, frame.normal_ws);
-  const auto compute = [&] {
-    return height_field_truth(depth, frame.normal_ws, frame.camera, settings,
-                              print_progress("height-field truth"));
-  };
-  return cached<HeightFieldTruth>(options, depth, key, compute).value();  // it cannot fail
+  HeightFieldTruth truth{{depth.width, depth.height}, {depth.width, depth.height}};
+  if (!cache.read_all(key, truth.visibility, truth.bent_normal_ws)) {
+    truth = height_field_truth(depth, frame.normal_ws, frame.camera, settings,
+                               print_progress("height-field truth"));
+    cache.write_all(key, truth.visibility, truth.bent_normal_ws);
+  }
+  return truth;
 }
 
 }  // namespace
 
-tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const TruthOptions& options) {
+Result<Truths> truths_of(const TruthFrame& frame, const TruthOptions& options) {
   const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
   Truths truths;
   truths.surfaces = Mask(depth.width, depth.height);
@@ -79,12 +60,10 @@ tl::expected<Truths, std::string> truths_of(const TruthFrame& frame, const Truth
         "the view shows nothing but sky: turn it with --eye and --target, or widen --near and "
         "--far");
   }
-  auto scene = scene_truth(frame, options, depth);
-  if (!scene) {
-    return tl::unexpected(std::move(scene.error()));
-  }
-  truths.scene = std::move(*scene);
-  truths.height_field = depth_truth(frame, options, depth);
+  const TruthCache cache(options.use_cache ? TruthCache::default_folder()
+                                           : std::filesystem::path());
+  ALCOVE_TRY(truths.scene, scene_truth(frame, options, cache, depth));
+  truths.height_field = depth_truth(frame, cache, depth);
   return truths;
 }
 

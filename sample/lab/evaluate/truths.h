@@ -1,12 +1,12 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 
 #include "reference/height_field_truth.h"
 #include "reference/truth.h"
 #include "scene/scene.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -38,7 +38,6 @@ struct Truths {
 // Computes the truths, or reads them from the cache on disk. They are computed at the points where
 // primary rays through the pixel centres hit the scene, with the normals that the occlusion pass
 // was given. Prints progress on stderr. Error: the view shows nothing but sky.
-[[nodiscard]] tl::expected<Truths, std::string> truths_of(const TruthFrame& frame,
-                                                          const TruthOptions& options);
+[[nodiscard]] Result<Truths> truths_of(const TruthFrame& frame, const TruthOptions& options);
 
 }  // namespace alcove::sample

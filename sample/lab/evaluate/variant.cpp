@@ -1,14 +1,16 @@
 #include "evaluate/variant.h"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 #include "support/median.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using passes::OcclusionSettings;
 
 FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& settings,
@@ -32,31 +34,125 @@ FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& setti
   return request;
 }
 
-std::uint64_t bytes_of(const FrameRenderer& renderer) {
-  const framegraph::MemoryStatistics& memory = renderer.memory();
-  return memory.aliased + memory.history;
+Result<std::unique_ptr<FrameRenderer>> create_renderer(Gpu& gpu, const Scene& scene,
+                                                       const StaticSetup& setup) {
+  return FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
 }
+
+VariantErrors errors_of(const Variant& variant, const Image<float>& visibility,
+                        const Truths& truths, const VariantCost& cost) {
+  return {variant, compare_images(visibility, truths.scene.visibility, truths.surfaces),
+          compare_images(visibility, truths.height_field.visibility, truths.surfaces), cost};
+}
+
+// Renders variants of a view alternately with its base.
+class Experiment {
+ public:
+  Experiment(const Session& session, const StaticSetup& setup, std::uint32_t timed_pairs)
+      : session_(session), setup_(setup), timed_pairs_(timed_pairs) {}
+
+  Result<VariantReport> run(const TruthOptions& truth_options, const std::vector<Variant>& variants,
+                            const std::string& progress) {
+    ALCOVE_TRY(base_, create_renderer(*session_.gpu, session_.scene, setup_));
+    ALCOVE_TRY(const FrameImages images, draw_frames(*base_, setup_, session_.settings));
+    ALCOVE_TRY(truths_, truths_of({session_.scene, setup_.camera, session_.settings.radius,
+                                   images.depth_ndc, images.normal_ws},
+                                  truth_options));
+    VariantReport report;
+    report.rows.push_back(errors_of({"", "base settings", session_.settings}, images.visibility,
+                                    truths_, {.bytes = bytes_of(*base_)}));
+    const Progress print = print_progress(progress);
+    for (const Variant& variant : variants) {
+      ALCOVE_TRY(auto row, measure(variant));
+      report.rows.push_back(std::move(row));
+      print(static_cast<double>(report.rows.size() - 1) / static_cast<double>(variants.size()));
+    }
+    report.base_times = {median(base_gpu_ms_), median(base_processor_ms_)};
+    ALCOVE_TRY_VOID(check_validation(*session_.gpu));
+    return report;
+  }
+
+ private:
+  static std::uint64_t bytes_of(const FrameRenderer& renderer) {
+    return renderer.memory().aliased + renderer.memory().history;
+  }
+
+  // Renders a variant on a device of its own, so that its histories start empty.
+  Result<VariantErrors> measure(const Variant& variant) {
+    ALCOVE_TRY(const auto gpu, open_gpu(session_.device));
+    ALCOVE_TRY(const auto renderer, create_renderer(*gpu, session_.scene, setup_));
+    ALCOVE_TRY(const FrameImages images, draw_frames(*renderer, setup_, variant.settings));
+    const std::uint64_t bytes = bytes_of(*renderer);
+    ALCOVE_TRY(const auto pairs, time_pairs(*renderer, variant.settings));
+    ALCOVE_TRY_VOID(check_validation(*gpu));
+    return errors_of(variant, images.visibility, truths_, cost_of(pairs, bytes));
+  }
+
+  Result<std::vector<TimedPair>> time_pairs(FrameRenderer& variant,
+                                            const OcclusionSettings& settings) {
+    std::vector<TimedPair> pairs;
+    // One pair before the timed ones is not counted, because it compiles shaders.
+    for (std::uint32_t i = 0; timed_pairs_ > 0 && i <= timed_pairs_; ++i) {
+      ALCOVE_TRY(const FrameCost base, base_->draw(request_of(setup_, session_.settings,
+                                                              setup_.frames + base_frames_++)));
+      ALCOVE_TRY(const FrameCost other,
+                 variant.draw(request_of(setup_, settings, setup_.frames + i)));
+      if (i == 0) continue;
+      base_gpu_ms_.push_back(base.occlusion_ms);
+      base_processor_ms_.push_back(base.cpu_ms);
+      pairs.push_back({{base.occlusion_ms, base.cpu_ms}, {other.occlusion_ms, other.cpu_ms}});
+    }
+    return pairs;
+  }
+
+  const Session& session_;
+  const StaticSetup& setup_;
+  std::uint32_t timed_pairs_;
+  std::unique_ptr<FrameRenderer> base_;
+  std::uint32_t base_frames_ = 0;  // drawn after StaticSetup::frames
+  Truths truths_;
+  std::vector<double> base_gpu_ms_;
+  std::vector<double> base_processor_ms_;
+};
 
 }  // namespace
 
-tl::expected<FrameImages, std::string> draw_frames(FrameRenderer& renderer,
-                                                   const StaticSetup& setup,
-                                                   const OcclusionSettings& settings) {
+Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
+                                const OcclusionSettings& settings) {
   for (std::uint32_t i = 0; i + 1 < setup.frames; ++i) {
-    if (auto cost = renderer.draw(request_of(setup, settings, i)); !cost) {
-      return Failure(std::move(cost.error()));
-    }
+    ALCOVE_TRY_VOID(renderer.draw(request_of(setup, settings, i)));
   }
   return renderer.draw_and_read(request_of(setup, settings, setup.frames - 1));
 }
 
+Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                                const OcclusionSettings& settings) {
+  ALCOVE_TRY(const auto renderer, create_renderer(gpu, scene, setup));
+  return draw_frames(*renderer, setup, settings);
+}
+
+Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
+                                          const OcclusionSettings& settings, VkExtent2D band) {
+  StaticSetup wide = setup;
+  wide.width += 2 * band.width;
+  wide.height += 2 * band.height;
+  const glm::vec2 scale = glm::vec2(wide.width, wide.height) / glm::vec2(setup.width, setup.height);
+  Camera& camera = wide.camera;
+  camera.fov_y = 2.0f * std::atan(scale.y * std::tan(0.5f * camera.fov_y));
+  camera.ortho_height *= scale.y;
+  camera.offset_ndc /= scale;
+  ALCOVE_TRY(const FrameImages images, draw_static(gpu, scene, wide, settings));
+  Image<float> middle(setup.width, setup.height);
+  for (std::uint32_t y = 0; y < setup.height; ++y) {
+    std::copy_n(&images.visibility.at(band.width, y + band.height), setup.width, &middle.at(0, y));
+  }
+  return middle;
+}
+
 VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes) {
   VariantCost cost{.bytes = bytes};
-  if (pairs.empty()) {
-    return cost;
-  }
-  std::vector<double> gpu;
-  std::vector<double> processor;
+  if (pairs.empty()) return cost;
+  std::vector<double> gpu, processor;
   for (const TimedPair& pair : pairs) {
     gpu.push_back(pair.variant.gpu_ms / pair.base.gpu_ms);
     processor.push_back(pair.variant.processor_ms / pair.base.processor_ms);
@@ -68,75 +164,11 @@ VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes) {
   return cost;
 }
 
-tl::expected<FrameImages, std::string> draw_static(Gpu& gpu, const Scene& scene,
-                                                   const StaticSetup& setup,
-                                                   const OcclusionSettings& settings) {
-  const auto renderer =
-      FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
-  if (!renderer) {
-    return Failure(renderer.error());
-  }
-  return draw_frames(**renderer, setup, settings);
-}
-
-tl::expected<VariantRunner, std::string> VariantRunner::create(Gpu& gpu, const Scene& scene,
-                                                               const StaticSetup& setup,
-                                                               const OcclusionSettings& base) {
-  VariantRunner made(scene, setup, base);
-  auto renderer = FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
-  made.renderer_ = std::move(*renderer);
-  auto images = draw_frames(*made.renderer_, setup, base);
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
-  made.base_ = std::move(*images);
-  made.next_frame_ = setup.frames;
-  return made;
-}
-
-std::uint64_t VariantRunner::base_bytes() const { return bytes_of(*renderer_); }
-
-BaseTimes VariantRunner::base_times() const {
-  return {median(base_gpu_ms_), median(base_processor_ms_)};
-}
-
-tl::expected<VariantResult, std::string> VariantRunner::run(Gpu& gpu, const Variant& variant,
-                                                            std::uint32_t timed_pairs) {
-  const auto renderer =
-      FrameRenderer::create(gpu, scene_, {setup_.width, setup_.height}, setup_.normals);
-  if (!renderer) {
-    return Failure(renderer.error());
-  }
-  auto images = draw_frames(**renderer, setup_, variant.settings);
-  if (!images) {
-    return Failure(std::move(images.error()));
-  }
-  VariantResult result{std::move(images->visibility), {.bytes = bytes_of(**renderer)}};
-  if (timed_pairs == 0) {
-    return result;
-  }
-  std::vector<TimedPair> pairs;
-  // One pair before the timed ones is not counted, because it compiles shaders.
-  for (std::uint32_t i = 0; i <= timed_pairs; ++i) {
-    const auto base = renderer_->draw(request_of(setup_, settings_, next_frame_++));
-    if (!base) {
-      return Failure(base.error());
-    }
-    const auto other = (*renderer)->draw(request_of(setup_, variant.settings, setup_.frames + i));
-    if (!other) {
-      return Failure(other.error());
-    }
-    if (i > 0) {
-      base_gpu_ms_.push_back(base->occlusion_ms);
-      base_processor_ms_.push_back(base->cpu_ms);
-      pairs.push_back({{base->occlusion_ms, base->cpu_ms}, {other->occlusion_ms, other->cpu_ms}});
-    }
-  }
-  result.cost = cost_of(pairs, bytes_of(**renderer));
-  return result;
+Result<VariantReport> run_variants(const Session& session, const StaticSetup& setup,
+                                   const TruthOptions& truth_options,
+                                   const std::vector<Variant>& variants,
+                                   const std::string& progress, std::uint32_t timed_pairs) {
+  return Experiment(session, setup, timed_pairs).run(truth_options, variants, progress);
 }
 
 }  // namespace alcove::sample

@@ -2,19 +2,20 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "gpu/gpu.h"
+#include "evaluate/errors.h"
+#include "evaluate/truths.h"
 #include "render/frame_renderer.h"
 #include "render/normal_source.h"
+#include "render/session.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -37,11 +38,18 @@ struct StaticSetup {
 };
 
 // Renders the frames of a view and reads the last one back.
-[[nodiscard]] tl::expected<FrameImages, std::string> draw_frames(
-    FrameRenderer& renderer, const StaticSetup& setup, const passes::OcclusionSettings& settings);
-[[nodiscard]] tl::expected<FrameImages, std::string> draw_static(
-    Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-    const passes::OcclusionSettings& settings);
+[[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
+                                              const passes::OcclusionSettings& settings);
+[[nodiscard]] Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene,
+                                              const StaticSetup& setup,
+                                              const passes::OcclusionSettings& settings);
+
+// Renders the frames of a view with a guard band, which is this many pixels wide beyond the borders
+// at the sides, and at top and bottom, and returns the visibility of the view without the band.
+[[nodiscard]] Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene,
+                                                        const StaticSetup& setup,
+                                                        const passes::OcclusionSettings& settings,
+                                                        VkExtent2D band);
 
 // The cost of a variant. Times are relative to the base settings.
 struct VariantCost {
@@ -76,47 +84,25 @@ struct TimedPair {
 inline constexpr std::uint32_t kDecidingPairs = 21;
 inline constexpr std::uint32_t kInformativePairs = 11;
 
-struct VariantResult {
-  Image<float> visibility;
+// The errors of a variant's visibility against both truths, and its cost.
+struct VariantErrors {
+  Variant variant;
+  ErrorSummary scene;
+  ErrorSummary height_field;
   VariantCost cost;
 };
 
-// Median times of the base's occlusion over the timed frames.
-struct BaseTimes {
-  double gpu_ms = 0;
-  double processor_ms = 0;
+struct VariantReport {
+  std::vector<VariantErrors> rows;  // the base first, then the variants
+  FrameTimes base_times;            // medians over the frames of all pairs; zero without pairs
 };
 
-// Renders variants of a view alternately with its base. Borrows the scene and the base's device.
-class VariantRunner {
- public:
-  [[nodiscard]] static tl::expected<VariantRunner, std::string> create(
-      Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-      const passes::OcclusionSettings& base);
-
-  const FrameImages& base() const { return base_; }
-  std::uint64_t base_bytes() const;
-  // Medians over all variants so far; zero before the first.
-  BaseTimes base_times() const;
-  // Renders a variant and measures its times relative to the base. `gpu` must be a device that did
-  // not render the base or another variant, because it keeps the history of its frames.
-  // `timed_pairs` pairs of frames are timed, each with a frame of the base and a frame of the
-  // variant. With 0 pairs, only the image and the bytes are measured.
-  [[nodiscard]] tl::expected<VariantResult, std::string> run(
-      Gpu& gpu, const Variant& variant, std::uint32_t timed_pairs = kInformativePairs);
-
- private:
-  VariantRunner(const Scene& scene, const StaticSetup& setup, const passes::OcclusionSettings& base)
-      : scene_(scene), setup_(setup), settings_(base) {}
-
-  const Scene& scene_;
-  StaticSetup setup_;
-  passes::OcclusionSettings settings_;
-  FrameImages base_;
-  std::unique_ptr<FrameRenderer> renderer_;
-  std::uint32_t next_frame_ = 0;  // the next frame index of the base
-  std::vector<double> base_gpu_ms_;
-  std::vector<double> base_processor_ms_;
-};
+// Measures the session's own settings and the variants. `progress` is the name in progress
+// messages. With `timed_pairs` of 0 no times are measured.
+[[nodiscard]] Result<VariantReport> run_variants(const Session& session, const StaticSetup& setup,
+                                                 const TruthOptions& truth_options,
+                                                 const std::vector<Variant>& variants,
+                                                 const std::string& progress,
+                                                 std::uint32_t timed_pairs = kInformativePairs);
 
 }  // namespace alcove::sample

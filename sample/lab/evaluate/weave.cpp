@@ -65,9 +65,7 @@ Window window_of(const Image<float>& image, std::uint32_t left, std::uint32_t to
 bool all_surfaces(const Mask& surfaces, std::uint32_t left, std::uint32_t top) {
   for (std::uint32_t y = top; y < top + kWindow; ++y) {
     const auto* row = &surfaces.at(left, y);
-    if (std::find(row, row + kWindow, std::uint8_t{0}) != row + kWindow) {
-      return false;
-    }
+    if (std::find(row, row + kWindow, std::uint8_t{0}) != row + kWindow) return false;
   }
   return true;
 }
@@ -150,9 +148,7 @@ const std::vector<std::size_t>& sorted_frequencies() {
 
 // The lower quartile, 0 for no values.
 double lower_quartile(std::vector<double> values) {
-  if (values.empty()) {
-    return 0.0;
-  }
+  if (values.empty()) return 0.0;
   const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
   std::nth_element(values.begin(), quartile, values.end());
   return *quartile;
@@ -213,13 +209,9 @@ Pattern pattern_of(const std::vector<double>& sums, double windows) {
     const double noise = std::max(lower_quartile({at(i - std::min(i, kSimilar)), at(i)}),
                                   lower_quartile({at(i + 1), at(i + 1 + kSimilar)})) /
                          quartile;
-    if (powers[i] <= limit * noise) {
-      continue;
-    }
+    if (powers[i] <= limit * noise) continue;
     const double cycles = cycles_of(peak_near(sums, frequencies[i]));
-    if (cycles * kLongestPeriod < 1.0) {
-      continue;
-    }
+    if (cycles * kLongestPeriod < 1.0) continue;
     pattern.variance += powers[i] - noise;
     if (powers[i] > strongest) {
       strongest = powers[i];
@@ -266,9 +258,7 @@ Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask
   Weave weave;
   for (std::uint32_t top = 0; top + kWindow <= truth.height; top += kStep) {
     for (std::uint32_t left = 0; left + kWindow <= truth.width; left += kStep) {
-      if (!all_surfaces(surfaces, left, top)) {
-        continue;
-      }
+      if (!all_surfaces(surfaces, left, top)) continue;
       const Window true_values = window_of(truth, left, top);
       Window error = window_of(result, left, top);
       std::transform(error.begin(), error.end(), true_values.begin(), error.begin(),

@@ -14,6 +14,7 @@
 #include "maths/sampling.h"
 #include "maths/slice.h"
 #include "maths/visibility_bitmask.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 #include "work/interleave_offset.h"
 
@@ -60,9 +61,7 @@ float horizon_of(const Profile& p, float side) {
   float horizon = -1.0f;
   for (const vec2 point : p.surface) {
     const vec2 offset = point - p.shaded;
-    if (offset.x * side > 0.0f) {
-      horizon = std::max(horizon, glm::normalize(offset).y);
-    }
+    if (offset.x * side > 0.0f) horizon = std::max(horizon, glm::normalize(offset).y);
   }
   return horizon;
 }
@@ -196,9 +195,7 @@ Drawing hidden_volume() {
   draw_profile(d, p);
   d.polygon({slat.front, slat.front + vec2(0.9f, 0), slat.back + vec2(0.9f, 0), slat.back},
             "fill=\"#777\" stroke=\"#333\"");
-  for (const float x : {2.0f, 2.9f}) {
-    d.line({x, 3.8f}, {x, 0.25f * x}, kDashed);
-  }
+  for (const float x : {2.0f, 2.9f}) d.line({x, 3.8f}, {x, 0.25f * x}, kDashed);
   d.text({3.0f, 3.4f}, "the eye sees the front of the occluder");
   d.text({3.7f, 2.1f}, "yellow: directions that pass behind it.");
   d.text({3.7f, 1.88f}, "A fraction of them counts as occluded,");
@@ -304,13 +301,11 @@ constexpr std::array<Figure, 6> kFigures{{{"slice_and_horizons", slice_and_horiz
                                           {"tile_interleave", tile_interleave},
                                           {"history_reprojection", history_reprojection}}};
 
-tl::expected<void, std::string> draw_all(const std::filesystem::path& folder) {
+Result<void> draw_all(const std::filesystem::path& folder) {
   for (const Figure& figure : kFigures) {
     const auto written =
         write_text(folder / fmt::format("{}.svg", figure.name), figure.draw().svg());
-    if (!written) {
-      return written;
-    }
+    if (!written) return written;
   }
   return {};
 }

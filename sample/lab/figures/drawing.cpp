@@ -9,9 +9,7 @@ glm::vec2 Drawing::px(glm::vec2 point) const {
 }
 
 std::vector<glm::vec2> Drawing::px(std::vector<glm::vec2> points) const {
-  for (glm::vec2& point : points) {
-    point = px(point);
-  }
+  for (glm::vec2& point : points) point = px(point);
   return points;
 }
 

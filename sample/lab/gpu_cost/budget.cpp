@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "alcove/passes/setting_names.h"
+#include "gpu_cost/presets.h"
 
 namespace alcove::sample {
 namespace {
@@ -82,28 +82,18 @@ void check(const Json& limits, const Json& row, const char* key, Bound bound,
 
 std::vector<LabelledSettings> budgeted_settings() {
   std::vector<LabelledSettings> all;
-  for (std::size_t i = 0; i < std::size(passes::kNames<Quality>); ++i) {
-    if (const auto quality = static_cast<Quality>(i); quality != Quality::reference) {
-      all.push_back(preset(quality));
-    }
-  }
+  for (const Quality quality : presets()) all.push_back(preset(quality));
   std::ranges::move(with_each_output(preset(Quality::medium)), std::back_inserter(all));
   return all;
 }
 
-tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs() {
+Result<std::vector<SettingsCost>> budgeted_costs() {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
-    const auto device = create_null_device(part.family);
-    if (!device) {
-      return Failure(device.error());
-    }
+    ALCOVE_TRY(const auto device, create_null_device(part.family));
     for (const LabelledSettings& settings : budgeted_settings()) {
-      auto cost = cost_of(part, *device, settings);
-      if (!cost) {
-        return Failure(std::move(cost.error()));
-      }
-      costs.push_back(std::move(*cost));
+      ALCOVE_TRY(auto cost, cost_of(part, device, settings));
+      costs.push_back(std::move(cost));
     }
   }
   return costs;
@@ -129,9 +119,8 @@ std::string budget_of(const std::vector<SettingsCost>& costs, const std::string&
   return lines += "\n";
 }
 
-tl::expected<std::vector<std::string>, std::string> over_budget(
-    const std::string& budget, const std::string& compiler,
-    const std::vector<SettingsCost>& costs) {
+Result<std::vector<std::string>> over_budget(const std::string& budget, const std::string& compiler,
+                                             const std::vector<SettingsCost>& costs) {
   std::vector<Json> rows;
   std::istringstream lines(budget);
   for (std::string line; std::getline(lines, line);) {

@@ -7,10 +7,10 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu_cost/cost_report.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -20,7 +20,7 @@ namespace alcove::sample {
 
 // Returns the costs of these settings on all modelled GPUs. Errors: those of create_null_device()
 // and modelled_frames().
-[[nodiscard]] tl::expected<std::vector<SettingsCost>, std::string> budgeted_costs();
+[[nodiscard]] Result<std::vector<SettingsCost>> budgeted_costs();
 
 // The name and version of the driver, whose compiler determines the costs.
 [[nodiscard]] std::string compiler_name(const NullDevice& device);
@@ -32,7 +32,8 @@ namespace alcove::sample {
 // instructions per pixel (a model that forgets a loop finds fewer), more vector registers or
 // spilled registers, fewer waves per SIMD, or a pass without a budget. Error: the budget is for
 // another compiler, whose code is different.
-[[nodiscard]] tl::expected<std::vector<std::string>, std::string> over_budget(
-    const std::string& budget, const std::string& compiler, const std::vector<SettingsCost>& costs);
+[[nodiscard]] Result<std::vector<std::string>> over_budget(const std::string& budget,
+                                                           const std::string& compiler,
+                                                           const std::vector<SettingsCost>& costs);
 
 }  // namespace alcove::sample

@@ -96,9 +96,7 @@ class Simulation {
         held_(static_cast<std::size_t>(held * part.simds / part.compute_units)),
         units_(static_cast<std::size_t>(part.compute_units)),
         l2_(part.l2_bytes, part.line_bytes, 16) {
-    for (Unit& unit : units_) {
-      unit.l1 = Cache(part.l1_bytes, part.line_bytes, 4);
-    }
+    for (Unit& unit : units_) unit.l1 = Cache(part.l1_bytes, part.line_bytes, 4);
     if (part.array_l1_bytes > 0) {
       arrays_.assign(units_.size() / part.array_units,
                      Cache(part.array_l1_bytes, part.line_bytes, 16));
@@ -106,9 +104,7 @@ class Simulation {
     std::vector<std::string_view> names;
     for (const ImageAccess& access : dispatch.accesses) {
       const auto number = std::ranges::find(names, access.image.name) - names.begin();
-      if (number == std::ssize(names)) {
-        names.push_back(access.image.name);
-      }
+      if (number == std::ssize(names)) names.push_back(access.image.name);
       images_.emplace_back(number, access.image.texel_bytes, part.line_bytes);
     }
   }
@@ -201,9 +197,7 @@ class Simulation {
         const std::uint64_t line =
             images_[wave.next].line(texel.level, std::clamp(texel.x + i % side, 0, last_x),
                                     std::clamp(texel.y + i / side, 0, last_y));
-        if (lines_.empty() || lines_.back() != line) {
-          lines_.push_back(line);
-        }
+        if (lines_.empty() || lines_.back() != line) lines_.push_back(line);
       }
     }
     std::ranges::sort(lines_);

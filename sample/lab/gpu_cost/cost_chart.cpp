@@ -32,9 +32,7 @@ std::vector<std::string> pass_names(std::span<const SettingsCost> costs) {
   for (const SettingsCost& cost : costs) {
     for (const ModelledFrame& frame : cost.frames) {
       for (const ModelledPass& pass : frame.passes) {
-        if (std::ranges::find(names, pass.pass) == names.end()) {
-          names.push_back(pass.pass);
-        }
+        if (std::ranges::find(names, pass.pass) == names.end()) names.push_back(pass.pass);
       }
     }
   }
@@ -46,9 +44,7 @@ class Chart {
   explicit Chart(std::span<const SettingsCost> costs) : costs_(costs), names_(pass_names(costs)) {}
 
   std::string draw() {
-    for (const GpuPart& part : kGpuParts) {
-      draw_part(part);
-    }
+    for (const GpuPart& part : kGpuParts) draw_part(part);
     draw_legend();
     return svg_.document({kWidth, y_}, 12);
   }
@@ -67,9 +63,7 @@ class Chart {
 
 void Chart::draw_part(const GpuPart& part) {
   const auto own = std::ranges::find(costs_, &part, &SettingsCost::part);
-  if (own == costs_.end()) {
-    return;
-  }
+  if (own == costs_.end()) return;
   const CostInputs& size = own->settings.inputs;
   const double peer_ms = xegtao_ms(part, kXeGtaoHigh, size.width, size.height);
   double longest = peer_ms;
@@ -95,9 +89,7 @@ void Chart::draw_part(const GpuPart& part) {
   const double height = kRow * static_cast<double>(rows) + kGap * static_cast<double>(labels);
   svg_.line({line, top - 2}, {line, top + height}, "stroke=\"black\" stroke-dasharray=\"4 3\"");
   for (const SettingsCost& cost : costs_) {
-    if (cost.part != &part) {
-      continue;
-    }
+    if (cost.part != &part) continue;
     for (const ModelledFrame& frame : cost.frames) {
       svg_.text({kLeft - 8, y_ + kBar - 2}, "end",
                 fmt::format("{}, {}", cost.settings.label, name_of(frame.state)));

@@ -10,7 +10,6 @@ namespace alcove::sample {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Failure = tl::unexpected<std::string>;
 
 std::string pass_row(const ModelledPass& pass) {
   return fmt::format(
@@ -78,9 +77,7 @@ std::string ratio_rows(std::span<const SettingsCost> costs, const GpuPart& part)
       rows += fmt::format("    {:36}{:11.3f}\n", cost.settings.label, fmt::join(ratios, ""));
     }
   }
-  if (rows.empty()) {
-    return rows;
-  }
+  if (rows.empty()) return rows;
   std::string heading =
       "  Time of a frame over its time without the output:\n" + std::string(40, ' ');
   for (const ModelledFrame& frame : costs.front().frames) {
@@ -130,16 +127,12 @@ Json to_json(const SettingsCost& cost, double peer_ms, const std::vector<double>
   Json frames = Json::array();
   for (const ModelledFrame& frame : cost.frames) {
     Json passes = Json::array();
-    for (const ModelledPass& pass : frame.passes) {
-      passes.push_back(to_json(pass));
-    }
+    for (const ModelledPass& pass : frame.passes) passes.push_back(to_json(pass));
     frames.push_back({{"frame", name_of(frame.state)},
                       {"ms", frame.milliseconds()},
                       {"of_xegtao_high", frame.milliseconds() / peer_ms},
                       {"passes", std::move(passes)}});
-    if (!ratios.empty()) {
-      frames.back()["of_time_without_output"] = ratios[frames.size() - 1];
-    }
+    if (!ratios.empty()) frames.back()["of_time_without_output"] = ratios[frames.size() - 1];
   }
   Json occupancies = Json::array();
   for (const Occupancy& occupancy : cost.occupancies) {
@@ -167,17 +160,11 @@ std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) 
   return {std::move(bent), std::move(specular)};
 }
 
-tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part, const NullDevice& device,
-                                                const LabelledSettings& settings) {
-  auto frames = modelled_frames(part, device, settings.inputs);
-  if (!frames) {
-    return Failure(std::move(frames.error()));
-  }
-  auto found = occupancies(part, device, settings.inputs);
-  if (!found) {
-    return Failure(std::move(found.error()));
-  }
-  return SettingsCost{settings, &part, std::move(*frames), std::move(*found)};
+Result<SettingsCost> cost_of(const GpuPart& part, const NullDevice& device,
+                             const LabelledSettings& settings) {
+  ALCOVE_TRY(auto frames, modelled_frames(part, device, settings.inputs));
+  ALCOVE_TRY(auto found, occupancies(part, device, settings.inputs));
+  return SettingsCost{settings, &part, std::move(frames), std::move(found)};
 }
 
 std::vector<double> output_ratios(const SettingsCost& cost, std::span<const SettingsCost> costs) {
@@ -185,9 +172,7 @@ std::vector<double> output_ratios(const SettingsCost& cost, std::span<const Sett
     return other.part == cost.part && other.settings.label == cost.settings.label_without;
   });
   std::vector<double> ratios;
-  if (cost.settings.label_without.empty() || without == costs.end()) {
-    return ratios;
-  }
+  if (cost.settings.label_without.empty() || without == costs.end()) return ratios;
   for (const ModelledFrame& frame : cost.frames) {
     const auto same = std::ranges::find(without->frames, frame.state, &ModelledFrame::state);
     ratios.push_back(frame.milliseconds() / same->milliseconds());
@@ -199,9 +184,7 @@ std::string table_of(std::span<const SettingsCost> costs, bool loops) {
   std::string out;
   for (const GpuPart& part : kGpuParts) {
     const auto first = std::ranges::find(costs, &part, &SettingsCost::part);
-    if (first == costs.end()) {
-      continue;
-    }
+    if (first == costs.end()) continue;
     const CostInputs& size = first->settings.inputs;
     out += fmt::format("{}: {}. Modelled milliseconds at {}x{};", part.family, part.title,
                        size.width, size.height);
@@ -214,9 +197,7 @@ std::string table_of(std::span<const SettingsCost> costs, bool loops) {
         "    pass                      ms  limit          instr/px fetches stores    L2 memory"
         "  VGPRs  waves  spills    code  shared  lines   ALU texture shared L2 memory latency\n";
     for (const SettingsCost& cost : costs) {
-      if (cost.part == &part) {
-        out += settings_rows(cost, loops);
-      }
+      if (cost.part == &part) out += settings_rows(cost, loops);
     }
     out += ratio_rows(costs, part);
   }
@@ -229,9 +210,7 @@ Json to_json(std::span<const SettingsCost> costs) {
     Json settings = Json::array();
     Json peers = Json::object();
     for (const SettingsCost& cost : costs) {
-      if (cost.part != &part) {
-        continue;
-      }
+      if (cost.part != &part) continue;
       const CostInputs& size = cost.settings.inputs;
       for (const XeGtao& peer : kXeGtao) {
         peers[std::string(peer.name)] = xegtao_ms(part, peer, size.width, size.height);

@@ -5,10 +5,10 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu_cost/modelled_frame.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -34,9 +34,8 @@ struct SettingsCost {
 };
 
 // Errors: those of modelled_frames().
-[[nodiscard]] tl::expected<SettingsCost, std::string> cost_of(const GpuPart& part,
-                                                              const NullDevice& device,
-                                                              const LabelledSettings& settings);
+[[nodiscard]] Result<SettingsCost> cost_of(const GpuPart& part, const NullDevice& device,
+                                           const LabelledSettings& settings);
 
 // Returns the costs as text: a table for each GPU, with the passes of each frame and their sums.
 // With `loops`, also the instructions of a wave by kind, each loop of the compiled shader with its

@@ -37,19 +37,19 @@ tl::expected<passes::OcclusionOutputs, passes::Error> describe(passes::WorkList&
                                                                FrameState state) {
   passes::WorkFrame frame{camera(inputs.projection), static_cast<std::uint32_t>(state)};
   frame.previous_view = frame.view;
-  if (state == FrameState::moving) {
-    frame.previous_view.view_from_world[12] = 0.01f;
-  }
+  if (state == FrameState::moving) frame.previous_view.view_from_world[12] = 0.01f;
   frame.static_frames = state == FrameState::unchanged   ? 1
                         : state == FrameState::converged ? 16
                                                          : 0;
+  const std::uint32_t band = inputs.guard_band;
+  const VkExtent2D size{inputs.width + 2 * band, inputs.height + 2 * band};
   const auto add = [&](bool wanted, const char* name, VkFormat format, std::uint32_t samples = 1) {
-    return wanted ? list.add(ALCOVE_RESOURCE_KIND_INPUT, name, format,
-                             {inputs.width, inputs.height}, 1, samples)
+    return wanted ? list.add(ALCOVE_RESOURCE_KIND_INPUT, name, format, size, 1, samples)
                   : Texture{};
   };
-  if (inputs.area) {
-    frame.areas.read = {0, 0, inputs.width, inputs.height};
+  if (inputs.area || band > 0) {
+    frame.areas.read = {0, 0, size.width, size.height};
+    if (band > 0) frame.areas.written = {band, band, inputs.width, inputs.height};
   }
   const passes::OcclusionSettings& settings = inputs.settings;
   passes::OcclusionInputs given;
@@ -78,7 +78,7 @@ std::uint32_t texel_bytes(const AlcoveWorkResource& resource) {
 
 }  // namespace
 
-tl::expected<std::vector<AlcoveWork>, std::string> describe_frames(const CostInputs& inputs) {
+Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs) {
   std::vector<AlcoveWork> frames(passes::cost::kFrameStates);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     passes::WorkList list(frames[i], i == 0 ? nullptr : &frames[i - 1]);
@@ -102,18 +102,14 @@ std::vector<PassImage> images_of(const AlcoveWork& work, const AlcoveWorkDispatc
       continue;
     }
     std::uint32_t access = 0;
-    for (const AlcoveWorkBinding& other : bindings) {
-      access |= is_same(other) ? other.access : 0;
-    }
+    for (const AlcoveWorkBinding& other : bindings) access |= is_same(other) ? other.access : 0;
     const AlcoveWorkResource& resource = work.resources[binding->resource];
     PassImage image{resource.name, Direction::read, texel_bytes(resource), resource.width,
                     resource.height};
     if (resource.kind == ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS) {
       image.name = "previous " + image.name;
     }
-    if ((access & ALCOVE_WORK_ACCESS_READ) != 0) {
-      images.push_back(image);
-    }
+    if ((access & ALCOVE_WORK_ACCESS_READ) != 0) images.push_back(image);
     if ((access & ALCOVE_WORK_ACCESS_WRITE) != 0) {
       image.direction = Direction::write;
       images.push_back(std::move(image));

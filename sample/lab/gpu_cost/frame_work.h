@@ -4,11 +4,11 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/alcove_work.h"
 #include "cost/work.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -22,11 +22,12 @@ inline constexpr std::array<std::string_view, 3> kProjectionNames{
 struct CostInputs {
   std::uint32_t width = 1920;
   std::uint32_t height = 1080;
-  bool normals = true;   // true: a texture of normals (RGBA16F); false: normals from depth
-  bool motion = false;   // motion vectors (RG16F)
-  bool area = false;     // the images are read and written in part
-  bool mask = false;     // a mask of surfaces (R8)
-  bool samples = false;  // four samples of depth per pixel
+  bool normals = true;           // true: a texture of normals (RGBA16F); false: normals from depth
+  bool motion = false;           // motion vectors (RG16F)
+  bool area = false;             // the images are read and written in part
+  std::uint32_t guard_band = 0;  // pixels beyond each border that are read and not written
+  bool mask = false;             // a mask of surfaces (R8)
+  bool samples = false;          // four samples of depth per pixel
   ProjectionKind projection = ProjectionKind::finite_far;
   passes::OcclusionSettings settings;
   passes::NormalEncoding normal_encoding = passes::NormalEncoding::signed_xyz;
@@ -34,8 +35,7 @@ struct CostInputs {
 
 // Returns the work of a frame of each FrameState, in their order, with the outputs that the
 // settings enable. Error: the passes reject the settings.
-[[nodiscard]] tl::expected<std::vector<AlcoveWork>, std::string> describe_frames(
-    const CostInputs& inputs);
+[[nodiscard]] Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs);
 
 // Returns the images that a dispatch of `work` reads and writes, in the order of its bindings.
 [[nodiscard]] std::vector<passes::cost::PassImage> images_of(const AlcoveWork& work,

@@ -20,7 +20,7 @@ struct Statistics {
   double subgroups_per_simd, latency, inverse_throughput;
 };
 
-tl::expected<Statistics, std::string> statistics_of(const CompiledShader& shader) {
+Result<Statistics> statistics_of(const CompiledShader& shader) {
   std::string missing;
   const auto get = [&](const char* name) {
     const auto found = shader.statistics.find(name);
@@ -53,9 +53,7 @@ tl::expected<Statistics, std::string> statistics_of(const CompiledShader& shader
 // assumed ones.
 double wave_latency(const Statistics& statistics, const WaveWork& work, double held,
                     std::uint32_t wave, bool loops) {
-  if (!loops) {
-    return statistics.latency;
-  }
+  if (!loops) return statistics.latency;
   // The compiler's statistic "Inverse throughput" is in cycles for 64 lanes. If a single wave is
   // limited by latency, the compiler reports the latency instead.
   const double throughput = statistics.inverse_throughput * wave / 64;
@@ -80,20 +78,14 @@ bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const Alcove
          images_of(work_a, a) == images_of(work_b, b);
 }
 
-tl::expected<ModelledPass, std::string> model(const GpuPart& part, const NullDevice& device,
-                                              const CostInputs& inputs, const AlcoveWork& frame,
-                                              const AlcoveWorkDispatch& dispatch,
-                                              FrameState state) {
-  const auto compiled = compile_dispatch(device, dispatch);
-  if (!compiled) {
-    return Failure(compiled.error());
-  }
-  const CompiledShader& shader = **compiled;
+Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
+                           const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch,
+                           FrameState state) {
+  ALCOVE_TRY(const auto compiled, compile_dispatch(device, dispatch));
+  const CompiledShader& shader = *compiled;
   const auto statistics = statistics_of(shader);
   const auto blocks = blocks_of(shader);
-  if (!statistics || !blocks) {
-    return Failure(statistics ? blocks.error() : statistics.error());
-  }
+  if (!statistics || !blocks) return Failure(statistics ? blocks.error() : statistics.error());
   const auto images = images_of(frame, dispatch);
   const auto& groups = dispatch.groups;
   const PassWork work{
@@ -101,17 +93,12 @@ tl::expected<ModelledPass, std::string> model(const GpuPart& part, const NullDev
       inputs.height};
   const std::vector<Loop> loops = loops_of(*blocks);
   std::vector<CompiledLoop> summaries;
-  for (const Loop& loop : loops) {
-    summaries.push_back(loop.summary);
-  }
-  const auto iterations = passes::cost::iterations(work, summaries);
-  if (!iterations) {
-    return Failure(iterations.error());
-  }
+  for (const Loop& loop : loops) summaries.push_back(loop.summary);
+  ALCOVE_TRY(const auto iterations, passes::cost::iterations(work, summaries));
   ModelledPass cost;
   cost.pass = dispatch.label;
   for (std::size_t i = 0; i < summaries.size(); ++i) {
-    cost.loops.push_back({summaries[i], (*iterations)[i]});
+    cost.loops.push_back({summaries[i], iterations[i]});
   }
   std::vector<Branch> branches = branches_of(*blocks);
   for (Branch& branch : branches) {
@@ -120,15 +107,13 @@ tl::expected<ModelledPass, std::string> model(const GpuPart& part, const NullDev
           return branch.first <= loop.first && loop.last <= branch.last;
         }));
     branch.share = passes::cost::branch_share(work, branch.summary);
-    if (branch.share < 1.0) {
-      cost.branches.push_back({branch.summary, branch.share});
-    }
+    if (branch.share < 1.0) cost.branches.push_back({branch.summary, branch.share});
   }
   const double wave = shader.wave;
   constexpr double kGroup = 64;  // invocations, as alcove_work.h says
   const double pixels = static_cast<double>(inputs.width) * inputs.height;
   const auto milliseconds = [&](double cycles) { return cycles / part.hertz * 1e3; };
-  cost.wave = wave_work(*blocks, loops, *iterations, branches, part.rdna, shader.wave);
+  cost.wave = wave_work(*blocks, loops, iterations, branches, part.rdna, shader.wave);
   cost.waves = static_cast<double>(groups[0]) * groups[1] * groups[2] * std::ceil(kGroup / wave);
   cost.vector_registers = statistics->vector_registers;
   cost.scalar_registers = statistics->scalar_registers;
@@ -180,80 +165,60 @@ std::string_view ModelledPass::limit() const {
 
 double ModelledFrame::milliseconds() const {
   double sum = 0;
-  for (const ModelledPass& pass : passes) {
-    sum += pass.milliseconds();
-  }
+  for (const ModelledPass& pass : passes) sum += pass.milliseconds();
   return sum;
 }
 
-tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(const GpuPart& part,
-                                                                      const NullDevice& device,
-                                                                      const CostInputs& inputs) {
-  const auto frames = describe_frames(inputs);
-  if (!frames) {
-    return Failure(frames.error());
-  }
+Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part, const NullDevice& device,
+                                                   const CostInputs& inputs) {
+  ALCOVE_TRY(const auto frames, describe_frames(inputs));
   std::vector<ModelledFrame> costs;
   // Returns the cost of a dispatch of an earlier frame that does the same work, or null.
   const auto find_same = [&](const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch) {
     for (std::size_t i = 0; i < costs.size(); ++i) {
       for (std::size_t j = 0; j < costs[i].passes.size(); ++j) {
-        if (is_same((*frames)[i], (*frames)[i].dispatches[j], frame, dispatch)) {
+        if (is_same(frames[i], frames[i].dispatches[j], frame, dispatch)) {
           return &costs[i].passes[j];
         }
       }
     }
     return static_cast<ModelledPass*>(nullptr);
   };
-  for (std::size_t i = 0; i < frames->size(); ++i) {
-    const AlcoveWork& frame = (*frames)[i];
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const AlcoveWork& frame = frames[i];
     ModelledFrame cost{static_cast<FrameState>(i), {}};
     for (const AlcoveWorkDispatch& dispatch :
          std::span(frame.dispatches).first(frame.dispatch_count)) {
       const ModelledPass* const same = find_same(frame, dispatch);
-      auto modelled =
-          same != nullptr ? *same : model(part, device, inputs, frame, dispatch, cost.state);
-      if (!modelled) {
-        return Failure(std::move(modelled.error()));
-      }
-      cost.passes.push_back(std::move(*modelled));
+      ALCOVE_TRY(auto modelled, same != nullptr
+                                    ? *same
+                                    : model(part, device, inputs, frame, dispatch, cost.state));
+      cost.passes.push_back(std::move(modelled));
     }
     costs.push_back(std::move(cost));
   }
   return costs;
 }
 
-tl::expected<std::vector<Occupancy>, std::string> occupancies(const GpuPart& part,
-                                                              const NullDevice& device,
-                                                              CostInputs inputs) {
+Result<std::vector<Occupancy>> occupancies(const GpuPart& part, const NullDevice& device,
+                                           CostInputs inputs) {
   std::vector<Occupancy> found;
   for (std::size_t kind = 0; kind < kProjectionNames.size(); ++kind) {
     inputs.projection = static_cast<ProjectionKind>(kind);
-    const auto frames = describe_frames(inputs);
-    if (!frames) {
-      return Failure(frames.error());
-    }
-    for (const AlcoveWork& frame : *frames) {
+    ALCOVE_TRY(const auto frames, describe_frames(inputs));
+    for (const AlcoveWork& frame : frames) {
       for (const AlcoveWorkDispatch& dispatch :
            std::span(frame.dispatches).first(frame.dispatch_count)) {
-        const auto shader = compile_dispatch(device, dispatch);
-        if (!shader) {
-          return Failure(shader.error());
-        }
-        const auto statistics = statistics_of(**shader);
-        if (!statistics) {
-          return Failure(statistics.error());
-        }
+        ALCOVE_TRY(const auto shader, compile_dispatch(device, dispatch));
+        ALCOVE_TRY(const auto statistics, statistics_of(*shader));
         auto own = std::ranges::find(found, std::string_view(dispatch.label), &Occupancy::pass);
-        if (own == found.end()) {
-          own = found.insert(own, Occupancy{dispatch.label});
-        }
-        const double held = waves_held(part, *statistics, (*shader)->wave);
+        if (own == found.end()) own = found.insert(own, Occupancy{dispatch.label});
+        const double held = waves_held(part, statistics, shader->wave);
         double& waves = own->waves_per_simd[kind];
         waves = waves == 0 ? held : std::min(waves, held);
         double& registers = own->vector_registers[kind];
-        registers = std::max(registers, statistics->vector_registers);
-        own->spills[kind] = std::max(own->spills[kind], statistics->spills);
+        registers = std::max(registers, statistics.vector_registers);
+        own->spills[kind] = std::max(own->spills[kind], statistics.spills);
       }
     }
   }

@@ -13,12 +13,12 @@
 
 #include <array>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "gpu_cost/wave.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -74,8 +74,9 @@ struct ModelledFrame {
 // Returns the modelled time of one frame of each FrameState on one GPU. Errors: those of
 // describe_frames() and compile_dispatch(), the driver's text cannot be parsed, or the iterations
 // of a loop are not declared.
-[[nodiscard]] tl::expected<std::vector<ModelledFrame>, std::string> modelled_frames(
-    const GpuPart& part, const NullDevice& device, const CostInputs& inputs);
+[[nodiscard]] Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part,
+                                                                 const NullDevice& device,
+                                                                 const CostInputs& inputs);
 
 // The registers of a pass and the waves that they allow, for each ProjectionKind: the most
 // registers and the fewest waves of all frames.
@@ -87,7 +88,8 @@ struct Occupancy {
 };
 
 // Returns the occupancy of each pass that a frame of any state runs.
-[[nodiscard]] tl::expected<std::vector<Occupancy>, std::string> occupancies(
-    const GpuPart& part, const NullDevice& device, CostInputs inputs);
+[[nodiscard]] Result<std::vector<Occupancy>> occupancies(const GpuPart& part,
+                                                         const NullDevice& device,
+                                                         CostInputs inputs);
 
 }  // namespace alcove::sample

@@ -32,9 +32,7 @@ std::optional<std::string> radv_manifest() {
         found.push_back(entry.path().string());
       }
     }
-    if (!found.empty()) {
-      return *std::ranges::min_element(found);
-    }
+    if (!found.empty()) return *std::ranges::min_element(found);
   }
   return std::nullopt;
 }
@@ -65,9 +63,7 @@ class SilentStandardError {
 class ScopedVariable {
  public:
   ScopedVariable(const char* name, const std::string& value) : name_(name) {
-    if (const char* before = std::getenv(name)) {
-      before_ = before;
-    }
+    if (const char* before = std::getenv(name)) before_ = before;
     setenv(name, value.c_str(), 1);
   }
   ~ScopedVariable() {
@@ -223,7 +219,7 @@ VkResult create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch,
 
 }  // namespace
 
-tl::expected<NullDevice, std::string> create_null_device(std::string_view family) {
+Result<NullDevice> create_null_device(std::string_view family) {
   const auto manifest = radv_manifest();
   if (!manifest) {
     return Failure(
@@ -255,8 +251,7 @@ tl::expected<NullDevice, std::string> create_null_device(std::string_view family
   return made;
 }
 
-tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
-                                                               VkPipeline pipeline) {
+Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline) {
   const auto load = [device](const char* name) { return vkGetDeviceProcAddr(device, name); };
   const auto get_properties = reinterpret_cast<PFN_vkGetPipelineExecutablePropertiesKHR>(
       load("vkGetPipelineExecutablePropertiesKHR"));
@@ -301,8 +296,8 @@ tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
   return shader;
 }
 
-tl::expected<const CompiledShader*, std::string> compile_dispatch(
-    const NullDevice& device, const AlcoveWorkDispatch& dispatch) {
+Result<const CompiledShader*> compile_dispatch(const NullDevice& device,
+                                               const AlcoveWorkDispatch& dispatch) {
   // The states of a frame, and settings that differ little, have most pipelines in common.
   static std::map<std::tuple<VkDevice, std::string, std::vector<std::uint32_t>>, CompiledShader>
       known;
@@ -311,19 +306,14 @@ tl::expected<const CompiledShader*, std::string> compile_dispatch(
     constants.push_back(dispatch.constants[i].value);
   }
   const std::tuple key{device.device, std::string(dispatch.shader), std::move(constants)};
-  if (const auto found = known.find(key); found != known.end()) {
-    return &found->second;
-  }
+  if (const auto found = known.find(key); found != known.end()) return &found->second;
   VkPipeline pipeline = VK_NULL_HANDLE;
   if (create_pipeline(device.device, dispatch, pipeline) != VK_SUCCESS) {
     return Failure("Mesa's AMD driver could not compile the shader '" +
                    std::string(dispatch.shader) + "'.");
   }
-  auto shader = read_compiled_shader(device.device, pipeline);
-  if (!shader) {
-    return Failure(std::move(shader.error()));
-  }
-  return &known.emplace(key, std::move(*shader)).first->second;
+  ALCOVE_TRY(auto shader, read_compiled_shader(device.device, pipeline));
+  return &known.emplace(key, std::move(shader)).first->second;
 }
 
 }  // namespace alcove::sample

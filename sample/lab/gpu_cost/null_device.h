@@ -8,9 +8,9 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 
 #include "alcove/alcove_work.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -27,7 +27,7 @@ struct NullDevice {
 // RADV_FORCE_FAMILY. Environment variables of this process are set during the call, and no other
 // thread may read them meanwhile. Errors: the driver is not installed, or does not support the
 // family.
-[[nodiscard]] tl::expected<NullDevice, std::string> create_null_device(std::string_view family);
+[[nodiscard]] Result<NullDevice> create_null_device(std::string_view family);
 
 struct CompiledShader {
   std::uint32_t wave = 64;                   // invocations in a wave
@@ -39,12 +39,11 @@ struct CompiledShader {
 // VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR and
 // VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR, on any device with
 // VK_KHR_pipeline_executable_properties.
-[[nodiscard]] tl::expected<CompiledShader, std::string> read_compiled_shader(VkDevice device,
-                                                                             VkPipeline pipeline);
+[[nodiscard]] Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline);
 
 // Compiles the pipeline of a dispatch. The result is kept until the process ends. Error: the driver
 // rejects the pipeline, or reports nothing about it.
-[[nodiscard]] tl::expected<const CompiledShader*, std::string> compile_dispatch(
-    const NullDevice& device, const AlcoveWorkDispatch& dispatch);
+[[nodiscard]] Result<const CompiledShader*> compile_dispatch(const NullDevice& device,
+                                                             const AlcoveWorkDispatch& dispatch);
 
 }  // namespace alcove::sample

@@ -29,9 +29,7 @@ bool ends_with_any(std::string_view text, std::initializer_list<std::string_view
 // The encoding suffixes of the disassembly do not affect the cost.
 std::string_view without_encoding(std::string_view operation) {
   for (const std::string_view suffix : {"_e32", "_e64", "_sdwa", "_dpp"}) {
-    if (operation.ends_with(suffix)) {
-      operation.remove_suffix(suffix.size());
-    }
+    if (operation.ends_with(suffix)) operation.remove_suffix(suffix.size());
   }
   return operation;
 }
@@ -88,9 +86,7 @@ double words_of(std::string_view text) {
 
 std::string_view first_word(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) {
-    return {};
-  }
+  if (begin == std::string_view::npos) return {};
   text.remove_prefix(begin);
   return text.substr(0, text.find_first_of(" \t\n"));
 }
@@ -132,9 +128,7 @@ Instruction instruction_of_word(std::uint32_t word) {
 
 // The block number of a line "BB12" or "BB12:"; none for any other line.
 std::optional<std::uint32_t> block_of_line(std::string_view line) {
-  if (!line.starts_with("BB")) {
-    return std::nullopt;
-  }
+  if (!line.starts_with("BB")) return std::nullopt;
   line.remove_prefix(2);
   std::uint32_t index = 0;
   const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), index);
@@ -147,9 +141,7 @@ std::optional<std::uint32_t> block_of_line(std::string_view line) {
 std::vector<std::uint32_t> predecessors_of(std::string_view line) {
   std::vector<std::uint32_t> found;
   const std::size_t begin = line.find("linear preds:");
-  if (begin == std::string_view::npos) {
-    return found;
-  }
+  if (begin == std::string_view::npos) return found;
   std::string_view list = line.substr(begin, line.find("/ kind:") - begin);
   for (std::size_t at = list.find("BB"); at != std::string_view::npos;
        at = list.find("BB", at + 2)) {
@@ -186,9 +178,7 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
       block = *index < blocks.size() ? &blocks[*index] : nullptr;
       continue;
     }
-    if (block == nullptr) {
-      continue;
-    }
+    if (block == nullptr) continue;
     if (const std::size_t repeated = line.find("(then repeated ");
         repeated != std::string::npos && !block->instructions.empty()) {
       block->instructions.back().repeats += number_at(line, repeated + 15);
@@ -207,9 +197,7 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
 
 const std::string* text_of(const CompiledShader& shader, std::string_view name) {
   for (const auto& [title, text] : shader.texts) {
-    if (title == name) {
-      return &text;
-    }
+    if (title == name) return &text;
   }
   return nullptr;
 }
@@ -301,7 +289,7 @@ double WaveWork::busiest() const {
   return std::max({vector_cycles, complex_cycles, scalar_cycles, branch_cycles, memory_cycles});
 }
 
-tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShader& shader) {
+Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader) {
   const std::string* aco = text_of(shader, "ACO IR");
   if (aco == nullptr) {
     return Failure("The driver gives no 'ACO IR' for its pipelines; Mesa's AMD driver is needed.");
@@ -316,9 +304,7 @@ tl::expected<std::vector<BasicBlock>, std::string> blocks_of(const CompiledShade
           fmt::format("The driver's 'ACO IR' has an unknown format: block {} is missing.", i));
     }
   }
-  if (disassembled) {
-    add_disassembly(*assembly, blocks);
-  }
+  if (disassembled) add_disassembly(*assembly, blocks);
   if (blocks.empty()) {
     return Failure("The driver's 'ACO IR' has an unknown format: it has no blocks.");
   }
@@ -366,15 +352,9 @@ std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks) {
     open.back() = end;
   };
   for (const BasicBlock& block : blocks) {
-    if ((block.inverts || block.merges) && !open.empty()) {
-      end_side(block.index);
-    }
-    if (block.merges && !open.empty()) {
-      open.pop_back();
-    }
-    if (block.branches) {
-      open.push_back(block.index);
-    }
+    if ((block.inverts || block.merges) && !open.empty()) end_side(block.index);
+    if (block.merges && !open.empty()) open.pop_back();
+    if (block.branches) open.push_back(block.index);
   }
   return branches;
 }
@@ -386,14 +366,10 @@ WaveWork wave_work(const std::vector<BasicBlock>& blocks, const std::vector<Loop
   for (const BasicBlock& block : blocks) {
     double times = 1.0;
     for (std::size_t i = 0; i < loops.size(); ++i) {
-      if (loops[i].first <= block.index && block.index <= loops[i].last) {
-        times *= iterations[i];
-      }
+      if (loops[i].first <= block.index && block.index <= loops[i].last) times *= iterations[i];
     }
     for (const Branch& branch : branches) {
-      if (branch.first <= block.index && block.index <= branch.last) {
-        times *= branch.share;
-      }
+      if (branch.first <= block.index && block.index <= branch.last) times *= branch.share;
     }
     for (const Instruction& instruction : block.instructions) {
       add(instruction, rdna, wave, times * instruction.repeats, work);

@@ -8,11 +8,11 @@
 
 #include <cstdint>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "cost/work.h"
 #include "gpu_cost/null_device.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -55,8 +55,7 @@ struct BasicBlock {
 
 // Returns the basic blocks of a shader in the order of the code. Errors: the driver gave no text,
 // or the text does not have the format of Mesa's AMD compiler (ACO).
-[[nodiscard]] tl::expected<std::vector<BasicBlock>, std::string> blocks_of(
-    const CompiledShader& shader);
+[[nodiscard]] Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader);
 
 // A loop, which consists of the blocks from `first` to `last`.
 struct Loop {

@@ -134,9 +134,7 @@ DispatchAccesses denoise_accesses(std::uint32_t width, std::uint32_t height) {
   };
   const PassImage edges{"edges", Direction::read, 1, width, height};
   const PassImage occlusion{"occlusion", Direction::read, 1, width, height};
-  for (const Texel at : {Texel{-1, -1}, Texel{1, -1}, Texel{0, 1}}) {
-    gather(edges, at.x, at.y);
-  }
+  for (const Texel at : {Texel{-1, -1}, Texel{1, -1}, Texel{0, 1}}) gather(edges, at.x, at.y);
   for (const Texel at : {Texel{-1, -1}, Texel{1, -1}, Texel{-1, 1}, Texel{1, 1}}) {
     gather(occlusion, at.x, at.y);
   }
@@ -158,9 +156,7 @@ double xegtao_ms(const GpuPart& part, const XeGtao& preset, std::uint32_t width,
                   double>
       known;
   double& ms = known[{part.family, preset.name, width, height}];
-  if (ms > 0) {
-    return ms;
-  }
+  if (ms > 0) return ms;
   const Arithmetic arithmetic = arithmetic_of(part);
   const auto caches_ms = [&](const DispatchAccesses& dispatch, double waves) {
     return cache_ms(part, cache_traffic(part, dispatch, waves));

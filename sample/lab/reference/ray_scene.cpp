@@ -6,6 +6,7 @@
 
 #include "scene/area.h"
 #include "scene/direction.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 namespace {
@@ -144,7 +145,7 @@ RayScene::Impl::~Impl() {
   if (device) rtcReleaseDevice(device);
 }
 
-tl::expected<RayScene, std::string> RayScene::create(const Scene& scene) {
+Result<RayScene> RayScene::create(const Scene& scene) {
   if (is_too_large(scene.bounds_ws)) {
     return tl::unexpected("the scene " + scene.name +
                           " reaches further than 1e12 from its origin, too far for rays to be "

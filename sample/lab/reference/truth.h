@@ -4,7 +4,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "scene/camera.h"
@@ -12,6 +11,7 @@
 #include "support/glm.h"
 #include "support/image.h"
 #include "support/progress.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -62,7 +62,7 @@ struct OcclusionTruth {
 class RayScene {
  public:
   // Errors: Embree has no device or no memory; the scene extends further than 1e12 from its origin.
-  [[nodiscard]] static tl::expected<RayScene, std::string> create(const Scene& scene);
+  [[nodiscard]] static Result<RayScene> create(const Scene& scene);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "support/regular_file.h"
+#include "support/result.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -34,18 +35,14 @@ void add_vector(CacheKey& key, const std::vector<T>& values) {
 
 template <int size>
 void add_components(CacheKey& key, const glm::vec<size, float>& vector) {
-  for (int i = 0; i < size; ++i) {
-    key.add(vector[i]);
-  }
+  for (int i = 0; i < size; ++i) key.add(vector[i]);
 }
 
 void add_use(CacheKey& key, const TextureUse& use) {
   key.add(use.image, static_cast<uint8_t>(use.sampler.wrap_u),
           static_cast<uint8_t>(use.sampler.wrap_v), static_cast<uint8_t>(use.sampler.magnify),
           use.uv_set);
-  for (int column = 0; column < 3; ++column) {
-    add_components(key, use.texture_from_mesh_uv[column]);
-  }
+  for (int column = 0; column < 3; ++column) add_components(key, use.texture_from_mesh_uv[column]);
 }
 
 void add_material(CacheKey& key, const Material& material) {
@@ -82,9 +79,7 @@ void CacheKey::add(const Scene& scene) {
     add_vector(*this, mesh.indices);
     add_vector(*this, mesh.instances);
   }
-  for (const Material& material : scene.materials) {
-    add_material(*this, material);
-  }
+  for (const Material& material : scene.materials) add_material(*this, material);
   for (const TextureImage& image : scene.images) {
     add(image.width, image.height);
     add_vector(*this, image.rgba);
@@ -118,9 +113,7 @@ TruthCache::TruthCache(std::filesystem::path folder) : folder_(std::move(folder)
 }
 
 std::optional<std::vector<float>> TruthCache::read(const CacheKey& key, size_t count) const {
-  if (folder_.empty()) {
-    return std::nullopt;
-  }
+  if (folder_.empty()) return std::nullopt;
   // Only regular files are entries: reading a named pipe could wait for ever.
   const auto file = open_regular_file(folder_ / (key.hex() + ".truth"));
   Header header;
@@ -132,30 +125,24 @@ std::optional<std::vector<float>> TruthCache::read(const CacheKey& key, size_t c
   std::vector<float> values(count);
   const bool whole = std::fread(values.data(), sizeof(float), count, file->get()) == count &&
                      std::getc(file->get()) == EOF;
-  if (!whole || checksum(values) != header.checksum) {
-    return std::nullopt;
-  }
+  if (!whole || checksum(values) != header.checksum) return std::nullopt;
   return values;
 }
 
 void TruthCache::write(const CacheKey& key, std::span<const float> values) const {
-  if (folder_.empty()) {
-    return;
-  }
+  if (folder_.empty()) return;
   std::error_code ignored;
   std::filesystem::create_directories(folder_, ignored);
   Header header;
   header.count = values.size();
   header.checksum = checksum(values);
-  const auto fill = [&](const std::filesystem::path& path) -> tl::expected<void, std::string> {
+  const auto fill = [&](const std::filesystem::path& path) -> Result<void> {
     std::ofstream file(path, std::ios::binary);
     file.write(reinterpret_cast<const char*>(&header), sizeof(header));
     file.write(reinterpret_cast<const char*>(values.data()),
                static_cast<std::streamsize>(values.size_bytes()));
     file.close();
-    if (!file) {
-      return tl::unexpected(std::string("the truth could not be cached"));
-    }
+    if (!file) return tl::unexpected(std::string("the truth could not be cached"));
     return {};
   };
   (void)write_whole(folder_ / (key.hex() + ".truth"), fill);

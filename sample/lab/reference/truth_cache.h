@@ -73,8 +73,23 @@ class TruthCache {
   void write(const CacheKey& key, const Image<T>& image) const {
     write(key, floats_of(image));
   }
+  // Reads or writes several images, of which all but the first have keys derived from `key`.
+  template <class... T>
+  [[nodiscard]] bool read_all(const CacheKey& key, Image<T>&... images) const {
+    std::uint32_t part = 0;
+    return (read(key_of(key, part++), images) && ...);
+  }
+  template <class... T>
+  void write_all(const CacheKey& key, const Image<T>&... images) const {
+    std::uint32_t part = 0;
+    (write(key_of(key, part++), images), ...);
+  }
 
  private:
+  static CacheKey key_of(CacheKey key, std::uint32_t part) {
+    if (part > 0) key.add(part);
+    return key;
+  }
   template <class T>
   static std::span<const float> floats_of(const Image<T>& image) {
     const auto bytes = std::as_bytes(std::span(image.pixels));

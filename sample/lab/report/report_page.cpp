@@ -41,12 +41,9 @@ std::string base64(const std::string& bytes) {
 }
 
 template <typename Pixel>
-tl::expected<std::string, std::string> encoded(const Image<Pixel>& image,
-                                               const std::filesystem::path& folder) {
+Result<std::string> encoded(const Image<Pixel>& image, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "picture.png";
-  if (auto written = write_png(file, image); !written) {
-    return Failure(std::move(written.error()));
-  }
+  ALCOVE_TRY_VOID(write_png(file, image));
   const std::string bytes = read_file(file);
   std::error_code ignored;
   std::filesystem::remove(file, ignored);
@@ -69,21 +66,17 @@ std::string within_script(std::string text) {
 
 }  // namespace
 
-tl::expected<std::string, std::string> data_uri(const Image<float>& image,
-                                                const std::filesystem::path& folder) {
+Result<std::string> data_uri(const Image<float>& image, const std::filesystem::path& folder) {
   return encoded(image, folder);
 }
 
-tl::expected<std::string, std::string> data_uri(const Image<glm::vec3>& image,
-                                                const std::filesystem::path& folder) {
+Result<std::string> data_uri(const Image<glm::vec3>& image, const std::filesystem::path& folder) {
   return encoded(image, folder);
 }
 
-tl::expected<std::string, std::string> report_page(const nlohmann::ordered_json& data) {
+Result<std::string> report_page(const nlohmann::ordered_json& data) {
   std::string chart;
-  for (const char* file : kChartFiles) {
-    chart = chart.empty() ? read_file(file) : chart;
-  }
+  for (const char* file : kChartFiles) chart = chart.empty() ? read_file(file) : chart;
   if (chart.empty()) {
     return Failure(
         "The page needs Chart.js, which is not installed; on Debian, install the package "
