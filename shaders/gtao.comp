@@ -3,18 +3,20 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-// Ground-truth ambient occlusion [Jimenez 2016]. Each traced pixel searches the depth buffer in a
-// few slices, and integrates the visible part of each slice in closed form.
-//
-// This file has the sums over slices; it is best read from main() upwards. Its parts are, in the
-// order in which a pixel runs through them:
-//   gtao_bindings.h     constants, inputs and outputs
-//   gtao_surface.h      the surface that the pixel shows
-//   gtao_search_line.h  the line of a slice on the image, and the depth samples of a half-slice
-//   gtao_connected.h    the default estimator, connected samples: the occluders that the samples
-//                       show, and the visible part of a half-slice
-// Two other estimators take the place of gtao_connected.h: the paper's horizons (gtao_horizons.h)
-// and the visibility bitmask (gtao_bitmask.h).
+// Ground-truth ambient occlusion [Jimenez 2016, equation 2]. Each traced pixel searches the depth
+// buffer in a few slices, and integrates the visible part of each slice in closed form. Sections
+// below are those of the paper. Functions are defined before their use, so read main() first:
+//   main            the traced pixel of a tile                           section 4.4
+//   search_pixel    the outer integral, a mean over slices               section 4.1
+//     fetch_surface     position, normal, view direction                 gtao_surface.h
+//     weighted_slice    a slice, rotated by the noise                    section 4.4
+//       search_slice    the inner integral, a sum of two half-slices     section 4.1
+//         make_half_slice   depth samples along the slice's line         gtao_search_line.h
+//         add_half_slice    occluders, and the closed form between them  gtao_connected.h
+//     fade_unresolved   where depth has too few steps for the radius
+//   imageStore      the packed sums                                      maths/raw_occlusion.h
+// Two other estimators take the place of gtao_connected.h: the paper's horizons (section 4.1,
+// gtao_horizons.h) and the visibility bitmask (gtao_bitmask.h).
 //
 // Each traced pixel writes two sums over its slices: the visible part, and the same integral
 // without occluders. Filters and history sum both and divide at the end, because the mean of ratios
@@ -155,7 +157,7 @@ SliceResult weighted_slice(Surface surface, SliceNoise noise, uint i) {
   return result;
 }
 
-SliceResult sum_of(SliceResult a, SliceResult b) {
+SliceResult add_slices(SliceResult a, SliceResult b) {
   a.raw_occlusion.visible += b.raw_occlusion.visible;
   a.raw_occlusion.open += b.raw_occlusion.open;
   a.residual += b.residual;
@@ -187,7 +189,7 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   } else {
     uint i = 0u;
     [[dont_unroll]] do {
-      sum = sum_of(sum, weighted_slice(surface, noise, i));
+      sum = add_slices(sum, weighted_slice(surface, noise, i));
       ++i;
     }
     while (i < kSliceCount)
@@ -211,14 +213,14 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
 // Groups run in the order of their numbers, x first. They advance by columns through strips of the
 // image that are gl_NumWorkGroups.x groups high, so that groups that run at the same time lie close
 // together and share what caches hold.
-ivec2 tile_of_invocation() {
+ivec2 invocation_tile() {
   uint row = gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   ivec2 tile = ivec2(uvec2(gl_WorkGroupID.y, row) * 8u + gl_LocalInvocationID.xy);
   return kAreas ? tile + parameters.written.xy : tile;
 }
 
 void main() {
-  ivec2 tile = tile_of_invocation();
+  ivec2 tile = invocation_tile();
   if (any(kAreas ? greaterThan(tile, parameters.written.zw)
                  : greaterThanEqual(tile * kTileSize, size_px()))) {
     return;

@@ -6,19 +6,11 @@
 // Spatial filter, upsampling and temporal accumulation [Jimenez 2016, sections 4.4 and 4.5] in one
 // pass, because all three read the same neighbourhood with the same weights.
 //
-// One pixel of each tile of kTileSize x kTileSize pixels is traced in a frame, at a position that
-// moves through the tile from frame to frame (`interleave_pixel`). A group of 8x8 invocations
-// reconstructs a column of kBlocks blocks of 8x8 texels. It first unpacks the traced pixels around
-// the column into shared memory. Each invocation then computes one texel of each block as a
-// weighted average of the traced pixels around it. A texel with a history averages 2x2 of them. A
-// texel without one averages those up to kFilterRadius tiles away on each side, except at the
-// corners.
-//
-// The weight of a traced pixel falls with its distance on the image and with its distance from the
-// pixel's tangent plane, so that a plane at any tilt is filtered as a whole and nothing leaks
-// across a depth edge. Without any history it also falls with the angle between the two normals, so
-// that little leaks across a crease. Weights for the GGX lobe also depend on the difference of the
-// roughnesses. Occluded and unoccluded parts are summed separately and divided last.
+// A group of 8x8 invocations reconstructs a column of kBlocks blocks of 8x8 texels. It unpacks the
+// traced pixels around the column into shared memory (reconstruct_tiles.h). Each invocation then
+// computes one texel of each block as a weighted average of the traced pixels around it
+// (reconstruct_filter.h), and continues its history (reconstruct_history.h). passes/ALGORITHM.md,
+// section "Sampling, filter and history", explains the weights.
 //
 // Sums hold occlusion rather than visibility: an unoccluded surface then sums zeros, and its
 // visibility is exactly 1 after any number of frames.

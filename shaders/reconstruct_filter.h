@@ -39,7 +39,7 @@ struct Sums {
 
 Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0)); }
 
-void add_weighted(inout Sums sums, Traced found, float weight, LobeSurface lobe) {
+void add_weighted(inout Sums sums, TileSample found, float weight, LobeSurface lobe) {
   sums.occluded += weight * found.occluded;
   sums.open += weight * found.open;
   if (kBentNormal) {
@@ -51,7 +51,7 @@ void add_weighted(inout Sums sums, Traced found, float weight, LobeSurface lobe)
   }
 }
 
-void add_moments(inout Sums sums, Traced found, float weight) {
+void add_moments(inout Sums sums, TileSample found, float weight) {
   float visibility = 1.0 - found.occluded / max(found.open, 1e-9);
   sums.moments += weight * vec3(1.0, visibility, visibility * visibility);
 }
@@ -69,7 +69,8 @@ float traced_offset(Place place, int axis, int i) {
 // below it. Its weight falls with the distance on the image, with the distance from the tangent
 // plane and with the angle between the normals, but never to zero: if no neighbour lies on the
 // plane, the nearest to it count most.
-void add_traced(inout Sums sums, Surface surface, Window window, Traced found, int i, int j) {
+void add_tile_sample(inout Sums sums, Surface surface, Window window, TileSample found, int i,
+                     int j) {
   vec2 offset = vec2(traced_offset(surface.place, 0, i), traced_offset(surface.place, 1, j));
   float expected = surface.plane.z + offset.y * surface.plane.y + offset.x * surface.plane.x;
   float off_plane =
@@ -108,7 +109,7 @@ Sums sum_four(Surface surface, Window window) {
   [[unroll]] for (int j = 0; j < 2; ++j) {
     float expected = surface.plane.z + offsets[2 * j + 1] * surface.plane.y;
     [[unroll]] for (int i = 0; i < 2; ++i) {
-      Traced found = load_shared(around.first_tile + j * kSpan + i);
+      TileSample found = load_shared(around.first_tile + j * kSpan + i);
       float off_plane = found.inverse_depth * surface.per_inverse_depth -
                         (expected + offsets[2 * i] * surface.plane.x);
       float apart = off_plane * off_plane * window.squared_plane_factor;
@@ -137,7 +138,7 @@ Sums sum_near(Surface surface, Window window) {
   [[unroll]] for (int j = kFirstNear; j <= kNearRadius; ++j) {
     [[unroll]] for (int i = kFirstNear; i <= kNearRadius; ++i) {
       int index = surface.place.around.first_tile + j * kSpan + i;
-      add_traced(sums, surface, window, load_shared(index), i, j);
+      add_tile_sample(sums, surface, window, load_shared(index), i, j);
     }
   }
   return sums;
@@ -159,7 +160,7 @@ Sums sum_wide(Surface surface, Window window) {
       [[unroll]] for (int i = kFirstWide; i <= kFilterRadius; ++i) {
         if (!is_corner(i, j)) {
           int index = surface.place.around.first_tile + j * kSpan + i;
-          add_traced(sums, surface, window, load_shared(index), i, j);
+          add_tile_sample(sums, surface, window, load_shared(index), i, j);
         }
       }
     }
@@ -169,7 +170,7 @@ Sums sum_wide(Surface surface, Window window) {
       [[dont_unroll]] for (int i = kFirstWide; i <= kFilterRadius; ++i) {
         if (!is_corner(i, j)) {
           ivec2 tile = clamp(first + ivec2(i, j), ivec2(0), last_tile());
-          add_traced(sums, surface, window, fetch_traced(tile), i, j);
+          add_tile_sample(sums, surface, window, fetch_tile_sample(tile), i, j);
         }
       }
     }

@@ -36,7 +36,7 @@ const int kSpan = kGroupPixels / kTileSize + 2 * kSharedRadius;
 const int kTiles = kSpan * (kBlocks * kGroupPixels / kTileSize + 2 * kSharedRadius);
 
 // The unpacked raw occlusion of a traced pixel.
-struct Traced {
+struct TileSample {
   float inverse_depth;
   float occluded;      // not normalised
   float open;          // RawOcclusion::open
@@ -80,10 +80,10 @@ ivec2 first_shared_tile() {
 }
 
 // Reads the traced pixel of a tile from the image.
-Traced fetch_traced(ivec2 tile) {
+TileSample fetch_tile_sample(ivec2 tile) {
   uvec4 stored = imageLoad(raw_image, tile);
   RawOcclusion raw = unpack_raw_occlusion(stored.x);
-  Traced found;
+  TileSample found;
   found.inverse_depth = uintBitsToFloat(stored.y);
   found.occluded = raw.open - raw.visible;
   found.open = raw.open;
@@ -103,7 +103,7 @@ Traced fetch_traced(ivec2 tile) {
   return found;
 }
 
-void store_shared(Traced found, int i) {
+void store_shared(TileSample found, int i) {
   shared_traced[i] = vec4(found.inverse_depth, found.occluded, found.open, found.stereographic.x);
   if (kByNormal) {
     shared_stereographic_y[i] = found.stereographic.y;
@@ -118,9 +118,9 @@ void store_shared(Traced found, int i) {
   }
 }
 
-Traced load_shared(int i) {
+TileSample load_shared(int i) {
   vec4 stored = shared_traced[i];
-  Traced found;
+  TileSample found;
   found.inverse_depth = stored.x;
   found.occluded = stored.y;
   found.open = stored.z;
@@ -149,7 +149,7 @@ void load_tiles() {
     int row = int((uint(i) * kReciprocal) >> 16u);
     if (i < kTiles) {
       ivec2 tile = first + ivec2(i - row * kSpan, row);
-      Traced found = fetch_traced(clamp(tile, ivec2(0), last_tile()));
+      TileSample found = fetch_tile_sample(clamp(tile, ivec2(0), last_tile()));
       if (kBetween && !kFresh) {
         // sum_near() assumes that the pixels are traced at regular distances. A pixel that would
         // lie outside of the image gets a depth that lies on no plane.

@@ -142,7 +142,7 @@ AccessRecord Synchroniser::use_outside_frame(std::uint32_t resource, const State
 void Synchroniser::leave_history_slot(std::uint32_t resource) {
   const std::uint32_t first = workspace_.first_sub[resource];
   const std::uint32_t last = workspace_.first_sub[resource + 1];
-  FinalState final{resource, {}, QueueClass::graphics, Written::nothing};
+  FinalState final{resource, {}, QueueClass::graphics, WriteCoverage::nothing};
   if (several()) final.queue = workspace_.queues.last_queue[resource];
   set_queue(final.queue);
   std::uint32_t written = 0;
@@ -164,7 +164,8 @@ void Synchroniser::leave_history_slot(std::uint32_t resource) {
     if (state.read_stages == 0) final.state.access |= state.write_access;
     written += s_.written[sub];
   }
-  if (written != 0) final.written = written == last - first ? Written::whole : Written::part;
+  if (written != 0)
+    final.written = written == last - first ? WriteCoverage::whole : WriteCoverage::part;
   // If the last write is visible to the same accesses in all subresources, these accesses become
   // part of the final state.
   if (final.state.access == 0 && seen_alike && (lead.read_stages & ~lead.seen_stages) == 0)

@@ -288,18 +288,18 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
     HistorySlot slot = entry.slots[entry.physical(record.slot)];
     slot.state = final.state;
     slot.queue = final.queue;
-    if (final.written != Written::nothing) {
+    if (final.written != WriteCoverage::nothing) {
       // A valid slot that is updated in place stays valid if only a part of it is written.
       const bool keeps = record.slot != 0 || (record.flags & kPersistent) != 0;
-      const bool whole =
-          final.written == Written::whole || (keeps && slot.validity == HistoryValidity::valid);
+      const bool whole = final.written == WriteCoverage::whole ||
+                         (keeps && slot.validity == HistoryValidity::valid);
       slot.validity = whole ? HistoryValidity::valid : HistoryValidity::written_in_part;
     }
     histories_.leave(index, record.slot, slot);
   }
   for (const FinalState& final : finals) {
     const ResourceRecord& record = description_.resources[final.resource];
-    if (record.slot == 0 && final.written != Written::nothing)
+    if (record.slot == 0 && final.written != WriteCoverage::nothing)
       histories_.rotate(imports_[record.external].history);
   }
 }

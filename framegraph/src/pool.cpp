@@ -11,7 +11,7 @@ namespace {
 
 // The number of frames after which an unused object is destroyed. Imports and heaps are checked
 // once in so many frames.
-constexpr std::uint64_t kPatience = 120;
+constexpr std::uint64_t kFramesUntilEviction = 120;
 
 // Makes room for `more` values before they exist, so that no object is lost if memory runs out.
 template <typename Value>
@@ -20,13 +20,13 @@ void make_room(std::vector<Value>& values, std::size_t more = 1) {
   if (needed > values.capacity()) values.reserve(std::max(needed, 2 * values.size()));
 }
 
-bool is_of(const std::weak_ptr<const char>& life, const HistoryTable& table) {
+bool belongs_to(const std::weak_ptr<const char>& life, const HistoryTable& table) {
   const auto own = table.life();
   return !life.owner_before(own) && !own.owner_before(life);
 }
 
 // A handle is a pointer or an integer, depending on the platform. This cast works for both.
-std::uint64_t key_of(VkImage image, VkBuffer buffer) {
+std::uint64_t handle_key(VkImage image, VkBuffer buffer) {
   return (std::uint64_t)image ^ (std::uint64_t)buffer;
 }
 
@@ -44,7 +44,7 @@ bool wants_addresses(const GraphDescription& graph, const Plan& plan, std::uint3
 }
 
 // Returns the largest alignment of all placements in the heap.
-VkDeviceSize alignment_of(const Plan& plan, std::uint32_t heap) {
+VkDeviceSize largest_alignment(const Plan& plan, std::uint32_t heap) {
   VkDeviceSize alignment = 1;
   for (const Placement& placement : plan.placements) {
     if (placement.heap == heap) alignment = std::max(alignment, placement.alignment);
@@ -92,7 +92,7 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
     if (heap->size >= wanted.size && heap->has_addresses == has_addresses) continue;
     const VkDeviceSize size = std::max(heap->size, wanted.size);
     MemoryRange memory;
-    if (const VkResult result = allocate({size, alignment_of(plan, h), wanted.memory_types},
+    if (const VkResult result = allocate({size, largest_alignment(plan, h), wanted.memory_types},
                                          has_addresses, MemoryLifetime::frame, memory))
       return result;
     // This includes transients of other heaps, because creating them again is cheap.
@@ -141,11 +141,7 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
   made->usage = placement.usage;
   made->heap = index;
   made->offset = placement.offset;
-  const VkResult result = create(*made, name);
-  if (result != VK_SUCCESS) {
-    destroy(*made);
-    return result;
-  }
+  if (const VkResult result = create(*made, name)) return result;
   found = transients_.emplace(placement.offset, std::move(made))->second.get();
   return VK_SUCCESS;
 }
@@ -156,7 +152,7 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
   const std::uint32_t generation = table.entries()[entry].generation;
   for (const HistoryImage& there : histories_) {
     if (there.entry == entry && there.position == position && there.generation == generation &&
-        is_of(there.table, table)) {
+        belongs_to(there.table, table)) {
       found = there.physical.get();
       return VK_SUCCESS;
     }
@@ -165,11 +161,7 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = usage;
-  const VkResult result = create(*made, name);
-  if (result != VK_SUCCESS) {
-    destroy(*made);
-    return result;
-  }
+  if (const VkResult result = create(*made, name)) return result;
   histories_.push_back({table.life(), entry, generation, position, std::move(made)});
   ++generation_;
   found = histories_.back().physical.get();
@@ -179,8 +171,9 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
 void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
   make_room(retired_, histories_.size());
   const auto gone = [&](HistoryImage& history) {
-    const bool stays = is_of(history.table, table) ? table.needs(history.entry, history.generation)
-                                                   : !history.table.expired();
+    const bool stays = belongs_to(history.table, table)
+                           ? table.needs(history.entry, history.generation)
+                           : !history.table.expired();
     if (stays) return false;
     retired_.push_back({frame, std::move(history.physical)});
     return true;
@@ -189,7 +182,7 @@ void Pool::retire_histories(const HistoryTable& table, std::uint64_t frame) {
 }
 
 Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handles) {
-  const std::uint64_t key = key_of(handles.image, handles.buffer);
+  const std::uint64_t key = handle_key(handles.image, handles.buffer);
   const auto [first, last] = imports_.equal_range(key);
   for (auto at = first; at != last; ++at) {
     Physical& there = *at->second;
@@ -208,7 +201,7 @@ Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handle
 
 void Pool::forget(VkImage image, std::uint64_t frame) {
   make_room(retired_, imports_.size());
-  const auto [first, last] = imports_.equal_range(key_of(image, VK_NULL_HANDLE));
+  const auto [first, last] = imports_.equal_range(handle_key(image, VK_NULL_HANDLE));
   for (auto at = first; at != last;) {
     if (at->second->image == image) {
       retired_.push_back({frame, std::move(at->second)});
@@ -249,7 +242,7 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
 }
 
 void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
-  std::erase_if(retired_, [&](Retired& retired) {
+  std::erase_if(retired_, [&](RetiredObject& retired) {
     if (retired.frame > finished) return false;
     if (retired.physical) destroy(*retired.physical);
     memory_.free(retired.heap);
@@ -258,14 +251,15 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
   const auto destroy_unused = [&](Objects& objects) {
     return std::erase_if(objects, [&](auto& object) {
       Physical& physical = *object.second;
-      if (physical.last_frame + kPatience > frame || physical.last_frame > finished) return false;
+      if (physical.last_frame + kFramesUntilEviction > frame || physical.last_frame > finished)
+        return false;
       if (!physical.owned && !physical.views.empty()) ++destroyed_views_;
       destroy(physical);
       return true;
     });
   };
   if (destroy_unused(transients_) != 0) ++generation_;
-  if (frame % kPatience != 0) return;
+  if (frame % kFramesUntilEviction != 0) return;
   destroy_unused(imports_);
   bool shrinks = false;
   for (HeapMemory& heap : heaps_) {
@@ -278,7 +272,7 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
 VkDeviceSize Pool::allocated() const {
   VkDeviceSize sum = history_size();
   for (const HeapMemory& heap : heaps_) sum += heap.size;
-  for (const Retired& retired : retired_)
+  for (const RetiredObject& retired : retired_)
     sum += retired.heap_size + (retired.physical ? retired.physical->own_size : 0);
   return sum;
 }
@@ -290,6 +284,12 @@ VkDeviceSize Pool::history_size() const {
 }
 
 VkResult Pool::create(Physical& physical, std::string_view name) {
+  const VkResult result = create_bound(physical, name);
+  if (result != VK_SUCCESS) destroy(physical);
+  return result;
+}
+
+VkResult Pool::create_bound(Physical& physical, std::string_view name) {
   const VkDevice device = device_.handles.device;
   VkMemoryRequirements needed{};
   VkResult result = create_unbound(device_, physical.record, physical.usage, physical.image,

@@ -102,7 +102,7 @@ class Pool {
     std::uint32_t position = 0;
     std::unique_ptr<Physical> physical;
   };
-  struct Retired {
+  struct RetiredObject {
     std::uint64_t frame = 0;
     std::unique_ptr<Physical> physical;
     MemoryRange heap;
@@ -112,7 +112,9 @@ class Pool {
   // Returns a start value for `generation`. Start values are so far apart that no two pools of the
   // process ever have the same generation.
   static std::uint64_t first_generation();
+  // Creates the object with its memory, or nothing if memory runs out.
   VkResult create(Physical& physical, std::string_view name);
+  VkResult create_bound(Physical& physical, std::string_view name);
   VkResult allocate(const VkMemoryRequirements& requirements, bool has_addresses,
                     MemoryLifetime lifetime, MemoryRange& memory);
   void retire_objects(Objects& objects, std::uint64_t frame);
@@ -125,7 +127,7 @@ class Pool {
   Objects transients_;  // by offset
   std::vector<HistoryImage> histories_;
   Objects imports_;  // by Vulkan handle
-  std::vector<Retired> retired_;
+  std::vector<RetiredObject> retired_;
   std::uint64_t generation_ = first_generation();
   std::uint64_t destroyed_views_ = 0;
 };

@@ -70,7 +70,7 @@ Accesses gtao_accesses(const PassWork& work) {
   return accesses;
 }
 
-// tile_of_invocation() of gtao.comp: groups advance by columns through strips that are `groups.x`
+// invocation_tile() of gtao.comp: groups advance by columns through strips that are `groups.x`
 // groups high. Here the strips of a dispatch lie one below the other.
 ImageAccess in_strips(ImageAccess access, const Groups& groups) {
   const auto high = static_cast<std::int32_t>(groups.x);

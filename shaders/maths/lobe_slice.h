@@ -1,22 +1,9 @@
-// The part of a GGX lobe that a slice leaves visible, in closed form.
-//
-// Slices describe the visible directions better than a single cone does. For a light at angle t
-// from the view direction within a slice, the half vector lies in the same slice at t/2. With p the
-// length of the projected normal and g its angle to the view direction (gamma),
-//     n.h = p cos(t/2 - g)     and     D = alpha^2 / (pi (1 - k cos^2(t/2 - g))^2),
-// k = (1 - alpha^2) p^2. D times |sin t|, the measure of the slice, has an antiderivative in x = t
-// - 2g, the angle from the lobe's centre in this slice. With m = 1 - k, B = k/2, A = 1 - B and N =
-// m + B (1 - cos x), it is
-//     alpha^2 / (pi m) ( cos 2g (1 - cos x) / N
-//                        + sin 2g (A sin x / N + 2 B / sqrt(m) atan(tan(x/2) / sqrt(m))) ).
-// Shadowing and masking vary slowly. In each half-slice they are approximated by one constant up to
-// three quarters of the angle to the tangent plane and another one beyond. The remaining factors of
-// the BRDF times the cosine of the light are the Fresnel term, which is left to the caller, and 1 /
-// (4 n.v), which is the same for all slices of a pixel.
+// The part of a GGX lobe that a slice leaves visible, in closed form (passes/ALGORITHM.md, section
+// "Specular occlusion"). The method is new here.
 //
 // Specular visibility is the sum of the visible parts over slices, divided by the sum of `open`.
 // Compared with quadrature of the whole BRDF, the RMS error is 0.010 for one slice and 0.006 for
-// the sum of sixteen; the largest error is 0.06. We know of no publication of this method.
+// the sum of sixteen; the largest error is 0.06. The Fresnel term is left to the caller.
 #ifndef ALCOVE_MATHS_LOBE_SLICE_H
 #define ALCOVE_MATHS_LOBE_SLICE_H
 

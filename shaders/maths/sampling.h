@@ -27,28 +27,12 @@ ALCOVE_INLINE uint hash_of(uvec2 position) {
   return bits ^ (bits >> 16u);
 }
 
-// Directions that are even over few adjacent pixels and over successive frames of a pixel.
-//
-// If `moves` is false, directions and offsets are lattices over the image whose steps from pixel to
-// pixel are irrational: the two numbers of the R2 sequence [Roberts 2018] for directions, the
-// golden ratio and the square root of 2 for offsets. Frames rotate them by the golden ratio
-// (directions) and by an R2 number (offsets). The error of a pixel depends on the direction of its
-// slices, and a lattice over the whole image would show each harmonic of this dependence as waves
-// of one length. The directions of each block of 4x4 pixels are therefore shifted by a random
-// amount, which is constant over time.
-//
-// If `moves` is true, a pixel is that of a tile, the traced pixel moves through the pixels of the
-// tile, and the filter averages 2x2 tiles. The four tiles of any 2x2 then have one direction in
-// each quarter of the range, wherever the 2x2 begin. Within its quarter a tile has a random
-// direction, which is constant over time. When the camera moves, a surface is seen by other tiles
-// in each frame, and blocks whose borders it crosses would not give it even directions. The
-// rotation per frame is a quarter of the golden ratio, so that the frames in which a pixel itself
-// is traced, every fourth, cover directions evenly; modulo a quarter of the range it is a quarter
-// of the golden ratio's fraction, so that successive frames fill the quarters evenly whichever tile
-// sees the surface.
+// Directions that are even over few adjacent pixels and over successive frames
+// (passes/ALGORITHM.md, "Sampling, filter and history"). If `moves` is true, `pixel` is the number
+// of a tile, and any 2x2 tiles have one direction in each quarter of the range. If it is false,
+// each pixel is traced in every frame, and directions are a lattice over each block of 4x4 pixels.
 ALCOVE_INLINE SliceNoise golden_pattern(uvec2 pixel, uint frame, bool moves) {
-  // Rotations per frame, of the directions and of the offsets, as fractions of
-  // 2^32, so that they are exact for every frame. The fractions are those of 1.6180339887 and
+  // Rotations per frame as fractions of 2^32, exact for every frame: those of 1.6180339887 and
   // 0.7548776662, or, if `moves` is true, a quarter of 1.6180339887 and of 2.5698402910.
   uint direction_rotation = moves ? 1737350766u : 2654435769u;
   uint offset_rotation = moves ? 2759345001u : 3242174889u;

@@ -1,23 +1,11 @@
-// Excludes unobserved directions of a half-slice from the average.
+// Excludes unobserved directions of a half-slice from the average. passes/ALGORITHM.md, section
+// "Unobserved directions", explains the method, which is new here.
 //
-// Occluders of the shaded point lie within a sphere of the radius around it. Each depth sample
-// stands for one column: a short piece of the slice's line on the image, seen from the eye. A
-// column is unobserved if the depth buffer shows nothing of the sphere in it. There are two causes:
-// a foreground that is nearer to the eye than the sphere hides it, or the column lies beyond the
-// border of the image. A direction is unobserved if its path within the sphere crosses an
-// unobserved column. Whether an occluder lies there is unknown. If unobserved directions counted as
-// open, as the horizon estimators count them, surfaces behind foregrounds would be too bright.
-//
-// Therefore a share of the directions between the unobserved column that is nearest to the shaded
-// point and the first occluder is excluded. It is subtracted from both the visible part and the
-// unoccluded part, and visibility is the quotient of the two. This assumes that excluded directions
-// are as visible as the others, and an open plane stays exactly open. The share is sqrt(w / r),
-// where r is the radius on the image and w is the mean width of a row. A row is a run of adjacent
-// unobserved columns. Columns beyond the border count less: if they span the whole radius, the
-// share is border_share(), at most 0.5.
-//
-// A bent normal is a mean direction and no such quotient, so nothing is excluded from it. The
-// method is new here; it is not taken from a paper.
+// Each depth sample stands for one column, a short piece of the slice's line on the image. It is
+// unobserved if a foreground hides it, or if it lies beyond the image's border. A row is a run of
+// adjacent unobserved columns. A share of the directions between the nearest unobserved column and
+// the first occluder is subtracted from both the visible part and the unoccluded part. Nothing is
+// excluded from bent normals, which are not quotients.
 #ifndef ALCOVE_MATHS_UNOBSERVED_H
 #define ALCOVE_MATHS_UNOBSERVED_H
 
@@ -60,20 +48,17 @@ ALCOVE_INLINE Unobserved add_column(Unobserved sum, bool hides, float offset, fl
   return sum;
 }
 
-// Replaces the total width of the unobserved columns by the mean width of a row. What lies behind a
-// narrow row is mostly seen in the columns beside it, so many narrow rows, such as leaves, are
-// taken to hide no more than one of them does.
+// Replaces the total width of the unobserved columns by the mean width of a row, because the
+// columns beside a narrow row, such as a leaf, mostly show the surface behind it.
 ALCOVE_INLINE Unobserved mean_row(Unobserved sum) {
   sum.width = sum.width / max(sum.rows, 1.0f);
   return sum;
 }
 
 // The share of a half-slice's directions that is excluded if the whole radius lies beyond the
-// image's border, [0,0.5]. The 0.5 is a compromise: some scenes end at the border of the image, and
-// others continue unchanged. The share falls to 0 as more of the radius lies beyond the border in
-// the other half-slice too (`other_outside`, the fraction of the radius, [0,1]), and as the eye
-// comes to lie within the sphere (`nearness`: radius divided by distance, 0 in orthographic views).
-// In both cases the little occlusion that is observed would otherwise be amplified.
+// image's border, [0,0.5]. It falls to 0 with `other_outside`, the fraction [0,1] of the radius
+// that lies beyond the border in the other half-slice, and as `nearness` grows to 1: the radius
+// divided by the distance, 0 in orthographic views.
 ALCOVE_INLINE float border_share(float other_outside, float nearness) {
   float squared = nearness * nearness;
   return 0.5f * (1.0f - other_outside) * saturate(1.0f - squared * squared);
@@ -101,11 +86,9 @@ struct UnobservedArc {
 const float kMostUnobserved = 0.98f;
 
 // Returns the arc of unobserved directions. It begins at the direction that leaves the sphere of
-// the radius exactly in the nearest unobserved column, and ends at `first`, the sine and cosine of
-// the angle between the view direction and the first occluder, or the tangent plane if nothing is
-// occluded. `radius` is the result of sphere_reach(). The share is the square root of the width of
-// the row relative to the radius. In the development views the square root had a smaller error than
-// the relative width itself, and than excluding the whole arc.
+// the radius in the nearest unobserved column, and ends at `first`, the sine and cosine of the
+// angle between the view direction and the first occluder, or the tangent plane if nothing is
+// occluded. `radius` is the result of sphere_reach().
 ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserved, float radius) {
   UnobservedArc arc;
   float x = min(unobserved.first / radius, 1.0f);

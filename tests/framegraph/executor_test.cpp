@@ -455,11 +455,11 @@ TEST_F(ExecutorTest, BuffersUsedByDeviceAddressGetMemoryThatAllowsDeviceAddresse
 }
 
 TEST_F(ExecutorTest, MemoryOfAReplacedResourceIsCountedAsAllocatedUntilItIsFreed) {
-  struct Made {
+  struct GraphOwner {
     Executor executor;
     Graph graph;
   };
-  const auto allocated = [&](Made& made, std::uint32_t side) {
+  const auto allocated = [&](GraphOwner& made, std::uint32_t side) {
     auto& [executor, graph] = made;
     graph.reset();
     const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(side, side)};
@@ -470,8 +470,8 @@ TEST_F(ExecutorTest, MemoryOfAReplacedResourceIsCountedAsAllocatedUntilItIsFreed
     EXPECT_TRUE(report) << to_string(report.error());
     return report->memory.allocated;
   };
-  Made resized{make(), {}};
-  Made large{make(), {}};
+  GraphOwner resized{make(), {}};
+  GraphOwner large{make(), {}};
   const VkDeviceSize before = allocated(resized, 64);
   const VkDeviceSize after = allocated(large, 128);
   EXPECT_GT(before, 0u);

@@ -137,7 +137,8 @@ class Mutator {
   // Makes mutants that say something else about what the frame has written to a history, or
   // nothing.
   void misstate_history(std::uint32_t index) {
-    for (const Written written : {Written::nothing, Written::part, Written::whole}) {
+    for (const WriteCoverage written :
+         {WriteCoverage::nothing, WriteCoverage::part, WriteCoverage::whole}) {
       if (plan_.finals[index].written == written) continue;
       Plan mutant = plan_;
       mutant.finals[index].written = written;

@@ -190,7 +190,7 @@ TEST_F(Queues, HistoryWrittenOnOneQueueAndReadOnAnotherIsValidInTheNextFrame) {
         Plan plan = compiled();
         graph_.leave_histories(plan.finals);
         ASSERT_FALSE(plan.finals.empty());
-        plan.finals[0].written = Written::nothing;
+        plan.finals[0].written = WriteCoverage::nothing;
         EXPECT_FALSE(verify(graph_.description(), limits_, plan));
         plan.finals.clear();
         EXPECT_FALSE(verify(graph_.description(), limits_, plan));

@@ -389,31 +389,31 @@ TEST(CostReport, EachOptionalOutputIsAddedToAPresetAlone) {
   EXPECT_EQ(specular.inputs.settings.specular, passes::Specular::slices);
 }
 
-struct Budgeted {
+struct BudgetCase {
   const GpuPart* part;
   LabelledSettings settings;
 };
 // GoogleTest prints the GPU and the settings in the names that ctest lists.
-std::ostream& operator<<(std::ostream& out, const Budgeted& budgeted) {
+std::ostream& operator<<(std::ostream& out, const BudgetCase& budgeted) {
   return out << budgeted.part->family << ", " << budgeted.settings.label;
 }
 
-std::vector<Budgeted> all_budgeted() {
-  std::vector<Budgeted> all;
+std::vector<BudgetCase> all_budgeted() {
+  std::vector<BudgetCase> all;
   for (const GpuPart& part : kGpuParts) {
     for (const LabelledSettings& settings : budgeted_settings()) all.push_back({&part, settings});
   }
   return all;
 }
 
-std::string name_of_test(const testing::TestParamInfo<Budgeted>& info) {
+std::string name_of_test(const testing::TestParamInfo<BudgetCase>& info) {
   std::string name(info.param.part->family);
   name += "_" + info.param.settings.label;
   std::ranges::replace(name, ' ', '_');
   return name;
 }
 
-class ShippedPresets : public testing::TestWithParam<Budgeted> {};
+class ShippedPresets : public testing::TestWithParam<BudgetCase> {};
 
 TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   const auto device = create_null_device(GetParam().part->family);
@@ -460,14 +460,15 @@ TEST(GpuCost, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
 
 TEST(NormalEncodings, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPixel) {
   using passes::NormalEncoding;
-  struct Named {
+  struct PackedEncoding {
     const char* name;
     NormalEncoding encoding;
     double most;  // instructions per pixel, a little above the measured ones
   };
-  constexpr Named kPacked[] = {{"unsigned xyz", NormalEncoding::unsigned_xyz, 6.5},
-                               {"octahedral", NormalEncoding::octahedral, 19.0},
-                               {"unsigned octahedral", NormalEncoding::unsigned_octahedral, 23.0}};
+  constexpr PackedEncoding kPacked[] = {
+      {"unsigned xyz", NormalEncoding::unsigned_xyz, 6.5},
+      {"octahedral", NormalEncoding::octahedral, 19.0},
+      {"unsigned octahedral", NormalEncoding::unsigned_octahedral, 23.0}};
   for (const GpuPart& part : kGpuParts) {
     const auto device = create_null_device(part.family);
     if (!device) GTEST_SKIP() << device.error();
@@ -479,7 +480,7 @@ TEST(NormalEncodings, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPi
       ASSERT_TRUE(plain) << plain.error();
       std::printf("%s, bent normals %s: signed xyz %.1f instructions per pixel", part.family.data(),
                   bent_normal ? "on" : "off", *plain);
-      for (const Named& packed : kPacked) {
+      for (const PackedEncoding& packed : kPacked) {
         inputs.normal_encoding = packed.encoding;
         const auto found = instructions_of(part, *device, inputs);
         ASSERT_TRUE(found) << found.error();

@@ -197,9 +197,9 @@ void Replay::check_histories() {
     const auto& subs = resources_[final.resource].subs;
     const auto written = static_cast<std::size_t>(
         std::count_if(subs.begin(), subs.end(), [](const Sub& sub) { return sub.written; }));
-    const Written state = written == 0             ? Written::nothing
-                          : written == subs.size() ? Written::whole
-                                                   : Written::part;
+    const WriteCoverage state = written == 0             ? WriteCoverage::nothing
+                                : written == subs.size() ? WriteCoverage::whole
+                                                         : WriteCoverage::part;
     if (final.written != state)
       fail(name(final.resource) + " is said to be written in another part than it is");
     for (std::size_t i = 0; i < subs.size(); ++i) {

@@ -132,25 +132,25 @@ bool HappensBefore::holds(const Operation& operation, Function&& f) const {
 }
 
 void HappensBefore::apply(std::span<const Barrier> barriers) {
-  if (reached_.size() < barriers.size()) reached_.resize(barriers.size());
-  for (std::size_t i = 0; i < barriers.size(); ++i) reach(barriers[i], reached_[i]);
-  for (std::size_t i = 0; i < barriers.size(); ++i) spread(barriers[i], reached_[i]);
+  if (scopes_.size() < barriers.size()) scopes_.resize(barriers.size());
+  for (std::size_t i = 0; i < barriers.size(); ++i) reach(barriers[i], scopes_[i]);
+  for (std::size_t i = 0; i < barriers.size(); ++i) spread(barriers[i], scopes_[i]);
 }
 
 // Finds the operations that a barrier waits for: those in its first scope, and all operations that
 // are ordered before these.
-void HappensBefore::reach(const Barrier& barrier, Reached& reached) const {
-  reached.ordered.assign(places_, 0);
-  reached.available.assign(places_ * writes_.size(), 0);
+void HappensBefore::reach(const Barrier& barrier, ScopeTimes& scope) const {
+  scope.ordered.assign(places_, 0);
+  scope.available.assign(places_ * writes_.size(), 0);
   all_stages(barrier.src, [&](std::size_t stage) {
     const std::size_t through = place(barrier.queue, stage);
     for (std::size_t source = 0; source < places_; ++source) {
       const bool direct = source == through;
-      Time& before = reached.ordered[source];
+      Time& before = scope.ordered[source];
       before = std::max(before, direct ? now_ : ordered(source, through));
       for (std::size_t write = 0; write < writes_.size(); ++write) {
         const bool made = direct && barrier.memory && (barrier.src_access & writes_[write]) != 0;
-        Time& there = reached.available[source * writes_.size() + write];
+        Time& there = scope.available[source * writes_.size() + write];
         there = std::max(there, made ? now_ : available(source, write, through));
       }
     }
@@ -158,16 +158,16 @@ void HappensBefore::reach(const Barrier& barrier, Reached& reached) const {
   });
 }
 
-void HappensBefore::spread(const Barrier& barrier, const Reached& reached) {
+void HappensBefore::spread(const Barrier& barrier, const ScopeTimes& scope) {
   const auto raise = [](Time& time, Time to) { time = std::max(time, to); };
   all_stages(barrier.dst, [&](std::size_t stage) {
     const std::size_t to = place(barrier.queue, stage);
     for (std::size_t source = 0; source < places_; ++source) {
-      raise(ordered(source, to), reached.ordered[source]);
+      raise(ordered(source, to), scope.ordered[source]);
       for (std::size_t write = 0; write <= writes_.size(); ++write) {
         const bool writes = write < writes_.size();
         const Time time =
-            writes ? reached.available[source * writes_.size() + write] : reached.ordered[source];
+            writes ? scope.available[source * writes_.size() + write] : scope.ordered[source];
         if (writes) raise(available(source, write, to), time);
         if (!barrier.memory) continue;
         Time* const seen = visible(source, write, to);
@@ -196,7 +196,7 @@ void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
 void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission, Stages stages) {
   // Everything that came before the signal is available and visible after the wait.
   const std::vector<Time>& times = signalled_[submission];
-  Reached all{times, {}};
+  ScopeTimes all{times, {}};
   for (const Time time : times) all.available.insert(all.available.end(), writes_.size(), time);
   spread({queue, 0, 0, expand_stages(stages), ~Accesses{0}, true}, all);
 }

@@ -95,7 +95,7 @@ class HappensBefore {
 
  private:
   // For each source, the times up to which one barrier of the current batch orders its accesses.
-  struct Reached {
+  struct ScopeTimes {
     std::vector<Time> ordered;
     std::vector<Time> available;  // by source and write access
   };
@@ -119,8 +119,8 @@ class HappensBefore {
   const Time* visible(std::size_t source, std::size_t write, std::size_t to) const {
     return &visible_[((source * (writes_.size() + 1) + write) * places_ + to) * accesses_.size()];
   }
-  void reach(const Barrier& barrier, Reached& reached) const;
-  void spread(const Barrier& barrier, const Reached& reached);
+  void reach(const Barrier& barrier, ScopeTimes& scope) const;
+  void spread(const Barrier& barrier, const ScopeTimes& scope);
   template <typename Function>
   bool all_stages(Stages stages, Function&& f) const;
   template <typename Function>
@@ -146,7 +146,7 @@ class HappensBefore {
   std::vector<Time> ordered_;
   std::vector<Time> available_;
   std::vector<Time> visible_;
-  std::vector<Reached> reached_;              // by barrier of a command
+  std::vector<ScopeTimes> scopes_;            // by barrier of a command
   std::vector<std::vector<Time>> signalled_;  // by submission, by source
 };
 

@@ -35,31 +35,11 @@ size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size);
 // the camera moved, and at any later time: a mistake is named whenever it begins, and no longer
 // once it has been mended. `text`, `size` and the result are as in alcovePrintSettings.
 //
-// Some mistakes show in the calls: an index that stays the same or goes back, a wrong
-// previous_camera or previous size, jitter in only one of the two cameras, static_frames that are
-// not 0 although the image changes, reset_history in every frame, and views that are never dropped.
-// A sentence in the log tells of the last one, too.
-//
-// Other mistakes show in the pixels, in frames with AlcoveFrame::diagnose_pixels, if depth has one
-// sample per pixel:
-// - in depth: another range, direction or format than stated, another size of the image, dynamic
-//   resolution without a largest size, and a radius that is far too small or too large;
-// - in depth and normals: another angle of view, other near and far planes, the other sign of y,
-//   normals in another space or encoding or with the other sign of z, an inverted view_from_world,
-//   and normals that fit depth under no reading;
-// - from frame to frame: a camera or a depth image of another frame, jitter that is missing or of
-//   another sign or unit, a view_from_world without translation or in another unit, a near plane
-//   that scales the whole scene, cameras that do not fit the depth of most pixels, motion vectors
-//   of another sign, unit or jitter or that lack the camera's motion, and a slot that is recorded
-//   again before its frame has finished.
-//
-// These mistakes do not show: a camera that is one frame late, if it moves evenly and without
-// jitter, because successive cameras are then the same; a near plane or a view_from_world in
-// another unit while the camera does not move, or if all that is seen is one plane; another angle
-// of view if almost every surface is parallel or perpendicular to the view axis and the camera does
-// not move; motion vectors of moving objects, as long as those of static surfaces are right; a
-// depth image that is always empty, which looks like the sky; and the contents of roughness,
-// albedo, back_depth and second_depth.
+// Mistakes in the calls are judged in every frame: indices, previous cameras and sizes, jitter in
+// only one of two cameras, static_frames, reset_history, and views that are never dropped. Mistakes
+// in the pixels are judged in frames with AlcoveFrame::diagnose_pixels, if depth has one sample per
+// pixel: depth, normals, radius, cameras and motion vectors. passes/INTEGRATION.md lists all, and
+// those that do not show.
 size_t alcoveDiagnose(AlcoveContext* context, char* text, size_t size);
 
 #ifdef __cplusplus

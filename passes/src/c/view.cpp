@@ -56,13 +56,16 @@ tl::expected<void, Failure> check_hidden(const AlcoveView& view,
   return {};
 }
 
-tl::expected<NormalEncoding, Failure> normal_encoding(const AlcoveView& view) {
-  const std::uint32_t number = number_of(view.normal_encoding);
-  if (number > static_cast<std::uint32_t>(NormalEncoding::unsigned_octahedral)) {
-    return invalid(view_name(view) + ": AlcoveView::normal_encoding is " + std::to_string(number) +
+// Returns a value of an enum of C as that of C++, whose last value is `last`.
+template <typename Ours, typename Theirs>
+tl::expected<Ours, Failure> to_enum(const AlcoveView& view, const char* field, Theirs value,
+                                    Ours last) {
+  const std::uint32_t number = number_of(value);
+  if (number > static_cast<std::uint32_t>(last)) {
+    return invalid(view_name(view) + ": AlcoveView::" + field + " is " + std::to_string(number) +
                    ", which is none of its values.");
   }
-  return static_cast<NormalEncoding>(number);
+  return static_cast<Ours>(number);
 }
 
 ImageRole normals_role(NormalEncoding encoding) {
@@ -81,15 +84,6 @@ ImageRole visibility_role(VisibilityChannel channel, bool half_size) {
           channel != VisibilityChannel::all,
           false,
           half_size};
-}
-
-tl::expected<VisibilityChannel, Failure> visibility_channel(const AlcoveView& view) {
-  const std::uint32_t number = number_of(view.visibility_channel);
-  if (number > static_cast<std::uint32_t>(VisibilityChannel::alpha)) {
-    return invalid(view_name(view) + ": AlcoveView::visibility_channel is " +
-                   std::to_string(number) + ", which is none of its values.");
-  }
-  return static_cast<VisibilityChannel>(number);
 }
 
 // Checks what outputs of half size need.
@@ -125,11 +119,13 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
   // The format needs no more channels than are read.
   const ImageRole roughness{"roughness", Kind::colour,
                             std::min(settings.roughness_channel, 3u) + 1};
-  const auto encoding = normal_encoding(view);
+  const auto encoding =
+      to_enum(view, "normal_encoding", view.normal_encoding, NormalEncoding::unsigned_octahedral);
   if (!encoding) {
     return tl::unexpected(encoding.error());
   }
-  const auto channel = visibility_channel(view);
+  const auto channel =
+      to_enum(view, "visibility_channel", view.visibility_channel, VisibilityChannel::alpha);
   if (!channel) {
     return tl::unexpected(channel.error());
   }

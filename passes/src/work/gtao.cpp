@@ -70,7 +70,7 @@ std::array<NamedConstant, 20> constants_of(const WorkFrame& frame, const GtaoInp
 }
 
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
-// groups, and groups are numbered column by column in each strip (tile_of_invocation() in
+// groups, and groups are numbered column by column in each strip (invocation_tile() in
 // gtao.comp).
 VkExtent3D in_strips(VkExtent2D tiles) {
   constexpr std::uint32_t kGroup = 8;

@@ -34,20 +34,23 @@ struct ShaderSource {
 
 // Returns the element of `given` whose name is `name`, or null. Looks at the index `expected`
 // first, because lists usually have the order of the shader's declarations.
-template <typename Named>
-const Named* find_named(std::span<const Named> given, std::string_view name, std::size_t expected) {
+template <typename Element>
+const Element* find_named(std::span<const Element> given, std::string_view name,
+                          std::size_t expected) {
   if (expected < given.size() && given[expected].name == name) {
     return &given[expected];
   }
-  const auto found = std::ranges::find(given, name, &Named::name);
+  const auto found = std::ranges::find(given, name, &Element::name);
   return found == given.end() ? nullptr : &*found;
 }
 
 // Returns the first element of `given` whose name is not in `known`, which is sorted, or null.
-template <typename Named>
-const Named* find_unknown(std::span<const Named> given, std::span<const std::string_view> known) {
-  const auto found = std::ranges::find_if(
-      given, [&](const Named& named) { return !std::ranges::binary_search(known, named.name); });
+template <typename Element>
+const Element* find_unknown(std::span<const Element> given,
+                            std::span<const std::string_view> known) {
+  const auto found = std::ranges::find_if(given, [&](const Element& element) {
+    return !std::ranges::binary_search(known, element.name);
+  });
   return found == given.end() ? nullptr : &*found;
 }
 

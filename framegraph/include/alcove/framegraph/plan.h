@@ -110,8 +110,8 @@ enum ContentFlags : std::uint8_t {
   kIsNeeded = 2,     // a later pass, or whoever comes after the frame, needs what the access leaves
 };
 
-// Whether the live passes wrote no, some, or all mips and layers of a history slot.
-enum class Written : std::uint8_t { nothing, part, whole };
+// The mips and layers of a history slot that the live passes wrote: none, some or all.
+enum class WriteCoverage : std::uint8_t { nothing, part, whole };
 
 // The state in which the frame leaves a history slot, and from which the next frame starts. If the
 // state has read accesses, the last write is already visible to them.
@@ -119,7 +119,7 @@ struct FinalState {
   std::uint32_t resource = kNone;
   State state;
   QueueClass queue = QueueClass::graphics;
-  Written written = Written::nothing;
+  WriteCoverage written = WriteCoverage::nothing;
 };
 
 struct Plan {
