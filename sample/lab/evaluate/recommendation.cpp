@@ -78,7 +78,7 @@ class Search {
     ALCOVE_TRY_VOID(choose_samples());
     for (const Feature& feature : kFeatures) try_feature(feature);
     if (goal_.tolerance && goal_.met(found_.chosen)) {
-      try_with_fewer_samples(found_.chosen.settings, 1.0);
+      try_with_fewer_samples(found_.chosen.settings);
     }
     refine();
     return std::move(found_);
@@ -164,36 +164,38 @@ class Search {
       return;
     }
     FeatureEffect effect = effect_of(feature.name, goal_, *result, before);
-    if (effect.rmse_change < -kWorthwhile)
-      try_with_fewer_samples(with, 1.0 + effect.ms_change, kWorthwhile);
+    if (effect.rmse_change < -kWorthwhile) try_with_fewer_samples(with, kWorthwhile);
     OcclusionSettings chosen = found_.chosen.settings;
     feature.use(chosen);
     if (chosen == found_.chosen.settings && chosen != before.settings) effect.verdict = "used";
     found_.features.push_back(std::move(effect));
   }
 
-  // Tries `with` at numbers of samples that take less time. `ratio` is the time with the feature
-  // over that without.
-  void try_with_fewer_samples(const OcclusionSettings& with, double ratio, double margin = 0) {
+  // Tries `with` at fewer samples. What a feature adds to the time depends on their number, in
+  // steps where the search exceeds a cache, so that more numbers are modelled than measured.
+  void try_with_fewer_samples(const OcclusionSettings& with, double margin = 0) {
     const std::size_t most = goal_.budget_ms ? 4 : 8;
-    const double limit = (goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen)) / ratio;
-    const auto within = slowest_within(limit, most);
+    const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen);
+    const auto within = slowest_within(limit, ladder_.size());
     if (!within) return;
+    std::size_t count = 0;
     for (const OcclusionSettings& samples : *within) {
       OcclusionSettings fewer = with;
       use_samples_of(samples, fewer);
-      consider_if_promising(fewer, margin);
+      count += consider_if_promising(fewer, margin) ? 1 : 0;
+      if (count == most) return;
     }
   }
 
-  // Measures settings only if their time does not rule them out. Settings that fail are left out.
-  void consider_if_promising(const OcclusionSettings& settings, double margin = 0) {
-    if (!passes::validate(settings) || measured(settings) != nullptr) return;
+  // Measures settings only if their time does not rule them out, and returns whether it did.
+  // Settings that fail are left out.
+  bool consider_if_promising(const OcclusionSettings& settings, double margin = 0) {
+    if (!passes::validate(settings) || measured(settings) != nullptr) return false;
     const auto times = world_.time(settings);
-    if (!times) return;
+    if (!times) return false;
     const double ms = weighted(*times, goal_.weights);
     const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen);
-    if (!goal_.met(found_.chosen) || ms <= limit) (void)consider(settings, margin);
+    return (!goal_.met(found_.chosen) || ms <= limit) && consider(settings, margin).has_value();
   }
 
   // Changes one number of samples at a time, as long as that helps.
