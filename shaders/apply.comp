@@ -108,9 +108,7 @@ vec3 environment_light(vec3 normal, vec3 view, float roughness) {
 // the environment. With multi-bounce, the occluded part shows occluders that are assumed to have
 // the albedo and the lighting of the surface itself (`occluder`).
 vec3 specular_light(ivec2 pixel, vec3 environment, vec3 occluder) {
-  if (!kSpecularOcclusion) {
-    return environment;
-  }
+  if (!kSpecularOcclusion) return environment;
   float visible = texelFetch(specular_occlusion_image, pixel, 0).r;
   return environment * visible + (kMultiBounce ? occluder * (1.0 - visible) : vec3(0.0));
 }
@@ -150,9 +148,7 @@ vec3 view_of(ivec2 pixel, float depth) {
 
 void store(ivec2 pixel, Light light) {
   vec3 sum = light.diffuse + light.specular;
-  if (kLight) {
-    sum += texelFetch(light_image, pixel, 0).rgb;
-  }
+  if (kLight) sum += texelFetch(light_image, pixel, 0).rgb;
   imageStore(lit_image, pixel, vec4(sum, 1.0));
   if (kParts) {
     imageStore(diffuse_image, pixel, vec4(light.diffuse, 1.0));
@@ -164,9 +160,7 @@ void store(ivec2 pixel, Light light) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(parameters.projection.size_px)))) {
-    return;
-  }
+  if (any(greaterThanEqual(pixel, ivec2(parameters.projection.size_px)))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
   Light light = Light(vec3(0.0), vec3(0.0));
   if (!is_sky_depth(depth)) {

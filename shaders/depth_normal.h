@@ -65,9 +65,8 @@ float inverse_depth_gradient(float here, vec4 line, int place, int size, bool pe
   float sky = sky_inverse_depth(perspective);
   bool none_before = before == sky || place < 1;
   bool none_after = after == sky || place + 1 >= size;
-  if (none_before || (!none_after && miss_after < miss_before)) {
+  if (none_before || (!none_after && miss_after < miss_before))
     return none_after ? 0.0 : after - here;
-  }
   return here - before;
 }
 
@@ -75,9 +74,7 @@ float inverse_depth_gradient(float here, vec4 line, int place, int size, bool pe
 // `slope` is the slope of view rays: their change per pixel in xy, and that of the ray at the
 // corner of the image in zw.
 vec3 depth_normal(DepthCross depth, ivec2 pixel, ivec2 size, vec4 slope, bool perspective) {
-  if (depth.here == sky_inverse_depth(perspective)) {
-    return vec3(0.0, 0.0, 1.0);
-  }
+  if (depth.here == sky_inverse_depth(perspective)) return vec3(0.0, 0.0, 1.0);
   vec2 gradient =
       vec2(inverse_depth_gradient(depth.here, depth.row, pixel.x, size.x, perspective),
            inverse_depth_gradient(depth.here, depth.column, pixel.y, size.y, perspective));
@@ -113,9 +110,8 @@ bool needs_depth_normal(vec3 given, vec3 view) {
 // whether it is flipped.
 vec3 seen_normal(vec3 given, vec3 view, vec3 of_depth) {
   vec3 normal = normalize(given);
-  if (needs_depth_normal(given, view)) {
+  if (needs_depth_normal(given, view))
     normal = !has_direction(given) ? of_depth : dot(normal, of_depth) < 0.0 ? -normal : normal;
-  }
   return facing_normal(normal, view);
 }
 

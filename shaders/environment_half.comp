@@ -16,9 +16,7 @@ layout(set = 0, binding = 2) uniform writeonly image2D target_image;
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(texel, ivec2(parameters.size)))) {
-    return;
-  }
+  if (any(greaterThanEqual(texel, ivec2(parameters.size)))) return;
   float source_size = parameters.source_px.x;
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 4; ++i) {

@@ -21,9 +21,7 @@ shared vec3 shares[kHarmonics][kThreads];
 
 void sum_texels(uint thread) {
   vec3 sums[kHarmonics];
-  for (uint i = 0u; i < kHarmonics; ++i) {
-    sums[i] = vec3(0.0);
-  }
+  for (uint i = 0u; i < kHarmonics; ++i) sums[i] = vec3(0.0);
   uint size = uint(parameters.size);
   for (uint at = thread; at < size * size; at += kThreads) {
     uvec2 texel = uvec2(at % size, at / size);
@@ -31,13 +29,9 @@ void sum_texels(uint thread) {
     vec3 direction = map_direction(uv);
     vec3 light =
         texelFetch(source_image, ivec2(texel), 0).rgb * map_texel_angle(uv, parameters.size);
-    for (uint i = 0u; i < kHarmonics; ++i) {
-      sums[i] += light * harmonic(i, direction);
-    }
+    for (uint i = 0u; i < kHarmonics; ++i) sums[i] += light * harmonic(i, direction);
   }
-  for (uint i = 0u; i < kHarmonics; ++i) {
-    shares[i][thread] = sums[i];
-  }
+  for (uint i = 0u; i < kHarmonics; ++i) shares[i][thread] = sums[i];
 }
 
 void main() {
@@ -46,9 +40,7 @@ void main() {
   barrier();
   if (thread < kHarmonics) {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < kThreads; ++i) {
-      sum += shares[thread][i];
-    }
+    for (uint i = 0u; i < kThreads; ++i) sum += shares[thread][i];
     imageStore(target_image, ivec2(thread, 0), vec4(sum, 1.0));
   }
 }

@@ -36,9 +36,7 @@ vec3 fetch_bilinear(vec3 direction) {
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(texel, ivec2(parameters.size)))) {
-    return;
-  }
+  if (any(greaterThanEqual(texel, ivec2(parameters.size)))) return;
   int samples = int(parameters.samples);
   vec3 sum = vec3(0.0);
   for (int y = 0; y < samples; ++y) {

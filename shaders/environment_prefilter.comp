@@ -49,9 +49,7 @@ vec3 prefilter(vec3 normal, float alpha) {
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(texel, ivec2(parameters.size)))) {
-    return;
-  }
+  if (any(greaterThanEqual(texel, ivec2(parameters.size)))) return;
   vec3 normal = map_direction((vec2(texel) + 0.5) / parameters.size);
   float alpha = parameters.roughness * parameters.roughness;
   vec3 light = parameters.roughness > 0.0

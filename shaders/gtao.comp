@@ -116,9 +116,7 @@ RawOcclusion faded(RawOcclusion sum, float to_open) {
 SliceResult fade_unresolved(SliceResult sum, float to_open) {
   sum.raw_occlusion = faded(sum.raw_occlusion, to_open);
   sum.residual = kBentNormal ? mix(sum.residual, sum.expected_residual, to_open) : vec3(0.0);
-  if (kLobe) {
-    sum.lobe = faded(sum.lobe, to_open);
-  }
+  if (kLobe) sum.lobe = faded(sum.lobe, to_open);
   return sum;
 }
 
@@ -140,9 +138,7 @@ SearchResult sky_result() {
 SliceResult weighted_slice(Surface surface, SliceNoise noise, uint i) {
   ViewBasis basis = make_view_basis(surface.view);
   WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
-  if (kLobe) {
-    angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.roughness);
-  }
+  if (kLobe) angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.roughness);
   vec3 direction = slice_direction(basis, angle.phi);
   SliceResult result = search_slice(surface, direction, noise.offset);
   if (kLobe) {
@@ -222,9 +218,8 @@ ivec2 invocation_tile() {
 void main() {
   ivec2 tile = invocation_tile();
   if (any(kAreas ? greaterThan(tile, parameters.written.zw)
-                 : greaterThanEqual(tile * kTileSize, size_px()))) {
+                 : greaterThanEqual(tile * kTileSize, size_px())))
     return;
-  }
   ivec2 pixel = min(tile * kTileSize + ivec2(parameters.interleave_offset), size_px() - 1);
   float inverse_depth = load_inverse_depth(pixel);
   SearchResult result = sky_result();
@@ -235,7 +230,5 @@ void main() {
   // The tile is computed anew, because it would hold registers during the search.
   ivec2 written = ivec2(uvec2(pixel) / uint(kTileSize));
   imageStore(raw_image, written, result.raw_occlusion);
-  if (kBentNormal) {
-    imageStore(bent_image, written, uvec4(result.bent, 0u, 0u));
-  }
+  if (kBentNormal) imageStore(bent_image, written, uvec4(result.bent, 0u, 0u));
 }

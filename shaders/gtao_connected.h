@@ -48,11 +48,10 @@ float small_float(uint value) { return uintBitsToFloat(0x4B000000u + value) - 83
 // Sets of samples are bit masks. The second word is 0 with at most 32 samples.
 void add_to_set(inout uvec2 samples, uint k, bool contained) {
   uint bit = contained ? 1u << (k & 31u) : 0u;
-  if (kStepCount > 32u && k >= 32u) {
+  if (kStepCount > 32u && k >= 32u)
     samples.y |= bit;
-  } else {
+  else
     samples.x |= bit;
-  }
 }
 
 // The number of samples in a set.
@@ -220,14 +219,12 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   }
   uint last = step_count(half_slice) - 1u;
   uint k = 1u + rest;
-  if (k < last) {
-    do {
+  if (k < last) do {
       [[unroll]] for (uint i = 0u; i < kUnrolled; ++i) {
         pass_sample(state, here, half_slice, sectors, layer, k + i);
       }
       k += kUnrolled;
     } while (k < last);
-  }
   // No sample follows the last one, so it is connected only if there is no discontinuity before it.
   add_sample(state, sectors, layer, last, here, !is_discontinuous(state.discontinuity),
              edge_distance(state));
@@ -237,9 +234,7 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   found.hidden_occlusion = hidden_occlusion_of(state, half_slice, here.point.x);
   found.known_back = state.known_back;
   found.unobserved = nothing_unobserved();
-  if (tells_unobserved(layer)) {
-    found.unobserved = unobserved_columns(state.unobserved, half_slice);
-  }
+  if (tells_unobserved(layer)) found.unobserved = unobserved_columns(state.unobserved, half_slice);
   found.border = extrapolated != 0u || is_sky_sample(here) ? kNowhere : here.point.x;
   return found;
 }
@@ -247,9 +242,7 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
 // The occluders that all depth layers show.
 Occluders find_occluders(HalfSlice half_slice, float sectors) {
   Occluders found = Occluders(0u, 0.0, false, nothing_unobserved(), 0.0);
-  if (is_empty(half_slice)) {
-    return found;
-  }
+  if (is_empty(half_slice)) return found;
   found = find_in_layer(half_slice, sectors, 0u);
   if (kSecondLayer) {
     Occluders behind = find_in_layer(half_slice, sectors, 1u);
@@ -288,9 +281,8 @@ SearchedPart search_half_slice(HalfSlice half_slice, Slice slice) {
                          ? tangent_light(slice, half_slice.side)
                          : diamond_angle_light(lowest_of(part.found.occluded) * sector);
   part.beyond = (1.0 - part.found.hidden_occlusion) * visible_share_beyond(part.found.occluded);
-  if (kLeaveOutUnobserved) {
+  if (kLeaveOutUnobserved)
     part.unobserved = find_unobserved(half_slice, part.first_light, part.found);
-  }
   return part;
 }
 

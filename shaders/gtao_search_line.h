@@ -38,9 +38,7 @@ SliceSum no_sum(Surface surface) {
 void add_arc(inout SliceSum sum, float visible, float open, float left_out) {
   sum.raw_occlusion.visible += visible - left_out;
   sum.raw_occlusion.open += open - left_out;
-  if (kBentNormal) {
-    sum.visible += visible;
-  }
+  if (kBentNormal) sum.visible += visible;
 }
 
 // A float of this size has no fraction bits, so that adding it rounds to the nearest integer, which

@@ -23,9 +23,8 @@ struct Surface {
 
 float fetch_roughness(ivec2 pixel) {
 #ifdef SPECULAR
-  if (kRoughnessTexture) {
+  if (kRoughnessTexture)
     return saturate(texelFetch(roughness_image, in_inputs(pixel), 0)[kRoughnessChannel]);
-  }
 #endif
   return parameters.roughness;
 }
@@ -58,11 +57,10 @@ Surface fetch_surface(ivec2 pixel, float inverse_depth) {
   if (needs_depth_normal(given_vs, surface.view)) {
     ivec2 origin = in_inputs(ivec2(0));
     DepthCross depths;
-    if (kMask) {
+    if (kMask)
       depths = fetch_depth_cross(receiver_image, pixel, origin, size_px());
-    } else {
+    else
       depths = fetch_depth_cross(depth_image, pixel, origin, size_px());
-    }
     of_depth = depth_buffer_normal(depths, pixel, size_px(), parameters.slope,
                                    parameters.inverse_depth_from_ndc, kPerspective, kReversed);
   }

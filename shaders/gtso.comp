@@ -60,15 +60,12 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
   float cone = visibility_cone(visibility);
   float bent_from_mirror = angle_between(bent, reflection);
   float exact = gtso_exact(visibility, cone, bent_from_mirror, roughness);
-  if (exact >= 0.0) {
-    return exact;
-  }
+  if (exact >= 0.0) return exact;
   vec4 at = gtso_coordinates(cone, bent_from_mirror, angle_between(normal, reflection), roughness);
   uvec4 entry = gtso_entry(at);
   float sum = 0.0;
-  for (uint corner = 0u; corner < 16u; ++corner) {
+  for (uint corner = 0u; corner < 16u; ++corner)
     sum += gtso_corner_weight(at - vec4(entry), corner) * fetch_entry(gtso_corner(entry, corner));
-  }
   return sum;
 }
 #endif
@@ -89,9 +86,7 @@ float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, parameters.size_px))) {
-    return;
-  }
+  if (any(greaterThanEqual(pixel, parameters.size_px))) return;
   pixel = kAreas ? pixel + parameters.written.xy : pixel;
   float depth = texelFetch(depth_image, pixel, 0).r;
   float result = 1.0;

@@ -57,9 +57,7 @@ ivec2 pixel_of(ivec2 texel) {
   ivec2 last = min(first + 1, size_px() - 1);
   ivec2 pixels[4] = ivec2[](first, ivec2(first.x, last.y), ivec2(last.x, first.y), last);
   vec4 depths;
-  for (int i = 0; i < 4; ++i) {
-    depths[i] = fetch_depth(pixels[i]);
-  }
+  for (int i = 0; i < 4; ++i) depths[i] = fetch_depth(pixels[i]);
   float chosen = representative_depth(texel, depths, kReversed);
   return depths.x == chosen   ? pixels[0]
          : depths.y == chosen ? pixels[1]
@@ -84,9 +82,7 @@ vec3 unit_normal(ivec2 pixel) {
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + first_written() / 2;
-  if (any(greaterThan(texel * 2, last_written()))) {
-    return;
-  }
+  if (any(greaterThan(texel * 2, last_written()))) return;
   // The sky has no occlusion, no residual and no occluded lobe.
   float visibility = saturate(1.0 - texelFetch(half_image, texel, 0).r);
   if (kVisibility) {

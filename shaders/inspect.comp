@@ -37,19 +37,15 @@ void main() {
     imageStore(sample_image, ivec2(0, 3 * int(kInspectRows)),
                vec4(rest_of(depth_image), rest_of(normal_image)));
   }
-  if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) {
-    return;
-  }
+  if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) return;
   vec2 position = (vec2(cell) + 0.5) / vec2(kInspectColumns, kInspectRows);
   ivec2 pixel = ivec2(position * vec2(parameters.size_px));
   vec3 normal = vec3(0.0);
-  if (parameters.has_normals != 0u) {
+  if (parameters.has_normals != 0u)
     normal = texelFetch(normal_image, place_in(normal_image, pixel), 0).xyz;
-  }
   vec2 motion = vec2(0.0);
-  if (parameters.has_motion != 0u) {
+  if (parameters.has_motion != 0u)
     motion = texelFetch(motion_image, place_in(motion_image, pixel), 0).xy;
-  }
   imageStore(sample_image, ivec2(cell.x, 3 * cell.y),
              vec4(fetch_depth(pixel), fetch_depth(pixel - ivec2(1, 0)),
                   fetch_depth(pixel + ivec2(1, 0)), fetch_depth(pixel - ivec2(0, 1))));

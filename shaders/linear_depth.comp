@@ -14,9 +14,7 @@ layout(set = 0, binding = 2) uniform writeonly image2D linear_depth_image;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, imageSize(linear_depth_image)))) {
-    return;
-  }
+  if (any(greaterThanEqual(pixel, imageSize(linear_depth_image)))) return;
   float depth_ndc = texelFetch(depth_ndc_image, pixel + parameters.origin, 0).r;
   imageStore(linear_depth_image, pixel, vec4(linear_depth(parameters.projection, depth_ndc)));
 }

@@ -31,9 +31,7 @@ uint fetch_mask(ivec2 pixel) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, parameters.size))) {
-    return;
-  }
+  if (any(greaterThanEqual(pixel, parameters.size))) return;
   pixel += parameters.first;
   float depth = texelFetch(depth_image, pixel, 0).r;
   uint mask = fetch_mask(pixel);

@@ -20,9 +20,7 @@ layout(set = 0, binding = 3) uniform writeonly image2D result_image;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(parameters.size_px)))) {
-    return;
-  }
+  if (any(greaterThanEqual(pixel, ivec2(parameters.size_px)))) return;
   ivec2 output_pixel = kAreas ? pixel + parameters.positions.zw : pixel;
   float visibility = texelFetch(visibility_image, output_pixel, 0)[kVisibilityChannel];
   vec3 albedo = texelFetch(albedo_image, kAreas ? pixel + parameters.positions.xy : pixel, 0).rgb;

@@ -25,9 +25,7 @@ float inverse_depth(float depth) {
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = textureSize(depth_image, 0);
-  if (any(greaterThanEqual(pixel, size))) {
-    return;
-  }
+  if (any(greaterThanEqual(pixel, size))) return;
   DepthCross depth = fetch_depth_cross(depth_image, pixel, ivec2(0), textureSize(depth_image, 0));
   depth.here = inverse_depth(depth.here);
   [[unroll]] for (int i = 0; i < 4; ++i) {

@@ -46,9 +46,7 @@ void add_weighted(inout Sums sums, TileSample found, float weight, LobeSurface l
     sums.residual += weight * found.residual;
     sums.expected_residual += weight * found.expected_residual;
   }
-  if (kLobe) {
-    sums.lobe += weight * lobe_weight(lobe, found.lobe_surface) * found.lobe;
-  }
+  if (kLobe) sums.lobe += weight * lobe_weight(lobe, found.lobe_surface) * found.lobe;
 }
 
 void add_moments(inout Sums sums, TileSample found, float weight) {
@@ -78,15 +76,12 @@ void add_tile_sample(inout Sums sums, Surface surface, Window window, TileSample
   float near = 1.0 + (offset.y * offset.y + offset.x * offset.x) *
                          (window.sharpness * parameters.wide_sharpness);
   float level = 1.0 + off_plane * off_plane * window.squared_plane_factor;
-  if (kByNormal) {
+  if (kByNormal)
     level += min(squared_angle(surface.stereographic, found.stereographic), kLargestSquaredAngle);
-  }
   float both = near * near * level;
   float weight = 1.0 / (both * both);
   add_weighted(sums, found, weight, surface.lobe);
-  if (kClamp) {
-    add_moments(sums, found, weight);
-  }
+  if (kClamp) add_moments(sums, found, weight);
 }
 
 // Indices of the first traced pixels within the two radii.
@@ -131,9 +126,7 @@ Sums sum_four(Surface surface, Window window) {
 
 // Returns the sums over the traced pixels within kNearRadius.
 Sums sum_near(Surface surface, Window window) {
-  if (kBetween) {
-    return sum_four(surface, window);
-  }
+  if (kBetween) return sum_four(surface, window);
   Sums sums = no_sums();
   [[unroll]] for (int j = kFirstNear; j <= kNearRadius; ++j) {
     [[unroll]] for (int i = kFirstNear; i <= kNearRadius; ++i) {

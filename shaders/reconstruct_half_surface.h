@@ -100,9 +100,7 @@ Surface fetch_surface(Place place) {
       kPerspective ? clamp(moved, 0.5 * inverse_depth, 2.0 * inverse_depth) : moved;
   surface.depth = kPerspective ? 1.0 / surface.inverse_depth : 1.0;
   surface.slope = gradient * (surface.depth * surface.n_dot_v);
-  if (kLobe) {
-    surface.lobe = fetch_lobe_surface(surface.pixel, fetch_normal(surface.pixel));
-  }
+  if (kLobe) surface.lobe = fetch_lobe_surface(surface.pixel, fetch_normal(surface.pixel));
   return surface;
 }
 

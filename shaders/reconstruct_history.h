@@ -23,9 +23,7 @@ History read_moving(Surface surface) {
   vec2 uv = (previous.position + 1.0 - part) * parameters.history_texel;
   HistoryTexels texels = gather_history(surface, previous, part, uv);
   if (kMotion) {
-    if (previous.moves) {
-      texels.distances = follow_depth(texels.distances, moved_distance(surface));
-    }
+    if (previous.moves) texels.distances = follow_depth(texels.distances, moved_distance(surface));
   }
   vec4 weights =
       bilinear_weights(part) * history_agreement(texels.distances, history_slack(surface));
@@ -41,9 +39,8 @@ History read_moving(Surface surface) {
   weight = min(weight, parameters.largest_weight);
   history.weight = known ? weight_after_blur(weight, variance, 1.0 - total) : 0.0;
   history.between = dot(part, 1.0 - part);
-  if (kMotion) {
+  if (kMotion)
     history.recent = recent_of_mean(dot(weights, texels.recents) * scale, history.occlusion);
-  }
   if (kBentNormal) {
     // The difference from 0 is weighted, so that the rounding of weights does not change a 0.
     vec4 x = textureGather(bent_history_image, uv, 0) - kZeroHalfResidual;
@@ -130,23 +127,17 @@ void clamp_history(inout History history, Sums now) {
 // Returns the sums over the traced pixels around the texel in this frame. A texel with hardly any
 // history gets the wider neighbourhood of a first frame.
 Sums sum_neighbourhood(Surface surface, History history, Window window) {
-  if (kFresh || (history.weight < 1.5 && !surface.sky)) {
-    return sum_wide(surface, window);
-  }
+  if (kFresh || (history.weight < 1.5 && !surface.sky)) return sum_wide(surface, window);
   return sum_near(surface, window);
 }
 
 void reconstruct(Surface surface) {
   History history = no_history();
-  if (!kFresh) {
-    history = kStatic ? read_static(surface) : read_moving(surface);
-  }
+  if (!kFresh) history = kStatic ? read_static(surface) : read_moving(surface);
   float growth = plane_weight_growth(history.weight);
   Window window = Window(sharpness_of(history), growth * growth);
   Sums now = sum_neighbourhood(surface, history, window);
-  if (kClamp) {
-    clamp_history(history, now);
-  }
+  if (kClamp) clamp_history(history, now);
   if (kMotion) {
     // If no traced pixel lies on the surface, nothing is known of a change.
     const float unchanged = 0.01;

@@ -51,9 +51,8 @@ Surface fetch_surface(Place place) {
   vec2 bend = abs(next + last - 2.0 * depth_ndc);
   float off_plane = (max(bend.x, bend.y) + parameters.depth_step) * surface.depth * surface.n_dot_v;
   // The comparison is true for NaN.
-  if (kFresh || kLobe || !(off_plane <= parameters.largest_bend)) {
+  if (kFresh || kLobe || !(off_plane <= parameters.largest_bend))
     set_plane_of_normal(surface, fetch_normal(surface.pixel));
-  }
   return surface;
 }
 

@@ -79,9 +79,7 @@ float sum_of(vec4 v) { return v.x + v.y + v.z + v.w; }
 vec4 follow_depth(vec4 differences, float limit) {
   vec4 apart = abs(differences);
   float least = min(min(apart.x, apart.y), min(apart.z, apart.w));
-  if (least > limit) {
-    return differences;
-  }
+  if (least > limit) return differences;
   float shift = apart.x == least   ? differences.x
                 : apart.y == least ? differences.y
                 : apart.z == least ? differences.z

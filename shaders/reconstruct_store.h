@@ -71,9 +71,7 @@ void store_half(Surface surface, Result result, float weight, float recent) {
 
 // Stores the outputs of a pixel.
 void store(Surface surface, Result result) {
-  if (!is_written(surface.place.texel)) {
-    return;
-  }
+  if (!is_written(surface.place.texel)) return;
   ivec2 texel = in_outputs(surface.place.texel);
   float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {

@@ -87,9 +87,7 @@ TileSample fetch_tile_sample(ivec2 tile) {
   found.inverse_depth = uintBitsToFloat(stored.y);
   found.occluded = raw.open - raw.visible;
   found.open = raw.open;
-  if (kByNormal) {
-    found.stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
-  }
+  if (kByNormal) found.stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
   if (kBentNormal) {
     uvec2 bent = imageLoad(bent_image, tile).xy;
     found.residual = unpack_residual(bent.x);
@@ -105,9 +103,7 @@ TileSample fetch_tile_sample(ivec2 tile) {
 
 void store_shared(TileSample found, int i) {
   shared_traced[i] = vec4(found.inverse_depth, found.occluded, found.open, found.stereographic.x);
-  if (kByNormal) {
-    shared_stereographic_y[i] = found.stereographic.y;
-  }
+  if (kByNormal) shared_stereographic_y[i] = found.stereographic.y;
   if (kBentNormal) {
     shared_residual[i] = vec4(found.residual, found.expected_residual.x);
     shared_expected_residual[i] = found.expected_residual.yz;
@@ -124,9 +120,7 @@ TileSample load_shared(int i) {
   found.inverse_depth = stored.x;
   found.occluded = stored.y;
   found.open = stored.z;
-  if (kByNormal) {
-    found.stereographic = vec2(stored.w, shared_stereographic_y[i]);
-  }
+  if (kByNormal) found.stereographic = vec2(stored.w, shared_stereographic_y[i]);
   if (kBentNormal) {
     vec4 residual = shared_residual[i];
     found.residual = residual.xyz;

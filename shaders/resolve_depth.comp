@@ -15,9 +15,7 @@ layout(set = 0, binding = 2) uniform writeonly image2D resolved_image;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, parameters.size))) {
-    return;
-  }
+  if (any(greaterThanEqual(pixel, parameters.size))) return;
   pixel += parameters.first;
   imageStore(resolved_image, pixel, vec4(texelFetch(depth_image, pixel, 0).r));
 }

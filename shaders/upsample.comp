@@ -99,9 +99,7 @@ Cell fetch_cell(ivec2 index) {
     float steepness =
         parameters.tolerance * inversesqrt(1.0 + dot(tilt, tilt) * (kLargestTilt * kLargestTilt));
     // In perspective the sky has a finite distance from a plane, but it must not count at all.
-    if (kPerspective && texel_depths[i] == sky_inverse_depth(kPerspective)) {
-      steepness = kFarthest;
-    }
+    if (kPerspective && texel_depths[i] == sky_inverse_depth(kPerspective)) steepness = kFarthest;
     float plane = steepness * texel_depths[i];
     // Over half a pixel.
     vec2 change = tilt * parameters.half_pixel_per_tilt * (kPerspective ? plane : steepness);
@@ -160,9 +158,7 @@ void main() {
   // The cell with the first pixel that is written, and those after it.
   ivec2 index = ivec2(gl_GlobalInvocationID.xy) + (first_written() + 1) / 2;
   ivec2 size = size_px();
-  if (any(greaterThan(index * 2, last_written() + 1))) {
-    return;
-  }
+  if (any(greaterThan(index * 2, last_written() + 1))) return;
   Cell cell = fetch_cell(index);
   vec2 uv = vec2(index) * parameters.texel_uv;
   vec4 residuals_x, residuals_y, residuals_z;

@@ -28,9 +28,8 @@ std::string problem_with(const ResourceRecord& record, const ImageLimits& limits
   if (limits.samples == 0) return "the device does not support it";
   if ((limits.samples & record.samples) == 0) {
     std::string allowed;
-    for (std::uint32_t count = 1; count <= 64; count *= 2) {
+    for (std::uint32_t count = 1; count <= 64; count *= 2)
       if (limits.samples & count) allowed += (allowed.empty() ? "" : ", ") + std::to_string(count);
-    }
     return "the device allows " + allowed + " sample(s) for it, not " +
            std::to_string(record.samples);
   }

@@ -13,11 +13,10 @@ constexpr VkFlags kAttachmentUsage =
     VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
 
 bool draws(const GraphDescription& graph, const Plan& plan) {
-  for (std::uint32_t r = 0; r < graph.resources.size(); ++r) {
+  for (std::uint32_t r = 0; r < graph.resources.size(); ++r)
     if (graph.resources[r].kind == ResourceKind::texture &&
         (plan.placements[r].usage & kAttachmentUsage) != 0)
       return true;
-  }
   return false;
 }
 

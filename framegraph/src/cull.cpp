@@ -88,11 +88,10 @@ class Culler {
       const bool writes_it = (access.flags & kWrite) != 0;
       // An access that both reads and writes needs the former contents.
       const bool reads_it = !writes_it || (access.access & ~kWriteBits) != 0;
-      if (needed && writes_it && (access.flags & kDiscard)) {
+      if (needed && writes_it && (access.flags & kDiscard))
         end_need(access);
-      } else if (needed && reads_it) {
+      else if (needed && reads_it)
         begin_need(access, pass);
-      }
       if (needed) find_history(access, pass);
     }
     return cull_reason;

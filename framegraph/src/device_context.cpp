@@ -78,9 +78,8 @@ VkImageUsageFlags format_usage(const void* context, VkFormat format) {
   // supports them if it supports the colour or depth attachment usage.
   VkImageUsageFlags usage =
       VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
-  for (const Pair& pair : kPairs) {
+  for (const Pair& pair : kPairs)
     if (properties.optimalTilingFeatures & pair.feature) usage |= pair.usage;
-  }
   return usage;
 }
 
@@ -119,10 +118,9 @@ void read_limits(DeviceContext& context) {
   limits.memory = {device_requirements, &context};
   limits.formats = {format_usage, &context};
   limits.images = {image_limits, &context};
-  for (std::uint32_t i = 0; i < context.memory.memoryTypeCount; ++i) {
+  for (std::uint32_t i = 0; i < context.memory.memoryTypeCount; ++i)
     if (context.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT)
       limits.has_lazy_memory = true;
-  }
   for (std::size_t i = 0; i < kQueueClasses; ++i) {
     const QueueHandle& queue = context.handles.queues[i];
     limits.queue_families[i] = queue.queue == VK_NULL_HANDLE && i != 0 ? kNone : queue.family;

@@ -302,9 +302,8 @@ void Executor::Implementation::finish(Graph& graph, const CachedPlan& cached) {
 }
 
 void Executor::Implementation::forget_timestamps(std::uint32_t slot) {
-  for (std::size_t q = 0; q < kQueueClasses; ++q) {
+  for (std::size_t q = 0; q < kQueueClasses; ++q)
     if (Timestamps* times = timestamps_of(slot, q)) times->forget();
-  }
 }
 
 // Undoes the beginning of a frame that will not run. Earlier frames may still be running.

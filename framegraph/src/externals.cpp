@@ -106,10 +106,9 @@ void Synchroniser::end_reads(std::uint32_t resource, const State& final_state) {
   const std::uint32_t last = workspace_.first_sub[resource + 1];
   Transition wanted;
   wanted.dst_stages = final_state.stages;
-  for (std::uint32_t sub = workspace_.first_sub[resource]; sub < last; ++sub) {
+  for (std::uint32_t sub = workspace_.first_sub[resource]; sub < last; ++sub)
     if (!texture || states_[sub].layout == final_state.layout)
       wanted.src_stages |= states_[sub].read_stages & ~final_state.stages;
-  }
   if (wanted.src_stages == 0) return;
   // Finds the last read in another stage, which may come before other reads.
   const Placement& placement = plan_.placements[resource];

@@ -250,9 +250,8 @@ bool Graph::refresh_histories() {
 }
 
 void Graph::add_stale_builder() {
-  for (const OutputRecord& output : description_.outputs) {
+  for (const OutputRecord& output : description_.outputs)
     if (output.flags == kStaleBuilder) return;
-  }
   add(description_.outputs, {kNone, 0, kStaleBuilder});
 }
 

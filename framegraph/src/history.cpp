@@ -54,9 +54,8 @@ void HistoryTable::drop(std::string_view name) {
 }
 
 void HistoryTable::invalidate(std::string_view name) {
-  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+  for (std::uint32_t i = 0; i < entries_.size(); ++i)
     if (entries_[i].name == name) invalidate(i);
-  }
 }
 
 void HistoryTable::invalidate_all() {

@@ -79,9 +79,8 @@ class Placer {
   // Lists the transients of one heap.
   void gather(std::uint32_t heap) {
     s_.items.clear();
-    for (const std::uint32_t r : workspace_.transients) {
+    for (const std::uint32_t r : workspace_.transients)
       if (plan_.placements[r].heap == heap) s_.items.push_back(item_of(plan_.placements[r], r));
-    }
   }
 
   VkDeviceSize lower_bound() {

@@ -46,9 +46,8 @@ bool wants_addresses(const GraphDescription& graph, const Plan& plan, std::uint3
 // Returns the largest alignment of all placements in the heap.
 VkDeviceSize largest_alignment(const Plan& plan, std::uint32_t heap) {
   VkDeviceSize alignment = 1;
-  for (const Placement& placement : plan.placements) {
+  for (const Placement& placement : plan.placements)
     if (placement.heap == heap) alignment = std::max(alignment, placement.alignment);
-  }
   return alignment;
 }
 
@@ -220,9 +219,8 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
            : range.layers > 1        ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
                                      : VK_IMAGE_VIEW_TYPE_2D;
   if (format == VK_FORMAT_UNDEFINED) format = physical.record.format;
-  for (const CachedView& cached : physical.views) {
+  for (const CachedView& cached : physical.views)
     if (cached.range == range && cached.type == type && cached.format == format) return cached.view;
-  }
   make_room(physical.views);
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;

@@ -76,9 +76,8 @@ class DotPrinter {
         label.append(names_[access.resource]).append(".").append(std::to_string(access.version));
       }
       for (const auto& [from, label] : labels) edge(from, pass, label);
-      for (const AccessRecord& access : graph_.pass_accesses(pass)) {
+      for (const AccessRecord& access : graph_.pass_accesses(pass))
         if (access.flags & kWrite) writer[access.resource] = pass;
-      }
     }
   }
 

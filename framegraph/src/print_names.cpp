@@ -101,9 +101,8 @@ std::string layout_name(VkImageLayout layout) {
                                {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "transfer source"},
                                {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, "transfer destination"},
                                {VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, "present"}};
-  for (const Name& name : kLayouts) {
+  for (const Name& name : kLayouts)
     if (name.value == static_cast<std::uint64_t>(layout)) return name.text;
-  }
   return std::string("layout ").append(std::to_string(layout));
 }
 

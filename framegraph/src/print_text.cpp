@@ -147,10 +147,9 @@ class TextPrinter {
     bool any = false;
     for (const CullReason cull_reason : {CullReason::unread, CullReason::writes_nothing}) {
       std::vector<std::string> items;
-      for (std::uint32_t pass = 0; pass < plan_.cull_reasons.size(); ++pass) {
+      for (std::uint32_t pass = 0; pass < plan_.cull_reasons.size(); ++pass)
         if (plan_.cull_reasons[pass].cull_reason == cull_reason)
           items.emplace_back(graph_.pass_name(pass));
-      }
       if (items.empty()) continue;
       const std::string why = reason(graph_, {cull_reason, kNone, kNone});
       line(wrapped(std::string("culled, ").append(why).append(": "), items, ", "));
@@ -163,9 +162,8 @@ class TextPrinter {
   // each position. If there are more positions than columns, a column stands for several.
   void memory() {
     std::vector<std::uint32_t> rows;
-    for (std::uint32_t r = 0; r < plan_.placements.size(); ++r) {
+    for (std::uint32_t r = 0; r < plan_.placements.size(); ++r)
       if (plan_.placements[r].heap != kNone) rows.push_back(r);
-    }
     std::sort(rows.begin(), rows.end(), [this](std::uint32_t a, std::uint32_t b) {
       const Placement& x = plan_.placements[a];
       const Placement& y = plan_.placements[b];

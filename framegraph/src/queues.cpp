@@ -133,10 +133,9 @@ class QueueAssigner {
     });
     s_.opened[position] &= static_cast<std::uint8_t>(~known_open_[own]);
     drop_implied(waits);
-    for (std::size_t other = 0; other < kQueueClasses; ++other) {
+    for (std::size_t other = 0; other < kQueueClasses; ++other)
       if (waits[other] != kNobody)
         s_.opened[position] &= static_cast<std::uint8_t>(~s_.opened_at[waits[other]]);
-    }
   }
 
   // Drops a wait that another wait of the same pass implies.
@@ -308,9 +307,8 @@ class QueueAssigner {
     drop_implied(last);
     const auto& submissions = plan_.submissions;
     workspace_.final_submission = kNobody;
-    for (std::uint32_t s = 0; s < submissions.size(); ++s) {
+    for (std::uint32_t s = 0; s < submissions.size(); ++s)
       if (submissions[s].queue == QueueClass::graphics) workspace_.final_submission = s;
-    }
     const bool waits = last[1] != kNobody || last[2] != kNobody;
     if (!waits && (workspace_.final_submission != kNobody || !imports)) return;
     workspace_.final_submission = static_cast<std::uint32_t>(submissions.size());
@@ -318,9 +316,8 @@ class QueueAssigner {
     submission.first_pass = static_cast<std::uint32_t>(plan_.passes.size());
     submission.first_wait = static_cast<std::uint32_t>(plan_.waits.size());
     plan_.submissions.push_back(submission);
-    for (std::size_t other = 1; other < kQueueClasses; ++other) {
+    for (std::size_t other = 1; other < kQueueClasses; ++other)
       if (last[other] != kNobody) add_wait(s_.submission_of[last[other]]);
-    }
   }
 
   // Returns whether the frame can leave a history on one queue without final barriers, and sets

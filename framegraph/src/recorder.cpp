@@ -132,12 +132,11 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
 
 // Adds a memory barrier unless the dependency already contains the same one.
 void Recorder::add_memory(const VkMemoryBarrier2& barrier) {
-  for (const VkMemoryBarrier2& there : memories_) {
+  for (const VkMemoryBarrier2& there : memories_)
     if (there.srcStageMask == barrier.srcStageMask && there.dstStageMask == barrier.dstStageMask &&
         (barrier.srcAccessMask & ~there.srcAccessMask) == 0 &&
         (barrier.dstAccessMask & ~there.dstAccessMask) == 0)
       return;
-  }
   memories_.push_back(barrier);
 }
 
@@ -191,9 +190,8 @@ std::uint32_t Recorder::family(const Transition& t, QueueClass queue) const {
 
 const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resource) const {
   const GraphDescription& graph = graph_->description();
-  for (const AccessRecord& access : graph.pass_accesses(pass)) {
+  for (const AccessRecord& access : graph.pass_accesses(pass))
     if (access.resource == resource) return &access;
-  }
   if (frame_.check_uses) {
     Error error;
     error.code = ErrorCode::undeclared_use;

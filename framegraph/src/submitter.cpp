@@ -25,12 +25,10 @@ Submitter::~Submitter() {
   // According to Vulkan's specification, a semaphore may be destroyed once its last value has been
   // waited for. Software drivers may still use it at that time, so that the queue must also be
   // idle.
-  for (std::size_t q = 0; q < kQueueClasses; ++q) {
+  for (std::size_t q = 0; q < kQueueClasses; ++q)
     if (values_[q] != 0) device_.vk.vkQueueWaitIdle(device_.handles.queues[q].queue);
-  }
-  for (Slot& slot : slots_) {
+  for (Slot& slot : slots_)
     for (SlotQueue& queue : slot.queues) queue.buffers.destroy(device_);
-  }
   for (const VkSemaphore semaphore : semaphores_)
     device_.vk.vkDestroySemaphore(device, semaphore, device_.callbacks());
 }
@@ -98,9 +96,8 @@ VkResult Submitter::submit(const Plan& plan, const FrameInfo& info) {
     describe(plan, i, info);
     own = true;
   }
-  for (std::size_t i = 0; i < submissions_.size() && result == VK_SUCCESS; ++i) {
+  for (std::size_t i = 0; i < submissions_.size() && result == VK_SUCCESS; ++i)
     if (submissions_[i].pending) result = flush(submissions_[i].queue);
-  }
   several_before_ = several;
   for (std::size_t q = 0; q < kQueueClasses; ++q) slots_[info.slot].queues[q].value = values_[q];
   return result;
@@ -141,10 +138,9 @@ void Submitter::add_waits(const Plan& plan, std::uint32_t index, std::uint8_t qu
     semaphore_infos_.push_back(
         {VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, semaphores_[queue], value, at, 0});
   };
-  for (std::size_t q = 0; q < kQueueClasses; ++q) {
+  for (std::size_t q = 0; q < kQueueClasses; ++q)
     if ((queues_before & (1u << q)) != 0 && before_[q] != 0)
       add(q, before_[q], VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
-  }
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait = plan.waits[submission.first_wait + w];
     const SubmissionInfo& awaited = submissions_[wait.submission];

@@ -158,11 +158,10 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
   take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, resource, false},
             [&](const Segment& segment) {
               const UseState* const all = segment.before ? s_.last_uses.data() : s_.states.data();
-              for (std::size_t queue = 0; queue < copies; ++queue) {
+              for (std::size_t queue = 0; queue < copies; ++queue)
                 for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1];
                      ++sub)
                   merge(merged[queue * subs_], all[queue * subs_ + sub], segment.before);
-              }
             });
   for (std::size_t queue = 0; queue < copies; ++queue) {
     UseState* const first = merged + queue * subs_;
@@ -192,11 +191,10 @@ std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
 void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before) {
   const auto own = static_cast<std::size_t>(queue_);
   unsigned queues = frame_before >> (own * kQueueClasses) & ((1u << kQueueClasses) - 1);
-  for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
+  for (std::size_t queue = 0; queue < kQueueClasses; ++queue)
     if ((queues & (1u << queue)) != 0 &&
         workspace_.queues.known[position * kQueueClasses + queue] >= 0)
       queues &= ~(1u << queue);
-  }
   queues &= ~static_cast<unsigned>(frame_before_[own]);
   frame_before_[own] |= static_cast<std::uint8_t>(queues);
   plan_.submissions[plan_.passes[position].submission].frame_before |=

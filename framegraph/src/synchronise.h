@@ -95,9 +95,8 @@ class Synchroniser {
   // Calls f for each queue of the frame except `queue`.
   template <typename Function>
   void for_each_other(QueueClass queue, Function&& f) const {
-    for (std::size_t other = 0; other < kQueueClasses && several(); ++other) {
+    for (std::size_t other = 0; other < kQueueClasses && several(); ++other)
       if (other != static_cast<std::size_t>(queue)) f(static_cast<QueueClass>(other));
-    }
   }
   void set_queue(QueueClass queue) {
     queue_ = queue;

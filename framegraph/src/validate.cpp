@@ -28,9 +28,8 @@ class Replay {
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
       attachment_ = kNone;
       forbidden_ = forbidden_stages(v_.graph.passes[pass].queue);
-      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) {
+      for (const AccessRecord& access : v_.graph.pass_accesses(pass))
         if (!follow(pass, access)) visit(pass, access);
-      }
     }
     for (const OutputRecord& output : v_.graph.outputs) check_output(output);
   }
@@ -192,10 +191,9 @@ class Replay {
   // Returns the pass that wrote version `version` + 1, or kNone.
   std::uint32_t writer_of(std::uint32_t resource, std::uint32_t version) const {
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
-      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) {
+      for (const AccessRecord& access : v_.graph.pass_accesses(pass))
         if (access.resource == resource && access.version == version && (access.flags & kWrite))
           return pass;
-      }
     }
     return kNone;
   }

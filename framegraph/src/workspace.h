@@ -174,9 +174,8 @@ template <typename Function>
 inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::uint32_t pass,
                           Function&& f) {
   const std::uint8_t* live = plan.live_accesses.data() + graph.passes[pass].first_access;
-  for (const AccessRecord& access : graph.pass_accesses(pass)) {
+  for (const AccessRecord& access : graph.pass_accesses(pass))
     if (*live++) f(access);
-  }
 }
 
 // The phases, in the order in which they run.

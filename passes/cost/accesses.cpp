@@ -46,27 +46,19 @@ Accesses gtao_accesses(const PassWork& work) {
   Accesses accesses;
   std::vector<const PassImage*> depths;
   for (const PassImage& image : work.images) {
-    if (image.name.find("depth") != std::string::npos) {
-      depths.push_back(&image);
-    }
-    if (image.direction == Direction::read && depths.size() < 2) {
+    if (image.name.find("depth") != std::string::npos) depths.push_back(&image);
+    if (image.direction == Direction::read && depths.size() < 2)
       accesses.push_back(at_invocation(image, tile, traced));
-    }
   }
   for (std::uint32_t slice = 0; slice < settings.slices; ++slice) {
     for (const float side : {1.0f, -1.0f}) {
-      for (std::uint32_t step = 0; step < settings.steps; ++step) {
-        for (const PassImage* depth : depths) {
+      for (std::uint32_t step = 0; step < settings.steps; ++step)
+        for (const PassImage* depth : depths)
           accesses.push_back(depth_sample(*depth, settings, radius_px, slice, side, step));
-        }
-      }
     }
   }
-  for (const PassImage& image : work.images) {
-    if (image.direction == Direction::write) {
-      accesses.push_back(at_invocation(image));
-    }
-  }
+  for (const PassImage& image : work.images)
+    if (image.direction == Direction::write) accesses.push_back(at_invocation(image));
   return accesses;
 }
 
@@ -144,9 +136,7 @@ ImageAccess at_bent_depth(const PassImage& image) {
 // The accesses of reconstruct.comp to an image for one block of texels.
 Accesses block_accesses(const PassWork& work, const PassImage& image) {
   const bool half = work.settings.half_resolution;
-  if (image.direction == Direction::write) {
-    return {at_invocation(image)};
-  }
+  if (image.direction == Direction::write) return {at_invocation(image)};
   if (is_history(image)) {
     if (work.state == FrameState::moving) {
       const Texel motion = half ? Texel{kMotion.x / 2, kMotion.y / 2} : kMotion;
@@ -158,12 +148,10 @@ Accesses block_accesses(const PassWork& work, const PassImage& image) {
     return {at_invocation(image, 2, {-1, -1}, 2), at_invocation(image, 2, {1, -1}, 2),
             at_invocation(image, 2, {-1, 1}, 2), at_invocation(image, 2, {1, 1}, 2)};
   }
-  if (image.name == "depth") {
+  if (image.name == "depth")
     return {at_invocation(image, 1, {-1, -1}, 2), at_invocation(image, 1, {}, 2)};
-  }
-  if (image.name == "normals" && has_depth_planes(work) && !work.settings.bent_normal) {
+  if (image.name == "normals" && has_depth_planes(work) && !work.settings.bent_normal)
     return {at_bent_depth(image)};
-  }
   return {at_invocation(image, half ? 2 : 1)};
 }
 
@@ -175,19 +163,14 @@ Accesses reconstruct_accesses(const PassWork& work) {
            (image.name == "raw occlusion" || image.name == "bent-normal residual");
   };
   Accesses accesses;
-  for (const PassImage& image : work.images) {
-    if (is_raw(image)) {
-      add_tiles(image, work, accesses);
-    }
-  }
+  for (const PassImage& image : work.images)
+    if (is_raw(image)) add_tiles(image, work, accesses);
   const std::int32_t blocks = blocks_of(work.settings);
   for (std::int32_t block = 0; block < blocks; ++block) {
     for (const PassImage& image : work.images) {
-      if (!is_raw(image)) {
-        for (ImageAccess& access : block_accesses(work, image)) {
+      if (!is_raw(image))
+        for (ImageAccess& access : block_accesses(work, image))
           accesses.push_back(in_block(std::move(access), block, blocks));
-        }
-      }
     }
   }
   return accesses;
@@ -203,9 +186,8 @@ Accesses upsample_accesses(const PassWork& work) {
       const std::uint32_t gathers = gathers_of(image, 3);
       accesses.insert(accesses.end(), gathers, at_invocation(image, 1, {-1, -1}, 2));
     } else {
-      for (std::int32_t i = 0; i < 4; ++i) {
+      for (std::int32_t i = 0; i < 4; ++i)
         accesses.push_back(at_invocation(image, 2, {i % 2 - 1, i / 2 - 1}));
-      }
     }
   }
   return accesses;
@@ -257,21 +239,17 @@ ImageAccess at_invocation(const PassImage& image, std::int32_t scale, Texel offs
 
 DispatchAccesses accesses_of(const PassWork& work) {
   DispatchAccesses dispatch{work.groups.x, work.groups.y * work.groups.z, {}};
-  if (work.pass == "gtao") {
-    for (ImageAccess& access : gtao_accesses(work)) {
+  if (work.pass == "gtao")
+    for (ImageAccess& access : gtao_accesses(work))
       dispatch.accesses.push_back(in_strips(std::move(access), work.groups));
-    }
-  } else if (work.pass == "reconstruct") {
+  else if (work.pass == "reconstruct")
     dispatch.accesses = reconstruct_accesses(work);
-  } else if (work.pass == "upsample") {
+  else if (work.pass == "upsample")
     dispatch.accesses = upsample_accesses(work);
-  } else if (work.pass == "normals") {
+  else if (work.pass == "normals")
     dispatch.accesses = normals_accesses(work);
-  } else {
-    for (const PassImage& image : work.images) {
-      dispatch.accesses.push_back(at_invocation(image));
-    }
-  }
+  else
+    for (const PassImage& image : work.images) dispatch.accesses.push_back(at_invocation(image));
   return dispatch;
 }
 

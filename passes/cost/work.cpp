@@ -59,14 +59,10 @@ std::optional<double> loads_per_iteration(const OcclusionSettings& settings, Loo
   double loads = loop.loads;
   for (std::uint32_t i = index + 1; i < loops.size() && loops[i].depth > loop.depth; ++i) {
     const CompiledLoop& inner = loops[i];
-    if (inner.depth != loop.depth + 1 || inner.loads == 0) {
-      continue;
-    }
+    if (inner.depth != loop.depth + 1 || inner.loads == 0) continue;
     const auto times = sampling_iterations(settings, loops, i);
     const auto inside = times ? loads_per_iteration(settings, loops, i) : std::nullopt;
-    if (!inside) {
-      return std::nullopt;
-    }
+    if (!inside) return std::nullopt;
     loads += *times * *inside - inner.loads;
   }
   return loads;
@@ -79,21 +75,13 @@ std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loo
                                           std::uint32_t index) {
   const Samples samples = samples_of(settings);
   const auto loads = loads_per_iteration(settings, loops, index);
-  if (!loads) {
-    return std::nullopt;
-  }
+  if (!loads) return std::nullopt;
   for (const std::uint32_t half_slice :
        {samples.half_slice, samples.unrolled_half_slice, samples.rolled_half_slice}) {
-    if (*loads == half_slice) {
-      return 2.0;
-    }
-    if (*loads == 2.0 * half_slice) {
-      return settings.slices;
-    }
+    if (*loads == half_slice) return 2.0;
+    if (*loads == 2.0 * half_slice) return settings.slices;
   }
-  if (*loads == samples.steps_per_iteration * samples.loads_per_step) {
-    return samples.iterations;
-  }
+  if (*loads == samples.steps_per_iteration * samples.loads_per_step) return samples.iterations;
   return std::nullopt;
 }
 
@@ -105,9 +93,8 @@ bool integrates_runs(const OcclusionSettings& settings) {
 // gtao.comp.
 std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops loops,
                                       std::uint32_t index) {
-  if (loops[index].loads == 0) {
+  if (loops[index].loads == 0)
     return integrates_runs(settings) ? std::optional(kOccluderRuns) : std::nullopt;
-  }
   return sampling_iterations(settings, loops, index);
 }
 
@@ -167,9 +154,7 @@ double branch_share(const PassWork& work, const CompiledBranch& branch) {
   // reconstruct.comp: the waves with a pixel whose tangent plane does not come from depth, as in
   // accesses.cpp.
   constexpr double kBentDepth = 0.22;
-  if (branch.stores > 0 || branch.loops > 0) {
-    return 1.0;
-  }
+  if (branch.stores > 0 || branch.loops > 0) return 1.0;
   // A half-slice of eight samples loads as much, but takes more instructions.
   constexpr std::uint32_t kMostInstructions = 300;
   const bool from_depth =
@@ -177,9 +162,8 @@ double branch_share(const PassWork& work, const CompiledBranch& branch) {
   const bool given =
       std::ranges::find(work.images, "normals", &PassImage::name) != work.images.end();
   if (work.pass == "reconstruct" && has_depth_planes(work) &&
-      (given ? branch.loads == 1 : from_depth)) {
+      (given ? branch.loads == 1 : from_depth))
     return kBentDepth;
-  }
   return from_depth ? kNormalFromDepth : 1.0;
 }
 

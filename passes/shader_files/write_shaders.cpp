@@ -51,9 +51,8 @@ struct Module {
   std::uint32_t block = 0;  // the struct of the uniform block
 
   explicit Module(Words words) {
-    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16)
       read(words.subspan(at, words[at] >> 16));
-    }
   }
 
   void read(Words words) {
@@ -62,14 +61,10 @@ struct Module {
         members[{words[1], words[2]}].name = reinterpret_cast<const char*>(words.data() + 3);
         break;
       case kOpMemberDecorate:
-        if (words[3] == kDecorationOffset) {
-          members[{words[1], words[2]}].offset = words[4];
-        }
+        if (words[3] == kDecorationOffset) members[{words[1], words[2]}].offset = words[4];
         break;
       case kOpDecorate:
-        if (words[2] == kDecorationSpecId) {
-          constants[words[3]] = words[1];
-        }
+        if (words[2] == kDecorationSpecId) constants[words[3]] = words[1];
         break;
       case kOpTypeBool:
       case kOpTypeInt:
@@ -86,9 +81,7 @@ struct Module {
         definitions[words[2]] = words;
         break;
       case kOpVariable:
-        if (words[3] == kStorageClassUniform) {
-          block = definitions[words[1]][3];
-        }
+        if (words[3] == kStorageClassUniform) block = definitions[words[1]][3];
         break;
       default:
         break;
@@ -143,9 +136,8 @@ struct Module {
 
 std::string array(const char* name, const std::vector<std::string>& rows) {
   std::string text = std::string("      \"") + name + "\": [";
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < rows.size(); ++i)
     text += (i == 0 ? "\n        " : ",\n        ") + rows[i];
-  }
   return text + (rows.empty() ? "]" : "\n      ]");
 }
 

@@ -23,17 +23,14 @@ GtsoLobe::GtsoLobe(float mirror_from_normal, float roughness, int samples)
     weights_.push_back(share);
     sum += share;
   });
-  for (float& weight : weights_) {
-    weight = static_cast<float>(weight / sum);
-  }
+  for (float& weight : weights_) weight = static_cast<float>(weight / sum);
 }
 
 float GtsoLobe::within(float cone, const vec3& axis) const {
   const float rim = std::cos(cone);
   float sum = 0.0f;
-  for (std::size_t i = 0; i < weights_.size(); ++i) {
+  for (std::size_t i = 0; i < weights_.size(); ++i)
     sum += x_[i] * axis.x + y_[i] * axis.y + z_[i] * axis.z >= rim ? weights_[i] : 0.0f;
-  }
   return std::min(sum, 1.0f);
 }
 
@@ -85,9 +82,7 @@ std::vector<std::uint32_t> gtso_table() {
 float look_up_gtso(std::span<const std::uint32_t> table, float visibility, float cone,
                    float bent_from_mirror, float mirror_from_normal, float roughness) {
   const float exact = maths::gtso_exact(visibility, cone, bent_from_mirror, roughness);
-  if (exact >= 0.0f) {
-    return exact;
-  }
+  if (exact >= 0.0f) return exact;
   const maths::vec4 at =
       maths::gtso_coordinates(cone, bent_from_mirror, mirror_from_normal, roughness);
   const maths::uvec4 entry = maths::gtso_entry(at);

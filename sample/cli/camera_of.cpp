@@ -25,9 +25,8 @@ std::string names_of(const std::vector<Camera>& cameras) {
   constexpr std::size_t kMost = 10;
   const std::size_t listed = std::min(cameras.size(), kMost);
   std::string names;
-  for (std::size_t i = 0; i < listed; ++i) {
+  for (std::size_t i = 0; i < listed; ++i)
     names += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", cameras[i].name);
-  }
   if (listed < cameras.size()) names += fmt::format(" and {} more", cameras.size() - listed);
   return names;
 }
@@ -60,17 +59,15 @@ Result<Camera> camera_of(const ViewOptions& view, const Scene& scene) {
   }
   camera.reversed_z = view.reversed_z.value_or(!camera.orthographic);
   camera.fit_planes = camera.fit_planes || view.eye || view.target || view.ortho_height;
-  if (camera.eye_ws == camera.target_ws) {
+  if (camera.eye_ws == camera.target_ws)
     return tl::unexpected<std::string>("--eye and --target are one point: move one of them");
-  }
   if (!has_axes(camera)) {
     return tl::unexpected<std::string>(
         "--eye, --target and --up are too large or too near each other for a view to be made: give "
         "lengths from 1e-15 to 1e15");
   }
-  if (std::exchange(camera.fit_planes, false) && !(view.near_plane && view.far_plane)) {
+  if (std::exchange(camera.fit_planes, false) && !(view.near_plane && view.far_plane))
     camera = with_fitted_planes(scene, camera, aspect);
-  }
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);
   if (!camera.orthographic && !(camera.near_plane > 0.0f)) {

@@ -96,14 +96,12 @@ Result<void> print_mistakes(const Options& options, const Session& session) {
     const double rmse = rmse_of(drawn->visibility, right.at(mistake.reversed ? 1 : 0).visibility);
     std::cout << fmt::format("{:<52} {:>5}  {}\n", mistake.name,
                              refused ? "" : fmt::format("{:.3f}", rmse), in_one_line(drawn->said));
-    if (!names(drawn->said, mistake)) {
+    if (!names(drawn->said, mistake))
       failed += (failed.empty() ? "" : "; ") + std::string(mistake.name);
-    }
   }
   if (!written) return written;
-  if (!failed.empty()) {
+  if (!failed.empty())
     return Failure("alcoveDiagnose does not say what it promises of: " + failed + ".");
-  }
   return {};
 }
 
@@ -113,9 +111,7 @@ Result<void> check_scene(const Options& options, const Session& session) {
   if (options.view.camera.empty() && !options.view.eye && !options.view.target) {
     names.clear();
     for (const Camera& camera : session.scene.cameras) names.push_back(camera.name);
-    if (names.empty()) {
-      names.emplace_back();  // the default view
-    }
+    if (names.empty()) names.emplace_back();  // the default view
   }
   bool reported = false;
   for (const std::string& name : names) {

@@ -34,24 +34,20 @@ Result<void> declare(framegraph::Graph& graph, const Session& session, const Opt
   const HiddenDepths hidden = hidden_depths_of(session.settings);
   Surfaces surfaces;
   surfaces.normals = options.occlusion.normals;
-  if (!options.occlusion.roughness.empty()) {
+  if (!options.occlusion.roughness.empty())
     surfaces.roughness = options.occlusion.roughness.front();
-  }
   surfaces.gbuffer.depth = texture("depth", VK_FORMAT_R32_SFLOAT);
   surfaces.gbuffer.normal = texture("normals", kNormalFormat);
   surfaces.gbuffer.albedo = texture("albedo and roughness", kAlbedoFormat);
-  if (hidden.back_faces) {
+  if (hidden.back_faces)
     surfaces.gbuffer.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
-  }
-  if (hidden.second_layer) {
+  if (hidden.second_layer)
     surfaces.gbuffer.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
-  }
   ALCOVE_TRY(const auto outputs,
              add_occlusion(frame_of(graph, session, options), surfaces, session.settings));
   for (const framegraph::Texture output :
-       {outputs.visibility, outputs.bent_normal, outputs.specular}) {
+       {outputs.visibility, outputs.bent_normal, outputs.specular})
     if (output) graph.output(output);
-  }
   return {};
 }
 

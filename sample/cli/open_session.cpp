@@ -21,12 +21,10 @@ namespace {
 // Prints the notes about a scene, at most the first twenty, because a file may cause any number.
 void print_notes(const std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 20;
-  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) {
+  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i)
     std::cerr << "note: " << notes[i] << "\n";
-  }
-  if (notes.size() > kMost) {
+  if (notes.size() > kMost)
     std::cerr << "note: There are " << notes.size() - kMost << " more notes on this scene.\n";
-  }
 }
 
 }  // namespace

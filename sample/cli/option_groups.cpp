@@ -93,15 +93,12 @@ void check_plane(const std::string& option, const std::optional<float>& plane,
 void check_view(const ViewOptions& view) {
   check_plane("--near", view.near_plane, view);
   check_plane("--far", view.far_plane, view);
-  if (view.near_plane && view.far_plane && !(*view.near_plane < *view.far_plane)) {
+  if (view.near_plane && view.far_plane && !(*view.near_plane < *view.far_plane))
     throw Mistake{"--near " + shown(*view.near_plane) + ": give a length below --far"};
-  }
-  if (view.ortho_height && view.fov_y) {
+  if (view.ortho_height && view.fov_y)
     throw Mistake{"--ortho-height and --fov-y: give one, an orthographic view has no angle"};
-  }
-  if (view.ortho_height && view.far_plane && std::isinf(*view.far_plane)) {
+  if (view.ortho_height && view.far_plane && std::isinf(*view.far_plane))
     throw Mistake{"--far inf: an orthographic view needs a finite --far"};
-  }
 }
 
 void add_radius(const Group& group, OcclusionOptions& occlusion) {
@@ -387,9 +384,8 @@ void add_sizes(CLI::App& app, Options& options) {
             [&](const OptionValue& given) {
               options.sizes.clear();
               std::istringstream all(given.text + ",");
-              for (std::string one; std::getline(all, one, ',');) {
+              for (std::string one; std::getline(all, one, ',');)
                 options.sizes.push_back(OptionValue{given.option, one}.size());
-              }
             });
   add_frames(group, options.view, 1, "number of frames that are timed. Default: 200");
 }
@@ -487,13 +483,11 @@ void add_out(CLI::App& app, Options& options, const std::string& help) {
 
 void check_together(const Options& options) {
   check_view(options.view);
-  if (options.split && options.view.orbit != 0.0f) {
+  if (options.split && options.view.orbit != 0.0f)
     throw Mistake{"--split and --orbit: give one, the error is split for a static camera"};
-  }
   if (options.command == Command::recommend &&
-      options.budget_ms.has_value() == options.tolerance.has_value()) {
+      options.budget_ms.has_value() == options.tolerance.has_value())
     throw Mistake{"recommend: give either --budget-ms or --tolerance"};
-  }
 }
 
 }  // namespace alcove::sample

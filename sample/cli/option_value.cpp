@@ -79,9 +79,8 @@ glm::dvec3 OptionValue::vector() const {
   const std::vector<double> v = numbers_of(text);
   if (v.size() != 3 || !std::isfinite(static_cast<float>(v[0] + v[1] + v[2])) ||
       !std::isfinite(static_cast<float>(v[0])) || !std::isfinite(static_cast<float>(v[1])) ||
-      !std::isfinite(static_cast<float>(v[2]))) {
+      !std::isfinite(static_cast<float>(v[2])))
     refuse("three numbers, such as 0,1.5,-2");
-  }
   return {v[0], v[1], v[2]};
 }
 
@@ -103,9 +102,8 @@ std::pair<std::uint32_t, std::uint32_t> OptionValue::size() const {
                     text.find_first_not_of("0123456789x") == std::string::npos &&
                     std::sscanf(text.c_str(), "%lux%lu%n", &width, &height, &used) == 2 &&
                     static_cast<std::size_t>(used) == text.size();
-  if (!fits || width < 1 || height < 1 || width > kLargest || height > kLargest) {
+  if (!fits || width < 1 || height < 1 || width > kLargest || height > kLargest)
     refuse("WIDTHxHEIGHT in pixels, each from 1 to 16384, such as 960x540");
-  }
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 

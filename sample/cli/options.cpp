@@ -202,9 +202,8 @@ std::string one_line(std::string text) {
 
 // Returns the help of the command for which it was requested, or an empty text if none was.
 std::string help_of_command(const CLI::App& app) {
-  for (const CLI::App* sub : app.get_subcommands()) {
+  for (const CLI::App* sub : app.get_subcommands())
     if (sub->count("--help") != 0) return sub->help(app.get_name());
-  }
   return "";
 }
 
@@ -243,9 +242,8 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
   app.set_version_flag("--version", "alcove " ALCOVE_VERSION_TEXT);
   app.footer("`alcove COMMAND --help` lists the options of a command.");
   if (argc < 2) return tl::unexpected(no_command("name a command"));
-  if (argv[1][0] != '-' && !is_command(argv[1])) {
+  if (argv[1][0] != '-' && !is_command(argv[1]))
     return tl::unexpected(no_command("there is no command " + std::string(argv[1])));
-  }
   try {
     app.parse(argc, argv);
     for (std::size_t i = 0; i < kCommands.size(); ++i) {

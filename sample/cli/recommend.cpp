@@ -178,9 +178,8 @@ Result<void> recommend_by_model(const Options& options, const Session& session,
   if (!goal.met(chosen)) return Failure(unmet_message(goal, text));
   std::cout << text << "\n";
   print_achievement(chosen);
-  for (const FeatureEffect& feature : found.features) {
+  for (const FeatureEffect& feature : found.features)
     std::cout << "  " << feature.sentence() << "\n";
-  }
   ALCOVE_TRY(const auto needs, view_needs(session, errors, times, goal, chosen));
   for (const std::string& need : needs) std::cout << "  " << need << "\n";
   std::cout << std::flush;

@@ -46,9 +46,8 @@ std::vector<std::string> changes(Quality quality, const OcclusionSettings& setti
   std::size_t i = 0;
   passes::for_each_setting(settings, [&](const passes::SettingInfo& info, const auto& value) {
     std::string now = fmt::format("{}={}", info.name, text_of(value));
-    if (now != before[i++] && info.group != passes::SettingGroup::surface) {
+    if (now != before[i++] && info.group != passes::SettingGroup::surface)
       result.push_back(std::move(now));
-    }
   });
   return result;
 }
@@ -61,15 +60,13 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
   };
   to.insert(to.end(), {"--eye", position(camera.eye_ws), "--target", position(camera.target_ws),
                        "--up", text_of(camera.up_ws)});
-  if (camera.orthographic) {
+  if (camera.orthographic)
     to.insert(to.end(), {"--ortho-height", text_of(camera.ortho_height)});
-  } else {
+  else
     to.insert(to.end(), {"--fov-y", degrees_text(camera.fov_y)});
-  }
   to.insert(to.end(), {"--near", text_of(camera.near_plane), "--far", text_of(camera.far_plane)});
-  if (camera.reversed_z == camera.orthographic) {  // not the default
+  if (camera.reversed_z == camera.orthographic)  // not the default
     to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
-  }
 }
 
 // Appends --quality and --set options that give `settings`, with the quality that needs the fewest
@@ -96,9 +93,8 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (!options.scene.empty()) arguments.push_back(options.scene);
   if (options.materials.cut_blends) arguments.emplace_back("--cut-blends");
   if (options.materials.both_sides) arguments.emplace_back("--both-sides");
-  if (!options.view.camera.empty()) {
+  if (!options.view.camera.empty())
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
-  }
   append_camera(shot.camera, arguments);
   arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", shot.width, shot.height)});
   append_settings(shot.settings, arguments);
@@ -107,14 +103,12 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
                      {"--normals", std::string(name_of(options.occlusion.normals))});
   }
   if (shot.roughness) arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
-  if (!options.environment.empty()) {
+  if (!options.environment.empty())
     arguments.insert(arguments.end(), {"--environment", options.environment.string()});
-  }
   const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
   if (frames > 1) arguments.insert(arguments.end(), {"--frames", text_of(frames)});
-  if (options.device >= 0) {
+  if (options.device >= 0)
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
-  }
   return arguments;
 }
 

@@ -27,11 +27,10 @@ Json camera_json(const Camera& camera) {
   json["eye"] = position_json(camera, camera.eye_ws);
   json["target"] = position_json(camera, camera.target_ws);
   json["up"] = vector_json(camera.up_ws);
-  if (camera.orthographic) {
+  if (camera.orthographic)
     json["ortho_height"] = camera.ortho_height;
-  } else {
+  else
     json["fov_y_radians"] = camera.fov_y;
-  }
   json["near"] = camera.near_plane;
   // JSON has no infinity.
   json["far"] = std::isinf(camera.far_plane) ? Json("inf") : Json(camera.far_plane);

@@ -123,15 +123,12 @@ Result<OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
   OcclusionSettings settings =
       passes::quality_settings(options.quality, options.radius.value_or(default_radius));
   for (const auto* list : {&options.file, &options.set}) {
-    for (const auto& [name, value] : *list) {
-      if (const auto wanted = set(settings, name, value)) {
+    for (const auto& [name, value] : *list)
+      if (const auto wanted = set(settings, name, value))
         return Failure("--set " + name + "=" + value + ": give " + *wanted);
-      }
-    }
   }
-  if (const auto good = passes::validate(settings); !good) {
+  if (const auto good = passes::validate(settings); !good)
     return Failure("--set: " + good.error().message);
-  }
   return settings;
 }
 

@@ -28,9 +28,7 @@ framegraph::DeviceHandles handles_of(const VulkanDevice& device) {
 
 tl::expected<std::unique_ptr<HostBuffer>, std::string> HostBuffer::create(
     const VulkanDevice& device, VkDeviceSize bytes, VkBufferUsageFlags usage) {
-  if (bytes > device.max_allocation()) {
-    return too_large("a buffer", bytes, device);
-  }
+  if (bytes > device.max_allocation()) return too_large("a buffer", bytes, device);
   std::unique_ptr<HostBuffer> made(new HostBuffer(device));
   made->size_ = bytes;
   made->usage_ = usage;
@@ -44,16 +42,13 @@ tl::expected<std::unique_ptr<HostBuffer>, std::string> HostBuffer::create(
         needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
         made->memory_);
   }
-  if (result == VK_SUCCESS) {
+  if (result == VK_SUCCESS)
     result = vkBindBufferMemory(device.device(), made->buffer_, made->memory_, 0);
-  }
   void* mapped = nullptr;
-  if (result == VK_SUCCESS) {
+  if (result == VK_SUCCESS)
     result = vkMapMemory(device.device(), made->memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
-  }
-  if (result != VK_SUCCESS) {
+  if (result != VK_SUCCESS)
     return device_failure("give a buffer of " + std::to_string(bytes) + " bytes", result);
-  }
   made->mapped_ = static_cast<std::byte*>(mapped);
   return made;
 }
@@ -77,18 +72,13 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
     const DeviceOptions& options, const framegraph::ExecutorOptions& executor_options) {
   std::unique_ptr<Gpu> made(new Gpu);
   made->executor_options_ = executor_options;
-  if (auto opened = assign(made->device_, VulkanDevice::create(options)); !opened) {
+  if (auto opened = assign(made->device_, VulkanDevice::create(options)); !opened)
     return Failure(std::move(opened.error()));
-  }
   made->handles_ = handles_of(*made->device_);
   made->handles_.debug_utils = options.validation;
-  if (auto started = made->restart(); !started) {
-    return Failure(std::move(started.error()));
-  }
+  if (auto started = made->restart(); !started) return Failure(std::move(started.error()));
   auto kernels = passes::Kernels::create(made->handles_, executor_options.frames_in_flight);
-  if (!kernels) {
-    return Failure(std::move(kernels.error().message));
-  }
+  if (!kernels) return Failure(std::move(kernels.error().message));
   made->kernels_.emplace(std::move(*kernels));
   return made;
 }
@@ -96,17 +86,13 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
 tl::expected<void, std::string> Gpu::restart() {
   vkDeviceWaitIdle(device_->device());
   auto executor = framegraph::Executor::create(handles_, executor_options_);
-  if (!executor) {
-    return Failure(framegraph::to_string(executor.error()));
-  }
+  if (!executor) return Failure(framegraph::to_string(executor.error()));
   executor_.emplace(std::move(*executor));
   return {};
 }
 
 Gpu::~Gpu() {
-  if (device_) {
-    vkDeviceWaitIdle(device_->device());
-  }
+  if (device_) vkDeviceWaitIdle(device_->device());
 }
 
 tl::expected<void, std::string> Gpu::wait(std::uint32_t slot) {
@@ -116,14 +102,10 @@ tl::expected<void, std::string> Gpu::wait(std::uint32_t slot) {
 
 tl::expected<framegraph::FrameReport, std::string> Gpu::submit(const Declare& declare,
                                                                const framegraph::FrameInfo& frame) {
-  if (auto waited = wait(frame.slot); !waited) {
-    return Failure(std::move(waited.error()));
-  }
+  if (auto waited = wait(frame.slot); !waited) return Failure(std::move(waited.error()));
   graph_.reset();
   kernels_->begin_frame(frame.slot);
-  if (auto declared = declare(graph_); !declared) {
-    return Failure(std::move(declared.error()));
-  }
+  if (auto declared = declare(graph_); !declared) return Failure(std::move(declared.error()));
   return executor_->submit(graph_, frame).map_error([](const framegraph::Errors& errors) {
     return framegraph::to_string(errors);
   });

@@ -40,14 +40,10 @@ tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(
   if (result == VK_SUCCESS) {
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device, made->image_, &needs);
-    if (needs.size > owner.max_allocation()) {
-      return too_large(name, needs.size, owner);
-    }
+    if (needs.size > owner.max_allocation()) return too_large(name, needs.size, owner);
     result = owner.allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, made->memory_);
   }
-  if (result == VK_SUCCESS) {
-    result = vkBindImageMemory(device, made->image_, made->memory_, 0);
-  }
+  if (result == VK_SUCCESS) result = vkBindImageMemory(device, made->image_, made->memory_, 0);
   if (result == VK_SUCCESS && (usage & kUsedByViews) != 0) {
     const VkImageViewCreateInfo view{
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -57,9 +53,7 @@ tl::expected<std::unique_ptr<GpuImage>, std::string> GpuImage::create(
         .subresourceRange = {aspect_of(desc.format), 0, desc.mips, 0, desc.layers}};
     result = vkCreateImageView(device, &view, nullptr, &made->view_);
   }
-  if (result != VK_SUCCESS) {
-    return device_failure("give " + name, result);
-  }
+  if (result != VK_SUCCESS) return device_failure("give " + name, result);
   return made;
 }
 

@@ -17,14 +17,11 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
                                                 const VkAllocationCallbacks* callbacks,
                                                 VkPipeline* created) {
   std::vector<VkComputePipelineCreateInfo> capturing(infos, infos + count);
-  for (VkComputePipelineCreateInfo& info : capturing) {
+  for (VkComputePipelineCreateInfo& info : capturing)
     info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
-  }
   const VkResult result =
       vkCreateComputePipelines(device, cache, count, capturing.data(), callbacks, created);
-  if (result == VK_SUCCESS) {
-    pipelines().insert(pipelines().end(), created, created + count);
-  }
+  if (result == VK_SUCCESS) pipelines().insert(pipelines().end(), created, created + count);
   return result;
 }
 

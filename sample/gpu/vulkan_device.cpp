@@ -44,9 +44,7 @@ struct Features {
 };
 
 std::string missing_features(VkPhysicalDevice device, std::uint32_t api_version) {
-  if (api_version < VK_API_VERSION_1_3) {
-    return "Vulkan 1.3";
-  }
+  if (api_version < VK_API_VERSION_1_3) return "Vulkan 1.3";
   Features has;
   vkGetPhysicalDeviceFeatures2(device, &has.all);
   const std::pair<VkBool32, const char*> needed[] = {
@@ -58,11 +56,8 @@ std::string missing_features(VkPhysicalDevice device, std::uint32_t api_version)
        "shaderStorageImageWriteWithoutFormat"},
   };
   std::string missing;
-  for (const auto& [present, name] : needed) {
-    if (!present) {
-      missing += (missing.empty() ? "" : ", ") + std::string(name);
-    }
-  }
+  for (const auto& [present, name] : needed)
+    if (!present) missing += (missing.empty() ? "" : ", ") + std::string(name);
   return missing;
 }
 
@@ -72,11 +67,8 @@ std::uint32_t find_queue_family(VkPhysicalDevice device) {
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
   constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if ((families[i].queueFlags & kNeeded) == kNeeded) {
-      return i;
-    }
-  }
+  for (std::uint32_t i = 0; i < count; ++i)
+    if ((families[i].queueFlags & kNeeded) == kNeeded) return i;
   return UINT32_MAX;
 }
 
@@ -160,9 +152,7 @@ tl::unexpected<std::string> device_failure(const std::string& what, VkResult res
 }
 
 tl::expected<void, std::string> check(VkResult result, const std::string& what) {
-  if (result != VK_SUCCESS) {
-    return device_failure(what, result);
-  }
+  if (result != VK_SUCCESS) return device_failure(what, result);
   return {};
 }
 
@@ -238,9 +228,8 @@ tl::expected<void, std::string> VulkanDevice::choose_physical_device(int index) 
   }
   if (index >= 0) {
     physical_device_ = devices[static_cast<std::size_t>(index)];
-    if (const DeviceSummary summary = summarise(physical_device_); !summary.missing.empty()) {
+    if (const DeviceSummary summary = summarise(physical_device_); !summary.missing.empty())
       return Failure("The device " + summary.name + " lacks " + summary.missing + ".");
-    }
     return {};
   }
   int best = 4;
@@ -254,9 +243,8 @@ tl::expected<void, std::string> VulkanDevice::choose_physical_device(int index) 
       physical_device_ = device;
     }
   }
-  if (physical_device_ == VK_NULL_HANDLE) {
+  if (physical_device_ == VK_NULL_HANDLE)
     return Failure("No Vulkan device has what Alcove needs:" + lacking);
-  }
   return {};
 }
 
@@ -292,9 +280,7 @@ tl::expected<void, std::string> VulkanDevice::create_device(const DeviceOptions&
     max_anisotropy_ = properties_.limits.maxSamplerAnisotropy;
   }
   std::vector<const char*> extensions;
-  if (!options.surface_extensions.empty()) {
-    extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  }
+  if (!options.surface_extensions.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR capture{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
       .pipelineExecutableInfo = VK_TRUE};
@@ -325,9 +311,7 @@ tl::expected<std::unique_ptr<VulkanDevice>, std::string> VulkanDevice::create(
   auto done = made->create_instance(options)
                   .and_then([&] { return made->choose_physical_device(options.index); })
                   .and_then([&] { return made->create_device(options); });
-  if (!done) {
-    return tl::unexpected(std::move(done.error()));
-  }
+  if (!done) return tl::unexpected(std::move(done.error()));
   return made;
 }
 
@@ -341,9 +325,7 @@ VulkanDevice::~VulkanDevice() {
         vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
     destroy(instance_, messenger_, nullptr);
   }
-  if (instance_ != VK_NULL_HANDLE) {
-    vkDestroyInstance(instance_, nullptr);
-  }
+  if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
 }
 
 VkResult VulkanDevice::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags,
@@ -356,11 +338,9 @@ VkResult VulkanDevice::allocate(const VkMemoryRequirements& needs, VkMemoryPrope
 
 std::uint32_t VulkanDevice::memory_type(std::uint32_t type_bits,
                                         VkMemoryPropertyFlags flags) const {
-  for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
-    if ((type_bits >> i & 1u) != 0 && (memory_.memoryTypes[i].propertyFlags & flags) == flags) {
+  for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+    if ((type_bits >> i & 1u) != 0 && (memory_.memoryTypes[i].propertyFlags & flags) == flags)
       return i;
-    }
-  }
   return UINT32_MAX;
 }
 
@@ -368,13 +348,11 @@ tl::expected<std::vector<DeviceSummary>, std::string> list_devices() {
   const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                   .pApplicationInfo = &kApplication};
   VkInstance instance = VK_NULL_HANDLE;
-  if (const VkResult result = vkCreateInstance(&info, nullptr, &instance); result != VK_SUCCESS) {
+  if (const VkResult result = vkCreateInstance(&info, nullptr, &instance); result != VK_SUCCESS)
     return failure("No Vulkan 1.3 instance could be created; install a Vulkan driver", result);
-  }
   std::vector<DeviceSummary> summaries;
-  for (const VkPhysicalDevice device : physical_devices(instance)) {
+  for (const VkPhysicalDevice device : physical_devices(instance))
     summaries.push_back(summarise(device));
-  }
   vkDestroyInstance(instance, nullptr);
   return summaries;
 }

@@ -44,9 +44,8 @@ static void create_device(void) {
   VkQueueFamilyProperties families[16];
   count = 16;
   vkGetPhysicalDeviceQueueFamilyProperties(physical_device, &count, families);
-  while (queue_family < count && !(families[queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT)) {
+  while (queue_family < count && !(families[queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT))
     ++queue_family;
-  }
   check(queue_family < count, "the device has no compute queue");
 
   VkPhysicalDeviceVulkan13Features features13 = {
@@ -74,9 +73,8 @@ static VkDeviceMemory allocate(VkMemoryRequirements requirements, VkMemoryProper
   uint32_t type = 0;
   while (type < memory.memoryTypeCount &&
          (!(requirements.memoryTypeBits >> type & 1) ||
-          (memory.memoryTypes[type].propertyFlags & wanted) != wanted)) {
+          (memory.memoryTypes[type].propertyFlags & wanted) != wanted))
     ++type;
-  }
   check(type < memory.memoryTypeCount, "the device has no suitable memory");
   const VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                      .allocationSize = requirements.size,
@@ -163,9 +161,7 @@ int main(int argc, char** argv) {
   CHECK_VK(vkBindBufferMemory(device, buffer, buffer_memory, 0));
   void* mapped;
   CHECK_VK(vkMapMemory(device, buffer_memory, 0, VK_WHOLE_SIZE, 0, &mapped));
-  for (int i = 0; i < kWidth * kHeight; ++i) {
-    ((float*)mapped)[i] = depth_at(i % kWidth, i / kWidth);
-  }
+  for (int i = 0; i < kWidth * kHeight; ++i) ((float*)mapped)[i] = depth_at(i % kWidth, i / kWidth);
 
   const Image depth = create_image(VK_FORMAT_R32_SFLOAT,
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
@@ -205,9 +201,7 @@ int main(int argc, char** argv) {
   clip[5] = -kFocal; /* Vulkan's clip space has y down */
   clip[11] = -1;
   clip[14] = kNear;
-  for (int i = 0; i < 4; ++i) {
-    view.camera.view_from_world[5 * i] = 1; /* the eye is the origin */
-  }
+  for (int i = 0; i < 4; ++i) view.camera.view_from_world[5 * i] = 1; /* the eye is the origin */
   view.previous_camera = view.camera;
   view.depth = (AlcoveImage){
       .image = depth.image,

@@ -123,9 +123,8 @@ HostBuffer create_host_buffer(const framegraph::DeviceHandles& handles, VkDevice
   std::uint32_t type = 0;
   while (type < properties.memoryTypeCount &&
          ((requirements.memoryTypeBits >> type & 1) == 0 ||
-          (properties.memoryTypes[type].propertyFlags & kWanted) != kWanted)) {
+          (properties.memoryTypes[type].propertyFlags & kWanted) != kWanted))
     ++type;
-  }
   const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                         .allocationSize = requirements.size,
                                         .memoryTypeIndex = type};
@@ -197,9 +196,8 @@ int main(int argc, char** argv) {
   const framegraph::DeviceHandles handles = create_device();
   const HostBuffer upload = create_host_buffer(handles, kWidth * kHeight * sizeof(float));
   const HostBuffer result = create_host_buffer(handles, kWidth * kHeight);
-  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i)
     static_cast<float*>(upload.mapped)[i] = depth_at(i % kWidth, i / kWidth);
-  }
   {
     constexpr framegraph::ExecutorOptions kOptions{.frames_in_flight = 1};
     framegraph::Executor executor = value_of(framegraph::Executor::create(handles, kOptions));

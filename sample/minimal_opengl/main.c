@@ -52,9 +52,8 @@ static GLenum format_of(uint32_t vulkan) {
                  {74, GL_R16UI},     {76, GL_R16F},         {77, GL_RG16},        {83, GL_RG16F},
                  {97, GL_RGBA16F},   {92, GL_RGBA16_SNORM}, {100, GL_R32F},       {101, GL_RG32UI},
                  {107, GL_RGBA32UI}, {109, GL_RGBA32F}};
-  for (size_t i = 0; i < sizeof formats / sizeof *formats; ++i) {
+  for (size_t i = 0; i < sizeof formats / sizeof *formats; ++i)
     if (formats[i].vulkan == vulkan) return formats[i].opengl;
-  }
   check(0, "a format has no counterpart");
   return GL_NONE;
 }
@@ -82,12 +81,10 @@ static GLuint program_of(const char* folder, const AlcoveWorkDispatch* dispatch)
   } known[kMaxPrograms];
   static int count;
   const size_t bytes = dispatch->constant_count * sizeof *dispatch->constants;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < count; ++i)
     if (known[i].shader == dispatch->shader &&
-        memcmp(known[i].constants, dispatch->constants, bytes) == 0) {
+        memcmp(known[i].constants, dispatch->constants, bytes) == 0)
       return known[i].program;
-    }
-  }
   char* text = read_shader(folder, dispatch->shader);
   char defines[4096] = "#version 450\n";
   for (uint32_t i = 0; i < dispatch->constant_count; ++i) {

@@ -21,11 +21,8 @@ float exposure_of(const EnvironmentImage& environment) {
 
 Image<glm::vec3> display_colours(const Image<glm::vec3>& radiance, float exposure) {
   Image<glm::vec3> colours = radiance;
-  for (glm::vec3& colour : colours.pixels) {
-    for (int c = 0; c < 3; ++c) {
-      colour[c] = encode_srgb(1.0f - std::exp(-exposure * colour[c]));
-    }
-  }
+  for (glm::vec3& colour : colours.pixels)
+    for (int c = 0; c < 3; ++c) colour[c] = encode_srgb(1.0f - std::exp(-exposure * colour[c]));
   return colours;
 }
 

@@ -39,9 +39,7 @@ bool FrameRenderer::is_drawn(const GbufferTarget& target, const HiddenDepths& hi
 void FrameRenderer::append_times(FrameCost& cost, bool occlusion) {
   for (const framegraph::PassTiming& timing : gpu_.timings()) {
     cost.gpu.push_back({std::string(timing.name), timing.milliseconds});
-    if (occlusion) {
-      cost.occlusion_ms += timing.milliseconds;
-    }
+    if (occlusion) cost.occlusion_ms += timing.milliseconds;
   }
 }
 
@@ -54,19 +52,15 @@ tl::expected<void, std::string> FrameRenderer::draw_gbuffer(const FrameRequest& 
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (is_drawn(kGbufferTargets[i], hidden) && !targets_[i]) {
-      if (auto made = create_target(i); !made) {
-        return made;
-      }
+      if (auto made = create_target(i); !made) return made;
     }
   }
   const auto declare = [&](Graph& graph) -> tl::expected<void, std::string> {
     Gbuffer gbuffer;
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
-      if (is_drawn(kGbufferTargets[i], hidden)) {
+    for (std::size_t i = 0; i < targets_.size(); ++i)
+      if (is_drawn(kGbufferTargets[i], hidden))
         gbuffer.*kGbufferTargets[i].texture =
             graph.import_texture("g-buffer", targets_[i]->import_to_fill(kSampledState));
-      }
-    }
     (void)gbuffer_->add(graph, request.view, gbuffer);
     return {};
   };
@@ -74,9 +68,7 @@ tl::expected<void, std::string> FrameRenderer::draw_gbuffer(const FrameRequest& 
   const int drawings = compiled_ && compiled_->covers(hidden) ? 1 : 2;
   for (int i = 0; i < drawings; ++i) {
     auto report = gpu_.run(declare);
-    if (!report) {
-      return Failure(std::move(report.error()));
-    }
+    if (!report) return Failure(std::move(report.error()));
   }
   compiled_ = hidden.with(compiled_.value_or(hidden));
   append_times(cost, false);
@@ -98,23 +90,18 @@ tl::expected<FrameRenderer::DeclaredFrame, std::string> FrameRenderer::declare_o
           graph.import_texture("g-buffer", targets_[i]->import_to_read(kSampledState));
     }
   }
-  if (!roughness.empty()) {
-    surfaces.roughness = roughness.front();
-  }
+  if (!roughness.empty()) surfaces.roughness = roughness.front();
   passes::OcclusionSettings settings = request.occlusion;
   settings.linear_depth = request.light != nullptr;
-  if (request.index == 0 || request.restart) {
-    graph.reset_histories();
-  }
+  if (request.index == 0 || request.restart) graph.reset_histories();
   DeclaredFrame declared{
       pass_frame(graph, gpu_, request.view, request.index, request.static_frames),
       surfaces,
       {},
       {}};
   auto added = assign(declared.outputs, add_occlusion(declared.frame, surfaces, settings));
-  if (added && declared.outputs.specular) {
+  if (added && declared.outputs.specular)
     declared.specular_occlusion.push_back(declared.outputs.specular);
-  }
   // Specular occlusion for each further roughness value runs all occlusion passes again, with its
   // own history.
   for (std::size_t i = 1; added && i < roughness.size() && declared.outputs.specular; ++i) {
@@ -143,9 +130,8 @@ void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, 
   read(gbuffer.emissive, [&](const Texels& t) { images.metallic = channel(t, 3); });
   read(outputs.visibility, [&](const Texels& t) { images.visibility = channel(t, 0); });
   read(outputs.bent_normal, [&](const Texels& t) { images.bent_normal_ws = rgb(t); });
-  for (const Texture specular : declared.specular_occlusion) {
+  for (const Texture specular : declared.specular_occlusion)
     read(specular, [&](const Texels& t) { images.specular_occlusion.push_back(channel(t, 0)); });
-  }
 }
 
 // Adds the passes that use visibility and bent normals: multi-bounce, and the lighting of the
@@ -155,19 +141,13 @@ tl::expected<void, std::string> FrameRenderer::declare_light(
     Graph& graph, const FrameRequest& request, const DeclaredFrame& declared, const Probe* probe,
     ReadBack& read_back, FrameImages& images) {
   const passes::OcclusionOutputs& outputs = declared.outputs;
-  if (!outputs.bent_normal || request.light == nullptr) {
-    return {};
-  }
+  if (!outputs.bent_normal || request.light == nullptr) return {};
   const auto bounced = passes::add_multi_bounce(
       declared.frame, {outputs.visibility, declared.surfaces.gbuffer.albedo},
       request.occlusion.precision);
-  if (!bounced) {
-    return Failure(bounced.error().message);
-  }
+  if (!bounced) return Failure(bounced.error().message);
   read_back.add(graph, *bounced, [&](const Texels& t) { images.multi_bounce = rgb(t); });
-  if (probe == nullptr) {
-    return {};
-  }
+  if (probe == nullptr) return {};
   const passes::Environment environment = probe->import(graph);
   const auto light = [&](const passes::ApplyInputs& occlusion, bool multi_bounce,
                          Image<glm::vec3> LitImages::*image, bool parts = false) {
@@ -190,9 +170,7 @@ tl::expected<void, std::string> FrameRenderer::declare_light(
   bounced_light.specular_occlusion = outputs.visibility;
   all.specular_occlusion = declared.specular_occlusion.front();
   auto done = light(all, true, &LitImages::all, true);
-  if (!done || !request.light->lit_steps) {
-    return done;
-  }
+  if (!done || !request.light->lit_steps) return done;
   return light({}, false, &LitImages::unoccluded)
       .and_then([&] { return light(unbent, false, &LitImages::unbent); })
       .and_then([&] { return light(bent, false, &LitImages::occluded); })
@@ -204,37 +182,24 @@ tl::expected<std::unique_ptr<FrameRenderer>, std::string> FrameRenderer::create(
   std::unique_ptr<FrameRenderer> made(new FrameRenderer(gpu, size, normals));
   auto done = assign(made->gbuffer_,
                      GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
-  for (std::size_t i = 0; done && i < made->targets_.size(); ++i) {
-    if (is_drawn(kGbufferTargets[i], {})) {
-      done = made->create_target(i);
-    }
-  }
-  if (!done) {
-    return Failure(std::move(done.error()));
-  }
+  for (std::size_t i = 0; done && i < made->targets_.size(); ++i)
+    if (is_drawn(kGbufferTargets[i], {})) done = made->create_target(i);
+  if (!done) return Failure(std::move(done.error()));
   return made;
 }
 
 tl::expected<FrameCost, std::string> FrameRenderer::draw(const FrameRequest& request) {
   FrameCost cost;
-  if (auto drawn = draw_gbuffer(request, cost); !drawn) {
-    return Failure(std::move(drawn.error()));
-  }
+  if (auto drawn = draw_gbuffer(request, cost); !drawn) return Failure(std::move(drawn.error()));
   const double before = processor_ms();
   auto report = gpu_.run([&](Graph& graph) {
     return declare_occlusion(graph, request).map([&](const DeclaredFrame& declared) {
       graph.output(declared.outputs.visibility);
-      if (request.occlusion.bent_normal) {
-        graph.output(declared.outputs.bent_normal);
-      }
-      for (const Texture specular : declared.specular_occlusion) {
-        graph.output(specular);
-      }
+      if (request.occlusion.bent_normal) graph.output(declared.outputs.bent_normal);
+      for (const Texture specular : declared.specular_occlusion) graph.output(specular);
     });
   });
-  if (!report) {
-    return Failure(std::move(report.error()));
-  }
+  if (!report) return Failure(std::move(report.error()));
   cost.cpu_ms = processor_ms() - before;
   memory_ = report->memory;
   append_times(cost, true);
@@ -243,45 +208,32 @@ tl::expected<FrameCost, std::string> FrameRenderer::draw(const FrameRequest& req
 
 tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameRequest& request) {
   FrameCost ignored;
-  if (auto drawn = draw_gbuffer(request, ignored); !drawn) {
-    return Failure(std::move(drawn.error()));
-  }
+  if (auto drawn = draw_gbuffer(request, ignored); !drawn) return Failure(std::move(drawn.error()));
   std::unique_ptr<Probe> probe;
   if (request.light != nullptr && !request.light->environment.empty()) {
-    if (auto done = assign(probe, Probe::create(gpu_, request.light->environment)); !done) {
+    if (auto done = assign(probe, Probe::create(gpu_, request.light->environment)); !done)
       return Failure(std::move(done.error()));
-    }
   }
   FrameImages images;
   ReadBack read_back(gpu_.device());
   auto report = gpu_.run([&](Graph& graph) -> tl::expected<void, std::string> {
     const auto declared = declare_occlusion(graph, request);
-    if (!declared) {
-      return Failure(declared.error());
-    }
+    if (!declared) return Failure(declared.error());
     read_occlusion(graph, *declared, read_back, images);
     return declare_light(graph, request, *declared, probe.get(), read_back, images).and_then([&] {
       return read_back.added();
     });
   });
-  if (!report) {
-    return Failure(std::move(report.error()));
-  }
+  if (!report) return Failure(std::move(report.error()));
   read_back.finish();
   // Eight bits hold no exact unit vectors.
-  if (request.occlusion.precision == passes::Precision::unorm8) {
-    for (glm::vec3& bent : images.bent_normal_ws.pixels) {
-      bent = glm::normalize(bent);
-    }
-  }
+  if (request.occlusion.precision == passes::Precision::unorm8)
+    for (glm::vec3& bent : images.bent_normal_ws.pixels) bent = glm::normalize(bent);
   // Normals that are computed from depth are in view space, with their bent normals.
   if (normals_ == NormalSource::depth) {
     const glm::mat3 world_from_view = glm::transpose(glm::mat3(request.view.view_from_world));
-    for (Image<glm::vec3>* image : {&images.normal_ws, &images.bent_normal_ws}) {
-      for (glm::vec3& normal : image->pixels) {
-        normal = world_from_view * normal;
-      }
-    }
+    for (Image<glm::vec3>* image : {&images.normal_ws, &images.bent_normal_ws})
+      for (glm::vec3& normal : image->pixels) normal = world_from_view * normal;
   }
   return images;
 }

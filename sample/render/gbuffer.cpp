@@ -38,9 +38,7 @@ maths::GbufferMaterial parameters_of(const Material& material) {
   out.emissive = glm::vec4(material.emissive, 0.0f);
   out.metallic = material.metallic;
   out.roughness = material.roughness;
-  if (material.alpha_mode == AlphaMode::mask) {
-    out.alpha_cutoff = material.alpha_cutoff;
-  }
+  if (material.alpha_mode == AlphaMode::mask) out.alpha_cutoff = material.alpha_cutoff;
   out.has_normal_map = material.normal_texture.image >= 0 ? 1 : 0;
   out.normal_scale = material.normal_scale;
   set_uv_rows(out, maths::kBaseColourUv, material.base_color_texture);
@@ -114,9 +112,7 @@ VkResult GbufferRenderer::create_layout(const Scene& scene) {
        count}};
   const VkResult result =
       layout_.create(sets, {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(maths::GbufferDraw)});
-  if (result != VK_SUCCESS) {
-    return result;
-  }
+  if (result != VK_SUCCESS) return result;
   const VkDescriptorBufferInfo frame{parameters_->buffer(), 0, sizeof(maths::GbufferParameters)};
   layout_.write(layout_.set(kFrameSet, 0), 0, kParameters, {}, &frame);
   for (std::size_t i = 0; i < count; ++i) {
@@ -164,9 +160,8 @@ VkResult GbufferRenderer::create_pipelines(bool second_layer, bool geometric_nor
 }
 
 GbufferRenderer::~GbufferRenderer() {
-  for (const VkPipeline pipeline : pipelines_) {
+  for (const VkPipeline pipeline : pipelines_)
     vkDestroyPipeline(gpu_.device().device(), pipeline, nullptr);
-  }
 }
 
 void GbufferRenderer::record(RecordContext& context, const Gbuffer& gbuffer,
@@ -213,25 +208,16 @@ void GbufferRenderer::record(RecordContext& context, const Gbuffer& gbuffer,
 tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::create(
     Gpu& gpu, const Scene& scene, bool geometric_normals) {
   std::unique_ptr<GbufferRenderer> made(new GbufferRenderer(gpu));
-  if (auto done = made->upload(scene); !done) {
-    return Failure(std::move(done.error()));
-  }
+  if (auto done = made->upload(scene); !done) return Failure(std::move(done.error()));
   VkResult result = made->create_layout(scene);
-  for (const bool second_layer : {false, true}) {
-    if (result == VK_SUCCESS) {
-      result = made->create_pipelines(second_layer, geometric_normals);
-    }
-  }
-  if (result != VK_SUCCESS) {
-    return device_failure("create the pipelines of the g-buffer", result);
-  }
+  for (const bool second_layer : {false, true})
+    if (result == VK_SUCCESS) result = made->create_pipelines(second_layer, geometric_normals);
+  if (result != VK_SUCCESS) return device_failure("create the pipelines of the g-buffer", result);
   return made;
 }
 
 std::uint32_t GbufferRenderer::write_parameters(const GbufferView& view) {
-  if (written_ == view) {
-    return latest_;
-  }
+  if (written_ == view) return latest_;
   written_ = view;
   latest_ = (latest_ + kParameterStride) % (kParameterStride * gpu_.frames_in_flight());
   maths::GbufferParameters frame;
@@ -283,9 +269,7 @@ Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffe
 Texture GbufferRenderer::add_depth(Graph& graph, const char* name, Texture depth,
                                    const Drawing& drawing) {
   auto pass = graph.add_pass(name);
-  if (drawing.first) {
-    pass.read(drawing.first, framegraph::access::sampled_fragment);
-  }
+  if (drawing.first) pass.read(drawing.first, framegraph::access::sampled_fragment);
   depth =
       pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
   pass.record([this, depth, drawing](RecordContext& context) {

@@ -42,9 +42,7 @@ struct Part {
 };
 
 PackedTangent packed_tangent(const glm::vec4& tangent) {
-  if (glm::vec3(tangent) == glm::vec3(0.0f)) {
-    return {{0, 0}, 0, 0};
-  }
+  if (glm::vec3(tangent) == glm::vec3(0.0f)) return {{0, 0}, 0, 0};
   return {packed_direction(glm::vec3(tangent)),
           static_cast<std::int16_t>(tangent.w < 0.0f ? -32767 : 32767), 0};
 }
@@ -53,25 +51,21 @@ PackedTangent packed_tangent(const glm::vec4& tangent) {
 class PartBuilder {
  public:
   PartBuilder(const Mesh& mesh, const Material& material) : mesh_(mesh) {
-    if (material.normal_texture.image >= 0 && !mesh.normals.empty()) {
+    if (material.normal_texture.image >= 0 && !mesh.normals.empty())
       tangents_ = corner_tangents(mesh, material.normal_texture);
-    }
   }
 
   // Returns the next part, with at most `most_triangles` triangles. It has no indices if no
   // triangle is left. Triangles without an area are left out.
   Part next(std::size_t most_triangles) {
     part_ = {};
-    if (tangents_.empty()) {
-      copy_of_vertex_.assign(mesh_.positions.size(), kNone);
-    }
+    if (tangents_.empty()) copy_of_vertex_.assign(mesh_.positions.size(), kNone);
     copy_of_corner_.clear();
     is_first_.clear();
     const std::size_t left = (mesh_.indices.size() - at_) / 3;
     part_.indices.reserve(3 * std::min(most_triangles, left));
-    for (; at_ + 2 < mesh_.indices.size() && part_.indices.size() < 3 * most_triangles; at_ += 3) {
+    for (; at_ + 2 < mesh_.indices.size() && part_.indices.size() < 3 * most_triangles; at_ += 3)
       add_triangle();
-    }
     part_.faces.resize(part_.sources.size());
     return std::move(part_);
   }
@@ -100,9 +94,7 @@ class PartBuilder {
     const std::uint32_t source = mesh_.indices[index];
     if (tangents_.empty()) {
       std::uint32_t& known = copy_of_vertex_[source];
-      if (known == kNone) {
-        known = add_vertex(source);
-      }
+      if (known == kNone) known = add_vertex(source);
       return known;
     }
     const PackedTangent tangent = packed_tangent(tangents_[index]);
@@ -119,9 +111,7 @@ class PartBuilder {
   void add_triangle() {
     const glm::dvec3 area = area_of(mesh_, at_);
     const double length = glm::length(area);
-    if (!(length > 0.0)) {
-      return;
-    }
+    if (!(length > 0.0)) return;
     std::array corners{vertex_at(at_), vertex_at(at_ + 1), vertex_at(at_ + 2)};
     const auto free = std::ranges::find_if(corners, [&](std::uint32_t v) { return !is_first_[v]; });
     if (free != corners.end()) {
@@ -129,9 +119,7 @@ class PartBuilder {
     } else {
       const std::uint32_t original = corners[0];
       corners[0] = add_vertex(part_.sources[original]);
-      if (!tangents_.empty()) {
-        part_.tangents.push_back(part_.tangents[original]);
-      }
+      if (!tangents_.empty()) part_.tangents.push_back(part_.tangents[original]);
     }
     is_first_[corners[0]] = true;
     part_.faces.resize(part_.sources.size());
@@ -187,11 +175,8 @@ class GpuMeshes::Builder {
     PartBuilder builder(mesh, material);
     std::vector<MeshDraw> parts;
     for (Part part = builder.next(most_triangles); !part.indices.empty();
-         part = builder.next(most_triangles)) {
-      if (auto done = add_part(mesh, part, parts); !done) {
-        return done;
-      }
-    }
+         part = builder.next(most_triangles))
+      if (auto done = add_part(mesh, part, parts); !done) return done;
     return add_instances(mesh, parts);
   }
 
@@ -293,19 +278,15 @@ class GpuMeshes::Builder {
     const std::size_t most = most_bytes_ / sizeof(glm::mat4x3);
     for (const bool mirrored : {false, true}) {
       std::vector<std::uint32_t> chosen;
-      for (std::uint32_t i = 0; i < mesh.instances.size(); ++i) {
-        if ((glm::determinant(glm::mat3(mesh.instances[i])) < 0.0f) == mirrored) {
+      for (std::uint32_t i = 0; i < mesh.instances.size(); ++i)
+        if ((glm::determinant(glm::mat3(mesh.instances[i])) < 0.0f) == mirrored)
           chosen.push_back(i);
-        }
-      }
       for (std::size_t first = 0; first < chosen.size(); first += most) {
         const std::size_t count = std::min(most, chosen.size() - first);
         MeshDraw instanced;
         const auto done = stream(instanced, VertexStream::instance, count,
                                  [&](std::size_t i) { return mesh.instances[chosen[first + i]]; });
-        if (!done) {
-          return done;
-        }
+        if (!done) return done;
         constexpr std::size_t kAt = index_of(VertexStream::instance);
         for (MeshDraw draw : parts) {
           draw.mirrored = mirrored;
@@ -335,20 +316,15 @@ tl::expected<std::unique_ptr<GpuMeshes>, std::string> GpuMeshes::create(const Vu
   const VkDeviceSize limit = device.max_allocation();
   Builder builder(device, most_bytes == 0 ? limit : std::min(most_bytes, limit), *made);
   auto done = builder.add_constants();
-  for (std::size_t i = 0; done && i < scene.meshes.size(); ++i) {
+  for (std::size_t i = 0; done && i < scene.meshes.size(); ++i)
     done = builder.add(scene.meshes[i], scene.materials[scene.meshes[i].material]);
-  }
-  if (!done) {
-    return Failure(done.error());
-  }
+  if (!done) return Failure(done.error());
   return made;
 }
 
 VkDeviceSize GpuMeshes::bytes() const {
   VkDeviceSize sum = 0;
-  for (const auto& page : pages_) {
-    sum += page->bytes().size();
-  }
+  for (const auto& page : pages_) sum += page->bytes().size();
   return sum;
 }
 

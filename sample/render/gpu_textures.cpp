@@ -66,9 +66,7 @@ tl::expected<VkImageView, std::string> GpuTextures::add_texture(const Scene& sce
   const auto found = std::ranges::find_if(textures_, [&](const Texture& texture) {
     return texture.image == use.image && texture.srgb == use.srgb;
   });
-  if (found != textures_.end()) {
-    return found->gpu->view();
-  }
+  if (found != textures_.end()) return found->gpu->view();
   VkExtent2D size{1, 1};
   if (use.image >= 0) {
     const TextureImage& source = scene.images[static_cast<std::size_t>(use.image)];
@@ -87,9 +85,7 @@ tl::expected<VkImageView, std::string> GpuTextures::add_texture(const Scene& sce
        framegraph::Extent::absolute(size.width, size.height),
        static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height)))},
       kUsage);
-  if (!made) {
-    return Failure(std::move(made.error()));
-  }
+  if (!made) return Failure(std::move(made.error()));
   textures_.push_back({use.image, use.srgb, std::move(*made)});
   return textures_.back().gpu->view();
 }
@@ -116,27 +112,23 @@ tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sam
       .maxLod = sampler.mips == MipFilter::none ? 0.25f : VK_LOD_CLAMP_NONE};
   VkSampler made = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &made);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return device_failure("create a sampler of the scene's textures", result);
-  }
   samplers_.push_back(made);
   return made;
 }
 
 tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const Use& use) {
-  if (std::ranges::find(uses_, use) != uses_.end()) {
-    return {};
-  }
+  if (std::ranges::find(uses_, use) != uses_.end()) return {};
   // Uses with equal samplers share one VkSampler. A linear search is enough, because a scene has
   // few different samplers.
   VkDescriptorImageInfo descriptor{.imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   auto done = assign(descriptor.imageView, add_texture(scene, use));
   const auto like = std::ranges::find(uses_, use.sampler, &Use::sampler);
-  if (done && like != uses_.end()) {
+  if (done && like != uses_.end())
     descriptor.sampler = descriptors_[static_cast<std::size_t>(like - uses_.begin())].sampler;
-  } else if (done) {
+  else if (done)
     done = assign(descriptor.sampler, add_sampler(use.sampler));
-  }
   uses_.push_back(use);
   descriptors_.push_back(descriptor);
   return done;
@@ -147,9 +139,7 @@ tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene
   for (const Texture& texture : textures_) {
     const auto texels = std::as_bytes(texels_of(scene, texture.image));
     auto source = HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-    if (!source) {
-      return Failure(std::move(source.error()));
-    }
+    if (!source) return Failure(std::move(source.error()));
     std::ranges::copy(texels, (*source)->bytes().begin());
     const auto declare = [&](framegraph::Graph& graph) -> tl::expected<void, std::string> {
       const auto target =
@@ -157,9 +147,7 @@ tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene
       add_mips(graph, add_copy(graph, **source, target), texture.gpu->mips());
       return {};
     };
-    if (auto done = gpu.run(declare); !done) {
-      return Failure(std::move(done.error()));
-    }
+    if (auto done = gpu.run(declare); !done) return Failure(std::move(done.error()));
   }
   return {};
 }
@@ -168,22 +156,16 @@ tl::expected<std::unique_ptr<GpuTextures>, std::string> GpuTextures::create(Gpu&
                                                                             const Scene& scene) {
   std::unique_ptr<GpuTextures> made(new GpuTextures(gpu.device()));
   tl::expected<void, std::string> done;
-  for (const Material& material : scene.materials) {
-    for (const Use& use : uses_of(material)) {
+  for (const Material& material : scene.materials)
+    for (const Use& use : uses_of(material))
       done = done.and_then([&] { return made->add_use(scene, use); });
-    }
-  }
   done = done.and_then([&] { return made->upload(gpu, scene); });
-  if (!done) {
-    return Failure(std::move(done.error()));
-  }
+  if (!done) return Failure(std::move(done.error()));
   return made;
 }
 
 GpuTextures::~GpuTextures() {
-  for (const VkSampler sampler : samplers_) {
-    vkDestroySampler(device_.device(), sampler, nullptr);
-  }
+  for (const VkSampler sampler : samplers_) vkDestroySampler(device_.device(), sampler, nullptr);
 }
 
 std::array<VkDescriptorImageInfo, maths::kMaterialTextures> GpuTextures::descriptors_of(

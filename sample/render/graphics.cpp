@@ -80,9 +80,7 @@ VkResult create_pipeline(VkDevice device, PipelineDescription description, VkPip
                                     {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR});
   std::array<VkShaderModule, 2> modules{};
   VkResult result = create_module(device, description.vertex_code, modules[0]);
-  if (result == VK_SUCCESS) {
-    result = create_module(device, description.fragment_code, modules[1]);
-  }
+  if (result == VK_SUCCESS) result = create_module(device, description.fragment_code, modules[1]);
   if (result == VK_SUCCESS) {
     const VkPipelineShaderStageCreateInfo stages[] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -96,9 +94,7 @@ VkResult create_pipeline(VkDevice device, PipelineDescription description, VkPip
          .pSpecializationInfo = description.fragment_constants}};
     result = create_pipeline_of(device, description, stages, pipeline);
   }
-  for (const VkShaderModule module : modules) {
-    vkDestroyShaderModule(device, module, nullptr);
-  }
+  for (const VkShaderModule module : modules) vkDestroyShaderModule(device, module, nullptr);
   return result;
 }
 
@@ -116,9 +112,7 @@ VkResult PipelineLayout::create(std::span<const SetDescription> sets,
         .pBindings = bindings.data()};
     const VkResult result =
         vkCreateDescriptorSetLayout(device_, &info, nullptr, &set_layouts_.emplace_back());
-    if (result != VK_SUCCESS) {
-      return result;
-    }
+    if (result != VK_SUCCESS) return result;
   }
   const VkPipelineLayoutCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -135,9 +129,8 @@ VkResult PipelineLayout::allocate(std::span<const SetDescription> sets) {
   std::uint32_t count = 0;
   for (const SetDescription& set : sets) {
     count += set.count;
-    for (const Descriptor& descriptor : set.descriptors) {
+    for (const Descriptor& descriptor : set.descriptors)
       sizes.push_back({descriptor.type, descriptor.count * std::max(set.count, 1u)});
-    }
   }
   const VkDescriptorPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .maxSets = count,
@@ -152,9 +145,7 @@ VkResult PipelineLayout::allocate(std::span<const SetDescription> sets) {
                                            .descriptorSetCount = sets[i].count,
                                            .pSetLayouts = layouts.data()};
     sets_[i].resize(sets[i].count);
-    if (sets[i].count > 0) {
-      result = vkAllocateDescriptorSets(device_, &info, sets_[i].data());
-    }
+    if (sets[i].count > 0) result = vkAllocateDescriptorSets(device_, &info, sets_[i].data());
   }
   return result;
 }
@@ -162,9 +153,8 @@ VkResult PipelineLayout::allocate(std::span<const SetDescription> sets) {
 PipelineLayout::~PipelineLayout() {
   vkDestroyDescriptorPool(device_, pool_, nullptr);
   vkDestroyPipelineLayout(device_, layout_, nullptr);
-  for (const VkDescriptorSetLayout layout : set_layouts_) {
+  for (const VkDescriptorSetLayout layout : set_layouts_)
     vkDestroyDescriptorSetLayout(device_, layout, nullptr);
-  }
 }
 
 void PipelineLayout::write(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,

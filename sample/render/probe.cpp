@@ -41,9 +41,7 @@ tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& fr
   auto created =
       assign(upload, HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
-  if (!created) {
-    return Failure(std::move(created.error()));
-  }
+  if (!created) return Failure(std::move(created.error()));
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::vec4 texel(image.pixels[i], 1.0f);
     std::memcpy(upload->bytes().data() + i * sizeof(texel), &texel, sizeof(texel));
@@ -71,9 +69,7 @@ tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
                                                   Extent::absolute(kSettings.size, kSettings.size),
                                                   kSettings.levels});
                      });
-  if (!created) {
-    return Failure(std::move(created.error()));
-  }
+  if (!created) return Failure(std::move(created.error()));
   std::unique_ptr<HostBuffer> upload;
   auto report = gpu.run([&](Graph& graph) {
     return add_probe({graph, gpu.kernels(), {}}, gpu, image, upload)
@@ -82,9 +78,7 @@ tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
           add_image_copy(graph, light.map, *made->map_, kSettings.levels);
         });
   });
-  if (!report) {
-    return Failure(std::move(report.error()));
-  }
+  if (!report) return Failure(std::move(report.error()));
   return made;
 }
 

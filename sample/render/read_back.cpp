@@ -54,12 +54,9 @@ Texels read_texels(const std::byte* data, VkExtent3D size, VkFormat format) {
   const auto [channels, bytes] = format_layout(format);
   Texels texels(size.width, size.height);
   for (glm::vec4& texel : texels.pixels) {
-    for (std::uint32_t c = 0; c < channels; ++c, data += bytes) {
+    for (std::uint32_t c = 0; c < channels; ++c, data += bytes)
       texel[static_cast<int>(c)] = read_channel(data, bytes, format == VK_FORMAT_R8G8B8A8_SNORM);
-    }
-    if (format == VK_FORMAT_B8G8R8A8_UNORM) {
-      std::swap(texel.r, texel.b);
-    }
+    if (format == VK_FORMAT_B8G8R8A8_UNORM) std::swap(texel.r, texel.b);
   }
   return texels;
 }
@@ -68,9 +65,7 @@ Texels read_texels(const std::byte* data, VkExtent3D size, VkFormat format) {
 
 void ReadBack::add(framegraph::Graph& graph, framegraph::Texture texture,
                    std::function<void(const Texels&)> store) {
-  if (!texture || !added_) {
-    return;
-  }
+  if (!texture || !added_) return;
   Copy copy{
       .format = graph.format(texture), .size = graph.extent(texture), .store = std::move(store)};
   const auto [channels, bytes] = format_layout(copy.format);
@@ -84,24 +79,19 @@ void ReadBack::add(framegraph::Graph& graph, framegraph::Texture texture,
 }
 
 void ReadBack::finish() const {
-  for (const Copy& copy : copies_) {
+  for (const Copy& copy : copies_)
     copy.store(read_texels(copy.buffer->bytes().data(), copy.size, copy.format));
-  }
 }
 
 Image<float> channel(const Texels& texels, int index) {
   Image<float> image(texels.width, texels.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = texels.pixels[i][index];
-  }
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = texels.pixels[i][index];
   return image;
 }
 
 Image<glm::vec3> rgb(const Texels& texels) {
   Image<glm::vec3> image(texels.width, texels.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = texels.pixels[i];
-  }
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = texels.pixels[i];
   return image;
 }
 

@@ -28,9 +28,7 @@ Costs medians(const std::vector<FrameCost>& frames) {
   const auto over_frames = [&](auto value) {
     std::vector<double> values;
     values.reserve(frames.size());
-    for (const FrameCost& frame : frames) {
-      values.push_back(value(frame));
-    }
+    for (const FrameCost& frame : frames) values.push_back(value(frame));
     return median(std::move(values));
   };
   Costs costs;
@@ -64,9 +62,8 @@ class Run {
   Run(FrameRenderer& renderer, const RenderRequest& request, const Camera& camera,
       const passes::OcclusionSettings& settings)
       : renderer_(renderer), request_(request), camera_(camera), settings_(settings) {
-    if (!request.light.roughness.empty()) {
+    if (!request.light.roughness.empty())
       timed_light_.roughness = {request.light.roughness.front()};
-    }
   }
 
   // Draws the frames and returns the median times of the last kTimedFrames frames. If the run is
@@ -75,13 +72,9 @@ class Run {
     std::vector<FrameCost> costs;
     for (std::uint32_t i = 0; i < timed_frames_; ++i) {
       auto cost = renderer_.draw(request(std::min(i, request_.frames - 1), outputs));
-      if (!cost) {
-        return Failure(std::move(cost.error()));
-      }
+      if (!cost) return Failure(std::move(cost.error()));
       count();
-      if (i + kTimedFrames >= timed_frames_) {
-        costs.push_back(std::move(*cost));
-      }
+      if (i + kTimedFrames >= timed_frames_) costs.push_back(std::move(*cost));
     }
     return medians(costs);
   }
@@ -92,9 +85,7 @@ class Run {
   // timed.
   tl::expected<FrameImages, std::string> draw() {
     auto all = draw(Outputs::all);
-    if (!all || one_run_) {
-      return all;
-    }
+    if (!all || one_run_) return all;
     auto images = draw(Outputs::bent_normals);
     if (images) {
       images->specular_occlusion = std::move(all->specular_occlusion);
@@ -117,21 +108,18 @@ class Run {
     request.index = frame;
     request.static_frames = request_.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
-    if (outputs == Outputs::specular || outputs == Outputs::all) {
+    if (outputs == Outputs::specular || outputs == Outputs::all)
       request.occlusion.specular = specular_model(settings_);
-    }
-    if (outputs == Outputs::bent_normals || outputs == Outputs::all) {
+    if (outputs == Outputs::bent_normals || outputs == Outputs::all)
       request.occlusion.bent_normal = true;
-    }
     request.light = outputs == Outputs::all ? &request_.light : &timed_light_;
     return request;
   }
 
   tl::expected<FrameImages, std::string> draw(Outputs outputs) {
     for (std::uint32_t i = 0; i + 1 < request_.frames; ++i) {
-      if (auto cost = renderer_.draw(request(i, outputs)); !cost) {
+      if (auto cost = renderer_.draw(request(i, outputs)); !cost)
         return Failure(std::move(cost.error()));
-      }
       count();
     }
     return renderer_.draw_and_read(request(request_.frames - 1, outputs));
@@ -172,9 +160,7 @@ tl::expected<Rendering, std::string> render(Session session, const RenderRequest
   result.camera = frame_camera(request, session.camera, request.frames - 1);
   auto renderer =
       FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals);
-  if (!renderer) {
-    return Failure(std::move(renderer.error()));
-  }
+  if (!renderer) return Failure(std::move(renderer.error()));
   Run run(**renderer, request, session.camera, result.settings);
   return assign(result.costs, run.time(Outputs::visibility))
       .map([&] { result.memory = (*renderer)->memory(); })
@@ -215,9 +201,7 @@ namespace {
 // Converts directions to colours: each component from -1..1 to 0..1.
 Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
   Image<glm::vec3> colours = directions;
-  for (glm::vec3& colour : colours.pixels) {
-    colour = colour * 0.5f + 0.5f;
-  }
+  for (glm::vec3& colour : colours.pixels) colour = colour * 0.5f + 0.5f;
   return colours;
 }
 
@@ -244,9 +228,7 @@ struct ImageWriter {
 }  // namespace
 
 std::string roughness_name(const IndirectRequest& light, std::size_t i) {
-  if (light.roughness.empty()) {
-    return "materials";
-  }
+  if (light.roughness.empty()) return "materials";
   std::array<char, 32> percent{};
   std::snprintf(percent.data(), percent.size(), "r%02g", 100.0 * light.roughness[i]);
   return percent.data();
@@ -254,9 +236,7 @@ std::string roughness_name(const IndirectRequest& light, std::size_t i) {
 
 std::string specular_name(const IndirectRequest& light, std::size_t i) {
   std::string name = "specular_occlusion";
-  if (light.roughness.size() > 1) {
-    name.append("_").append(roughness_name(light, i));
-  }
+  if (light.roughness.size() > 1) name.append("_").append(roughness_name(light, i));
   return name;
 }
 
@@ -270,9 +250,8 @@ tl::expected<void, std::string> write_images(const Rendering& rendering,
   writer.exr("bent_normal", images.bent_normal_ws);
   writer.png("bent_normal", as_colours(images.bent_normal_ws));
   writer.both("multi_bounce", images.multi_bounce);
-  for (std::size_t i = 0; i < images.specular_occlusion.size(); ++i) {
+  for (std::size_t i = 0; i < images.specular_occlusion.size(); ++i)
     writer.both(specular_name(rendering.light, i), images.specular_occlusion[i]);
-  }
   writer.exr("lit", lit.all);
   writer.png("lit", display_colours(with_sky(rendering, lit.all), exposure));
   writer.png("lit_diffuse", display_colours(lit.diffuse, exposure));

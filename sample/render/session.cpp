@@ -6,9 +6,7 @@ namespace alcove::sample {
 
 tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const DeviceRequest& request) {
   framegraph::ExecutorOptions executor;
-  if (request.validation) {
-    executor.verify = framegraph::verify;
-  }
+  if (request.validation) executor.verify = framegraph::verify;
   executor.check_uses = executor.check_uses || request.validation;
   return Gpu::create({.validation = request.validation,
                       .index = request.index,
@@ -18,9 +16,8 @@ tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const DeviceRequest& re
 }
 
 tl::expected<void, std::string> check_validation(const Gpu& gpu) {
-  for (const std::string& message : gpu.device().validation_messages()) {
+  for (const std::string& message : gpu.device().validation_messages())
     return tl::unexpected<std::string>("The validation layer says: " + message);
-  }
   return {};
 }
 

@@ -22,9 +22,7 @@ Json show(Choice value) {
 Json to_json(const passes::OcclusionSettings& settings) {
   Json json;
   passes::for_each_setting(settings, [&](const passes::SettingInfo& info, const auto& field) {
-    if (info.group != passes::SettingGroup::surface) {
-      json[info.name] = show(field);
-    }
+    if (info.group != passes::SettingGroup::surface) json[info.name] = show(field);
   });
   return json;
 }

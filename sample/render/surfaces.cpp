@@ -48,12 +48,8 @@ tl::expected<passes::OcclusionOutputs, std::string> add_occlusion(
   passes::OcclusionInputs inputs{.depth_ndc = gbuffer.depth};
   inputs.back_depth_ndc = gbuffer.back_depth;
   inputs.second_depth_ndc = gbuffer.second_depth;
-  if (surfaces.normals != NormalSource::depth) {
-    inputs.normals = gbuffer.normal;
-  }
-  if (surfaces.motion_vectors) {
-    inputs.motion = gbuffer.motion;
-  }
+  if (surfaces.normals != NormalSource::depth) inputs.normals = gbuffer.normal;
+  if (surfaces.motion_vectors) inputs.motion = gbuffer.motion;
   if (surfaces.roughness) {
     settings.roughness = *surfaces.roughness;
   } else {
@@ -73,9 +69,7 @@ tl::expected<passes::AppliedLight, std::string> add_light(const passes::Frame& f
   inputs.depth = outputs.linear_depth;
   inputs.normals = outputs.normals;
   inputs.albedo = surfaces.gbuffer.albedo;
-  if (!surfaces.roughness) {
-    inputs.roughness = surfaces.gbuffer.albedo;
-  }
+  if (!surfaces.roughness) inputs.roughness = surfaces.gbuffer.albedo;
   inputs.metallic = surfaces.gbuffer.emissive;
   inputs.normals_in_view_space = surfaces.normals == NormalSource::depth;
   inputs.harmonics = probe.harmonics;

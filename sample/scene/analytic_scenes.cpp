@@ -74,9 +74,8 @@ AnalyticScene groove(float opening) {
   b.quad(kFar * left + z, foot + z, foot - z, kFar * left - z);
   AnalyticScene out = finished(b, "groove", camera({0, 3, 0.8f}, {0, 0, 0}, {0, 0, -1}), 1.0f, 1e4);
   const glm::vec3 normal(-right.y, right.x, 0);
-  for (const float d : {0.1f, 0.25f, 0.5f}) {
+  for (const float d : {0.1f, 0.25f, 0.5f})
     out.points.push_back({d * right, normal, visibility_in_groove(opening)});
-  }
   return out;
 }
 
@@ -90,9 +89,8 @@ AnalyticScene corner() {
   b.quad(o, x, x + y, y);
   AnalyticScene out =
       finished(b, "corner", camera({2.2f, 1.9f, 2.6f}, {0.4f, 0.4f, 0.4f}), 0.75f, 1e4);
-  for (const glm::vec2 at : {glm::vec2(0.2f, 0.3f), glm::vec2(0.5f, 0.5f), glm::vec2(1.0f, 0.1f)}) {
+  for (const glm::vec2 at : {glm::vec2(0.2f, 0.3f), glm::vec2(0.5f, 0.5f), glm::vec2(1.0f, 0.1f)})
     out.points.push_back({{at.x, 0, at.y}, {0, 1, 0}, visibility_in_corner(at.x, at.y, kHeight)});
-  }
   return out;
 }
 
@@ -137,9 +135,8 @@ AnalyticScene step() {
   b.quad({0, 0, -kFar}, {0, 0, kFar}, {0, kHeight, kFar}, {0, kHeight, -kFar});
   b.quad({0, kHeight, kFar}, {kFar, kHeight, kFar}, {kFar, kHeight, -kFar}, {0, kHeight, -kFar});
   AnalyticScene out = finished(b, "step", camera({-2.2f, 2.0f, 1.6f}, {-0.2f, 0.2f, 0}), 1.0f, 1e4);
-  for (const float d : {0.1f, 0.3f, 0.8f}) {
+  for (const float d : {0.1f, 0.3f, 0.8f})
     out.points.push_back({{-d, 0, 0}, {0, 1, 0}, visibility_beside_wall(d, kHeight)});
-  }
   out.points.push_back({{0.4f, kHeight, 0}, {0, 1, 0}, 1.0});
   return out;
 }
@@ -163,9 +160,8 @@ tl::expected<float, std::string> angle_of(const std::string& name, const std::st
 
 bool is_analytic_name(const std::string& name) {
   const std::string kind = split(name).kind;
-  for (const char* known : {"plane", "groove", "corner", "sphere", "pit", "step"}) {
+  for (const char* known : {"plane", "groove", "corner", "sphere", "pit", "step"})
     if (kind == known) return true;
-  }
   return false;
 }
 
@@ -181,9 +177,8 @@ tl::expected<AnalyticScene, std::string> analytic_scene(const std::string& name)
     return angle ? tl::expected<AnalyticScene, std::string>(groove(*angle))
                  : tl::unexpected(angle.error());
   }
-  if (name.find(':') != std::string::npos) {
+  if (name.find(':') != std::string::npos)
     return tl::unexpected<std::string>("scene " + name + ": " + kind + " takes no angle");
-  }
   if (kind == "corner") return corner();
   if (kind == "sphere") return sphere();
   if (kind == "pit") return pit();

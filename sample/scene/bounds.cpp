@@ -26,11 +26,8 @@ double diagonal(const Bounds& bounds) {
 
 std::array<glm::vec3, 8> corners_of(const Bounds& bounds) {
   std::array<glm::vec3, 8> corners;
-  for (size_t i = 0; i < corners.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      corners[i][c] = (i >> c & 1u) != 0 ? bounds.high[c] : bounds.low[c];
-    }
-  }
+  for (size_t i = 0; i < corners.size(); ++i)
+    for (int c = 0; c < 3; ++c) corners[i][c] = (i >> c & 1u) != 0 ? bounds.high[c] : bounds.low[c];
   return corners;
 }
 
@@ -59,18 +56,16 @@ std::vector<MeshInstance> instances_of(const std::vector<Mesh>& meshes) {
     if (mesh.indices.empty()) continue;
     const Bounds own = bounds_of_triangles(mesh, 0, mesh.indices.size());
     if (mesh.instances.empty()) out.push_back({m, 0, own});
-    for (uint32_t i = 0; i < mesh.instances.size(); ++i) {
+    for (uint32_t i = 0; i < mesh.instances.size(); ++i)
       out.push_back({m, i, transformed(own, mesh.instances[i])});
-    }
   }
   return out;
 }
 
 Bounds bounds_of(const std::vector<Mesh>& meshes) {
   Bounds bounds = empty_bounds();
-  for (const MeshInstance& instance : instances_of(meshes)) {
+  for (const MeshInstance& instance : instances_of(meshes))
     bounds = united(bounds, instance.bounds_ws);
-  }
   return bounds.low.x <= bounds.high.x ? bounds : Bounds{};
 }
 

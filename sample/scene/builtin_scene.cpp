@@ -253,9 +253,8 @@ void add_furniture(SceneBuilder& b, const Palette& p) {
     b.world_from_shape = moved({x, 0, kWall + 0.32f});
     b.use(p.wood);
     b.box({-0.6f, 0.40f, -0.18f}, {0.6f, 0.46f, 0.18f});
-    for (const float side : {-0.5f, 0.5f}) {
+    for (const float side : {-0.5f, 0.5f})
       b.box({side - 0.04f, 0.0f, -0.15f}, {side + 0.04f, 0.40f, 0.15f});
-    }
   }
   b.use(p.gilt);
   for (int bay = 0; bay < kBays; ++bay) {

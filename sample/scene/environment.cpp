@@ -87,20 +87,17 @@ std::string lower_case_ending(const std::filesystem::path& file) {
 
 EnvironmentImage procedural_sky() {
   EnvironmentImage sky(512, 256);
-  for (uint32_t y = 0; y < sky.height; ++y) {
-    for (uint32_t x = 0; x < sky.width; ++x) {
+  for (uint32_t y = 0; y < sky.height; ++y)
+    for (uint32_t x = 0; x < sky.width; ++x)
       sky.at(x, y) = sky_radiance(direction_of((x + 0.5) / sky.width, (y + 0.5) / sky.height));
-    }
-  }
   return sky;
 }
 
 tl::expected<EnvironmentImage, std::string> load_environment(const std::filesystem::path& file) {
   if (file.empty()) return procedural_sky();
   const std::string ending = lower_case_ending(file);
-  if (ending != ".hdr" && ending != ".exr") {
+  if (ending != ".hdr" && ending != ".exr")
     return refuse(file, "is no .hdr or .exr file; give an equirectangular image of these formats");
-  }
   const auto opened = open_regular_file(file);
   if (!opened) return refuse(file, opened.error());
   EnvironmentRows rows;

@@ -100,11 +100,10 @@ class DepthDrawing {
       const Block& block = blocks_[candidate.mesh][candidate.block];
       triangles += (block.last - block.first) / 3;
       const glm::dmat4 view = view_from_mesh(scene_.meshes[candidate.mesh], candidate.instance);
-      if (triangles <= kMostTriangles) {
+      if (triangles <= kMostTriangles)
         draw_block(scene_.meshes[candidate.mesh], block, view);
-      } else {
+      else
         draw_bounds(block.bounds, view);
-      }
     }
     DepthPicture out{std::move(depth_), std::nullopt};
     if (range_.nearest <= range_.farthest) out.range = range_;
@@ -160,9 +159,8 @@ class DepthDrawing {
     const bool culls = !scene_.materials[mesh.material].double_sided;
     for (size_t i = block.first; i < block.last; i += 3) {
       Triangle triangle;
-      for (size_t c = 0; c < 3; ++c) {
+      for (size_t c = 0; c < 3; ++c)
         triangle[c] = glm::dvec3(view * glm::dvec4(mesh.positions[mesh.indices[i + c]], 1.0));
-      }
       const auto& [a, b, c] = triangle;
       if (culls) {
         const glm::dvec3 normal = side * glm::cross(b - a, c - a);
@@ -203,9 +201,8 @@ class DepthDrawing {
 
   void set_pixel(const glm::dvec2& pixel, double depth) {
     if (!(pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < depth_.width && pixel.y < depth_.height) ||
-        (perspective_ && depth <= 0.0)) {
+        (perspective_ && depth <= 0.0))
       return;
-    }
     float& at = depth_.at(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y));
     at = std::min(at, static_cast<float>(depth));
   }
@@ -218,9 +215,8 @@ class DepthDrawing {
     if (p0.z > 0.0 && p1.z > 0.0 && p2.z > 0.0) {
       const glm::dvec2 a = pixel_of(p0), b = pixel_of(p1), c = pixel_of(p2);
       const glm::dvec2 first = glm::min(a, glm::min(b, c)), last = glm::max(a, glm::max(b, c));
-      if (last.x - first.x < 1.0 && last.y - first.y < 1.0) {
+      if (last.x - first.x < 1.0 && last.y - first.y < 1.0)
         return set_pixel((a + b + c) / 3.0, -(triangle[0].z + triangle[1].z + triangle[2].z) / 3.0);
-      }
       low = glm::max(low, glm::floor(first));
       high = glm::min(high, glm::ceil(last));
     }
@@ -353,9 +349,8 @@ Camera with_fitted_planes(const Scene& scene, const Camera& camera, double aspec
     // The far plane must also be far enough for other positions and directions of the camera within
     // the subject.
     double farthest = range->farthest;
-    for (const glm::vec3& corner : corners_of(scene.subject.bounds_ws)) {
+    for (const glm::vec3& corner : corners_of(scene.subject.bounds_ws))
       farthest = std::max(farthest, double(glm::distance(corner, camera.eye_ws)) + 2.0 * size);
-    }
     const double least = std::max(2e-4 * size, 1e-6 * farthest);
     out.near_plane =
         static_cast<float>(std::max(std::min(0.5 * range->nearest, 0.01 * size), least));
@@ -379,9 +374,8 @@ RadiusChoice radius_for_view(const Scene& scene, const Camera& camera, double as
       if (contains(grown, at)) subject[static_cast<size_t>(c)].push_back(values[c]);
     }
   });
-  if (all[0].empty()) {
+  if (all[0].empty())
     return {default_radius(scene), "a twentieth of the size of the subject: no surface is in view"};
-  }
   const bool shows_subject = subject[0].size() * kLeastShown >= picture.depth.pixels.size();
   auto& values = shows_subject ? subject : all;
   for (std::vector<float>& one : values) std::ranges::sort(one);
@@ -401,15 +395,13 @@ RadiusChoice radius_for_view(const Scene& scene, const Camera& camera, double as
                                     : "a twentieth of the extent of the surfaces in view"};
   constexpr float kWhole = 0.7f;  // of the extent of the subject: the view shows it as a whole
   const auto whole = static_cast<float>(kShare * diagonal(scene.subject.bounds_ws));
-  if (!(choice.radius > 0.0f) || (shows_subject && choice.radius > kWhole * whole)) {
+  if (!(choice.radius > 0.0f) || (shows_subject && choice.radius > kWhole * whole))
     choice = {default_radius(scene), "a twentieth of the size of the subject"};
-  }
   // A larger radius would cover most of the image.
   constexpr double kMostOfDistance = 0.25;
   const double most = kMostOfDistance * quantile(3, 0.5);
-  if (!camera.orthographic && most > 0.0 && choice.radius > most) {
+  if (!camera.orthographic && most > 0.0 && choice.radius > most)
     choice = {static_cast<float>(most), "a quarter of the median distance of the surfaces in view"};
-  }
   return choice;
 }
 

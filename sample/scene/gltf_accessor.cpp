@@ -82,9 +82,8 @@ tl::expected<const uint8_t*, std::string> elements_of(const tinygltf::Model& mod
   // The last element must end within the view. The comparisons are written so that no term can
   // overflow.
   if (count > 0 && (offset > length || size > length - offset ||
-                    (count - 1) > (length - offset - size) / stride)) {
+                    (count - 1) > (length - offset - size) / stride))
     return Failure("reads past the end of buffer view " + std::to_string(view));
-  }
   return bytes->data() + std::min(offset, length);
 }
 
@@ -92,9 +91,8 @@ tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_
   const auto refuse = [&](const std::string& why) {
     return Failure("accessor " + std::to_string(index) + " " + why);
   };
-  if (index < 0 || static_cast<uint64_t>(index) >= model.accessors.size()) {
+  if (index < 0 || static_cast<uint64_t>(index) >= model.accessors.size())
     return refuse("does not exist");
-  }
   const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
   Elements out;
   out.count = accessor.count;
@@ -109,9 +107,8 @@ tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_
   const uint64_t size = component * static_cast<uint64_t>(out.components);
   out.stride = size;
   if (accessor.bufferView < 0) return out;
-  if (static_cast<size_t>(accessor.bufferView) >= model.bufferViews.size()) {
+  if (static_cast<size_t>(accessor.bufferView) >= model.bufferViews.size())
     return refuse("has no buffer view " + std::to_string(accessor.bufferView));
-  }
   const size_t stride = model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
   if (stride != 0) out.stride = stride;
   if (out.stride < size) return refuse("has a stride that is less than its element");
@@ -132,9 +129,8 @@ tl::expected<void, std::string> for_each_sparse(const tinygltf::Model& model, in
   const std::string name = "accessor " + std::to_string(index) + " ";
   const auto count = static_cast<uint64_t>(sparse.count);
   if (count > elements.count) return Failure(name + "has more sparse values than elements");
-  if (!is_unsigned(sparse.indices.componentType)) {
+  if (!is_unsigned(sparse.indices.componentType))
     return Failure(name + "has sparse indices that are not unsigned integers");
-  }
   const uint64_t index_size = component_size(sparse.indices.componentType);
   const uint64_t value_size =
       component_size(elements.component_type) * static_cast<uint64_t>(elements.components);
@@ -159,25 +155,21 @@ tl::expected<void, std::string> for_each_sparse(const tinygltf::Model& model, in
 
 tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::Model& model,
                                                                const tinygltf::BufferView& v) {
-  if (v.buffer < 0 || static_cast<size_t>(v.buffer) >= model.buffers.size()) {
+  if (v.buffer < 0 || static_cast<size_t>(v.buffer) >= model.buffers.size())
     return Failure("has no buffer " + std::to_string(v.buffer));
-  }
   const auto& data = model.buffers[static_cast<size_t>(v.buffer)].data;
-  if (data.empty() && v.byteLength > 0) {
+  if (data.empty() && v.byteLength > 0)
     return Failure("lies in buffer " + std::to_string(v.buffer) + ", which has no data");
-  }
-  if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset) {
+  if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset)
     return Failure("reaches past the end of its buffer");
-  }
   return std::span<const uint8_t>(data.data() + v.byteOffset, v.byteLength);
 }
 
 tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::Model& model,
                                                                int64_t view) {
   const std::string name = "buffer view " + std::to_string(view) + " ";
-  if (view < 0 || static_cast<uint64_t>(view) >= model.bufferViews.size()) {
+  if (view < 0 || static_cast<uint64_t>(view) >= model.bufferViews.size())
     return Failure(name + "does not exist");
-  }
   return view_bytes(model, model.bufferViews[static_cast<size_t>(view)])
       .map_error([&](const std::string& why) { return name + why; });
 }
@@ -198,9 +190,8 @@ tl::expected<std::vector<float>, std::string> read_floats(const tinygltf::Model&
     return Failure(name + std::to_string(elements->components) + " components where " +
                    std::to_string(components) + " belong");
   }
-  if (!only && elements->count > most) {
+  if (!only && elements->count > most)
     return Failure(name + "too many elements: " + std::to_string(elements->count));
-  }
   if (only && !only->empty() && only->back() >= elements->count) {
     return Failure(name + std::to_string(elements->count) + " elements, and element " +
                    std::to_string(only->back()) + " is used");
@@ -210,24 +201,20 @@ tl::expected<std::vector<float>, std::string> read_floats(const tinygltf::Model&
   const uint64_t count = only ? only->size() : elements->count;
   std::vector<float> values(count * width, 0.0f);
   const auto put = [&](uint64_t i, const uint8_t* at) {
-    for (size_t c = 0; c < width; ++c) {
+    for (size_t c = 0; c < width; ++c)
       values[i * width + c] =
           float_component(at + c * step, elements->component_type, elements->normalized);
-    }
   };
-  for (uint64_t i = 0; elements->first && i < count; ++i) {
+  for (uint64_t i = 0; elements->first && i < count; ++i)
     put(i, elements->first + (only ? (*only)[i] : i) * elements->stride);
-  }
   const auto put_sparse = [&](uint64_t target, const uint8_t* at) {
     if (!only) return put(target, at);
     const auto found = std::ranges::lower_bound(*only, target);
-    if (found != only->end() && *found == target) {
+    if (found != only->end() && *found == target)
       put(static_cast<uint64_t>(found - only->begin()), at);
-    }
   };
-  if (auto sparse = for_each_sparse(model, accessor, *elements, put_sparse); !sparse) {
+  if (auto sparse = for_each_sparse(model, accessor, *elements, put_sparse); !sparse)
     return Failure(sparse.error());
-  }
   return values;
 }
 
@@ -237,27 +224,22 @@ tl::expected<std::vector<uint32_t>, std::string> read_indices(const tinygltf::Mo
   const auto elements = resolve(model, accessor);
   if (!elements) return Failure(elements.error());
   const std::string name = "accessor " + std::to_string(accessor) + " ";
-  if (elements->count > most) {
+  if (elements->count > most)
     return Failure(name + "has too many elements: " + std::to_string(elements->count));
-  }
-  if (elements->components != 1 || !is_unsigned(elements->component_type)) {
+  if (elements->components != 1 || !is_unsigned(elements->component_type))
     return Failure(name + "is used for indices and does not hold unsigned integers");
-  }
   std::vector<uint32_t> values(elements->count, 0);
   const auto put = [&](uint64_t target, const uint8_t* at) {
     values[target] = unsigned_component(at, elements->component_type);
   };
-  if (elements->first) {
+  if (elements->first)
     for (uint64_t i = 0; i < elements->count; ++i) put(i, elements->first + i * elements->stride);
-  }
-  if (auto sparse = for_each_sparse(model, accessor, *elements, put); !sparse) {
+  if (auto sparse = for_each_sparse(model, accessor, *elements, put); !sparse)
     return Failure(sparse.error());
-  }
   const auto past =
       std::find_if(values.begin(), values.end(), [&](uint32_t v) { return v >= bound; });
-  if (past != values.end()) {
+  if (past != values.end())
     return Failure(name + "has the index " + std::to_string(*past) + ", past the last vertex");
-  }
   return values;
 }
 

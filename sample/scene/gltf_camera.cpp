@@ -16,9 +16,8 @@ bool place(const glm::dmat4& world_from_node, PlacedCamera& out) {
   constexpr double kFarthest = 1e15;  // scene units, the limit for vertices too
   const glm::dvec3 eye(world_from_node[3]), back(world_from_node[2]), up(world_from_node[1]);
   if (!positive(glm::length(back)) || !positive(glm::length(up)) ||
-      !(glm::length(eye) <= kFarthest)) {
+      !(glm::length(eye) <= kFarthest))
     return false;
-  }
   out.camera.eye_ws = eye;
   out.camera.up_ws = glm::normalize(up);
   out.forward_ws = -glm::normalize(back);

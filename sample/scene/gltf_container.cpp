@@ -50,9 +50,8 @@ tl::expected<GltfParts, std::string> split_gltf(Bytes file) {
     at += kChunkHeader;
     if (length > file.size() - at) return refuse("reaches past the end of the file");
     if (length % 4 != 0) return refuse("has a length that is no multiple of 4");
-    if ((index == 0) != (type == kJson)) {
+    if ((index == 0) != (type == kJson))
       return refuse(index == 0 ? "is not of the type JSON" : "is JSON, as the first one is");
-    }
     if (type == kBinary && index != 1) return refuse("is binary data, which has to be chunk 1");
     if (type == kJson) parts.json = file.subspan(at, length);
     if (type == kBinary) parts.binary = file.subspan(at, length);

@@ -39,9 +39,8 @@ class LimitedDecoder : public Decoder {
   bool DecodeConnectivity() override {
     draco::DecoderBuffer ahead = *this->buffer();
     uint32_t faces = 0;
-    for (int i = 0; i <= counts_before_faces_; ++i) {
+    for (int i = 0; i <= counts_before_faces_; ++i)
       if (!draco::DecodeVarint(&faces, &ahead)) return false;
-    }
     // The edgebreaker algorithm has connectivity of its own for each of these.
     uint8_t attribute_sets = 0;
     if (counts_before_faces_ > 0 && !ahead.Decode(&attribute_sets)) return false;
@@ -78,9 +77,8 @@ bool decode(Bytes bytes, const Budget& budget, draco::Mesh& out) {
   draco::DecoderBuffer header_bytes = buffer;
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&header_bytes, &header).ok() ||
-      header.version_major != 2 || header.version_minor != 2) {
+      header.version_major != 2 || header.version_minor != 2)
     return false;
-  }
   const draco::DecoderOptions options;
   if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) {
     LimitedDecoder<draco::MeshSequentialDecoder> decoder(budget, 0);

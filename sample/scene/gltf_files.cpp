@@ -105,9 +105,8 @@ tl::expected<Bytes, std::string> data_of(const std::string& uri) {
 bool has_scheme(const std::string& uri) {
   const size_t colon = uri.find(':');
   if (colon == std::string::npos || colon < 2 ||
-      std::isalpha(static_cast<unsigned char>(uri[0])) == 0) {
+      std::isalpha(static_cast<unsigned char>(uri[0])) == 0)
     return false;
-  }
   return std::all_of(uri.begin(), uri.begin() + static_cast<ptrdiff_t>(colon), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '+' || c == '-' || c == '.';
   });
@@ -132,9 +131,7 @@ tl::expected<Bytes, std::string> read_regular_file(const fs::path& file, uint64_
                    " more are read for a scene");
   }
   Bytes out(size);
-  if (std::fread(out.data(), 1, size, stream) != size) {
-    return Failure("cannot be read to its end");
-  }
+  if (std::fread(out.data(), 1, size, stream) != size) return Failure("cannot be read to its end");
   return out;
 }
 

@@ -57,9 +57,8 @@ struct Entry {
 std::set<size_t> used_images(const Scene& scene) {
   std::set<size_t> out;
   for (const Mesh& mesh : scene.meshes) {
-    for (const TextureUse* use : scene.materials[mesh.material].textures()) {
+    for (const TextureUse* use : scene.materials[mesh.material].textures())
       if (use->image >= 0) out.insert(static_cast<size_t>(use->image));
-    }
   }
   return out;
 }
@@ -238,9 +237,8 @@ void add_images(const tinygltf::Model& model, GltfFiles& files, const ImageLimit
         {entry.name, entry.decoded->width, entry.decoded->height, std::move(entry.decoded->rgba)});
   }
   for (Material& material : scene.materials) {
-    for (TextureUse* use : material.textures()) {
+    for (TextureUse* use : material.textures())
       if (use->image >= 0) use->image = scene_image[static_cast<size_t>(use->image)];
-    }
   }
 }
 

@@ -49,9 +49,8 @@ tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
   Sampler out;
   for (const auto& [mode, wrap] : {std::pair{in.wrapS, &out.wrap_u}, {in.wrapT, &out.wrap_v}}) {
     if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT && mode != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE &&
-        mode != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) {
+        mode != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)
       return Failure("has a wrap mode unknown to glTF");
-    }
     *wrap = mode == TINYGLTF_TEXTURE_WRAP_REPEAT          ? Wrap::repeat
             : mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ? Wrap::clamp
                                                           : Wrap::mirror;
@@ -107,11 +106,9 @@ tl::expected<glm::mat3x2, std::string> texture_transform(const Value& transform)
   const double c = std::cos(rotation), s = std::sin(rotation);
   // The columns are the transformed u axis, v axis and origin.
   const glm::mat3x2 out(c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y);
-  for (int column = 0; column < 3; ++column) {
-    if (!std::isfinite(out[column].x) || !std::isfinite(out[column].y)) {
+  for (int column = 0; column < 3; ++column)
+    if (!std::isfinite(out[column].x) || !std::isfinite(out[column].y))
       return Failure("has a texture transform that is not of finite numbers");
-    }
-  }
   return out;
 }
 
@@ -123,15 +120,13 @@ tl::expected<TextureUse, std::string> read_texture(const tinygltf::Model& model,
   TextureUse use;
   use.uv_set = static_cast<uint32_t>(reference.set);
   const std::string name = std::to_string(reference.index);
-  if (static_cast<size_t>(reference.index) >= model.textures.size()) {
+  if (static_cast<size_t>(reference.index) >= model.textures.size())
     return Failure("has no texture " + name);
-  }
   const tinygltf::Texture& texture = model.textures[static_cast<size_t>(reference.index)];
   if (texture.sampler >= 0) {
     const std::string sampler_name = std::to_string(texture.sampler);
-    if (static_cast<size_t>(texture.sampler) >= model.samplers.size()) {
+    if (static_cast<size_t>(texture.sampler) >= model.samplers.size())
       return Failure("has a texture without its sampler " + sampler_name);
-    }
     const auto sampler = read_sampler(model.samplers[static_cast<size_t>(texture.sampler)]);
     if (!sampler) {
       scene.warnings.push_back("sampler " + sampler_name + " " + sampler.error() +
@@ -166,14 +161,12 @@ tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
   Material out;
   out.name = in.name;
   const auto& pbr = in.pbrMetallicRoughness;
-  for (size_t c = 0; c < 4; ++c) {
+  for (size_t c = 0; c < 4; ++c)
     out.base_color[static_cast<int>(c)] = clamped(pbr.baseColorFactor[c], 0.0, 1.0);
-  }
   out.metallic = clamped(pbr.metallicFactor, 0.0, 1.0);
   out.roughness = clamped(pbr.roughnessFactor, 0.0, 1.0);
-  for (size_t c = 0; c < 3 && !in.emissiveFactor.empty(); ++c) {
+  for (size_t c = 0; c < 3 && !in.emissiveFactor.empty(); ++c)
     out.emissive[static_cast<int>(c)] = clamped(in.emissiveFactor[c], 0.0, 1e6);
-  }
   out.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::mask
                    : in.alphaMode == "BLEND" ? AlphaMode::blend
                                              : AlphaMode::opaque;
@@ -193,9 +186,8 @@ tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
     if (!use) return Failure(use.error());
     *uses[i] = *use;
   }
-  if (!std::isfinite(static_cast<float>(in.normalTexture.scale))) {
+  if (!std::isfinite(static_cast<float>(in.normalTexture.scale)))
     return Failure("has a normal map whose scale is not finite");
-  }
   out.normal_scale = clamped(in.normalTexture.scale, -1e6, 1e6);
   return out;
 }

@@ -53,19 +53,16 @@ std::vector<uint32_t> compacted(std::vector<uint32_t>& indices) {
   vertices = indices;
   std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  for (uint32_t& i : indices) {
+  for (uint32_t& i : indices)
     i = static_cast<uint32_t>(std::ranges::lower_bound(vertices, i) - vertices.begin());
-  }
   return vertices;
 }
 
 // Reverses the winding of triangles that their transform mirrors.
 void turn_mirrored(const VertexTransforms& transforms, std::vector<uint32_t>& indices) {
-  for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-    if (glm::determinant(glm::dmat3(transforms.at(indices[i]))) < 0.0) {
+  for (size_t i = 0; i + 2 < indices.size(); i += 3)
+    if (glm::determinant(glm::dmat3(transforms.at(indices[i]))) < 0.0)
       std::swap(indices[i + 1], indices[i + 2]);
-    }
-  }
 }
 
 // Removes triangles without an area. They have no normal, cover no pixel and block no ray.
@@ -82,9 +79,8 @@ void drop_flat_faces(Mesh& mesh) {
 
 // Gives each corner its own vertex with the normal of its triangle.
 void make_flat_normals(Mesh& mesh) {
-  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+  for (size_t i = 0; i < mesh.indices.size(); i += 3)
     mesh.normals.insert(mesh.normals.end(), 3, glm::vec3(glm::normalize(area_of(mesh, i))));
-  }
   const auto expand = [&](auto& values) {
     if (values.empty()) return;
     const auto by_vertex = std::exchange(values, {});
@@ -172,9 +168,8 @@ class PrimitiveReader {
 
 PrimitiveReader::Read PrimitiveReader::read_triangles(int mode) {
   const auto position = static_cast<size_t>(attribute(primitive_.attributes, "POSITION"));
-  if (position >= model_.accessors.size()) {
+  if (position >= model_.accessors.size())
     return Failure("accessor " + std::to_string(position) + " does not exist");
-  }
   if (auto read = read_indices_of(model_.accessors[position]); !read) return read;
   mesh.indices = as_list(std::move(mesh.indices), mode);
   vertices_ = compacted(mesh.indices);
@@ -192,22 +187,19 @@ PrimitiveReader::Read PrimitiveReader::read_indices_of(const tinygltf::Accessor&
   // A few bytes of a file can name any number of vertices without data.
   constexpr uint64_t kMostWithoutData = uint64_t{1} << 22;
   if (vertices > std::min(budget_.vertices, budget_.indices) ||
-      (positions.bufferView < 0 && vertices > kMostWithoutData)) {
+      (positions.bufferView < 0 && vertices > kMostWithoutData))
     return Failure("has too many vertices: " + std::to_string(vertices));
-  }
   mesh.indices.resize(vertices);
   std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
   return {};
 }
 
 PrimitiveReader::Read PrimitiveReader::charge_budget() {
-  if (mesh.indices.size() > budget_.indices || vertices_.size() > budget_.vertices) {
+  if (mesh.indices.size() > budget_.indices || vertices_.size() > budget_.vertices)
     return Failure("takes the scene past the number of triangles that is read here");
-  }
   if (placement_.instances != nullptr) {
-    if (placement_.instances->size() > budget_.instances) {
+    if (placement_.instances->size() > budget_.instances)
       return Failure("takes the scene past the number of instances that is read here");
-    }
     budget_.instances -= placement_.instances->size();
     mesh.instances = *placement_.instances;
   }
@@ -234,17 +226,14 @@ tl::expected<std::vector<float>, std::string> PrimitiveReader::values(const std:
     const int delta = attribute(primitive_.targets[t], name);
     const auto weight = static_cast<float>((*placement_.morph_weights)[t]);
     if (delta < 0 || weight == 0.0f) continue;
-    if (budget_.vertices < vertices_.size()) {
+    if (budget_.vertices < vertices_.size())
       return Failure("takes the scene past the number of vertices of morph targets");
-    }
     charge(budget_.vertices, vertices_.size());
     const auto deltas = read_floats(model_, delta, 3, 0, &vertices_);
     if (!deltas) return deltas;
-    for (size_t v = 0; v < vertices_.size(); ++v) {
-      for (size_t c = 0; c < 3; ++c) {
+    for (size_t v = 0; v < vertices_.size(); ++v)
+      for (size_t c = 0; c < 3; ++c)
         (*sum)[v * static_cast<size_t>(components) + c] += weight * (*deltas)[3 * v + c];
-      }
-    }
   }
   return sum;
 }
@@ -357,9 +346,8 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
                                               const PrimitivePlacement& placement,
                                               GltfLimits& budget, Scene& scene) {
   const auto refuse = [&](const std::string& why) { return Failure("mesh " + name + " " + why); };
-  if (budget.primitives == 0) {
+  if (budget.primitives == 0)
     return refuse("takes the scene past the number of parts that is read here");
-  }
   --budget.primitives;
   // tinygltf stores -1 if the file gives no mode. The default is triangles.
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
@@ -367,9 +355,8 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
     scene.warnings.push_back("Mesh " + name + " has points or lines, which are left out.");
     return {};
   }
-  if (primitive.material >= static_cast<int>(model.materials.size())) {
+  if (primitive.material >= static_cast<int>(model.materials.size()))
     return refuse("has no material " + std::to_string(primitive.material));
-  }
   if (attribute(primitive.attributes, "POSITION") < 0) return {};
 
   Mesh mesh;

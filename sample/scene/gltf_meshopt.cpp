@@ -46,9 +46,8 @@ tl::expected<std::vector<uint8_t>, std::string> decompressed(const tinygltf::Mod
                            : filter == "QUATERNION" ? stride == 8
                                                     : true;
   if (attributes ? stride % 4 != 0 || !fits_filter
-                 : (stride != 2 && stride != 4) || (mode == "TRIANGLES" && count % 3 != 0)) {
+                 : (stride != 2 && stride != 4) || (mode == "TRIANGLES" && count % 3 != 0))
     return Failure("has a stride or count that does not suit its mode");
-  }
   if (count * stride > most_bytes) return Failure("is too large when it is decompressed");
   tinygltf::BufferView view;
   view.buffer = static_cast<int>(number(extension, "buffer"));
@@ -77,9 +76,7 @@ tl::expected<void, std::string> decompress_views(tinygltf::Model& model) {
     const tinygltf::Value* extension = compression(view);
     if (extension == nullptr) continue;
     auto data = decompressed(model, *extension, bytes_left);
-    if (!data) {
-      return Failure("compressed buffer view " + std::to_string(i) + " " + data.error());
-    }
+    if (!data) return Failure("compressed buffer view " + std::to_string(i) + " " + data.error());
     bytes_left -= data->size();
     view.buffer = static_cast<int>(model.buffers.size());
     view.byteOffset = 0;

@@ -123,9 +123,8 @@ void convert(const json& root, const char* name, std::vector<Element>& out,
   const auto found = root.find(name);
   if (found == root.end()) return;
   out.reserve(found->size());
-  for (const json& element : *found) {
+  for (const json& element : *found)
     if (!convert_one(&out.emplace_back(), element)) return;
-  }
 }
 
 // Converts the JSON to tinygltf's model by tinygltf's own functions, so that it is parsed once.

@@ -61,9 +61,8 @@ tl::expected<Roots, std::string> find_roots(const tinygltf::Model& model) {
   for (const tinygltf::Node& node : model.nodes) {
     for (const int child : node.children) {
       if (child >= count) return missing(child);
-      if (std::exchange(is_reached[static_cast<size_t>(child)], 1)) {
+      if (std::exchange(is_reached[static_cast<size_t>(child)], 1))
         return Failure("node " + std::to_string(child) + " is reached twice: it has two parents");
-      }
     }
   }
   Roots out;
@@ -84,9 +83,8 @@ tl::expected<Roots, std::string> find_roots(const tinygltf::Model& model) {
     }
   }
   out.drawn = out.nodes.size();
-  for (int node = 0; node < count; ++node) {
+  for (int node = 0; node < count; ++node)
     if (!is_reached[static_cast<size_t>(node)]) out.nodes.push_back(node);
-  }
   if (model.scenes.empty()) out.drawn = out.nodes.size();
   return out;
 }
@@ -104,9 +102,8 @@ tl::expected<void, std::string> check_references(const tinygltf::Model& model,
   if (!exists(node.mesh, model.meshes)) return refuse("mesh", node.mesh);
   if (!exists(node.skin, model.skins)) return refuse("skin", node.skin);
   if (node.skin < 0) return {};
-  for (const int joint : model.skins[static_cast<size_t>(node.skin)].joints) {
+  for (const int joint : model.skins[static_cast<size_t>(node.skin)].joints)
     if (!exists(joint, model.nodes)) return refuse("joint", joint);
-  }
   return {};
 }
 
@@ -119,14 +116,12 @@ std::vector<glm::dvec3> some_vertices(const tinygltf::Model& model,
   if (accessor < 0 || static_cast<size_t>(accessor) >= model.accessors.size()) return {};
   const uint64_t count = model.accessors[static_cast<size_t>(accessor)].count;
   std::vector<uint32_t> chosen;
-  for (uint64_t i = 0; i < std::min(count, kMost); ++i) {
+  for (uint64_t i = 0; i < std::min(count, kMost); ++i)
     chosen.push_back(static_cast<uint32_t>(count <= kMost ? i : i * ((count - 1) / (kMost - 1))));
-  }
   const auto values = read_floats(model, accessor, 3, 0, &chosen);
   std::vector<glm::dvec3> out;
-  for (size_t i = 0; values && i + 2 < values->size(); i += 3) {
+  for (size_t i = 0; values && i + 2 < values->size(); i += 3)
     out.emplace_back((*values)[i], (*values)[i + 1], (*values)[i + 2]);
-  }
   return out;
 }
 
@@ -171,9 +166,8 @@ tl::expected<NodeTree, std::string> read_nodes(const tinygltf::Model& model,
     bool drawn;
   };
   std::vector<Step> open;  // a stack: the last one is visited next
-  for (size_t i = roots->nodes.size(); i-- > 0;) {
+  for (size_t i = roots->nodes.size(); i-- > 0;)
     open.push_back({roots->nodes[i], glm::dmat4(1.0), i < roots->drawn});
-  }
   NodeTree out;
   out.world_from_node.assign(model.nodes.size(), glm::dmat4(1.0));
   size_t visited = 0;
@@ -186,9 +180,8 @@ tl::expected<NodeTree, std::string> read_nodes(const tinygltf::Model& model,
     out.world_from_node[index] = world;
     const bool drawn = step.drawn && !is_hidden(node);
     if (drawn) out.drawn.push_back({index, {}});
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
       open.push_back({*child, world, drawn});
-    }
   }
   // Each node has one parent at most, so that only those of a cycle have not been visited.
   if (visited < model.nodes.size()) return Failure("some of its nodes form a cycle");
@@ -215,9 +208,8 @@ glm::dvec3 chosen_origin(const tinygltf::Model& model, const NodeTree& nodes) {
     return percentile(std::move(values), share);
   };
   glm::dvec3 centre(0.0);
-  for (int c = 0; c < 3; ++c) {
+  for (int c = 0; c < 3; ++c)
     centre[c] = quantile(0.5, [c](const glm::dvec3& at) { return at[c]; });
-  }
   const double size =
       quantile(0.75, [&](const glm::dvec3& at) { return glm::distance(at, centre); });
   const double away = glm::length(centre);
@@ -247,9 +239,8 @@ tl::expected<NodeInstances, std::string> NodeInstances::read(const tinygltf::Mod
                               attribute.components, most);
     if (!values) return Failure("has instances whose " + values.error());
     const size_t elements = values->size() / static_cast<size_t>(attribute.components);
-    if (count.value_or(elements) != elements) {
+    if (count.value_or(elements) != elements)
       return Failure("has instances whose attributes differ in number");
-    }
     count = elements;
     attribute.values = std::move(*values);
   }

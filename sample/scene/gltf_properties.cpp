@@ -253,11 +253,10 @@ std::string shown(double value) {
 std::string expectation(const Property& property, bool one) {
   const bool bounded_above = property.high<kAny, bounded_below = property.low> - kAny;
   std::string range;
-  if (bounded_below && bounded_above) {
+  if (bounded_below && bounded_above)
     range = " from " + shown(property.low) + " to " + shown(property.high);
-  } else if (bounded_below) {
+  else if (bounded_below)
     range = " of at least " + shown(property.low);
-  }
   if (property.count != kSingle && !one) {
     const std::string count =
         property.count == kAnyNumber ? "" : std::to_string(property.count) + " ";
@@ -280,9 +279,8 @@ std::string expectation(const Property& property, bool one) {
   }
   if (property.choices.empty()) return "a string";
   std::string all(property.choices);
-  for (size_t bar = all.find('|'); bar != std::string::npos; bar = all.find('|')) {
+  for (size_t bar = all.find('|'); bar != std::string::npos; bar = all.find('|'))
     all.replace(bar, 1, ", ");
-  }
   return "one of " + all;
 }
 
@@ -291,9 +289,8 @@ std::string shown(const json& value) {
   constexpr size_t kLongest = 40;  // bytes
   if (value.is_object()) return "an object";
   if (value.is_array()) return "an array of " + std::to_string(value.size()) + " elements";
-  if (value.is_string() && value.get_ref<const std::string&>().size() > kLongest) {
+  if (value.is_string() && value.get_ref<const std::string&>().size() > kLongest)
     return "a string of " + std::to_string(value.get_ref<const std::string&>().size()) + " bytes";
-  }
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -351,9 +348,8 @@ class Copier {
 
   Checked take(json& from, json& to) {
     if (property_->count == kSingle) return take_value(from, to, false);
-    if (!from.is_array() || (property_->count != kAnyNumber && from.size() != property_->count)) {
+    if (!from.is_array() || (property_->count != kAnyNumber && from.size() != property_->count))
       return wrong(from, false);
-    }
     to = json::array();
     for (size_t i = 0; i < from.size(); ++i) {
       place_.emplace_back(i);
@@ -367,13 +363,12 @@ class Copier {
 
   Checked take_value(json& from, json& to, bool of_array) {
     if (!fits(from)) return wrong(from, of_array);
-    if (property_->type == Type::object) {
+    if (property_->type == Type::object)
       to = json::object();
-    } else if (property_->type == Type::whole && from.is_number_float()) {
+    else if (property_->type == Type::whole && from.is_number_float())
       to = static_cast<uint64_t>(from.get<double>());
-    } else {
+    else
       to = std::move(from);
-    }
     return {};
   }
 
@@ -438,9 +433,8 @@ class Copier {
 tl::expected<json, std::string> checked_properties(json root) {
   json out = json::object();
   Copier copier;
-  for (const Property& property : kProperties) {
+  for (const Property& property : kProperties)
     if (auto copied = copier.copy(property, root, out); !copied) return Failure(copied.error());
-  }
   return out;
 }
 

@@ -55,11 +55,10 @@ class NodeReader {
     std::vector<glm::mat4x3> shared;
     std::vector<glm::dmat4> apart;
     const auto place = [&](const glm::dmat4& world) {
-      if (count > 1 && can_be_instance(world)) {
+      if (count > 1 && can_be_instance(world))
         shared.emplace_back(world);
-      } else {
+      else
         apart.push_back(world);
-      }
     };
     for (const DrawnNode* drawn : nodes) {
       const glm::dmat4 world = world_of(drawn->node);
@@ -72,9 +71,8 @@ class NodeReader {
         previous = instance;
       }
     }
-    for (const glm::dmat4& world : apart) {
+    for (const glm::dmat4& world : apart)
       if (auto added = add_mesh(node, PrimitivePlacement{world}); !added) return added;
-    }
     if (shared.empty()) return {};
     return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), nullptr, &shared});
   }

@@ -21,19 +21,16 @@ tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
   const tinygltf::Skin& skin = model.skins[static_cast<size_t>(index)];
   const std::string name = "has skin " + std::to_string(index) + ", which ";
   constexpr size_t kMost = UINT16_MAX + size_t{1};  // JOINTS_n are 16-bit at most
-  if (skin.joints.empty() || skin.joints.size() > kMost) {
+  if (skin.joints.empty() || skin.joints.size() > kMost)
     return Failure(name + "has " + std::to_string(skin.joints.size()) + " joints");
-  }
-  if (skin.joints.size() > most) {
+  if (skin.joints.size() > most)
     return Failure(name + "takes the scene past the number of joints that is read here");
-  }
   std::vector<float> inverse_bind;
   if (skin.inverseBindMatrices >= 0) {
     auto read = read_floats(model, skin.inverseBindMatrices, 16, kMost);
     if (!read) return Failure(name + read.error());
-    if (read->size() < 16 * skin.joints.size()) {
+    if (read->size() < 16 * skin.joints.size())
       return Failure(name + "has fewer inverse bind matrices than joints");
-    }
     inverse_bind = std::move(*read);
   }
   std::vector<glm::dmat4> out;
@@ -94,9 +91,8 @@ tl::expected<VertexTransforms, std::string> VertexTransforms::skinned(
 glm::dmat4 VertexTransforms::at(size_t vertex) const {
   if (influences_ == 0) return transform_;
   glm::dmat4 sum(0.0);
-  for (size_t i = vertex * influences_; i < (vertex + 1) * influences_; ++i) {
+  for (size_t i = vertex * influences_; i < (vertex + 1) * influences_; ++i)
     if (weight_of_[i] > 0.0f) sum += (*joints_)[joint_of_[i]] * static_cast<double>(weight_of_[i]);
-  }
   return sum;
 }
 

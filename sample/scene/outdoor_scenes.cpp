@@ -54,9 +54,7 @@ void add_bush(SceneBuilder& b, std::uint32_t leaf, std::uint32_t wood, glm::vec3
     const float flat = std::sqrt(1.0f - height * height);
     const glm::vec3 out{flat * std::cos(angle), height, flat * std::sin(angle)};
     const glm::vec3 at = centre + out * (radius * std::sqrt(random.in(0.2f, 1.0f)));
-    if (at.y < 0.05f) {
-      continue;
-    }
+    if (at.y < 0.05f) continue;
     b.world_from_shape = glm::rotate(
         glm::rotate(moved(at), random.in(0.0f, glm::two_pi<float>()), glm::vec3(0, 1, 0)),
         random.in(-1.2f, 1.2f), glm::vec3(1, 0, 0));
@@ -85,13 +83,9 @@ void add_fence(SceneBuilder& b, std::uint32_t paint) {
     b.box({x - 0.035f, 0.06f, -0.01f}, {x + 0.035f, 1.12f, 0.01f});
     b.quad({x - 0.035f, 1.12f, 0.0f}, {x + 0.035f, 1.12f, 0.0f}, {x, 1.19f, 0.0f},
            {x, 1.19f, 0.0f});
-    if (i % 12 == 0) {
-      b.box({x - 0.05f, 0.0f, -0.14f}, {x + 0.05f, 1.25f, -0.05f});
-    }
+    if (i % 12 == 0) b.box({x - 0.05f, 0.0f, -0.14f}, {x + 0.05f, 1.25f, -0.05f});
   }
-  for (const float y : {0.3f, 0.9f}) {
-    b.box({-5.1f, y, -0.05f}, {5.1f, y + 0.08f, -0.01f});
-  }
+  for (const float y : {0.3f, 0.9f}) b.box({-5.1f, y, -0.05f}, {5.1f, y + 0.08f, -0.01f});
 }
 
 // Height of the terrain at a point.
@@ -185,9 +179,8 @@ Scene fence_scene() {
   add_bush(b, leaf, wood, {2.6f, 0.85f, -1.0f}, 0.8f, 2800, random);
   add_bush(b, leaf, wood, {-0.7f, 0.45f, 0.9f}, 0.42f, 1200, random);
   b.use(grass);
-  for (int i = 0; i < 900; ++i) {
+  for (int i = 0; i < 900; ++i)
     add_tuft(b, {random.in(-5.0f, 5.0f), 0.0f, random.in(-2.0f, 2.6f)}, random);
-  }
   Scene scene = b.finish("fence");
   scene.suggested_radius = 0.5f;
   scene.cameras = {camera("fence", {-2.6f, 1.3f, 3.0f}, {0.2f, 0.55f, -0.4f}, 60.0f),

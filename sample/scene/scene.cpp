@@ -43,9 +43,8 @@ glm::dvec3 area_of(const Mesh& mesh, size_t first) {
 
 const Camera* find_camera(const Scene& scene, const std::string& name) {
   if (name.empty()) return scene.cameras.empty() ? nullptr : &scene.cameras.front();
-  for (const Camera& camera : scene.cameras) {
+  for (const Camera& camera : scene.cameras)
     if (camera.name == name) return &camera;
-  }
   return nullptr;
 }
 

@@ -20,9 +20,8 @@ glm::vec2 edge_normal(glm::vec2 from, glm::vec2 to) {
 std::vector<std::pair<glm::vec2, glm::vec2>> profile_normals(std::span<const glm::vec2> profile) {
   const float gentle = std::cos(glm::radians(40.0f));
   std::vector<glm::vec2> edges;
-  for (size_t i = 0; i + 1 < profile.size(); ++i) {
+  for (size_t i = 0; i + 1 < profile.size(); ++i)
     edges.push_back(edge_normal(profile[i], profile[i + 1]));
-  }
   const auto blend = [&](size_t own, size_t other) {
     if (glm::dot(edges[own], edges[other]) < gentle) return edges[own];
     return glm::normalize(edges[own] + edges[other]);

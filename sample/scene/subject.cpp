@@ -36,9 +36,8 @@ struct WorldTriangle {
 void join_touching(const std::vector<glm::vec3>& positions, DisjointSets& sets) {
   std::vector<glm::uvec3> rounded;
   rounded.reserve(positions.size());
-  for (const glm::vec3& p : positions) {
+  for (const glm::vec3& p : positions)
     rounded.push_back((glm::floatBitsToUint(p + 0.0f) + 8u) & ~15u);  // -0 becomes 0
-  }
   std::vector<uint32_t> remap(positions.size()), first(positions.size(), UINT32_MAX);
   meshopt_generateVertexRemap(remap.data(), nullptr, rounded.size(), rounded.data(), rounded.size(),
                               sizeof(glm::uvec3));
@@ -59,11 +58,10 @@ class Parts {
       vertices += mesh_of(instance).positions.size();
       if (vertices > kMostVertices) break;
     }
-    if (vertices > kMostVertices) {
+    if (vertices > kMostVertices)
       take_instances();
-    } else {
+    else
       connect(vertices);
-    }
   }
 
   const std::vector<Part>& all() const { return parts_; }
@@ -80,9 +78,8 @@ class Parts {
         const size_t part = part_of(i, mesh.indices[k]);
         if (!chosen[part]) continue;
         WorldTriangle triangle;
-        for (size_t c = 0; c < 3; ++c) {
+        for (size_t c = 0; c < 3; ++c)
           triangle.corners[c] = world * glm::dvec4(mesh.positions[mesh.indices[k + c]], 1.0);
-        }
         const auto& [a, b, c] = triangle.corners;
         triangle.normal = side * glm::cross(b - a, c - a);
         triangle.double_sided = scene_.materials[mesh.material].double_sided;
@@ -104,9 +101,8 @@ class Parts {
     std::vector<double> areas;  // by mesh
     for (const Mesh& mesh : scene_.meshes) {
       double area = 0.0;
-      for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
         area += 0.5 * glm::length(area_of(mesh, i));
-      }
       areas.push_back(area);
     }
     for (const MeshInstance& instance : instances_) {
@@ -189,9 +185,8 @@ std::vector<uint32_t> greatest_group(const std::vector<Part>& parts, std::vector
         const Side& greater = keep_below ? below : above[i + 1];
         const Side& smaller = keep_below ? above[i + 1] : below;
         const double size = diagonal(greater.bounds);
-        if (size >= smallest || gap <= kWidestGap * size * std::sqrt(smaller.area / greater.area)) {
+        if (size >= smallest || gap <= kWidestGap * size * std::sqrt(smaller.area / greater.area))
           continue;
-        }
         smallest = size;
         const auto cut = group.begin() + static_cast<ptrdiff_t>(i) + 1;
         rest = keep_below ? std::vector(group.begin(), cut) : std::vector(cut, group.end());
@@ -221,9 +216,8 @@ std::array<glm::dvec3, kRays> ray_directions() {
   }
   out[kSides + 4] = {0.011, 1.0, 0.017};
   out[kDown] = {0.011, -1.0, 0.017};
-  for (size_t i = 0; i < kSidesOfSubject.size(); ++i) {
+  for (size_t i = 0; i < kSidesOfSubject.size(); ++i)
     out[kToEyes + i] = glm::normalize(glm::dvec3(kSidesOfSubject[i]));
-  }
   return out;
 }
 
@@ -316,9 +310,8 @@ Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidat
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Bounds& bounds = parts[candidates[i]].bounds_ws;
     const bool flat = enclosures[i].is_plane_behind(centre, bounds);
-    if (!flat && !(enclosures[i].is_sheet() && enclosures[i].directions(0, kDown) >= 2)) {
+    if (!flat && !(enclosures[i].is_sheet() && enclosures[i].directions(0, kDown) >= 2))
       return Kind::subject;
-    }
     all_flat &= flat;
     all_behind &= flat || (contains(bounds, rest.low + 0.05f * (rest.high - rest.low)) &&
                            contains(bounds, rest.high - 0.05f * (rest.high - rest.low)));
@@ -337,9 +330,8 @@ Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidat
   if (walled && roofed) {
     const auto fronts = std::count(all.shows_front.begin(), all.shows_front.begin() + kDown, true);
     // Without fronts inside, the candidates are a body with inner parts, or a sky turned outwards.
-    if (2 * fronts < static_cast<ptrdiff_t>(kDown) && !(all.double_sided && ratio > 8.0)) {
+    if (2 * fronts < static_cast<ptrdiff_t>(kDown) && !(all.double_sided && ratio > 8.0))
       return Kind::subject;
-    }
     const double floor = centre.y - rest.low.y + 0.1 * diagonal(rest);
     const bool stands = all.nearest[kDown] <= floor;
     if (stands && all.upright_area > 0.6 * all.area && ratio < 64.0) return Kind::room;
@@ -448,11 +440,10 @@ Subject find_subject(const Scene& scene) {
   for (size_t p = 0; p < parts.size(); ++p) {
     const Bounds& bounds = parts[p].bounds_ws;
     if (!grouped[p] &&
-        !(contains(around, glm::vec3(centre_of(bounds))) && diagonal(bounds) < largest)) {
+        !(contains(around, glm::vec3(centre_of(bounds))) && diagonal(bounds) < largest))
       out.triangles_outside += parts[p].triangles;
-    } else if (sampled) {
+    else if (sampled)
       out.bounds_ws = united(out.bounds_ws, bounds);
-    }
   }
   return out;
 }

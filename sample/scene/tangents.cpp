@@ -106,9 +106,7 @@ void TangentBuilder::group_corners() {
     return uint64_t{vertex_of_[from]} << 32 | vertex_of_[to];
   };
   std::vector<Edge> edges(vertex_of_.size());
-  for (uint32_t i = 0; i < edges.size(); ++i) {
-    edges[i] = {key(i, next_corner(i)), i};
-  }
+  for (uint32_t i = 0; i < edges.size(); ++i) edges[i] = {key(i, next_corner(i)), i};
   const auto by_key = [](const Edge& a, const Edge& b) { return a.key < b.key; };
   std::sort(edges.begin(), edges.end(), by_key);
   for (const bool known : {true, false}) {

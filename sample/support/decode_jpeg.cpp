@@ -146,9 +146,8 @@ tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
   // 64 pixels has at least one code. Interleaved sampling and arithmetic coding can save a little
   // more.
   constexpr uint64_t kMostPixelsPerByte = 2048;
-  if (uint64_t{reader.width()} * reader.height() / kMostPixelsPerByte > bytes.size()) {
+  if (uint64_t{reader.width()} * reader.height() / kMostPixelsPerByte > bytes.size())
     return Failure("is cut short");
-  }
   return ImageHeader{ImageFormat::jpeg, reader.width(), reader.height()};
 }
 

@@ -87,9 +87,7 @@ tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
   // Deflate compresses at most 1032 bytes into one (RFC 1951: 258 bytes into 2 bits).
   constexpr uint64_t kBestRatio = 1032;
   const uint64_t row = 1 + (uint64_t{reader.width()} * reader.bits_per_pixel() + 7) / 8;
-  if (row * reader.height() / kBestRatio > bytes.size()) {
-    return Failure("is cut short");
-  }
+  if (row * reader.height() / kBestRatio > bytes.size()) return Failure("is cut short");
   // Larger images take seconds to decode, and interlaced ones a gibibyte of memory. Those with real
   // contents have more bytes.
   constexpr uint64_t kManyPixels = uint64_t{1} << 26, kMostPixelsPerByte = 64;

@@ -129,9 +129,8 @@ Outcome write_png_channels(const std::filesystem::path& file, const Channels& in
   image.format = in.count == 1 ? PNG_FORMAT_GRAY : PNG_FORMAT_RGB;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::vector<uint8_t> encoded(size);
-  if (png_image_write_to_memory(&image, encoded.data(), &size, 0, pixels.data(), 0, nullptr) == 0) {
+  if (png_image_write_to_memory(&image, encoded.data(), &size, 0, pixels.data(), 0, nullptr) == 0)
     return failure(file, image.message);
-  }
   return write_bytes(file, encoded.data(), size);
 }
 

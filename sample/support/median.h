@@ -10,9 +10,7 @@ namespace alcove::sample {
 // if there are no values.
 template <class T>
 [[nodiscard]] T median(std::vector<T> values) {
-  if (values.empty()) {
-    return T{};
-  }
+  if (values.empty()) return T{};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -22,9 +20,7 @@ template <class T>
 // down. 0 if there are no values.
 template <class T>
 [[nodiscard]] T percentile(std::vector<T> values, double share) {
-  if (values.empty()) {
-    return T{};
-  }
+  if (values.empty()) return T{};
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + rank);
   return values[static_cast<std::size_t>(rank)];

@@ -21,9 +21,8 @@ size_t character_size(std::string_view text) {
   if (first < 0xe0) return 2;
   // Overlong encodings, halves of a surrogate pair and values above U+10FFFF are not valid.
   if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
-      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f) || !continues(text, 2)) {
+      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f) || !continues(text, 2))
     return 0;
-  }
   if (first < 0xf0) return 3;
   return continues(text, 3) ? 4 : 0;
 }
@@ -37,13 +36,12 @@ std::string printable(std::string_view text) {
   out.reserve(text.size());
   while (!text.empty()) {
     const size_t size = character_size(text);
-    if (size == 0) {
+    if (size == 0)
       out += "\xef\xbf\xbd";
-    } else if (is_control(text.front())) {
+    else if (is_control(text.front()))
       out += ' ';
-    } else {
+    else
       out += text.substr(0, size);
-    }
     text.remove_prefix(size == 0 ? 1 : size);
   }
   return out;

@@ -28,16 +28,14 @@ class FileStream : public Imf::IStream {
 
   bool read(char* out, int size) override {
     if (size < 0 ||
-        std::fread(out, 1, static_cast<size_t>(size), file_) != static_cast<size_t>(size)) {
+        std::fread(out, 1, static_cast<size_t>(size), file_) != static_cast<size_t>(size))
       throw std::runtime_error("it is cut short");
-    }
     return true;
   }
   uint64_t tellg() override { return static_cast<uint64_t>(std::ftell(file_)); }
   void seekg(uint64_t position) override {
-    if (position > INT64_MAX || std::fseek(file_, static_cast<long>(position), SEEK_SET) != 0) {
+    if (position > INT64_MAX || std::fseek(file_, static_cast<long>(position), SEEK_SET) != 0)
       throw std::runtime_error("it is cut short");
-    }
   }
   void clear() override { std::clearerr(file_); }
 
@@ -134,9 +132,8 @@ tl::expected<void, std::string> check_attributes(std::FILE* file) {
   const long end = std::fseek(file, 0, SEEK_END) == 0 ? std::ftell(file) : -1;
   std::rewind(file);
   uint32_t magic = 0, version = 0;
-  if (!read_word(file, magic) || !read_word(file, version) || magic != kMagic) {
+  if (!read_word(file, magic) || !read_word(file, version) || magic != kMagic)
     return Failure("is no OpenEXR file");
-  }
   std::string name, type;
   // A header ends with an empty name. The list of headers of a multi-part file ends with another
   // empty name.
@@ -149,14 +146,12 @@ tl::expected<void, std::string> check_attributes(std::FILE* file) {
     }
     new_header = false;
     uint32_t size = 0;
-    if (!read_name(file, type) || !read_word(file, size)) {
+    if (!read_name(file, type) || !read_word(file, size))
       return Failure("is cut short in its header");
-    }
     const long begin = std::ftell(file);
     if (begin < 0 || int64_t{size} > int64_t{end} - begin || !has_size(file, type, size) ||
-        std::fseek(file, begin + static_cast<long>(size), SEEK_SET) != 0) {
+        std::fseek(file, begin + static_cast<long>(size), SEEK_SET) != 0)
       return Failure("is damaged: its attribute " + name + " has a wrong size");
-    }
   }
   std::rewind(file);
   return {};
@@ -172,17 +167,15 @@ struct Size {
 uint64_t bytes_per_pixel(const Imf::Header& header) {
   uint64_t bytes = 0;
   const Imf::ChannelList& channels = header.channels();
-  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel)
     bytes += channel.channel().type == Imf::HALF ? 2 : 4;
-  }
   return bytes;
 }
 
 // Checks the sizes for which OpenEXR allocates memory, before it allocates any.
 tl::expected<Size, std::string> check_header(const Imf::Header& header) {
-  if (header.hasType() && Imf::isDeepData(header.type())) {
+  if (header.hasType() && Imf::isDeepData(header.type()))
     return Failure("is a deep image; flatten it first");
-  }
   const Imath::Box2i& window = header.dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1;
   const int64_t height = int64_t{window.max.y} - window.min.y + 1;
@@ -194,17 +187,15 @@ tl::expected<Size, std::string> check_header(const Imf::Header& header) {
   // decompressed block in memory.
   constexpr uint64_t kMostRowBytes = uint64_t{1} << 20;
   const uint64_t pixel = bytes_per_pixel(header);
-  if (static_cast<uint64_t>(width) * pixel > kMostRowBytes) {
+  if (static_cast<uint64_t>(width) * pixel > kMostRowBytes)
     return Failure("has rows of over 1 MiB; remove the channels that are not needed");
-  }
   if (header.hasTileDescription()) {
     constexpr uint64_t kMostTileRowBytes = uint64_t{1} << 28;
     const Imf::TileDescription& tiles = header.tileDescription();
     const uint64_t columns = std::max<uint64_t>(static_cast<uint64_t>(width), tiles.xSize);
     if (tiles.xSize > 2 * kLargestFloatSide || tiles.ySize > 2 * kLargestFloatSide ||
-        columns * tiles.ySize * pixel > kMostTileRowBytes) {
+        columns * tiles.ySize * pixel > kMostTileRowBytes)
       return Failure("has tiles that are too large to be read");
-    }
   }
   return Size{static_cast<uint32_t>(width), static_cast<uint32_t>(height), window.min.y,
               window.min.x};

@@ -46,9 +46,8 @@ tl::expected<Size, std::string> read_size(const std::string& line) {
   std::string_view text = line;
   const uint32_t height = read_side(text, "-Y ");
   const uint32_t width = read_side(text, " +X ");
-  if (height == 0 || width == 0) {
+  if (height == 0 || width == 0)
     return Failure("has no size of the form \"-Y HEIGHT +X WIDTH\"; save it anew, unrotated");
-  }
   if (width > kLargestFloatSide || height > kLargestFloatSide) {
     return Failure("is " + std::to_string(width) + "x" + std::to_string(height) +
                    " pixels, and a side may have at most " + std::to_string(kLargestFloatSide));
@@ -59,15 +58,13 @@ tl::expected<Size, std::string> read_size(const std::string& line) {
 tl::expected<Size, std::string> read_header(std::FILE* file) {
   constexpr int kMostLines = 1000;
   const auto first = read_line(file);
-  if (!first || !(first->starts_with("#?RADIANCE") || first->starts_with("#?RGBE"))) {
+  if (!first || !(first->starts_with("#?RADIANCE") || first->starts_with("#?RGBE")))
     return Failure("is no Radiance file");
-  }
   for (int i = 0; i < kMostLines; ++i) {
     const auto line = read_line(file);
     if (!line) break;
-    if (line->starts_with("FORMAT=") && !line->starts_with("FORMAT=32-bit_rle_rgbe")) {
+    if (line->starts_with("FORMAT=") && !line->starts_with("FORMAT=32-bit_rle_rgbe"))
       return Failure("has pixels of another kind than 32-bit_rle_rgbe; save it anew");
-    }
     if (!line->empty()) continue;
     const auto size = read_line(file);
     return size ? read_size(*size) : Failure("is cut short");
@@ -127,9 +124,8 @@ bool read_row(std::FILE* file, std::vector<Rgbe>& row) {
                            first[1] == 2 && first[2] < 128;
   if (!by_channels) return read_old_row(file, row, first);
   if (width != row.size()) return false;
-  for (size_t channel = 0; channel < 4; ++channel) {
+  for (size_t channel = 0; channel < 4; ++channel)
     if (!read_channel(file, row, channel)) return false;
-  }
   return true;
 }
 

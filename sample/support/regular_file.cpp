@@ -10,9 +10,8 @@ tl::expected<FilePointer, std::string> open_regular_file(const std::filesystem::
   using Failure = tl::unexpected<std::string>;
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     return Failure("is not a regular file");
-  }
   FilePointer opened(std::fopen(file.string().c_str(), "rb"));
   if (!opened) return Failure(std::string("cannot be opened: ") + std::strerror(errno));
   return opened;

@@ -7,17 +7,13 @@ namespace {
 
 std::string list_of(const std::vector<glm::vec2>& points) {
   std::string list;
-  for (const glm::vec2 point : points) {
-    list += fmt::format("{:.2f},{:.2f} ", point.x, point.y);
-  }
+  for (const glm::vec2 point : points) list += fmt::format("{:.2f},{:.2f} ", point.x, point.y);
   return list;
 }
 
 std::string escaped(std::string_view text) {
   std::string result;
-  for (const char c : text) {
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
-  }
+  for (const char c : text) result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
   return result;
 }
 

@@ -68,9 +68,8 @@ tl::expected<OutputFolder, std::string> OutputFolder::create(const fs::path& fol
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
     fs::remove(*folder, ignored);  // fails if it is not empty
-  }
 }
 
 Outcome write_whole(const fs::path& file, const std::function<Outcome(const fs::path&)>& write) {
@@ -103,9 +102,8 @@ void remove_abandoned(const fs::path& folder) {
     const auto written = fs::last_write_time(entry->path(), unknown);
     const std::string ending = entry->path().extension().string();
     if (!unknown && ending.starts_with(kPart) && entry->is_regular_file(unknown) &&
-        fs::file_time_type::clock::now() - written > kAge) {
+        fs::file_time_type::clock::now() - written > kAge)
       fs::remove(entry->path(), unknown);
-    }
   }
 }
 

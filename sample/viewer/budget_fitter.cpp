@@ -18,11 +18,9 @@ constexpr std::size_t kTimes = 32;
 
 double occlusion_ms(const std::vector<PassTime>& times) {
   double sum = 0.0;
-  for (const PassTime& time : times) {
-    if (std::ranges::find(kOcclusionPasses, time.pass) != kOcclusionPasses.end()) {
+  for (const PassTime& time : times)
+    if (std::ranges::find(kOcclusionPasses, time.pass) != kOcclusionPasses.end())
       sum += time.milliseconds;
-    }
-  }
   return sum;
 }
 
@@ -37,9 +35,7 @@ passes::OcclusionSettings BudgetFitter::fit(const passes::Budget& budget,
     frames_ = 0;
   }
   if (++frames_ > kFramesInFlight) {
-    if (milliseconds_.size() == kTimes) {
-      milliseconds_.erase(milliseconds_.begin());
-    }
+    if (milliseconds_.size() == kTimes) milliseconds_.erase(milliseconds_.begin());
     milliseconds_.push_back(occlusion_ms(times));
   }
   const auto fitted = passes::fit_budget(budget, milliseconds_, settings);

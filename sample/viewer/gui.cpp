@@ -33,9 +33,7 @@ tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& wi
   std::unique_ptr<Gui> made(new Gui(device));
   made->framebuffers_.resize(gpu.frames_in_flight(), VK_NULL_HANDLE);
   VkResult result = made->create_render_pass(format);
-  if (result == VK_SUCCESS) {
-    result = made->create_pool();
-  }
+  if (result == VK_SUCCESS) result = made->create_pool();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   choose_style(window.content_scale());
@@ -53,9 +51,8 @@ tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& wi
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     made->on_device_ = ImGui_ImplVulkan_Init(&info, made->render_pass_);
   }
-  if (!made->on_window_ || !made->on_device_) {
+  if (!made->on_window_ || !made->on_device_)
     return device_failure("create what the panel is drawn with", result);
-  }
   auto uploaded = gpu.run([](Graph& graph) -> tl::expected<void, std::string> {
     auto pass = graph.add_pass("upload");
     pass.side_effect();  // on an image of ImGui's own, which synchronises it
@@ -64,25 +61,16 @@ tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& wi
     return {};
   });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
-  if (!uploaded) {
-    return Failure(uploaded.error());
-  }
+  if (!uploaded) return Failure(uploaded.error());
   return made;
 }
 
 Gui::~Gui() {
-  if (on_device_) {
-    ImGui_ImplVulkan_Shutdown();
-  }
-  if (on_window_) {
-    ImGui_ImplGlfw_Shutdown();
-  }
-  if (ImGui::GetCurrentContext() != nullptr) {
-    ImGui::DestroyContext();
-  }
-  for (const VkFramebuffer framebuffer : framebuffers_) {
+  if (on_device_) ImGui_ImplVulkan_Shutdown();
+  if (on_window_) ImGui_ImplGlfw_Shutdown();
+  if (ImGui::GetCurrentContext() != nullptr) ImGui::DestroyContext();
+  for (const VkFramebuffer framebuffer : framebuffers_)
     vkDestroyFramebuffer(device_.device(), framebuffer, nullptr);
-  }
   vkDestroyRenderPass(device_.device(), render_pass_, nullptr);
   vkDestroyDescriptorPool(device_.device(), pool_, nullptr);
 }
@@ -150,9 +138,8 @@ void Gui::record(RecordContext& context, Texture target) {
                                      .width = size.width,
                                      .height = size.height,
                                      .layers = 1};
-  if (vkCreateFramebuffer(device, &info, nullptr, &framebuffer) != VK_SUCCESS) {
+  if (vkCreateFramebuffer(device, &info, nullptr, &framebuffer) != VK_SUCCESS)
     return;  // a frame without a panel
-  }
   const VkRenderPassBeginInfo begin{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                     .renderPass = render_pass_,
                                     .framebuffer = framebuffer,

@@ -25,11 +25,8 @@ template <typename Choice, typename Names>
 void combo(const char* label, Choice& value, const Names& names) {
   const auto now = static_cast<std::size_t>(value);
   if (ImGui::BeginCombo(label, names[now].data())) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (ImGui::Selectable(names[i].data(), i == now)) {
-        value = static_cast<Choice>(i);
-      }
-    }
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (ImGui::Selectable(names[i].data(), i == now)) value = static_cast<Choice>(i);
     ImGui::EndCombo();
   }
 }
@@ -38,9 +35,7 @@ void combo(const char* label, Choice& value, const Names& names) {
 // maximum.
 SettingRange slider_range(const SettingInfo& info) {
   SettingRange range = std::isinf(info.range.maximum) ? info.slider : info.range;
-  if (range.above_minimum) {
-    range.minimum += 0.01f * (range.maximum - range.minimum);
-  }
+  if (range.above_minimum) range.minimum += 0.01f * (range.maximum - range.minimum);
   return range;
 }
 
@@ -54,11 +49,8 @@ void widget(const SettingInfo& info, float& value, float unit) {
 void widget(const SettingInfo& info, std::uint32_t& value, float /*unit*/) {
   if (info.range.power_of_two) {
     if (ImGui::BeginCombo(info.name, std::to_string(value).c_str())) {
-      for (std::uint32_t choice = 1; info.range.contains(choice); choice *= 2) {
-        if (ImGui::Selectable(std::to_string(choice).c_str(), choice == value)) {
-          value = choice;
-        }
-      }
+      for (std::uint32_t choice = 1; info.range.contains(choice); choice *= 2)
+        if (ImGui::Selectable(std::to_string(choice).c_str(), choice == value)) value = choice;
       ImGui::EndCombo();
     }
     return;
@@ -94,9 +86,8 @@ constexpr const char* kKeys =
 void lay_out_picture(ViewState& state, const PanelFacts& facts) {
   combo("picture", state.picture, kPictureNames);
   combo("compare with", state.comparison, kComparisonNames);
-  if (state.comparison != Comparison::none) {
+  if (state.comparison != Comparison::none)
     ImGui::SliderFloat("split position", &state.split, 0.0f, 1.0f, "%.2f");
-  }
   ImGui::BeginDisabled(!facts.refusal.empty());
   if (ImGui::Button("keep settings for comparison")) {
     state.saved = state.settings;
@@ -112,16 +103,13 @@ void lay_out_picture(ViewState& state, const PanelFacts& facts) {
 void lay_out_settings(OcclusionSettings& settings, float radius) {
   const auto lay_out = [&](bool advanced) {
     passes::for_each_setting(settings, [&](const SettingInfo& info, auto& value) {
-      if ((info.group == SettingGroup::advanced) != advanced ||
-          info.group == SettingGroup::surface) {
+      if ((info.group == SettingGroup::advanced) != advanced || info.group == SettingGroup::surface)
         return;
-      }
       ImGui::BeginDisabled(info.matters != nullptr && !info.matters(settings));
       widget(info, value, std::string_view(info.name) == "radius" ? radius : 1.0f);
       ImGui::EndDisabled();
-      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         ImGui::SetTooltip("%s", info.help);
-      }
     });
   };
   lay_out(false);
@@ -138,16 +126,11 @@ void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float width = ImGui::CalcTextSize(name).x + 2.0f * style.FramePadding.x;
     const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-    if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) {
-      ImGui::SameLine();
-    }
-    if (ImGui::Button(name)) {
+    if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) ImGui::SameLine();
+    if (ImGui::Button(name))
       state.settings = passes::quality_settings(quality, state.settings.radius);
-    }
   }
-  if (ImGui::Button("reset settings (R)")) {
-    state.settings = facts.first_settings;
-  }
+  if (ImGui::Button("reset settings (R)")) state.settings = facts.first_settings;
 }
 
 // Lays out the time that slices and steps are fitted to.
@@ -165,9 +148,7 @@ void lay_out_roughness(ViewState& state) {
     constexpr float kMiddle = 0.5f;
     state.roughness = of_materials ? std::nullopt : std::optional(kMiddle);
   }
-  if (state.roughness) {
-    ImGui::SliderFloat("roughness", &*state.roughness, 0.0f, 1.0f, "%.2f");
-  }
+  if (state.roughness) ImGui::SliderFloat("roughness", &*state.roughness, 0.0f, 1.0f, "%.2f");
 }
 
 bool section(const char* name) {
@@ -221,27 +202,17 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts, bool narrow) {
       ImGui::TextWrapped("%s The picture shows the previous settings.", facts.refusal.c_str());
       ImGui::PopStyleColor();
     }
-    if (!facts.message.empty()) {
-      ImGui::TextWrapped("%s", facts.message.c_str());
-    }
-    if (section("picture")) {
-      lay_out_picture(state, facts);
-    }
+    if (!facts.message.empty()) ImGui::TextWrapped("%s", facts.message.c_str());
+    if (section("picture")) lay_out_picture(state, facts);
     if (section("occlusion")) {
       lay_out_qualities(state, facts);
       lay_out_budget(state);
       lay_out_settings(state.settings, facts.first_settings.radius);
       lay_out_roughness(state);
     }
-    if (section("screenshot")) {
-      screenshot = ImGui::Button("screenshot and command (P)");
-    }
-    if (narrow && section("cost")) {
-      lay_out_cost(facts);
-    }
-    if (section("mouse and keys")) {
-      ImGui::TextUnformatted(kKeys);
-    }
+    if (section("screenshot")) screenshot = ImGui::Button("screenshot and command (P)");
+    if (narrow && section("cost")) lay_out_cost(facts);
+    if (section("mouse and keys")) ImGui::TextUnformatted(kKeys);
     ImGui::PopItemWidth();
   }
   ImGui::End();
@@ -251,64 +222,50 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts, bool narrow) {
 // Lays out times and memory in the upper right corner.
 void lay_out_corner(const PanelFacts& facts) {
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x, 0.0f}, ImGuiCond_Always, {1.0f, 0.0f});
-  if (ImGui::Begin("cost", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize)) {
+  if (ImGui::Begin("cost", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize))
     lay_out_cost(facts);
-  }
   ImGui::End();
 }
 
 }  // namespace
 
 void SmoothedTimes::add(const std::vector<PassTime>& measured) {
-  if (measured.empty()) {
-    return;
-  }
+  if (measured.empty()) return;
   if (!std::ranges::equal(measured, passes_, {}, &PassTime::pass, &PassTime::pass)) {
     passes_ = measured;
     return;
   }
   constexpr double kShare = 0.05;  // of the newest
-  for (std::size_t i = 0; i < passes_.size(); ++i) {
+  for (std::size_t i = 0; i < passes_.size(); ++i)
     passes_[i].milliseconds += kShare * (measured[i].milliseconds - passes_[i].milliseconds);
-  }
 }
 
 double SmoothedTimes::total_ms() const {
   double total = 0.0;
-  for (const PassTime& time : passes_) {
-    total += time.milliseconds;
-  }
+  for (const PassTime& time : passes_) total += time.milliseconds;
   return total;
 }
 
 bool lay_out_panel(ViewState& state, const PanelFacts& facts) {
   constexpr float kBesideEachOther = 58.0f;  // heights of the font; less is narrow
   const bool narrow = ImGui::GetIO().DisplaySize.x < kBesideEachOther * ImGui::GetFontSize();
-  if (!narrow) {
-    lay_out_corner(facts);
-  }
+  if (!narrow) lay_out_corner(facts);
   return lay_out_choices(state, facts, narrow);
 }
 
 void move_camera_by_mouse(Camera& camera) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantCaptureMouse) {
-    return;
-  }
+  if (io.WantCaptureMouse) return;
   const float height = std::max(io.DisplaySize.y, 1.0f);
   const glm::vec2 share(io.MouseDelta.x / height, io.MouseDelta.y / height);
   constexpr float kTurnOfHeight = glm::pi<float>();
-  if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 0.0f)) {
+  if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 0.0f))
     camera = turned(camera, kTurnOfHeight * share);
-  }
   if (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 0.0f) ||
-      ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0f)) {
+      ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0f))
     camera = panned(camera, share);
-  }
   constexpr float kStep = 0.9f;
-  if (io.MouseWheel != 0.0f) {
-    camera = dollied(camera, std::pow(kStep, io.MouseWheel));
-  }
+  if (io.MouseWheel != 0.0f) camera = dollied(camera, std::pow(kStep, io.MouseWheel));
 }
 
 }  // namespace alcove::sample

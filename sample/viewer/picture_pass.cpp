@@ -18,9 +18,7 @@ using Textures = std::array<Texture, 4>;
 // because every binding needs a texture.
 Textures textures_of(const PictureInputs& inputs) {
   Textures textures{inputs.texture, inputs.other, inputs.linear_depth, inputs.environment};
-  for (Texture& texture : textures) {
-    texture = texture ? texture : inputs.texture;
-  }
+  for (Texture& texture : textures) texture = texture ? texture : inputs.texture;
   return textures;
 }
 
@@ -61,9 +59,8 @@ tl::expected<std::unique_ptr<PicturePass>, std::string> PicturePass::create(Gpu&
                               .layout = made->layout_.handle()},
                              made->pipeline_);
   }
-  if (result != VK_SUCCESS) {
+  if (result != VK_SUCCESS)
     return device_failure("create the pipeline of the window's picture", result);
-  }
   return made;
 }
 

@@ -34,9 +34,7 @@ VkSurfaceFormatKHR choose_format(VkPhysicalDevice device, VkSurfaceKHR surface) 
 // Returns the size of the images. If the window system prescribes none, it is the wanted size,
 // clamped to the limits.
 VkExtent2D choose_size(const VkSurfaceCapabilitiesKHR& can, VkExtent2D wanted) {
-  if (can.currentExtent.width != UINT32_MAX) {
-    return can.currentExtent;
-  }
+  if (can.currentExtent.width != UINT32_MAX) return can.currentExtent;
   return {std::clamp(wanted.width, can.minImageExtent.width, can.maxImageExtent.width),
           std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height)};
 }
@@ -56,9 +54,7 @@ tl::expected<std::unique_ptr<Presenter>, std::string> Presenter::create(Gpu& gpu
   auto done = assign(made->surface_, window.create_surface(gpu.device().instance())).and_then([&] {
     return made->create_swapchain();
   });
-  if (!done) {
-    return Failure(std::move(done.error()));
-  }
+  if (!done) return Failure(std::move(done.error()));
   return made;
 }
 
@@ -81,9 +77,8 @@ tl::expected<void, std::string> Presenter::create_swapchain() {
       vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device.physical_device(), surface_, &can);
   const VkSurfaceFormatKHR format = choose_format(device.physical_device(), surface_);
   if (result == VK_SUCCESS &&
-      (format.format == VK_FORMAT_UNDEFINED || (can.supportedUsageFlags & kUsage) != kUsage)) {
+      (format.format == VK_FORMAT_UNDEFINED || (can.supportedUsageFlags & kUsage) != kUsage))
     return Failure("The display takes no images of eight bits a channel that can be read back.");
-  }
   if (result == VK_SUCCESS) {
     size_ = choose_size(can, window_size_);
     format_ = format.format;
@@ -127,27 +122,21 @@ VkResult Presenter::create_images() {
                                      .format = format_,
                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
     result = vkCreateImageView(device, &info, nullptr, &views_.emplace_back());
-    if (result == VK_SUCCESS) {
+    if (result == VK_SUCCESS)
       result = vkCreateSemaphore(device, &semaphore, nullptr, &drawn_.emplace_back());
-    }
   }
-  for (std::uint32_t i = 0; result == VK_SUCCESS && i < gpu_.frames_in_flight(); ++i) {
+  for (std::uint32_t i = 0; result == VK_SUCCESS && i < gpu_.frames_in_flight(); ++i)
     result = vkCreateSemaphore(device, &semaphore, nullptr, &arrived_.emplace_back());
-  }
   return result;
 }
 
 void Presenter::destroy_images() {
   const VkDevice device = gpu_.device().device();
   for (std::vector<VkSemaphore>* semaphores : {&arrived_, &drawn_}) {
-    for (const VkSemaphore semaphore : *semaphores) {
-      vkDestroySemaphore(device, semaphore, nullptr);
-    }
+    for (const VkSemaphore semaphore : *semaphores) vkDestroySemaphore(device, semaphore, nullptr);
     semaphores->clear();
   }
-  for (const VkImageView view : views_) {
-    vkDestroyImageView(device, view, nullptr);
-  }
+  for (const VkImageView view : views_) vkDestroyImageView(device, view, nullptr);
   views_.clear();
 }
 
@@ -162,31 +151,20 @@ void Presenter::wait() const { vkDeviceWaitIdle(gpu_.device().device()); }
 
 tl::expected<bool, std::string> Presenter::prepare() {
   const VkExtent2D size = window_.size();
-  if (size.width == 0 || size.height == 0) {
-    return false;
-  }
+  if (size.width == 0 || size.height == 0) return false;
   if (outdated_ || size.width != window_size_.width || size.height != window_size_.height) {
-    if (auto made = create_swapchain(); !made) {
-      return Failure(std::move(made.error()));
-    }
+    if (auto made = create_swapchain(); !made) return Failure(std::move(made.error()));
   }
-  if (acquired_) {
-    return true;
-  }
-  if (auto waited = gpu_.wait(slot_); !waited) {
-    return Failure(std::move(waited.error()));
-  }
+  if (acquired_) return true;
+  if (auto waited = gpu_.wait(slot_); !waited) return Failure(std::move(waited.error()));
   timings_.clear();
-  for (const framegraph::PassTiming& timing : gpu_.timings(slot_)) {
+  for (const framegraph::PassTiming& timing : gpu_.timings(slot_))
     timings_.push_back({std::string(timing.name), timing.milliseconds});
-  }
   const VkResult result = vkAcquireNextImageKHR(gpu_.device().device(), swapchain_, UINT64_MAX,
                                                 arrived_[slot_], VK_NULL_HANDLE, &current_);
   acquired_ = result == VK_SUCCESS || result == VK_SUBOPTIMAL_KHR;
   outdated_ = result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_OUT_OF_DATE_KHR;
-  if (!acquired_ && !outdated_) {
-    return device_failure("get an image of the window", result);
-  }
+  if (!acquired_ && !outdated_) return device_failure("get an image of the window", result);
   return acquired_;
 }
 
@@ -203,9 +181,7 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
   auto report = gpu_.submit(
       [&](Graph& graph) { return declare(graph, graph.import_texture("window", import)); },
       {.slot = slot_, .waits = {&arrived, 1}, .signals = {&drawn, 1}});
-  if (!report) {
-    return report;
-  }
+  if (!report) return report;
   slot_ = (slot_ + 1) % gpu_.frames_in_flight();
   acquired_ = false;
   const VkPresentInfoKHR info{.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
@@ -216,9 +192,7 @@ tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare
                               .pImageIndices = &current_};
   const VkResult result = vkQueuePresentKHR(gpu_.device().queue(), &info);
   outdated_ = outdated_ || result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_OUT_OF_DATE_KHR;
-  if (!outdated_ && result != VK_SUCCESS) {
-    return device_failure("present a frame", result);
-  }
+  if (!outdated_ && result != VK_SUCCESS) return device_failure("present a frame", result);
   return report;
 }
 

@@ -19,9 +19,8 @@ OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
   const bool lit = picture == Picture::lit;
   settings.bent_normal = settings.bent_normal || lit || picture == Picture::bent_normal;
   if ((lit || picture == Picture::specular_occlusion) &&
-      settings.specular == passes::Specular::none) {
+      settings.specular == passes::Specular::none)
     settings.specular = passes::Specular::slices;
-  }
   return settings;
 }
 
@@ -31,9 +30,7 @@ bool reads_albedo(Picture picture) {
 
 glm::mat3 ray_from_ndc(const Camera& camera, const CameraMatrices& matrices) {
   const glm::mat3 rotation(matrices.world_from_view);
-  if (camera.orthographic) {
-    return {glm::vec3(0.0f), glm::vec3(0.0f), -rotation[2]};
-  }
+  if (camera.orthographic) return {glm::vec3(0.0f), glm::vec3(0.0f), -rotation[2]};
   const glm::mat4& p = matrices.clip_from_view;
   return rotation * glm::mat3(1.0f / p[0][0], 0.0f, 0.0f,  //
                               0.0f, 1.0f / p[1][1], 0.0f,  //
@@ -51,9 +48,7 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
              GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric))
           .and_then([&] { return assign(made->probe_, Probe::create(gpu, environment)); })
           .and_then([&] { return assign(made->picture_, PicturePass::create(gpu, format)); });
-  if (!done) {
-    return Failure(std::move(done.error()));
-  }
+  if (!done) return Failure(std::move(done.error()));
   made->exposure_ = exposure_of(environment);
   return made;
 }
@@ -65,9 +60,8 @@ void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
            matrices.clip_from_view, state.camera.reversed_z};
   ray_from_ndc_ = ray_from_ndc(state.camera, matrices);
   choices_ = {state.settings, compared_settings(state), state.roughness};
-  if (state.fits_budget) {  // the history goes on when the number of samples changes
+  if (state.fits_budget)  // the history goes on when the number of samples changes
     choices_.settings.slices = choices_.settings.steps = 0;
-  }
   const HistoryFormat format{with_outputs(state.settings, state.picture), size.width, size.height};
   const bool same_kind = std::exchange(format_, format) == format;
   if (previous_choices_ != choices_) {
@@ -122,16 +116,12 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
 
   PictureInputs inputs = picture_inputs(state);
   auto picture = add_picture(graph, state, surfaces, settings, "occlusion", inputs);
-  if (!picture) {
-    return picture;
-  }
+  if (!picture) return picture;
   inputs.texture = *picture;
   if (compared) {
     auto other = add_picture(graph, state, surfaces, with_outputs(*compared, state.picture),
                              "compared", inputs);
-    if (!other) {
-      return other;
-    }
+    if (!other) return other;
     inputs.other = *other;
     inputs.split = state.split * static_cast<float>(graph.extent(target).width);
   }
@@ -153,9 +143,8 @@ PictureInputs SceneFrame::picture_inputs(const ViewState& state) const {
     case Picture::bent_normal:
     case Picture::normals:
       inputs.show = maths::kShowDirection;
-      if (normals_ == NormalSource::depth) {
+      if (normals_ == NormalSource::depth)
         inputs.world_from_shown = glm::transpose(glm::mat3(view_.view_from_world));
-      }
       break;
     case Picture::depth:
       inputs.show = maths::kShowDepth;
@@ -179,15 +168,10 @@ tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const V
                                                            PictureInputs& inputs) {
   settings.linear_depth = true;  // which lighting and a picture of it read
   const auto outputs = add_occlusion(frame_of(graph), surfaces, settings, history_name);
-  if (!outputs) {
-    return Failure(outputs.error());
-  }
+  if (!outputs) return Failure(outputs.error());
   // All outputs of the settings are computed, and timed, whether they are shown or not.
-  for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular}) {
-    if (output) {
-      graph.output(output);
-    }
-  }
+  for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular})
+    if (output) graph.output(output);
   switch (state.picture) {
     case Picture::lit:
       return add_lit(graph, surfaces, *outputs, inputs);
@@ -216,9 +200,7 @@ tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const V
 tl::expected<Texture, std::string> SceneFrame::add_lit(Graph& graph, const Surfaces& surfaces,
                                                        const passes::OcclusionOutputs& outputs,
                                                        PictureInputs& inputs) {
-  if (!light_.map) {
-    light_ = probe_->import(graph);
-  }
+  if (!light_.map) light_ = probe_->import(graph);
   inputs.linear_depth = outputs.linear_depth;
   inputs.environment = light_.map;
   return add_light(frame_of(graph), surfaces, outputs, light_,

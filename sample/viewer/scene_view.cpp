@@ -33,15 +33,12 @@ tl::expected<std::filesystem::path, std::string> write_screenshot(
   std::optional<OutputFolder> made;
   if (!folder.empty()) {
     auto created = OutputFolder::create(folder);
-    if (!created) {
-      return Failure(std::move(created.error()));
-    }
+    if (!created) return Failure(std::move(created.error()));
     made.emplace(std::move(*created));
   }
   std::filesystem::path file = folder / "view.png";
-  for (int i = 2; std::filesystem::exists(file); ++i) {
+  for (int i = 2; std::filesystem::exists(file); ++i)
     file = folder / ("view-" + std::to_string(i) + ".png");
-  }
   return write_png(file, image).map([&] { return file; });
 }
 
@@ -63,9 +60,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(SceneVie
             return assign(made->gui_, Gui::create(*made->session_.gpu, *made->window_,
                                                   made->presenter_->format()));
           });
-  if (!done) {
-    return Failure(std::move(done.error()));
-  }
+  if (!done) return Failure(std::move(done.error()));
   made->state_ = first_state(made->session_, request.roughness);
   made->good_ = {made->state_.settings, made->state_.roughness};
   made->facts_.first_settings = made->state_.settings;
@@ -75,9 +70,7 @@ tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(SceneVie
 }
 
 SceneView::~SceneView() {
-  if (presenter_) {
-    presenter_->wait();
-  }
+  if (presenter_) presenter_->wait();
 }
 
 tl::expected<void, std::string> SceneView::create_frame(const Scene& scene) {
@@ -117,12 +110,10 @@ void SceneView::open(const std::string& file) {
 Camera SceneView::camera_around_scene() const {
   Camera camera = state_.camera;
   constexpr float kFarthest = 1e12f;  // distances beyond have no squares of floats to compare
-  if (camera.orthographic || !(glm::length(session_.scene.bounds_ws.high) < kFarthest)) {
+  if (camera.orthographic || !(glm::length(session_.scene.bounds_ws.high) < kFarthest))
     return camera;
-  }
-  for (const glm::vec3& corner : corners_of(session_.scene.bounds_ws)) {
+  for (const glm::vec3& corner : corners_of(session_.scene.bounds_ws))
     camera.far_plane = std::max(camera.far_plane, 1.01f * glm::distance(corner, camera.eye_ws));
-  }
   return camera;
 }
 
@@ -135,13 +126,10 @@ void SceneView::fit_radius() {
 }
 
 void SceneView::take_keys() {
-  if (ImGui::GetIO().WantTextInput) {
-    return;  // a number is being typed
-  }
+  if (ImGui::GetIO().WantTextInput) return;  // a number is being typed
   for (const int key : window_->pressed_keys()) {
-    if (key >= GLFW_KEY_1 && key < GLFW_KEY_1 + static_cast<int>(kPictureNames.size())) {
+    if (key >= GLFW_KEY_1 && key < GLFW_KEY_1 + static_cast<int>(kPictureNames.size()))
       state_.picture = static_cast<Picture>(key - GLFW_KEY_1);
-    }
     switch (key) {
       case GLFW_KEY_HOME:
         state_.camera = session_.camera;
@@ -178,9 +166,7 @@ void SceneView::lay_out() {
     state_.settings =
         fitter_.fit({.target_ms = state_.target_ms}, presenter_->timings(), state_.settings);
   }
-  if (panel_shown_ && lay_out_panel(state_, facts_)) {
-    take_screenshot();
-  }
+  if (panel_shown_ && lay_out_panel(state_, facts_)) take_screenshot();
   gui_->end();
 }
 
@@ -192,16 +178,12 @@ tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice, Rea
   auto report = presenter_->draw([&](Graph& graph, Texture target) {
     return frame_->declare(graph, target, state).and_then([&](Texture drawn) {
       drawn = gui_->add(graph, drawn);
-      if (read_back == nullptr) {
-        return tl::expected<void, std::string>();
-      }
+      if (read_back == nullptr) return tl::expected<void, std::string>();
       read_back->add(graph, drawn, [this](const Texels& texels) { screenshot_ = rgb(texels); });
       return read_back->added();
     });
   });
-  if (!report) {
-    return Failure(std::move(report.error()));
-  }
+  if (!report) return Failure(std::move(report.error()));
   frame_->advance();
   facts_.memory = report->memory;
   ++drawn_frames_;
@@ -210,9 +192,7 @@ tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice, Rea
 
 tl::expected<void, std::string> SceneView::draw_chosen(ReadBack* read_back) {
   const Choice chosen{state_.settings, state_.roughness};
-  if (refused_ == chosen) {
-    return draw_choice(good_, read_back);
-  }
+  if (refused_ == chosen) return draw_choice(good_, read_back);
   auto drawn = draw_choice(chosen, read_back);
   if (drawn) {
     good_ = chosen;
@@ -235,9 +215,7 @@ tl::expected<void, std::string> SceneView::draw_and_read() {
 
 tl::expected<void, std::string> SceneView::write() {
   const auto file = write_screenshot(request_.screenshots, screenshot_);
-  if (!file) {
-    return Failure(file.error());
-  }
+  if (!file) return Failure(file.error());
   const std::string command = request_.command(
       {state_.camera, good_.settings, good_.roughness, screenshot_.width, screenshot_.height});
   std::cout << file->string() << "\n" << command << std::endl;
@@ -248,28 +226,18 @@ tl::expected<void, std::string> SceneView::write() {
 
 tl::expected<bool, std::string> SceneView::draw() {
   window_->poll();
-  if (window_->is_closed()) {
-    return false;
-  }
+  if (window_->is_closed()) return false;
   // Dropped files are handled before the frame acquires an image of the window: version 1.3.239 of
   // the validation layers crashes if a program waits for the device between acquiring an image and
   // submitting its use.
-  if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) {
-    open(dropped.back());
-  }
+  if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) open(dropped.back());
   const auto prepared = presenter_->prepare();
-  if (!prepared) {
-    return Failure(prepared.error());
-  }
-  if (!*prepared) {
-    return true;
-  }
+  if (!prepared) return Failure(prepared.error());
+  if (!*prepared) return true;
   lay_out();
   auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })
                                              : draw_chosen(nullptr);
-  if (!drawn) {
-    return Failure(std::move(drawn.error()));
-  }
+  if (!drawn) return Failure(std::move(drawn.error()));
   state_.camera = orbited(state_.camera, request_.orbit);
   return true;
 }

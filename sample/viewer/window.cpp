@@ -30,9 +30,7 @@ Failure no_window() {
 
 tl::expected<std::unique_ptr<Window>, std::string> Window::create(VkExtent2D size,
                                                                   const std::string& title) {
-  if (glfwInit() != GLFW_TRUE) {
-    return no_window();
-  }
+  if (glfwInit() != GLFW_TRUE) return no_window();
   std::unique_ptr<Window> made(new Window);
   if (glfwVulkanSupported() != GLFW_TRUE) {
     return Failure("No Vulkan driver here can present to a window (" + reason() +
@@ -42,14 +40,11 @@ tl::expected<std::unique_ptr<Window>, std::string> Window::create(VkExtent2D siz
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   made->window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height),
                                    title.c_str(), nullptr, nullptr);
-  if (made->window_ == nullptr) {
-    return no_window();
-  }
+  if (made->window_ == nullptr) return no_window();
   glfwSetWindowUserPointer(made->window_, made.get());
   glfwSetKeyCallback(made->window_, [](GLFWwindow* window, int key, int, int action, int) {
-    if (action == GLFW_PRESS) {
+    if (action == GLFW_PRESS)
       static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_keys_.push_back(key);
-    }
   });
   glfwSetDropCallback(made->window_, [](GLFWwindow* window, int count, const char** paths) {
     auto& files = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_files_;
@@ -59,9 +54,7 @@ tl::expected<std::unique_ptr<Window>, std::string> Window::create(VkExtent2D siz
 }
 
 Window::~Window() {
-  if (window_ != nullptr) {
-    glfwDestroyWindow(window_);
-  }
+  if (window_ != nullptr) glfwDestroyWindow(window_);
   glfwTerminate();
 }
 
@@ -87,9 +80,8 @@ void Window::poll() {
   pressed_keys_.clear();
   glfwPollEvents();
   constexpr double kSeconds = 0.1;
-  if (const VkExtent2D now = size(); now.width == 0 || now.height == 0) {
+  if (const VkExtent2D now = size(); now.width == 0 || now.height == 0)
     glfwWaitEventsTimeout(kSeconds);
-  }
 }
 
 bool Window::is_closed() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
@@ -97,9 +89,7 @@ bool Window::is_closed() const { return glfwWindowShouldClose(window_) == GLFW_T
 void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
 
 VkExtent2D Window::size() const {
-  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) {
-    return {0, 0};
-  }
+  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) return {0, 0};
   int width = 0;
   int height = 0;
   glfwGetFramebufferSize(window_, &width, &height);

@@ -75,11 +75,10 @@ inline const char* projection_fault(const dmat4& m) {
 
 // Returns the projection `m` with exact zeros in the row of w.
 inline dmat4 without_rounding(dmat4 m) {
-  if (is_orthographic(m)) {
+  if (is_orthographic(m))
     m[2][3] = 0.0;
-  } else {
+  else
     m[3][3] = 0.0;
-  }
   return m;
 }
 
@@ -128,11 +127,10 @@ inline dmat4 without_rounding(dmat4 m) {
   };
   p.near_far = vec2(depth_at(reversed ? 1.0 : 0.0), depth_at(reversed ? 0.0 : 1.0));
 
-  if (w_per_depth > 0.0) {
+  if (w_per_depth > 0.0)
     p.eye = vec4(-constant / scale, 0.0, 1.0);
-  } else {
+  else
     p.eye = vec4(-slope_offset, 1.0, 0.0);
-  }
   p.size_px = vec2(float(width), float(height));
   p.texel_uv = 1.0f / p.size_px;
   return p;

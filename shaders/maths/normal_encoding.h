@@ -15,9 +15,7 @@ const uint kNoNormals = 4u;
 // valid normal. `encoding` is a constant in shaders, so that the branches and the load of a texel
 // that is not used cost nothing.
 ALCOVE_INLINE vec3 decode_normal(vec3 texel, uint encoding) {
-  if (encoding == kNoNormals) {
-    return vec3(0.0f);
-  }
+  if (encoding == kNoNormals) return vec3(0.0f);
   bool packed = encoding == 1u || encoding == 3u;
   vec3 value = packed ? texel * 2.0f - vec3(1.0f) : texel;
   return encoding >= 2u ? octahedral_unfold(vec2(value.x, value.y)) : value;

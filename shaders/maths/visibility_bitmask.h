@@ -161,14 +161,12 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_an
   sum = add_part(sum, weight, s, side, tangent_light(s, side), bent);
   uint ends = occluded ^ (occluded << 1u);
   weight = 1.0f;
-  if (ends != 0u) {
-    do {
+  if (ends != 0u) do {
       vec2 light = diamond_angle_light(float(findLSB(ends)) / per_diamond_angle);
       sum = add_part(sum, weight, s, side, light, bent);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;
     } while (ends != 0u);
-  }
   return sum;
 }
 

@@ -21,9 +21,8 @@ Changes moved_changes(const Plan& plan, std::uint32_t mask) {
     while (to > 0 && !(mask & (1u << to))) --to;
     for (std::uint32_t b = first; b < first + count; ++b) {
       const Batch& batch = plan.batches[b];
-      for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t) {
+      for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
         if (plan.transitions[t].resource != kNone) changes[to].push_back(plan.transitions[t]);
-      }
     }
   };
   for (std::size_t p = 0; p < plan.passes.size(); ++p)

@@ -84,9 +84,8 @@ class FrameMaker {
       }
     }
     Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
-    for (const ResourceModel& model : all_) {
+    for (const ResourceModel& model : all_)
       if (dice_.chance(90)) out = copy_out(model, out);
-    }
     out = copy_out(all_.back(), out);
   }
 
@@ -154,9 +153,8 @@ class FrameMaker {
   std::uint32_t any() { return static_cast<std::uint32_t>(dice_.roll(1u << 30)); }
   ResourceModel* choose(bool texture) {
     std::vector<ResourceModel*> fitting;
-    for (ResourceModel& model : all_) {
+    for (ResourceModel& model : all_)
       if (model.texture == texture) fitting.push_back(&model);
-    }
     const auto count = static_cast<std::uint32_t>(fitting.size());
     return fitting[count - 1 - dice_.roll(std::min(count, 5u))];
   }
@@ -416,9 +414,8 @@ void run_frames(Gpu& gpu, Executor& executor, const Way& way, std::uint64_t seed
     ASSERT_TRUE(executor.wait());
     ASSERT_EQ(std::memcmp(host.mapped, maker.expected.data(), 4 * maker.expected.size()), 0);
     maker.finish();
-    if (way.path < Path::submit_to_two) {
+    if (way.path < Path::submit_to_two)
       ASSERT_EQ(messages(gpu, way), "") << print_text(graph.description(), *report->plan);
-    }
     totals.aliased += report->memory.aliased;
     totals.unaliased += report->memory.unaliased;
     // The validation layer does not follow timeline semaphores and keeps the accesses of all frames

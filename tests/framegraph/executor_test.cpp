@@ -337,9 +337,8 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr_1_2(VkDevice device, const ch
         "vkCmdBlitImage2KHR", "vkCmdSetCullMode", "vkCmdSetCullModeEXT", "vkCmdSetFrontFace",
         "vkCmdSetFrontFaceEXT", "vkCreateGraphicsPipelines", "vkGetDeviceBufferMemoryRequirements",
         "vkGetDeviceImageMemoryRequirements", "vkGetDeviceBufferMemoryRequirementsKHR",
-        "vkGetDeviceImageMemoryRequirementsKHR"}) {
+        "vkGetDeviceImageMemoryRequirementsKHR"})
     if (std::strcmp(name, core) == 0) return nullptr;
-  }
   return vkGetDeviceProcAddr(device, name);
 }
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr_1_2(VkInstance instance, const char* name) {

@@ -150,9 +150,8 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       {"vkQueueWaitIdle", reinterpret_cast<PFN_vkVoidFunction>(&wait_idle)},
   };
 #undef ALCOVE_WRAP
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : entries)
     if (std::strcmp(entry.name, name) == 0) return entry.function;
-  }
   return vkGetDeviceProcAddr(device, name);
 }
 

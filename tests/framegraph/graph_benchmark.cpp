@@ -260,17 +260,14 @@ int main(int count, char** arguments) {
     return compare(arguments[0], arguments[2]);
   std::printf("nanoseconds of processor time a pass, median; allocations of all steady frames\n");
   std::printf("shape  passes     setup  compile     both    steady  allocs\n");
-  for (const Shape shape : {Shape::chain, Shape::random, Shape::sizes}) {
+  for (const Shape shape : {Shape::chain, Shape::random, Shape::sizes})
     for (const std::uint32_t passes : {10u, 100u, 1000u, 5000u}) measure(shape, passes);
-  }
   if (count == 2 && std::strcmp(arguments[1], "--rows") == 0) return 0;
   std::printf("\nmilliseconds of processor time of a changed frame, peak over lower bound\n");
   std::printf("frame     passes   median highest   median highest\n");
-  for (const bool all_sizes : {true, false}) {
-    for (const std::uint32_t passes : {100u, 200u, 1000u, 4000u}) {
+  for (const bool all_sizes : {true, false})
+    for (const std::uint32_t passes : {100u, 200u, 1000u, 4000u})
       measure_changes(all_sizes, passes);
-    }
-  }
   std::printf("\nverify()\n");
   for (const std::uint32_t passes : {100u, 1000u, 5000u}) measure_verifier(passes);
   return 0;

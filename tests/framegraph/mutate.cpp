@@ -33,12 +33,11 @@ class Mutator {
     Plan mutant = plan_;
     // Removes one transition. The others of its batch stay.
     mutant.transitions.erase(mutant.transitions.begin() + index);
-    for (Batch& batch : mutant.batches) {
+    for (Batch& batch : mutant.batches)
       if (index < batch.first)
         --batch.first;
       else if (index < batch.first + batch.count)
         --batch.count;
-    }
     visit_("drop a barrier", mutant);
   }
 
@@ -105,11 +104,10 @@ class Mutator {
   bool is_used_at(std::uint32_t resource, std::uint32_t position) const {
     const std::uint32_t pass = plan_.passes[position].pass;
     const auto accesses = graph_.pass_accesses(pass);
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
+    for (std::size_t i = 0; i < accesses.size(); ++i)
       if (accesses[i].resource == resource &&
           plan_.live_accesses[graph_.passes[pass].first_access + i])
         return true;
-    }
     return false;
   }
 
@@ -161,9 +159,8 @@ class Mutator {
       const std::uint32_t at = mutant.submissions[index].first_wait + w;
       mutant.waits.erase(mutant.waits.begin() + at);
       --mutant.submissions[index].wait_count;
-      for (Submission& submission : mutant.submissions) {
+      for (Submission& submission : mutant.submissions)
         if (submission.first_wait > at) --submission.first_wait;
-      }
       visit_("drop a semaphore", mutant);
     }
   }

@@ -117,9 +117,8 @@ class Oracle {
     VkAccessFlags2 sees = 0;
     if (x.writes && same && y.change == nullptr && !superseded(x_index, y_index)) sees = y.access;
     if (x.change) return Walk(*this, x_index, 0).reaches(y, sees);
-    for (VkPipelineStageFlags2 left = x.stages; left != 0; left &= left - 1) {
+    for (VkPipelineStageFlags2 left = x.stages; left != 0; left &= left - 1)
       if (!Walk(*this, x_index, left & (~left + 1)).reaches(y, sees)) return false;
-    }
     return true;
   }
 
@@ -217,9 +216,8 @@ class Oracle {
     bool is_seen(const Operation& y, VkAccessFlags2 sees) const {
       for (VkPipelineStageFlags2 left = y.stages; left != 0; left &= left - 1) {
         VkAccessFlags2 seen = 0;
-        for (const Sight& sight : sights_) {
+        for (const Sight& sight : sights_)
           if (sight.queue == y.queue && (sight.stages & left & (~left + 1))) seen |= sight.access;
-        }
         if (sees & ~seen) return false;
       }
       return true;

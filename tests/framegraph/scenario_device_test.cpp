@@ -63,10 +63,9 @@ class Scenario : public testing::Test {
     pass.read(from, access::transfer_source);
     out_ = pass.write(out_, buffer_access::transfer_destination);
     pass.record([=, out = out_](RecordContext& c) {
-      for (std::uint32_t layer = 0; layer < layers; ++layer) {
+      for (std::uint32_t layer = 0; layer < layers; ++layer)
         copy_image(c, c.image(from), c.buffer(out), VkDeviceSize{4} * (word + layer), {1, 1, 1},
                    {aspect, 0, layer, 1});
-      }
     });
   }
   void begin() {
@@ -400,11 +399,10 @@ TEST_F(Scenario, WorkOfTwoQueuesWithoutCommonResourcesOverlapsAcrossFrames) {
     const int waits = failing::semaphore_waits() - before;
     // The first frames have other plans, because one more slot of the history gets contents in each
     // of them.
-    if (frame == 3) {
+    if (frame == 3)
       EXPECT_EQ(waits, 0);
-    } else if (frame == 4) {
+    else if (frame == 4)
       EXPECT_GT(waits, 0);
-    }
   }
 }
 

@@ -53,11 +53,10 @@ std::size_t allocations_of_steady_frames(Path path) {
   for (int frame = 0; frame < kFrames; ++frame) {
     if (frame == 10) before = allocations();
     declare(graph, host);
-    if (path == Path::record) {
+    if (path == Path::record)
       EXPECT_TRUE(gpu.run(*executor, graph));
-    } else {
+    else
       EXPECT_TRUE(executor->submit(graph, {static_cast<std::uint32_t>(frame % 2)}));
-    }
     EXPECT_TRUE(executor->wait(static_cast<std::uint32_t>(frame % 2)));
     EXPECT_EQ(executor->timings().empty(), false);
   }

@@ -67,10 +67,9 @@ class Tracer {
     const auto queue = static_cast<std::size_t>(planned.queue);
     batches(planned.first_batch, planned.batch_count, queue, frame);
     const auto accesses = graph_.pass_accesses(planned.pass);
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
+    for (std::size_t i = 0; i < accesses.size(); ++i)
       if (plan_.live_accesses[graph_.passes[planned.pass].first_access + i])
         add_access(accesses[i], queue, frame);
-    }
   }
 
   void outside(std::uint32_t resource, const State& state, std::uint32_t frame, std::size_t queue) {
@@ -129,9 +128,8 @@ class Tracer {
       for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
         step.barriers.push_back(&plan_.transitions[t]);
       trace_.steps.push_back(step);
-      for (const Transition* t : step.barriers) {
+      for (const Transition* t : step.barriers)
         if (t->resource != kNone) add_change(*t, queue, frame);
-      }
     }
   }
 

@@ -22,18 +22,15 @@ inline void check_scene(std::span<const uint8_t> bytes) {
     if (scene.error().empty()) __builtin_trap();
     return;
   }
-  for (const TextureImage& image : scene->images) {
+  for (const TextureImage& image : scene->images)
     if (image.rgba.size() != size_t{4} * image.width * image.height) __builtin_trap();
-  }
   for (const Mesh& mesh : scene->meshes) {
-    for (const uint32_t i : mesh.indices) {
+    for (const uint32_t i : mesh.indices)
       if (i >= mesh.positions.size()) __builtin_trap();
-    }
     if (mesh.material >= scene->materials.size()) __builtin_trap();
     for (const size_t count : {mesh.normals.size(), mesh.uvs.size(), mesh.second_uvs.size(),
-                               mesh.tangents.size(), mesh.colors.size()}) {
+                               mesh.tangents.size(), mesh.colors.size()})
       if (count != 0 && count != mesh.positions.size()) __builtin_trap();
-    }
     if (mesh.normals.empty()) continue;  // without normals there are no tangents
     const TextureUse& map = scene->materials[mesh.material].normal_texture;
     for (const glm::vec4& tangent : corner_tangents(mesh, map)) {

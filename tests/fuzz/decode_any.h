@@ -19,9 +19,8 @@ inline void decode_any(std::span<const uint8_t> bytes) {
     const uint32_t width = (header->width + reduction - 1) / reduction;
     const uint32_t height = (header->height + reduction - 1) / reduction;
     if (image->width != width || image->height != height ||
-        image->rgba.size() != size_t{4} * width * height) {
+        image->rgba.size() != size_t{4} * width * height)
       __builtin_trap();
-    }
   }
 }
 

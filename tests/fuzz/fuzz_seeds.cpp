@@ -70,9 +70,8 @@ void write_images(const fs::path& folder) {
         recipe.palette.assign(16, {10, 200, 90});
         recipe.alphas = {0, 128};
       }
-      for (int s = 0; s < 9 * 5 * recipe.channels(); ++s) {
+      for (int s = 0; s < 9 * 5 * recipe.channels(); ++s)
         recipe.samples.push_back(static_cast<uint16_t>(s * 37 & ((1 << recipe.bits) - 1)));
-      }
       write(folder / "png" / (std::to_string(i++) + ".png"), make_png(recipe));
     }
   }
@@ -80,9 +79,8 @@ void write_images(const fs::path& folder) {
     for (const auto& [space, components] :
          {std::pair{JCS_GRAYSCALE, 1u}, {JCS_RGB, 3u}, {JCS_CMYK, 4u}}) {
       std::vector<uint8_t> pixels;
-      for (uint32_t p = 0; p < 24 * 17 * components; ++p) {
+      for (uint32_t p = 0; p < 24 * 17 * components; ++p)
         pixels.push_back(static_cast<uint8_t>(p * p));
-      }
       write(folder / "jpeg" / (std::to_string(i++) + ".jpg"),
             make_jpeg(24, 17, space, pixels, progressive));
     }
@@ -98,9 +96,8 @@ bool write_environments(const fs::path& folder) {
       runs += std::string("\x84\x80\x04\x01\x02\x03\x04", 7);
     plain += std::string("\x80\x40\x20\x81\x01\x01\x01\x07", 8);
   }
-  for (const std::string& text : {header + runs, header + plain}) {
+  for (const std::string& text : {header + runs, header + plain})
     write(folder / "hdr" / (std::to_string(text.size()) + ".hdr"), {text.begin(), text.end()});
-  }
   Image<glm::vec3> image(9, 20, glm::vec3(0.5f, 1.0f, 2.0f));
   image.at(3, 3) = glm::vec3(100);
   fs::create_directories(folder / "exr");

@@ -55,11 +55,10 @@ void change_number(json& value, std::minstd_rand& random) {
 void change_container(json& value, std::minstd_rand& random) {
   if (value.empty()) return;
   const auto at = static_cast<ptrdiff_t>(below(value.size(), random));
-  if (below(2, random) == 0) {
+  if (below(2, random) == 0)
     value.erase(std::next(value.begin(), at));
-  } else if (value.is_array() && value.size() < 64) {
+  else if (value.is_array() && value.size() < 64)
     value.push_back(json(value[static_cast<size_t>(at)]));
-  }
 }
 
 // Changes a JSON tree in one place, so that it stays JSON and mostly stays glTF: a value is
@@ -77,13 +76,12 @@ void mutate_json(json& root, std::minstd_rand& random) {
       break;
     }
     default:
-      if (value.is_structured()) {
+      if (value.is_structured())
         change_container(value, random);
-      } else if (value.is_number()) {
+      else if (value.is_number())
         change_number(value, random);
-      } else {
+      else
         value = interesting_value(random);
-      }
   }
 }
 
@@ -94,11 +92,10 @@ std::vector<uint8_t> mutated(std::span<const uint8_t> file, std::minstd_rand& ra
   auto root = nlohmann::json::parse(parts->json.begin(), parts->json.end(), nullptr, false);
   if (!root.is_object()) return {};
   std::vector<uint8_t> binary(parts->binary.begin(), parts->binary.end());
-  if (!binary.empty() && (random() >> 3) % 4 == 0) {
+  if (!binary.empty() && (random() >> 3) % 4 == 0)
     binary.resize(LLVMFuzzerMutate(binary.data(), binary.size(), binary.size()));
-  } else {
+  else
     mutate_json(root, random);
-  }
   return glb_file(root.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), binary);
 }
 

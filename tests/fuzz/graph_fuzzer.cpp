@@ -44,9 +44,8 @@ void run(std::span<const std::uint8_t> bytes) {
   const GraphDescription& description = graph.description();
   if (const auto compiled = compiler.compile(description, limits, plan); !compiled) {
     if (compiled.error().empty()) fail("refused without a reason", {});
-    for (const Error& error : compiled.error()) {
+    for (const Error& error : compiled.error())
       if (error.message.empty()) fail("an error without a sentence", compiled.error());
-    }
     if (!options.mistakes) fail("a right graph was refused", compiled.error());
     return;
   }

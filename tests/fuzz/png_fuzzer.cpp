@@ -14,9 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                           size_t{png[at + 2]} << 8 | size_t{png[at + 3]};
     if (length > png.size() - at - kChunk) break;
     const auto sum = crc32(0, png.data() + at + 4, static_cast<uInt>(length + 4));
-    for (size_t i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < 4; ++i)
       png[at + 8 + length + i] = static_cast<uint8_t>(sum >> (24 - 8 * i));
-    }
     at += kChunk + length;
   }
   alcove::sample::decode_any(png);

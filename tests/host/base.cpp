@@ -30,16 +30,13 @@ void Base::open(const VkPhysicalDeviceFeatures2& features, bool async) {
   graphics_family = compute_family = count;
   for (std::uint32_t i = 0; i < count; ++i) {
     const VkQueueFlags flags = families[i].queueFlags;
-    if ((flags & VK_QUEUE_GRAPHICS_BIT) != 0 && graphics_family == count) {
+    if ((flags & VK_QUEUE_GRAPHICS_BIT) != 0 && graphics_family == count)
       graphics_family = i;
-    } else if ((flags & VK_QUEUE_COMPUTE_BIT) != 0 && (flags & VK_QUEUE_GRAPHICS_BIT) == 0) {
+    else if ((flags & VK_QUEUE_COMPUTE_BIT) != 0 && (flags & VK_QUEUE_GRAPHICS_BIT) == 0)
       compute_family = i;
-    }
   }
   require(graphics_family < count, "the device has no graphics queue");
-  if (!async || compute_family == count) {
-    compute_family = graphics_family;
-  }
+  if (!async || compute_family == count) compute_family = graphics_family;
   const bool second =
       async && compute_family == graphics_family && families[graphics_family].queueCount > 1;
   const std::array priorities{1.0f, 1.0f};
@@ -72,9 +69,7 @@ void Base::open(const VkPhysicalDeviceFeatures2& features, bool async) {
 }
 
 void Base::close() {
-  for (const VkCommandPool pool : pools_) {
-    vkDestroyCommandPool(device, pool, nullptr);
-  }
+  for (const VkCommandPool pool : pools_) vkDestroyCommandPool(device, pool, nullptr);
   vkDestroyDevice(device, nullptr);
   vkDestroyInstance(instance, nullptr);
 }
@@ -86,9 +81,8 @@ VkDeviceMemory Base::allocate(const VkMemoryRequirements& requirements,
   std::uint32_t type = 0;
   while (type < memory.memoryTypeCount &&
          ((requirements.memoryTypeBits >> type & 1u) == 0 ||
-          (memory.memoryTypes[type].propertyFlags & properties) != properties)) {
+          (memory.memoryTypes[type].propertyFlags & properties) != properties))
     ++type;
-  }
   require(type < memory.memoryTypeCount, "the device has no suitable memory");
   const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                   .allocationSize = requirements.size,
@@ -252,9 +246,8 @@ VkPipeline Base::create_pipeline(const PipelineDescription& description) const {
   VkPipeline made = VK_NULL_HANDLE;
   require(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &made),
           "a pipeline cannot be created");
-  for (const VkPipelineShaderStageCreateInfo& stage : stages) {
+  for (const VkPipelineShaderStageCreateInfo& stage : stages)
     vkDestroyShaderModule(device, stage.module, nullptr);
-  }
   return made;
 }
 

@@ -93,11 +93,9 @@ std::vector<int> draw_by_alcove(const TemporaryFolder& folder, const Shot& shot,
   const auto rendering = render(options);
   EXPECT_TRUE(rendering) << rendering.error();
   std::vector<int> steps;
-  if (rendering) {
-    for (const float visibility : rendering->images.visibility.pixels) {
+  if (rendering)
+    for (const float visibility : rendering->images.visibility.pixels)
       steps.push_back(static_cast<int>(std::lround(255.0f * visibility)));
-    }
-  }
   return steps;
 }
 
@@ -115,9 +113,8 @@ std::vector<int> draw_by_host(const TemporaryFolder& folder, const Shot& shot,
   const std::size_t pixels = std::size_t{shot.width} * shot.height;
   std::vector<int> steps;
   for (std::size_t i = contents.size() - std::min(pixels, contents.size()); i < contents.size();
-       ++i) {
+       ++i)
     steps.push_back(static_cast<unsigned char>(contents[i]));
-  }
   return steps;
 }
 

@@ -36,13 +36,9 @@ int main(int argc, char** argv) {
   }
   host::Renderer renderer(options);
   renderer.resize({240, 135});
-  for (int i = 0; i < 9; ++i) {
-    renderer.draw(-0.3f + 0.03f * static_cast<float>(i));
-  }
+  for (int i = 0; i < 9; ++i) renderer.draw(-0.3f + 0.03f * static_cast<float>(i));
   renderer.resize(size);
-  for (std::uint32_t i = 0; i < host::kStillFrames; ++i) {
-    renderer.draw(0.0f);
-  }
+  for (std::uint32_t i = 0; i < host::kStillFrames; ++i) renderer.draw(0.0f);
   renderer.write_visibility(argv[1]);
   return 0;
 }

@@ -59,21 +59,16 @@ class Mistakes : public testing::Test {
 TEST_F(Mistakes, AtLeastSixtyMistakesArePlanted) { EXPECT_GE(planted_mistakes().size(), 60u); }
 
 TEST_F(Mistakes, EachMistakeIsNamedIfItIsMadeFromTheFirstFrameOn) {
-  for (const PlantedMistake& mistake : planted_mistakes()) {
-    expect_named(*run_, mistake, 0);
-  }
+  for (const PlantedMistake& mistake : planted_mistakes()) expect_named(*run_, mistake, 0);
 }
 
 TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAmongRightFrames) {
-  for (const PlantedMistake& mistake : planted_mistakes()) {
-    expect_named(*run_, mistake, 10);
-  }
+  for (const PlantedMistake& mistake : planted_mistakes()) expect_named(*run_, mistake, 10);
 }
 
 TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAfterAResize) {
-  for (const PlantedMistake& mistake : planted_mistakes()) {
+  for (const PlantedMistake& mistake : planted_mistakes())
     expect_named(*resized_, mistake, kQuick.change_at + 1);
-  }
 }
 
 TEST_F(Mistakes, RightFramesAreNotReported) {

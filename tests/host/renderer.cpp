@@ -9,9 +9,7 @@ namespace host {
 void Renderer::destroy_targets() {
   vkDestroyFramebuffer(base_.device, geometry_target_, nullptr);
   vkDestroyFramebuffer(base_.device, lighting_target_, nullptr);
-  for (Image* image : {&depth_, &normals_, &visibility_, &colour_}) {
-    base_.destroy(*image);
-  }
+  for (Image* image : {&depth_, &normals_, &visibility_, &colour_}) base_.destroy(*image);
 }
 
 void Renderer::resize(VkExtent2D size) {
@@ -140,15 +138,13 @@ void Renderer::draw(float angle) {
   require(vkResetFences(base_.device, 1, &slot.finished), "cannot reset a fence");
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  for (const VkCommandBuffer commands : {slot.geometry, slot.compute, slot.lighting}) {
+  for (const VkCommandBuffer commands : {slot.geometry, slot.compute, slot.lighting})
     require(vkBeginCommandBuffer(commands, &begin), "cannot record commands");
-  }
   record_geometry(slot.geometry, camera);
   record_occlusion(slot.compute, camera);
   record_lighting(slot.lighting);
-  for (const VkCommandBuffer commands : {slot.geometry, slot.compute, slot.lighting}) {
+  for (const VkCommandBuffer commands : {slot.geometry, slot.compute, slot.lighting})
     require(vkEndCommandBuffer(commands), "cannot record commands");
-  }
   submit(slot);
   previous_ = camera;
   ++frame_;

@@ -40,18 +40,15 @@ Renderer::~Renderer() {
     vkDestroySemaphore(base_.device, slot.computed, nullptr);
     vkDestroyFence(base_.device, slot.finished, nullptr);
   }
-  for (const VkPipeline pipeline : {geometry_pipeline_, lighting_pipeline_}) {
+  for (const VkPipeline pipeline : {geometry_pipeline_, lighting_pipeline_})
     vkDestroyPipeline(base_.device, pipeline, nullptr);
-  }
-  for (const VkPipelineLayout layout : {geometry_layout_, lighting_layout_}) {
+  for (const VkPipelineLayout layout : {geometry_layout_, lighting_layout_})
     vkDestroyPipelineLayout(base_.device, layout, nullptr);
-  }
   vkDestroyDescriptorPool(base_.device, pool_, nullptr);
   vkDestroyDescriptorSetLayout(base_.device, set_layout_, nullptr);
   vkDestroySampler(base_.device, sampler_, nullptr);
-  for (const VkRenderPass pass : {geometry_pass_, lighting_pass_}) {
+  for (const VkRenderPass pass : {geometry_pass_, lighting_pass_})
     vkDestroyRenderPass(base_.device, pass, nullptr);
-  }
   base_.destroy(vertices_);
   base_.close();
 }

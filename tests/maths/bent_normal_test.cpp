@@ -60,9 +60,8 @@ Turned turned(float phi, const vec3& normal, const vec3& view) {
 
 std::vector<float> even_angles(int count) {
   std::vector<float> angles(static_cast<std::size_t>(count));
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < count; ++k)
     angles[static_cast<std::size_t>(k)] = float(kPi * (k + 0.5) / count);
-  }
   return angles;
 }
 
@@ -76,9 +75,8 @@ TEST(BentNormal, BentNormalOfAnUnoccludedSurfaceIsItsNormalEvenFromASingleSlice)
     const vec3 residual =
         maths::converged_residual(maths::residual_of(part, open, normal),
                                   maths::expected_residual(s, direction, view, normal, open), 1.0f);
-    if (open > 1e-2f) {
+    if (open > 1e-2f)
       EXPECT_LT(distance(maths::finish_bent_normal(residual, open, normal), normal), 1e-4f);
-    }
   }
 }
 

@@ -56,11 +56,9 @@ TEST(EnvironmentMap, TexelsBeyondAnEdgeOfTheOctahedralMapContinueItOnTheSphere) 
 TEST(EnvironmentMap, SolidAnglesOfAllTexelsSumToFourPi) {
   for (const int size : {16, 64, 256}) {
     double sum = 0.0;
-    for (int y = 0; y < size; ++y) {
-      for (int x = 0; x < size; ++x) {
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
         sum += maths::map_texel_angle((vec2(x, y) + 0.5f) / float(size), float(size));
-      }
-    }
     EXPECT_NEAR(sum, 4.0 * 3.14159265, 12.0 / (size * size)) << size;
   }
 }

@@ -21,11 +21,10 @@ double shared_area(double a, double b, double d) {
   const auto ring = [&](double t) {
     const double across = std::sin(t) * std::sin(d), along = std::cos(t) * std::cos(d);
     double half_arc = 0.0;
-    if (across < 1e-15) {
+    if (across < 1e-15)
       half_arc = along >= std::cos(b) ? kPi : 0.0;
-    } else {
+    else
       half_arc = std::acos(std::clamp((std::cos(b) - along) / across, -1.0, 1.0));
-    }
     return 2 * half_arc * std::sin(t);
   };
   // The integral is split at the angles at which the ring crosses the rim of `b`.
@@ -121,9 +120,8 @@ TEST(Gtso, SpecularVisibilityIncreasesWithVisibilityAndIsAtMostOne) {
 TEST(Gtso, AlmostUnoccludedVisibilityIsRaisedToOneAndOtherValuesChangeByUnderOnePercent) {
   EXPECT_EQ(maths::converged_visibility(0.0f), 0.0f);
   EXPECT_EQ(maths::converged_visibility(127.5f / 128.0f), 1.0f);
-  for (float v = 0.0f; v <= 1.0f; v += 0.01f) {
+  for (float v = 0.0f; v <= 1.0f; v += 0.01f)
     EXPECT_NEAR(maths::converged_visibility(v), v, 1.0f / 127.0f);
-  }
 }
 
 TEST(Gtso, BentNormalIsRaisedUntilTheVisibilityConeLiesAboveTheSurface) {
@@ -135,9 +133,7 @@ TEST(Gtso, BentNormalIsRaisedUntilTheVisibilityConeLiesAboveTheSurface) {
     const float room = float(kPi) / 2 - maths::visibility_cone(v);
     EXPECT_NEAR(glm::length(raised), 1.0f, 1e-4f);
     EXPECT_LE(maths::angle_between(raised, normal), room + 1e-3f);
-    if (maths::angle_between(bent, normal) < room - 1e-3f) {
-      EXPECT_EQ(raised, bent);
-    }
+    if (maths::angle_between(bent, normal) < room - 1e-3f) EXPECT_EQ(raised, bent);
     EXPECT_LT(maths::angle_between(maths::raised_bent_normal(bent, normal, 1.0f), normal), 1e-3f);
   }
 }
@@ -149,9 +145,8 @@ TEST(Gtso, MirrorDirectionIsAUnitVectorAboveTheSurface) {
     const vec3 mirror = maths::mirror_direction(normal, view);
     EXPECT_NEAR(glm::length(mirror), 1.0f, 1e-4f);
     EXPECT_GE(glm::dot(mirror, normal), 0.0f);
-    if (glm::dot(normal, view) > 1e-3f) {
+    if (glm::dot(normal, view) > 1e-3f)
       EXPECT_NEAR(glm::dot(mirror, normal), glm::dot(normal, view), 1e-5f);
-    }
   }
 }
 

@@ -182,9 +182,8 @@ TEST(History, RecentOcclusionIsAMeanOverOnlyAFewFrames) {
   EXPECT_FLOAT_EQ(maths::update_recent(0.2f, 1.0f, 0.4f, 1.0f), 0.3f);
   const auto after_a_dozen = [](float open) {
     float recent = 0.0f;
-    for (int frame = 0; frame < 12; ++frame) {
+    for (int frame = 0; frame < 12; ++frame)
       recent = maths::update_recent(recent, 32.0f, 1.0f, open);
-    }
     return recent;
   };
   EXPECT_GT(after_a_dozen(1.0f), 0.95f);

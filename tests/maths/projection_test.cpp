@@ -146,9 +146,8 @@ TEST(Projection, ReversedDepthWithAnInfiniteFarPlaneIsPreciseFarAway) {
   Frustum f;
   f.infinite = f.reversed = true;
   const Projection p = projection_of(f);
-  for (const float depth : {0.1f, 1.0f, 1e3f, 1e5f, 1e7f}) {
+  for (const float depth : {0.1f, 1.0f, 1e3f, 1e5f, 1e7f})
     EXPECT_NEAR(maths::linear_depth(p, 0.1f / depth) / depth, 1.0f, 1e-6f);
-  }
 }
 
 TEST(Projection, NearAndFarPlanesReadFromTheMatrixEqualThoseOfTheFrustum) {

@@ -104,17 +104,15 @@ TEST(GoldenPattern, SliceDirectionsFormNoWavesOverTheImage) {
       for (unsigned y = 0; y < kWindow; ++y) {
         for (unsigned x = 0; x < kWindow; ++x) {
           const Complex value = mean_of_traces(harmonic, traces, x, y);
-          for (unsigned u = 0; u < kWindow; ++u) {
+          for (unsigned u = 0; u < kWindow; ++u)
             rows[std::size_t{y} * kWindow + u] += value * wave(-double(u * x) / kWindow);
-          }
         }
       }
       for (unsigned v = 0; v < kWindow; ++v) {
         for (unsigned u = 0; u < kWindow; ++u) {
           Complex sum;
-          for (unsigned y = 0; y < kWindow; ++y) {
+          for (unsigned y = 0; y < kWindow; ++y)
             sum += rows[std::size_t{y} * kWindow + u] * wave(-double(v * y) / kWindow);
-          }
           const bool two_tiles = u % (kWindow / 2) == 0 && v % (kWindow / 2) == 0 && u + v > 0;
           EXPECT_LT(two_tiles ? 0.0 : std::abs(sum) / (kWindow * kWindow), 0.3)
               << traces << " traces, harmonic " << harmonic << ", " << u << " and " << v

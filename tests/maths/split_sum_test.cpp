@@ -52,11 +52,8 @@ vec2 quadrature(float n_dot_v, float roughness) {
   };
   Sum sum{0, 0};
   constexpr int kSide = 192;
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j) {
-      sum += mean((i + 0.5) / kSide, (j + 0.5) / kSide);
-    }
-  }
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) sum += mean((i + 0.5) / kSide, (j + 0.5) / kSide);
   return vec2(float(sum.x), float(sum.y)) / float(kSide * kSide);
 }
 

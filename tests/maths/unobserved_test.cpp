@@ -35,9 +35,8 @@ struct Case {
         unobserved(maths::nothing_unobserved()) {
     const float first = random.uniform(0.0f, 1.2f) * kRadiusPx;
     const float width = random.uniform(0.0f, 0.3f) * kRadiusPx;
-    for (unsigned k = random.bits() % 4; k > 0; --k) {
+    for (unsigned k = random.bits() % 4; k > 0; --k)
       unobserved = maths::add_column(unobserved, true, first + float(k - 1) * width, width);
-    }
   }
 
   UnobservedArc arc() const {
@@ -160,9 +159,8 @@ TEST(UnobservedDirections,
   EXPECT_EQ(maths::border_share(0.25f, 0.0f), 0.375f);
   EXPECT_EQ(maths::border_share(1.0f, 0.0f), 0.0f);
   EXPECT_EQ(maths::border_share(0.0f, 0.5f), 0.46875f);
-  for (const float nearness : {1.0f, 2.0f, 1e30f}) {
+  for (const float nearness : {1.0f, 2.0f, 1e30f})
     EXPECT_EQ(maths::border_share(0.0f, nearness), 0.0f);
-  }
 }
 
 TEST(UnobservedDirections, NothingIsExcludedIfTheRadiusLiesInsideTheImage) {

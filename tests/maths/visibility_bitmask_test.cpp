@@ -30,9 +30,8 @@ float random_side(RandomInput& random) { return random.bits() % 2 == 0 ? 1.0f : 
 // Returns a random mask of runs of sectors, as occluders cause them.
 std::uint32_t random_runs(RandomInput& random) {
   std::uint32_t occluded = 0;
-  for (unsigned k = random.bits() % 4; k > 0; --k) {
+  for (unsigned k = random.bits() % 4; k > 0; --k)
     occluded |= maths::sectors_between(random.uniform(0, 32), random.uniform(0, 32));
-  }
   return occluded;
 }
 
@@ -105,9 +104,8 @@ TEST(VisibilityBitmask, ExclusiveOrOfTheMasksBeyondTwoPositionsSetsTheSectorsBet
       return std::min(std::nearbyint(share * 31.0f), 31.0f);
     };
     if (std::abs(a * 31.0f - std::floor(a * 31.0f) - 0.5f) < 0.02f ||
-        std::abs(b * 31.0f - std::floor(b * 31.0f) - 0.5f) < 0.02f || tangent < 0.02f) {
+        std::abs(b * 31.0f - std::floor(b * 31.0f) - 0.5f) < 0.02f || tangent < 0.02f)
       continue;
-    }
     EXPECT_EQ(maths::sectors_beyond(position(a)) ^ maths::sectors_beyond(position(b)),
               maths::sectors_between(expected(a), expected(b)));
     EXPECT_EQ(position(a) - maths::kPositionBits, std::uint32_t(expected(a)));

@@ -185,13 +185,11 @@ TEST_F(LightingPass, FrameWithoutSpecularLightHasNoSpecularPassesTexturesOrTable
     kept = kept_of(graph);
   });
   EXPECT_THAT(kept.passes, testing::Contains("probe light"));
-  for (const char* absent : {"specular occlusion", "environment prefilter"}) {
+  for (const char* absent : {"specular occlusion", "environment prefilter"})
     EXPECT_THAT(kept.passes, testing::Not(testing::Contains(absent)));
-  }
   for (const char* absent :
-       {"specular occlusion", "bent normal", "environment map", "specular light", "multi-bounce"}) {
+       {"specular occlusion", "bent normal", "environment map", "specular light", "multi-bounce"})
     EXPECT_THAT(kept.transients, testing::Not(testing::Contains(absent)));
-  }
   EXPECT_EQ(gpu().kernels().table_bytes(), 0u);
 }
 

@@ -30,9 +30,7 @@ class BadInput : public PassTest {
       const Frame frame{graph, gpu().kernels(), view, 0};
       const framegraph::Texture depth = upload(graph, drawing.depth_ndc);
       const auto outputs = add_occlusion(frame, {depth}, settings);
-      if (!outputs) {
-        said = outputs.error().message;
-      }
+      if (!outputs) said = outputs.error().message;
       read_back(graph, outputs ? outputs->visibility : depth);
     });
     return said;
@@ -138,9 +136,7 @@ TEST_F(BadInput, NumbersInErrorMessagesAreShortAndExactInEveryLocale) {
       {"'history_frames' is 256;", [](View&, OcclusionSettings& s) { s.history_frames = 256; }},
       {"'slices' is 1234567;", [](View&, OcclusionSettings& s) { s.slices = 1234567; }},
   };
-  for (const Case& bad : cases) {
-    EXPECT_THAT(error_of(bad.spoil), HasSubstr(bad.says));
-  }
+  for (const Case& bad : cases) EXPECT_THAT(error_of(bad.spoil), HasSubstr(bad.says));
 }
 
 TEST_F(BadInput, InvalidProjectionMatrixIsReported) {
@@ -175,14 +171,11 @@ TEST_F(BadInput, ViewMatrixThatScalesOrIsNotFiniteIsReported) {
 
 TEST_F(BadInput, TransposedProjectionMatrixIsReported) {
   for (const TestView& test : test_views()) {
-    if (test.orthographic) {
-      continue;
-    }
+    if (test.orthographic) continue;
     SCOPED_TRACE(test.name);
     const std::string said = error_of([&](View& view, OcclusionSettings&) {
-      for (std::size_t i = 0; i < 16; ++i) {
+      for (std::size_t i = 0; i < 16; ++i)
         view.clip_from_view[i] = test.view.clip_from_view[4 * (i % 4) + i / 4];
-      }
     });
     EXPECT_THAT(said, HasSubstr("transposed"));
     EXPECT_PRED1(is_a_sentence, said);

@@ -70,18 +70,14 @@ class CAreas : public CInterface, public testing::WithParamInterface<Case> {
 
   static void advance(GivenView& view, std::uint32_t index) {
     view.previous_view = view.view;
-    if (index == 1 || index == 2) {
-      view.view.view_from_world[12] += 0.03f;
-    }
+    if (index == 1 || index == 2) view.view.view_from_world[12] += 0.03f;
     view.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
   }
 
   // The images of both views in one sheet.
   AlcoveImage sheet(const HostImage& a, const HostImage& b,
                     const std::array<Placement, 2>& places) {
-    if (a.texels.empty()) {
-      return {};
-    }
+    if (a.texels.empty()) return {};
     HostImage image = placed_in(kSheet, a, places[0].read.x, places[0].read.y);
     place(image, b, places[1].read.x, places[1].read.y);
     return input(image);
@@ -89,9 +85,7 @@ class CAreas : public CInterface, public testing::WithParamInterface<Case> {
 
   // An output whose pixels have the value kPoison.
   AlcoveImage poisoned(const AlcoveImage& like) {
-    if (like.image == VK_NULL_HANDLE) {
-      return {};
-    }
+    if (like.image == VK_NULL_HANDLE) return {};
     AlcoveImage image = engine().make_image(like.format, kSheet.width, kSheet.height,
                                             like.usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     const bool one = like.format == VK_FORMAT_R32_SFLOAT;
@@ -103,9 +97,7 @@ class CAreas : public CInterface, public testing::WithParamInterface<Case> {
 
   void expect_same(const HostImage& sheet_texels, const HostImage& expected, const Placement& place,
                    HostImage& left) {
-    if (expected.texels.empty()) {
-      return;
-    }
+    if (expected.texels.empty()) return;
     const AlcoveArea area{place.output_x, place.output_y, expected.width, expected.height};
     EXPECT_EQ(part_of(sheet_texels, area).texels, expected.texels);
     HostImage poison = expected;
@@ -205,9 +197,7 @@ void CAreas::run_sheet(bool band) {
     expect_poison(left.bent_normal);
     expect_poison(left.specular);
     expect_poison(left.multi_bounce);
-    if (HasFailure()) {
-      break;
-    }
+    if (HasFailure()) break;
   }
 }
 
@@ -238,9 +228,8 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
     const AlcoveArea corner{0, 0, written.width, written.height};
     EXPECT_EQ(part_of(found.visibility, corner).texels,
               part_of(expected.visibility, written).texels);
-    if (!found.specular.texels.empty()) {
+    if (!found.specular.texels.empty())
       EXPECT_EQ(part_of(found.specular, corner).texels, part_of(expected.specular, written).texels);
-    }
   }
 }
 

@@ -32,9 +32,7 @@ class CBadInput : public CInterface {
  protected:
   void SetUp() override {
     CInterface::SetUp();
-    if (HasFatalFailure()) {
-      return;
-    }
+    if (HasFatalFailure()) return;
     context_ = create_context();
     given_ = given_view(test_views()[2], 16, 12, groove(0.8));
     given_.settings.bent_normal = true;
@@ -43,9 +41,7 @@ class CBadInput : public CInterface {
     view_ = view_of(given_, settings_);
   }
   void TearDown() override {
-    if (engine_is_there()) {
-      engine().wait();
-    }
+    if (engine_is_there()) engine().wait();
     context_.reset();
     CInterface::TearDown();
   }
@@ -381,9 +377,8 @@ TEST_F(CBadInput, RequestingSettingsWithUnknownQualityOrInvalidRadiusIsAnError) 
   AlcoveSettings settings{.struct_size = sizeof settings};
   AlcoveQuality quality = ALCOVE_QUALITY_LOW;
   EXPECT_EQ(alcoveGetSettings(quality, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
-  for (const float radius : {0.0f, -1.0f, kNaN, std::numeric_limits<float>::infinity()}) {
+  for (const float radius : {0.0f, -1.0f, kNaN, std::numeric_limits<float>::infinity()})
     EXPECT_EQ(alcoveGetSettings(quality, radius, &settings), ALCOVE_ERROR_INVALID_INPUT);
-  }
   set_number(quality, ALCOVE_QUALITY_REFERENCE + 1);
   EXPECT_EQ(alcoveGetSettings(quality, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
   settings.struct_size = 12;
@@ -421,13 +416,12 @@ TEST_F(CBadInput, FramesWithRandomSettingsAndCamerasAreRecordedOrRefusedWithAMes
         random() % 2 == 0
             ? reinterpret_cast<char*>(&settings) + kFirst + 4 * (random() % kCount)
             : reinterpret_cast<char*>(&advanced) + kFirstAdvanced + 4 * (random() % kAdvancedCount);
-    if (random() % 2 == 0) {
+    if (random() % 2 == 0)
       std::memcpy(field, &small, 4);
-    } else if (random() % 2 == 0) {
+    else if (random() % 2 == 0)
       std::memcpy(field, &number, 4);
-    } else {
+    else
       changed.camera.clip_from_view[random() % 16] = number;
-    }
     const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &changed};
     engine().submit(0, [&](VkCommandBuffer commands) {
       const AlcoveResult result = alcoveRecordFrame(context(), commands, &frame);

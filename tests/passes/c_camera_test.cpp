@@ -34,11 +34,9 @@ glm::mat4 expected_clip() {
 }
 
 void expect_near(const glm::mat4& found, const glm::mat4& expected) {
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
       EXPECT_NEAR(found[column][row], expected[column][row], 1e-5f) << column << ", " << row;
-    }
-  }
 }
 
 void expect_converted(const glm::mat4& clip, const glm::mat4& view, std::uint32_t conventions) {
@@ -66,9 +64,7 @@ TEST(CCamera, OpenGlCameraMatricesAreConverted) {
 // is the same as in the other tests.
 TEST(CCamera, Direct3dCameraMatricesAreConverted) {
   glm::mat4 view = expected_view();
-  for (int column = 0; column < 4; ++column) {
-    view[column][2] = -view[column][2];
-  }
+  for (int column = 0; column < 4; ++column) view[column][2] = -view[column][2];
   expect_converted(glm::perspectiveLH_ZO(kFovY, kAspect, kNear, kFar), view,
                    ALCOVE_CAMERA_CONVENTION_DIRECT3D);
 }
@@ -153,9 +149,8 @@ TEST(CCamera, PerspectiveParametersOutOfRangeAreErrors) {
                            +[](AlcovePerspective& p) { p.far_plane = 0.05f; },
                            +[](AlcovePerspective& p) { p.far_plane = -1.0f; },
                            +[](AlcovePerspective& p) { p.width = 0; },
-                           +[](AlcovePerspective& p) { p.jitter_px[1] = NAN; }}) {
+                           +[](AlcovePerspective& p) { p.jitter_px[1] = NAN; }})
     EXPECT_EQ(result(spoil), ALCOVE_ERROR_INVALID_INPUT);
-  }
 }
 
 }  // namespace

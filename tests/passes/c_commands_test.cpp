@@ -83,14 +83,12 @@ TEST_F(CCommands, FrameForAComputeOnlyQueueUsesNoGraphicsPipelineStage) {
   for (std::uint32_t i = 0; i < 2; ++i) {
     run_frame(*context, {&view, 1}, i);
     for (AlcoveImage* image :
-         {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce}) {
+         {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce})
       image->initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    }
     const std::string plan = plan_of(*context);
     EXPECT_THAT(plan, HasSubstr("compute"));
-    for (const char* stage : {"graphics", "vertex", "fragment", "attachment", "draw", "blit"}) {
+    for (const char* stage : {"graphics", "vertex", "fragment", "attachment", "draw", "blit"})
       EXPECT_THAT(plan, Not(HasSubstr(stage)));
-    }
     const auto right = framegraph::verify(context->graph.description(), context->executor.limits(),
                                           *context->report.plan);
     EXPECT_TRUE(right) << right.error().front().message;

@@ -20,9 +20,7 @@ AlcoveCamera camera_at(float x, float jitter) {
   camera.clip_from_view[8] = jitter;
   camera.clip_from_view[11] = -1.0f;
   camera.clip_from_view[14] = 0.1f;
-  for (const int i : {0, 5, 10, 15}) {
-    camera.view_from_world[i] = 1.0f;
-  }
+  for (const int i : {0, 5, 10, 15}) camera.view_from_world[i] = 1.0f;
   camera.view_from_world[12] = x;
   return camera;
 }
@@ -49,9 +47,8 @@ std::string said_of(const std::function<void(AlcoveFrame&, AlcoveView&)>& change
 }
 
 TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
-  for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f}) {
+  for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f})
     EXPECT_EQ(said_of([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
-  }
   // The following calls are correct as well: a reset of the history in every fifth frame, pairs of
   // frames with the same index, as for the two eyes of a stereo view, and a game that starts anew.
   EXPECT_EQ(said_of([](AlcoveFrame& frame, AlcoveView& view) {
@@ -104,9 +101,7 @@ TEST(CDiagnose, ViewsThatAreDroppedOrHaveNoHistoryMayBeManyMore) {
           {.struct_size = sizeof(AlcoveView), .id = 1 + i / 2, .settings = &settings}};
       warnings += finder.observe(
           {.struct_size = sizeof(AlcoveFrame), .index = i, .view_count = 2, .views = views});
-      if (way == Way::drop && i % 2 == 1) {
-        finder.drop_view(1 + i / 2);
-      }
+      if (way == Way::drop && i % 2 == 1) finder.drop_view(1 + i / 2);
     }
     EXPECT_EQ(warnings, way == Way::leak ? 1 : 0);
     EXPECT_EQ(finder.describe().find("More views") != std::string::npos, way == Way::leak);
@@ -136,9 +131,7 @@ class CDiagnoseFrames : public CInterface {
           throw_away(commands);
         }
       });
-      if (discards) {
-        EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
-      }
+      if (discards) EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
     }
     engine().wait();
     std::string text(alcoveDiagnose(context.get(), nullptr, 0) + 1, '\0');
@@ -174,9 +167,7 @@ TEST_F(CDiagnoseFrames, DiagnosisTextIsTruncatedToTheBufferOfTheCaller) {
   GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
   AlcoveSettings settings{};
   const AlcoveView view = view_of(given, settings);
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    run_frame(*context, {&view, 1}, 4);
-  }
+  for (std::uint32_t i = 0; i < 8; ++i) run_frame(*context, {&view, 1}, 4);
   engine().wait();
   std::string text(alcoveDiagnose(context.get(), nullptr, 0) + 1, '\0');
   EXPECT_EQ(alcoveDiagnose(context.get(), text.data(), text.size()), text.size() - 1);

@@ -46,15 +46,12 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, c
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
                                                                 const char* name) {
   const std::string wanted(name);
-  if (wanted == "vkGetPhysicalDeviceFeatures2") {
+  if (wanted == "vkGetPhysicalDeviceFeatures2")
     return reinterpret_cast<PFN_vkVoidFunction>(&get_features);
-  }
-  if (wanted == "vkGetPhysicalDeviceProperties") {
+  if (wanted == "vkGetPhysicalDeviceProperties")
     return reinterpret_cast<PFN_vkVoidFunction>(&get_properties);
-  }
-  if (wanted == "vkGetDeviceProcAddr") {
+  if (wanted == "vkGetDeviceProcAddr")
     return reinterpret_cast<PFN_vkVoidFunction>(&get_device_proc_addr);
-  }
   return wanted == missing_function ? nullptr : vkGetInstanceProcAddr(instance, name);
 }
 
@@ -143,9 +140,7 @@ Outcome run_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine
   for (int i = 0; i < 2 && outcome.result == ALCOVE_SUCCESS; ++i) {
     engine.submit(0, [&](VkCommandBuffer commands) {
       outcome.result = alcoveRecordFrame(context.get(), commands, &frame);
-      if (outcome.result != ALCOVE_SUCCESS) {
-        throw_away(commands);
-      }
+      if (outcome.result != ALCOVE_SUCCESS) throw_away(commands);
     });
     said = alcoveGetMessage(context.get());
   }
@@ -182,13 +177,11 @@ TEST(CResult, ResultNamesMatchTheEnumerators) {
        {ALCOVE_NAMED(ALCOVE_SUCCESS), ALCOVE_NAMED(ALCOVE_ERROR_INVALID_INPUT),
         ALCOVE_NAMED(ALCOVE_ERROR_UNSUPPORTED), ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_HOST_MEMORY),
         ALCOVE_NAMED(ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY), ALCOVE_NAMED(ALCOVE_ERROR_DEVICE_LOST),
-        ALCOVE_NAMED(ALCOVE_ERROR_VULKAN), ALCOVE_NAMED(ALCOVE_ERROR_INTERNAL)}) {
+        ALCOVE_NAMED(ALCOVE_ERROR_VULKAN), ALCOVE_NAMED(ALCOVE_ERROR_INTERNAL)})
     EXPECT_STREQ(alcoveGetResultName(value), name);
-  }
 #undef ALCOVE_NAMED
-  for (const int none : {1, -8, INT_MAX, INT_MIN}) {
+  for (const int none : {1, -8, INT_MAX, INT_MIN})
     EXPECT_STREQ(alcoveGetResultName(static_cast<AlcoveResult>(none)), "unknown AlcoveResult");
-  }
 }
 
 // Calls a function of the library while the allocation number `which`, counted from the beginning
@@ -274,12 +267,8 @@ TEST_F(CFailure, RecordFrameSucceedsAfterItFailedForLackOfHostMemory) {
             fails, [&] { result = alcoveRecordFrame(context.get(), commands, &frame); });
         EXPECT_EQ(result, now ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS)
             << alcoveGetMessage(context.get());
-        if (fails != 0) {
-          failed = now;
-        }
-        if (now) {
-          throw_away(commands);
-        }
+        if (fails != 0) failed = now;
+        if (now) throw_away(commands);
       });
     }
     ASSERT_LT(which, 2000u);

@@ -42,9 +42,8 @@ struct HostMemory {
                               VkSystemAllocationScope) -> void* {
           auto& self = *static_cast<HostMemory*>(user);
           void* const made = size == 0 ? nullptr : self.allocate(size, alignment);
-          if (made != nullptr && original != nullptr) {
+          if (made != nullptr && original != nullptr)
             std::memcpy(made, original, std::min(size, self.sizes.at(original)));
-          }
           self.free(original);
           return made;
         },
@@ -89,9 +88,7 @@ struct DeviceMemory {
             this};
   }
   VkResult allocate(const AlcoveMemoryRequest& request, AlcoveMemoryRange& range) {
-    if (++calls == fails_at) {
-      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    }
+    if (++calls == fails_at) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     required.push_back(request.required);
     ++((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 ? host_visible : device_local)
           .at(request.lifetime);
@@ -177,9 +174,7 @@ class CAllocators : public CInterface {
     AlcoveResult result = ALCOVE_SUCCESS;
     engine().submit(frame.slot, [&](VkCommandBuffer commands) {
       result = alcoveRecordFrame(&context, commands, &frame);
-      if (result != ALCOVE_SUCCESS) {
-        throw_away(commands);
-      }
+      if (result != ALCOVE_SUCCESS) throw_away(commands);
     });
     return result;
   }
@@ -195,9 +190,7 @@ TEST_F(CAllocators, EverythingAllocatedThroughTheEnginesAllocatorsIsFreed) {
     info.memory_functions = memory.functions();
     const Context context = create(info);
     const GivenView given = given_of(33, 17);
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      expect_same_both_ways(*context, {&given, 1}, i);
-    }
+    for (std::uint32_t i = 0; i < 3; ++i) expect_same_both_ways(*context, {&given, 1}, i);
     EXPECT_EQ(alcoveDropView(context.get(), 0), ALCOVE_SUCCESS);
   }
   EXPECT_GT(host.allocated, 20u);
@@ -220,14 +213,11 @@ TEST_F(CAllocators, AllImagesArePlacedInTheEnginesMemoryBlockWhileSizesChange) {
     std::uint32_t index = 0;
     for (const std::uint32_t width : {40u, 72u, 24u, 96u, 48u, 88u}) {
       const GivenView given = given_of(width, 32);
-      for (int i = 0; i < 3; ++i) {
-        expect_same_both_ways(*context, {&given, 1}, index++);
-      }
+      for (int i = 0; i < 3; ++i) expect_same_both_ways(*context, {&given, 1}, index++);
     }
     // The block is not host-visible, so only host-visible memory was asked of the functions.
-    for (const VkMemoryPropertyFlags required : memory.required) {
+    for (const VkMemoryPropertyFlags required : memory.required)
       EXPECT_NE(required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 0u);
-    }
   }
   EXPECT_THAT(memory.alive, IsEmpty());
 }
@@ -311,9 +301,7 @@ TEST_F(CAllocators, LogCallbackGetsErrorsWarningsAndInformation) {
                     Contains(Pair(ALCOVE_SEVERITY_INFO, HasSubstr("pipeline")))));
   EXPECT_EQ(record_alone(*context, view, 1), ALCOVE_SUCCESS);
   said.sentences.clear();
-  for (std::uint32_t i = 2; i < 6; ++i) {
-    EXPECT_EQ(record_alone(*context, view, i), ALCOVE_SUCCESS);
-  }
+  for (std::uint32_t i = 2; i < 6; ++i) EXPECT_EQ(record_alone(*context, view, i), ALCOVE_SUCCESS);
   EXPECT_THAT(said.sentences, IsEmpty()) << "a steady frame";
   engine().wait();
 }

@@ -22,9 +22,8 @@ HostImage mapped(const HostImage& image, std::uint32_t channels,
   HostImage result{image.width, image.height, {}, channels};
   const std::size_t texels = std::size_t{image.width} * image.height;
   result.texels.resize(texels * channels);
-  for (std::size_t i = 0; i < texels; ++i) {
+  for (std::size_t i = 0; i < texels; ++i)
     map(&image.texels[i * image.channels], &result.texels[i * channels]);
-  }
   return result;
 }
 
@@ -60,9 +59,7 @@ class CInputs : public CInterface {
     AlcoveSettings settings{};
     AlcoveView view = view_of(given, settings);
     change(view);
-    for (std::uint32_t i = 0; i < frames; ++i) {
-      run_frame(*context, {&view, 1}, i);
-    }
+    for (std::uint32_t i = 0; i < frames; ++i) run_frame(*context, {&view, 1}, i);
     engine().wait();
     return results_of(view);
   }
@@ -117,9 +114,8 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
   moving.settings.advanced.estimator = Estimator::horizons;
   moving.settings.radius = 1.5f;
   moving.motion = {kWidth, kHeight, {}, 2};
-  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i)
     moving.motion.texels.insert(moving.motion.texels.end(), {0.05f, -0.025f});
-  }
   const Results expected = results(moving, 3, [](AlcoveView&) {});
   const auto with = [&](float scale_x, float scale_y, float x, float y) {
     GivenView changed = moving;

@@ -39,9 +39,8 @@ framegraph::ImportedTexture import_of(const AlcoveImage& image) {
 
 HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> texel) {
   HostImage image{width, height, {}, static_cast<std::uint32_t>(texel.size())};
-  for (std::size_t i = 0; i < std::size_t{width} * height; ++i) {
+  for (std::size_t i = 0; i < std::size_t{width} * height; ++i)
     image.texels.insert(image.texels.end(), texel.begin(), texel.end());
-  }
   return image;
 }
 
@@ -95,9 +94,7 @@ void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::ui
 
 void CInterface::SetUp() {
   PassTest::SetUp();
-  if (!HasFatalFailure()) {
-    engine_ = std::make_unique<Engine>(gpu().device());
-  }
+  if (!HasFatalFailure()) engine_ = std::make_unique<Engine>(gpu().device());
 }
 
 void CInterface::TearDown() {
@@ -116,9 +113,7 @@ Context CInterface::create_context() {
 }
 
 AlcoveImage CInterface::input(const HostImage& contents) {
-  if (contents.texels.empty()) {
-    return {};
-  }
+  if (contents.texels.empty()) return {};
   const AlcoveImage image = engine_->make_image(format_of(contents.channels), contents.width,
                                                 contents.height, kInputUsage);
   fill_image(image, contents, image.final_state);
@@ -141,9 +136,7 @@ AlcoveImage CInterface::output(VkFormat format, std::uint32_t width, std::uint32
 }
 
 HostImage CInterface::read(const AlcoveImage& image) {
-  if (image.image == VK_NULL_HANDLE) {
-    return {};
-  }
+  if (image.image == VK_NULL_HANDLE) return {};
   run([&](Graph& graph) { read_back(graph, graph.import_texture("image", import_of(image))); });
   return result();
 }
@@ -223,15 +216,11 @@ std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<cons
   std::vector<AlcoveSettings> settings(given.size());
   std::vector<AlcoveView> views;
   views.reserve(given.size());
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    views.push_back(view_of(given[i], settings[i]));
-  }
+  for (std::size_t i = 0; i < given.size(); ++i) views.push_back(view_of(given[i], settings[i]));
   run_frame(context, views, index);
   std::vector<Results> results;
   results.reserve(views.size());
-  for (const AlcoveView& view : views) {
-    results.push_back(results_of(view));
-  }
+  for (const AlcoveView& view : views) results.push_back(results_of(view));
   engine_->wait();
   return results;
 }
@@ -239,9 +228,7 @@ std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<cons
 Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
   const std::string name = "by C++ " + std::to_string(given.id);
   run([&](Graph& graph) {
-    if (given.reset) {
-      graph.reset_history(name);
-    }
+    if (given.reset) graph.reset_history(name);
     const auto upload_of = [&](const HostImage& image) {
       return image.texels.empty() ? Texture{} : upload(graph, image);
     };
@@ -267,15 +254,9 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
                                         .half_size_outputs = given.half_size_outputs},
                                        settings, name);
     ASSERT_TRUE(outputs) << outputs.error().message;
-    if (given.settings.visibility) {
-      read_back(graph, outputs->visibility);
-    }
-    if (given.settings.bent_normal) {
-      read_back(graph, outputs->bent_normal);
-    }
-    if (given.settings.specular != Specular::none) {
-      read_back(graph, outputs->specular);
-    }
+    if (given.settings.visibility) read_back(graph, outputs->visibility);
+    if (given.settings.bent_normal) read_back(graph, outputs->bent_normal);
+    if (given.settings.specular != Specular::none) read_back(graph, outputs->specular);
     if (given.multi_bounce) {
       const auto made = add_multi_bounce(frame, {outputs->visibility, upload_of(given.albedo)},
                                          Precision::float32);

@@ -186,9 +186,7 @@ TEST_F(CInterface, ViewsRecordedInOneFrameEqualViewsRecordedInSeparateFrames) {
     views[2].id = 0;
     views[2].settings.history_frames = 0;
     views[2].reset = i == 2;
-    if (i == 2) {
-      views.erase(views.begin());  // a view that is not recorded keeps its history
-    }
+    if (i == 2) views.erase(views.begin());  // a view that is not recorded keeps its history
     expect_same_both_ways(*context, views, i);
   }
 }
@@ -198,9 +196,8 @@ TEST_F(CInterface, ViewsRecordedInOneFrameEqualViewsRecordedInSeparateFrames) {
 TEST_F(CInterface, MirroringTheWorldAndItsCameraGivesTheSameImage) {
   const Context context = create_context();
   const auto mirror = [](HostImage& image) {
-    for (std::size_t i = 2; i < image.texels.size(); i += image.channels) {
+    for (std::size_t i = 2; i < image.texels.size(); i += image.channels)
       image.texels[i] = -image.texels[i];
-    }
   };
   for (std::uint32_t i = 0; i < 3; ++i) {
     std::vector<GivenView> views(2, frame_of(i, 16, 12));
@@ -225,9 +222,7 @@ TEST_F(CInterface, EightViewsWithAllOutputsCanBeRecordedInOneFrame) {
     views.push_back(frame_of(id, 8, 6));
     views.back().id = id;
     views.back().motion = given_view(test_views()[2], 8, 6, {}).motion;
-    if (id % 2 == 1) {
-      views.back().normals = {};  // a pass more, an image less
-    }
+    if (id % 2 == 1) views.back().normals = {};  // a pass more, an image less
     views.back().settings.advanced.thickness_unit = ThicknessUnit::back_faces;
     views.back().settings.depth_layers = 2;
     views.back().settings.bent_normal = true;
@@ -261,9 +256,7 @@ TEST_F(CInterface, FramesInFlightMayWriteTheSameImagesWithoutAHazard) {
   given.multi_bounce = true;
   AlcoveSettings settings;
   const AlcoveView view = view_of(given, settings);
-  for (std::uint32_t i = 0; i < 6; ++i) {
-    run_frame(*context, {&view, 1}, i);
-  }
+  for (std::uint32_t i = 0; i < 6; ++i) run_frame(*context, {&view, 1}, i);
   engine().wait();
 }
 

@@ -26,9 +26,7 @@ class CMask : public CInterface {
  protected:
   GivenView given(bool with_weapon) const {
     Scene scene = walls();
-    if (with_weapon) {
-      std::ranges::copy(weapon(), std::back_inserter(scene));
-    }
+    if (with_weapon) std::ranges::copy(weapon(), std::back_inserter(scene));
     GivenView view = given_view(test_views()[2], kWidth, kHeight, scene);
     view.motion = {};
     view.settings.radius = 1.0f;
@@ -39,9 +37,8 @@ class CMask : public CInterface {
   // Whether each pixel shows the weapon.
   static std::vector<bool> shows_weapon(const GivenView& with, const GivenView& without) {
     std::vector<bool> shows(with.depth_ndc.texels.size());
-    for (std::size_t i = 0; i < shows.size(); ++i) {
+    for (std::size_t i = 0; i < shows.size(); ++i)
       shows[i] = with.depth_ndc.texels[i] != without.depth_ndc.texels[i];
-    }
     return shows;
   }
 
@@ -51,9 +48,8 @@ class CMask : public CInterface {
     auto buffer =
         sample::HostBuffer::create(gpu().device(), shows.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
     EXPECT_TRUE(buffer);
-    for (std::size_t i = 0; i < shows.size(); ++i) {
+    for (std::size_t i = 0; i < shows.size(); ++i)
       (*buffer)->bytes()[i] = static_cast<std::byte>(shows[i] ? bits : 64);
-    }
     run([&](framegraph::Graph& graph) {
       framegraph::ImportedTexture import{
           .image = image.image,
@@ -120,9 +116,8 @@ TEST_F(CMask, WeaponThatIsMaskedOutIsUnoccludedAndLeavesTheWallsAsTheyAreWithout
       if (shows[i]) {
         ASSERT_EQ(masked.visibility.texels[i], 1.0f);
         ASSERT_EQ(masked.specular.texels[i], 1.0f);
-        for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t c = 0; c < 3; ++c)
           ASSERT_NEAR(masked.bent_normal.texels[4 * i + c], with.normals.texels[4 * i + c], 1e-3f);
-        }
       }
     }
   }

@@ -48,9 +48,7 @@ TEST_F(CMemory, EstimatedMemoryIsWithinFivePercentOfThatOfRecordedFrames) {
     given.settings.bent_normal = (wanted.outputs & ALCOVE_OUTPUT_BENT_NORMAL) != 0;
     given.settings.specular = wanted.specular;
     given.motion = given.back_depth_ndc = given.second_depth_ndc = {};
-    if (!wanted.normals) {
-      given.normals = {};
-    }
+    if (!wanted.normals) given.normals = {};
     const Context context = create_context();
     (void)run_by_c(*context, {&given, 1}, 0);
     const AlcoveMemory found = memory_of(*context);

@@ -41,14 +41,10 @@ class COutputs : public CInterface {
  protected:
   void SetUp() override {
     CInterface::SetUp();
-    if (!HasFatalFailure()) {
-      context_ = create_context();
-    }
+    if (!HasFatalFailure()) context_ = create_context();
   }
   void TearDown() override {
-    if (context_) {
-      engine().wait();
-    }
+    if (context_) engine().wait();
     context_.reset();
     CInterface::TearDown();
   }
@@ -142,9 +138,7 @@ Scene open_plane() { return {plane({0.0, 0.0, -4.0}, {0.1, 0.2, 1.0})}; }
 // Random texels. Those of floats are numbers in [1, 2).
 Bytes random_texels(std::size_t texels, const SharedFormat& format, std::mt19937& random) {
   Bytes bytes(texels * 4 * format.channel_bytes);
-  for (std::byte& byte : bytes) {
-    byte = static_cast<std::byte>(random());
-  }
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
   if (format.channel_bytes == 4) {
     std::uniform_real_distribution<float> number(1.0f, 2.0f);
     for (std::size_t i = 0; i < bytes.size(); i += 4) {
@@ -176,9 +170,8 @@ TEST_F(COutputs, WritingVisibilityToOneChannelKeepsEveryBitOfTheOtherChannels) {
     AlcoveSettings settings;
     AlcoveView view = view_of(given, settings);
     for (const SharedFormat& format : kSharedFormats) {
-      if (!can_store(format.format) || !can_store(format.single)) {
+      if (!can_store(format.format) || !can_store(format.single))
         continue;  // Vulkan requires this of few formats only, among them R8G8B8A8_UNORM
-      }
       view.visibility = engine().make_image(format.single, 17, 11, kSharedUsage);
       view.visibility.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
       view.visibility_channel = ALCOVE_CHANNEL_ALL;
@@ -287,9 +280,7 @@ TEST_F(COutputs, VisibilityInOneChannelOfAnImageEqualsVisibilityInAnImageOfItsOw
   const GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
   const HostImage alone = run_by_cpp(given, 0).visibility;
   HostImage before{16, 12, {}, 4};
-  for (std::size_t i = 0; i < 16UL * 12 * 4; ++i) {
-    before.texels.push_back(static_cast<float>(i));
-  }
+  for (std::size_t i = 0; i < 16UL * 12 * 4; ++i) before.texels.push_back(static_cast<float>(i));
   run([&](framegraph::Graph& graph) {
     const auto shared = upload(graph, before);
     const auto outputs = add_occlusion({graph, gpu().kernels(), given.view},
@@ -303,9 +294,8 @@ TEST_F(COutputs, VisibilityInOneChannelOfAnImageEqualsVisibilityInAnImageOfItsOw
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);
   });
-  for (std::size_t i = 0; i < 16UL * 12 * 4; ++i) {
+  for (std::size_t i = 0; i < 16UL * 12 * 4; ++i)
     ASSERT_EQ(result().texels[i], i % 4 == 3 ? alone.texels[i / 4] : before.texels[i]) << i;
-  }
 }
 
 // Returns a view of a scene at half resolution, with outputs of half size.
@@ -391,9 +381,7 @@ TEST_F(COutputs, HalfSizeTexelsShowTheNearestOrFarthestOfFourPixelsInACheckerboa
       bool any = false;
       for (std::uint32_t i = 0; i < 4; ++i) {
         const std::uint32_t px = 2 * x + i / 2, py = 2 * y + i % 2;
-        if (px >= 33 || py >= 23) {
-          continue;
-        }
+        if (px >= 33 || py >= 23) continue;
         const double depth = given.depth_ndc.at(px, py);
         const bool sky = depth == (reversed ? 0.0 : 1.0);
         const double farness = reversed ? -depth : depth;
@@ -405,9 +393,7 @@ TEST_F(COutputs, HalfSizeTexelsShowTheNearestOrFarthestOfFourPixelsInACheckerboa
         }
       }
       const double depth = given.depth_ndc.at(chosen[0], chosen[1]);
-      if (depth == (reversed ? 0.0 : 1.0)) {
-        continue;
-      }
+      if (depth == (reversed ? 0.0 : 1.0)) continue;
       for (std::uint32_t c = 0; c < 3; ++c) {
         ASSERT_NEAR(found.at(x, y, c), given.normals.at(chosen[0], chosen[1], c), 2e-3)
             << "at " << x << ", " << y;

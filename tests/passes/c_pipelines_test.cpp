@@ -76,9 +76,7 @@ class CPipelines : public CInterface {
     };
     run_at(0.0f);
     run_at(0.1f);
-    for (view.static_frames = 1; view.static_frames <= 20; ++view.static_frames) {
-      run_at(0.1f);
-    }
+    for (view.static_frames = 1; view.static_frames <= 20; ++view.static_frames) run_at(0.1f);
     view.static_frames = 0;
     view.reset_history = VK_TRUE;
     run_at(0.5f);
@@ -88,9 +86,8 @@ class CPipelines : public CInterface {
     view.previous_height = view.depth.height;
     for (AlcoveImage* image : {&view.depth, &view.normals, &view.motion, &view.roughness,
                                &view.back_depth, &view.second_depth, &view.albedo, &view.visibility,
-                               &view.bent_normal, &view.specular, &view.multi_bounce}) {
+                               &view.bent_normal, &view.specular, &view.multi_bounce})
       image->height -= 2;
-    }
     run_at(0.6f);
     view.largest_height = view.previous_height = view.depth.height;
     run_at(0.7f);

@@ -49,9 +49,8 @@ TEST_F(CPlan, SingleRequestedOutputNeedsNoPassOrMemoryOfOtherOutputs) {
   const VkDeviceSize bytes = memory_of_frame(context, visibility).transients_unshared;
   std::string plan = plan_of(*context);
   EXPECT_THAT(plan, HasSubstr("visibility of view 0"));
-  for (const char* absent : {"bent", "specular", "multi-bounce", "normals from depth"}) {
+  for (const char* absent : {"bent", "specular", "multi-bounce", "normals from depth"})
     EXPECT_THAT(plan, Not(HasSubstr(absent)));
-  }
 
   GivenView bent = least();
   bent.settings.bent_normal = true;
@@ -164,9 +163,7 @@ TEST_F(CPlan, ViewRecordedAgainAfterItWasDroppedBeginsANewHistory) {
   GivenView given = least();
   given.settings.visibility = true;
   given.settings.history_frames = 8;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    (void)run_by_c(*context, {&given, 1}, i);
-  }
+  for (std::uint32_t i = 0; i < 3; ++i) (void)run_by_c(*context, {&given, 1}, i);
   EXPECT_EQ(alcoveDropView(context.get(), given.id), ALCOVE_SUCCESS);
   const Results again = run_by_c(*context, {&given, 1}, 3)[0];
   given.id = 77;
@@ -189,9 +186,7 @@ TEST_F(CPlan, TimingsListThePassesOfAFinishedFrame) {
   ASSERT_EQ(count, 2u);
   EXPECT_STREQ(timings[0].pass, "gtao");
   EXPECT_STREQ(timings[1].pass, "reconstruct");
-  for (const AlcoveTiming& timing : timings) {
-    EXPECT_GE(timing.milliseconds, 0.0);
-  }
+  for (const AlcoveTiming& timing : timings) EXPECT_GE(timing.milliseconds, 0.0);
   count = 1;
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
   EXPECT_EQ(count, 1u);
@@ -213,9 +208,7 @@ TEST_F(CPlan, TimingsNameTheViewOfEachPass) {
   std::uint32_t count = timings.size();
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
   std::map<std::uint32_t, std::multiset<std::string>> passes;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    passes[timings.at(i).view].insert(timings.at(i).pass);
-  }
+  for (std::uint32_t i = 0; i < count; ++i) passes[timings.at(i).view].insert(timings.at(i).pass);
   const std::multiset<std::string> plain{"gtao", "reconstruct"};
   EXPECT_EQ(passes.size(), given.size());
   EXPECT_EQ(passes[given[0].id], plain);

@@ -37,13 +37,12 @@ struct Settings {
 
 template <typename Value>
 std::string json_of(Value value) {
-  if constexpr (std::is_enum_v<Value>) {
+  if constexpr (std::is_enum_v<Value>)
     return '"' + std::string(name_of(value)) + '"';
-  } else if constexpr (std::is_same_v<Value, bool>) {
+  else if constexpr (std::is_same_v<Value, bool>)
     return value ? "true" : "false";
-  } else {
+  else
     return std::to_string(value);
-  }
 }
 
 // Returns the file that `alcove recommend --out` writes: all but the radius and surfaces.
@@ -156,9 +155,8 @@ TEST(CReadSettings, DamagedTextNeverChangesSettingsIfItIsRefused) {
   }
   for (int i = 0; i < 2000; ++i) {
     std::string text = good;
-    for (int change = 0; change < 3; ++change) {
+    for (int change = 0; change < 3; ++change)
       text[random() % text.size()] = static_cast<char>(random());
-    }
     Settings found;
     const std::string before = found.printed();
     if (found.read(text) != ALCOVE_SUCCESS) {

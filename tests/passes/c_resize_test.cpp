@@ -69,11 +69,8 @@ AlcoveView recorded_view(Shown& shown) {
   AlcoveView view = shown.view;
   view.settings = &shown.settings;
   const auto leave_out = [](const auto& images, std::uint32_t which) {
-    for (std::size_t i = 0; i < images.size(); ++i) {
-      if ((which >> i & 1) != 0) {
-        *images[i] = {};
-      }
-    }
+    for (std::size_t i = 0; i < images.size(); ++i)
+      if ((which >> i & 1) != 0) *images[i] = {};
   };
   leave_out(inputs_of(view), shown.kind.without_inputs);
   leave_out(outputs_of(view), shown.kind.without_outputs);
@@ -125,9 +122,7 @@ void CResize::SetUp() {
   ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
   context_ = Context(made);
   std::ranges::generate(kinds_, [&] { return any_kind(); });
-  for (std::uint32_t i = 0; i < kMostViews; ++i) {
-    views_.at(i).id = i;
-  }
+  for (std::uint32_t i = 0; i < kMostViews; ++i) views_.at(i).id = i;
   resting_[0].id = kMostViews;
   make_images(resting_[0], {16, 12});
 }
@@ -240,23 +235,20 @@ void CResize::drop(Shown& shown) {
 // Changes a view at random in five of twelve cases. A view that changes has static_frames 0.
 void CResize::change(Shown& shown) {
   const std::uint32_t what = below(12);
-  if (what > 4) {
-    return;
-  }
+  if (what > 4) return;
   shown.view.static_frames = 0;
-  if (what == 0 && shown.is_shown && chance(2)) {
+  if (what == 0 && shown.is_shown && chance(2))
     drop(shown);
-  } else if (what == 0) {
+  else if (what == 0)
     show(shown);
-  } else if (what == 1 && shown.is_shown) {
+  else if (what == 1 && shown.is_shown)
     use_part(shown, {1 + below(shown.largest.width), 1 + below(shown.largest.height)});
-  } else if (what == 2) {
+  else if (what == 2)
     change_kind(shown);
-  } else if (what == 3) {
+  else if (what == 3)
     change_numbers(shown);
-  } else {
+  else
     shown.view.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
-  }
 }
 
 // Stores the camera and the size of this frame as the previous ones of the next frame.
@@ -271,14 +263,9 @@ void remember(Shown& shown) {
 
 void CResize::draw_frame(std::span<Shown> all, bool discards) {
   std::vector<AlcoveView> views;
-  for (Shown& shown : all) {
-    if (shown.is_shown) {
-      views.push_back(recorded_view(shown));
-    }
-  }
-  if (views.empty()) {
-    return;
-  }
+  for (Shown& shown : all)
+    if (shown.is_shown) views.push_back(recorded_view(shown));
+  if (views.empty()) return;
   if (discards) {
     const AlcoveFrame frame{.struct_size = sizeof(AlcoveFrame),
                             .index = frame_,
@@ -295,11 +282,8 @@ void CResize::draw_frame(std::span<Shown> all, bool discards) {
   }
   run_frame(*context_, views, frame_++);
   most_transients_ = std::max(most_transients_, memory_of(*context_).transients);
-  for (Shown& shown : all) {
-    if (shown.is_shown) {
-      remember(shown);
-    }
-  }
+  for (Shown& shown : all)
+    if (shown.is_shown) remember(shown);
 }
 
 // Expects every value of the image to be finite and within [low, 1].
@@ -314,9 +298,7 @@ void expect_within(const HostImage& image, float low, const char* what) {
 }
 
 void CResize::expect_right(Shown& shown) {
-  if (!shown.is_shown) {
-    return;
-  }
+  if (!shown.is_shown) return;
   const Results found = results_of(recorded_view(shown));
   expect_within(found.visibility, 0.0f, "visibility");
   expect_within(found.bent_normal, -1.0f, "a bent normal");
@@ -332,9 +314,8 @@ void CResize::run_round(Clock::time_point end) {
     draw_frame(views_, discards);
     // Reading results waits for the device. It is done in a quarter of the frames only, so that the
     // others are in flight together.
-    if (!discards && chance(4)) {
+    if (!discards && chance(4))
       std::ranges::for_each(views_, [&](Shown& shown) { expect_right(shown); });
-    }
     EXPECT_EQ(gpu().device().validation_messages(), std::vector<std::string>{});
   }
 }
@@ -342,9 +323,7 @@ void CResize::run_round(Clock::time_point end) {
 // Drops all views, records some frames of one small view that is always the same, and returns the
 // memory of the context. If anything leaks, that memory grows from call to call.
 AlcoveMemory CResize::rest() {
-  for (Shown& shown : views_) {
-    drop(shown);
-  }
+  for (Shown& shown : views_) drop(shown);
   resting_[0].is_shown = true;
   AlcoveMemory memory{};
   // Frames with two specular models are recorded, so that the tables of their shaders are loaded
@@ -353,9 +332,7 @@ AlcoveMemory CResize::rest() {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
     settings.specular = specular;
     resting_[0].settings = from_settings(settings, resting_[0].advanced);
-    for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) {
-      draw_frame(resting_, false);
-    }
+    for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) draw_frame(resting_, false);
     memory = memory_of(*context_);
   }
   drop(resting_[0]);

@@ -166,9 +166,8 @@ class CSamples : public CInterface {
     VkPipeline made = VK_NULL_HANDLE;
     EXPECT_EQ(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &made),
               VK_SUCCESS);
-    for (const VkPipelineShaderStageCreateInfo& stage : stages) {
+    for (const VkPipelineShaderStageCreateInfo& stage : stages)
       vkDestroyShaderModule(device, stage.module, nullptr);
-    }
     return made;
   }
 };
@@ -187,9 +186,7 @@ TEST_F(CSamples, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
   const Depths depths{depth_at(4.0), depth_at(3.5), (depth_at(4.0) - depth_at(4.2)) / 26.0f, 20.0f};
   for (const bool normals : {true, false}) {
     for (const AlcoveArea& area : {AlcoveArea{}, AlcoveArea{4, 2, 30, 20}}) {
-      if (!normals) {
-        given.normals = {};
-      }
+      if (!normals) given.normals = {};
       AlcoveSettings settings;
       AlcoveView single = view_of(given, settings);
       single.read_area = area;

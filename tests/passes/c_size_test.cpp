@@ -83,9 +83,7 @@ TEST_F(CDynamicResolution, HistoryKeepsAccumulatingWhileTheRenderedSizeChangesIn
   };
   GivenView constant = given_of(kSizes[0]);
   Results expected;
-  for (std::uint32_t i = 0; i < 3 * kFrames; ++i) {
-    expected = run_by_cpp(constant, i);
-  }
+  for (std::uint32_t i = 0; i < 3 * kFrames; ++i) expected = run_by_cpp(constant, i);
   constant.id = 1;
   const double fresh = rms(run_by_cpp(constant, kFrames - 1).visibility, expected.visibility);
   for (const bool motion : {false, true}) {

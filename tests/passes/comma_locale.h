@@ -14,11 +14,8 @@ namespace alcove::passes {
 class CommaLocale {
  public:
   CommaLocale() : c_before_(std::setlocale(LC_ALL, nullptr)) {
-    for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "nl_NL.UTF-8"}) {
-      if (std::setlocale(LC_ALL, name) != nullptr) {
-        break;
-      }
-    }
+    for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "nl_NL.UTF-8"})
+      if (std::setlocale(LC_ALL, name) != nullptr) break;
     before_ = std::locale::global(std::locale(std::locale(), new Numbers));
   }
   ~CommaLocale() {

@@ -25,9 +25,7 @@ class DepthPrecision : public PassTest {
                        const OcclusionSettings& settings, std::uint32_t frames) {
     for (std::uint32_t index = 0; index < frames; ++index) {
       run([&](framegraph::Graph& graph) {
-        if (index == 0) {
-          graph.reset_histories();
-        }
+        if (index == 0) graph.reset_histories();
         const Frame frame{graph, gpu().kernels(), view.view, index};
         OcclusionSettings written = settings;
         written.precision = Precision::float32;
@@ -59,9 +57,8 @@ class DepthPrecision : public PassTest {
 };
 
 Drawing with_fixed_point_depth(Drawing drawing, double levels) {
-  for (float& depth : drawing.depth_ndc.texels) {
+  for (float& depth : drawing.depth_ndc.texels)
     depth = static_cast<float>(std::round(depth * levels) / levels);
-  }
   return drawing;
 }
 
@@ -72,18 +69,16 @@ TEST_F(DepthPrecision, DistantGroundIsUnoccludedWithFloatDepthThatIsNotReversed)
   const double slope = std::atan2(60.0, 500.0);
   const Drawing drawing = draw(
       view, kWidth, kHeight, {plane({0.0, 0.0, -503.6}, {0.0, std::cos(slope), std::sin(slope)})});
-  for (const float radius : {1.0f, 4.0f, 20.0f}) {
+  for (const float radius : {1.0f, 4.0f, 20.0f})
     expect_open(view, drawing, VK_FORMAT_D32_SFLOAT, radius);
-  }
 }
 
 TEST_F(DepthPrecision, FloorFiftyUnitsAwayIsUnoccludedWith16BitDepth) {
   const TestView view = perspective_view("", 1.2, 1.8, 0.1, 1000.0, false);
   const Drawing drawing = with_fixed_point_depth(
       draw(view, kWidth, kHeight, {plane({0.0, 0.0, -50.0}, {0.0, 0.8, 0.6})}), 65535.0);
-  for (const float radius : {0.5f, 2.0f, 8.0f}) {
+  for (const float radius : {0.5f, 2.0f, 8.0f})
     expect_open(view, drawing, VK_FORMAT_D16_UNORM, radius);
-  }
 }
 
 TEST_F(DepthPrecision, FloorIsUnoccludedInADeepOrthographicViewWithReversedDepth) {
@@ -94,9 +89,8 @@ TEST_F(DepthPrecision, FloorIsUnoccludedInADeepOrthographicViewWithReversedDepth
     view.view.clip_from_view[14] = static_cast<float>(far / (far - near));
     const Drawing drawing =
         draw(view, kWidth, kHeight, {plane({0.0, 0.0, -20.0}, {0.0, 0.7, 0.7})});
-    for (const float radius : {0.5f, 2.0f}) {
+    for (const float radius : {0.5f, 2.0f})
       expect_open(view, drawing, VK_FORMAT_D32_SFLOAT, radius);
-    }
   }
 }
 
@@ -109,9 +103,8 @@ TEST_F(DepthPrecision, GrooveKeepsItsOcclusionWith16BitDepth) {
   const HostImage found =
       visibility(view, with_fixed_point_depth(exact, 65535.0), VK_FORMAT_D16_UNORM, settings, 3);
   double sum = 0.0;
-  for (std::size_t i = 0; i < found.texels.size(); ++i) {
+  for (std::size_t i = 0; i < found.texels.size(); ++i)
     sum += std::pow(double{found.texels[i]} - expected.texels[i], 2.0);
-  }
   EXPECT_LT(std::sqrt(sum / static_cast<double>(found.texels.size())), 0.02);
   EXPECT_LT(*std::ranges::min_element(found.texels), 0.75f);
 }

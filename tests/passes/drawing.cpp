@@ -20,9 +20,7 @@ Surface plane(const glm::dvec3& through, const glm::dvec3& normal) {
   const glm::dvec3 unit = glm::normalize(normal);
   return {[=](const Ray& ray) -> std::vector<Hit> {
             const double slope = glm::dot(ray.along, unit);
-            if (slope == 0.0) {
-              return {};
-            }
+            if (slope == 0.0) return {};
             const double t = glm::dot(through - ray.from, unit) / slope;
             return {{t, ray.from + t * ray.along, unit}};
           },
@@ -41,9 +39,7 @@ Surface sphere(const glm::dvec3& centre, double radius) {
             const double a = glm::dot(ray.along, ray.along);
             const double b = glm::dot(from, ray.along);
             const double discriminant = b * b - a * (glm::dot(from, from) - radius * radius);
-            if (discriminant < 0.0) {
-              return {};
-            }
+            if (discriminant < 0.0) return {};
             std::vector<Hit> hits;
             for (const double side : {-1.0, 1.0}) {
               const double t = (-b + side * std::sqrt(discriminant)) / a;
@@ -104,16 +100,12 @@ glm::dvec3 TestCamera::to_eye(std::uint32_t x, std::uint32_t y) const {
 std::optional<Hit> cast(const Scene& scene, const Ray& ray) {
   std::optional<Hit> nearest;
   for (const Surface& surface : scene) {
-    for (const Hit& hit : surface.meet(ray)) {
+    for (const Hit& hit : surface.meet(ray))
       if (hit.t > 0.0 && (!nearest || hit.t < nearest->t) &&
-          (!surface.keep || surface.keep(hit.position))) {
+          (!surface.keep || surface.keep(hit.position)))
         nearest = hit;
-      }
-    }
   }
-  if (nearest && glm::dot(nearest->normal, ray.along) > 0.0) {
-    nearest->normal = -nearest->normal;
-  }
+  if (nearest && glm::dot(nearest->normal, ray.along) > 0.0) nearest->normal = -nearest->normal;
   return nearest;
 }
 
@@ -137,9 +129,8 @@ Drawing draw_hits(const TestView& view, std::uint32_t width, std::uint32_t heigh
       const bool seen = depth > 0.0 && depth < 1.0;
       drawing.depth_ndc.texels.push_back(seen ? static_cast<float>(depth) : drawing.camera.sky());
       const glm::dvec3 normal = seen ? hit->normal : glm::dvec3(0.0, 0.0, 1.0);
-      for (const double component : {normal.x, normal.y, normal.z, 0.0}) {
+      for (const double component : {normal.x, normal.y, normal.z, 0.0})
         drawing.normal_vs.texels.push_back(static_cast<float>(component));
-      }
     }
   }
   return drawing;
@@ -171,14 +162,10 @@ Scene scaled(const Scene& scene, double scale) {
     Surface larger;
     larger.meet = [=](const Ray& ray) {
       std::vector<Hit> hits = surface.meet({ray.from / scale, ray.along / scale});
-      for (Hit& hit : hits) {
-        hit.position *= scale;
-      }
+      for (Hit& hit : hits) hit.position *= scale;
       return hits;
     };
-    if (surface.keep) {
-      larger.keep = [=](const glm::dvec3& p) { return surface.keep(p / scale); };
-    }
+    if (surface.keep) larger.keep = [=](const glm::dvec3& p) { return surface.keep(p / scale); };
     result.push_back(std::move(larger));
   }
   return result;
@@ -190,14 +177,10 @@ Scene shifted(const Scene& scene, const glm::dvec3& shift) {
     Surface further;
     further.meet = [=](const Ray& ray) {
       std::vector<Hit> hits = surface.meet({ray.from - shift, ray.along});
-      for (Hit& hit : hits) {
-        hit.position += shift;
-      }
+      for (Hit& hit : hits) hit.position += shift;
       return hits;
     };
-    if (surface.keep) {
-      further.keep = [=](const glm::dvec3& p) { return surface.keep(p - shift); };
-    }
+    if (surface.keep) further.keep = [=](const glm::dvec3& p) { return surface.keep(p - shift); };
     result.push_back(std::move(further));
   }
   return result;

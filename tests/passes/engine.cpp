@@ -24,9 +24,7 @@ Engine::Engine(const sample::VulkanDevice& device) : device_(device) {
 
 Engine::~Engine() {
   wait();
-  for (const Slot& slot : slots_) {
-    vkDestroyFence(device_.device(), slot.fence, nullptr);
-  }
+  for (const Slot& slot : slots_) vkDestroyFence(device_.device(), slot.fence, nullptr);
   vkDestroyCommandPool(device_.device(), pool_, nullptr);
 }
 
@@ -47,9 +45,7 @@ AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32
   auto made = sample::GpuImage::create(
       device_, {format, framegraph::Extent::absolute(width, height), 1, layers, samples}, usage);
   EXPECT_TRUE(made) << made.error();
-  if (!made) {
-    return {};
-  }
+  if (!made) return {};
   const VkImage image = (*made)->image();
   images_.push_back(std::move(*made));
   submit(0, [&](VkCommandBuffer commands) {

@@ -29,9 +29,8 @@ class EnvironmentPass : public PassTest {
       const auto made = add_environment({graph, gpu().kernels(), {}, 0},
                                         upload(graph, equirectangular), settings);
       ASSERT_TRUE(made) << made.error().message;
-      for (std::uint32_t level = 0; level < settings.levels; ++level) {
+      for (std::uint32_t level = 0; level < settings.levels; ++level)
         read_back(graph, made->map, level);
-      }
       read_back(graph, made->harmonics);
     });
   }
@@ -133,13 +132,11 @@ TEST_F(EnvironmentPass, PrefilteredMipLevelsAgreeWithQuadratureOfTheGgxLobe) {
 TEST_F(EnvironmentPass, WhiteEnvironmentMapIsPrefilteredToWhiteInEveryTexel) {
   const HostImage source = equirectangular(64, [](vec3) { return vec3(1); });
   run_environment(source, {.size = 32, .levels = 4, .samples = 16});
-  for (std::size_t level = 0; level < 4; ++level) {
+  for (std::size_t level = 0; level < 4; ++level)
     EXPECT_THAT(result(level).texels, testing::Each(testing::FloatNear(1.0f, 2e-3f)));
-  }
   EXPECT_NEAR(result(4).at(0, 0), std::sqrt(4.0f * maths::kPi), 1e-2f);
-  for (std::uint32_t i = 1; i < maths::kHarmonics; ++i) {
+  for (std::uint32_t i = 1; i < maths::kHarmonics; ++i)
     EXPECT_NEAR(result(4).at(i, 0), 0.0f, 1e-2f);
-  }
 }
 
 TEST_F(EnvironmentPass, InvalidRadianceIsReadAsBlackAndInfinityAsTheLargestHalfFloat) {
@@ -163,9 +160,8 @@ TEST_F(EnvironmentPass, EnvironmentPassIsCulledIfNobodyReadsItsOutput) {
     ASSERT_TRUE(add_environment({graph, gpu().kernels(), {}, 0}, light, {}));
     read_back(graph, light);
   });
-  for (const framegraph::PassTiming& timing : gpu().timings()) {
+  for (const framegraph::PassTiming& timing : gpu().timings())
     EXPECT_THAT(std::string(timing.name), testing::Not(HasSubstr("environment")));
-  }
 }
 
 TEST_F(EnvironmentPass, InvalidInputOfTheEnvironmentPassIsReportedByName) {

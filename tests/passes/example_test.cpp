@@ -71,9 +71,7 @@ class Example : public passes::CInterface {
     device.queues[0] = {gpu().device().queue(), gpu().device().queue_family()};
     auto executor = framegraph::Executor::create(device, {.frames_in_flight = 2});
     auto kernels = passes::Kernels::create(device, 2);
-    if (!executor || !kernels) {
-      return nullptr;
-    }
+    if (!executor || !kernels) return nullptr;
     return std::unique_ptr<Engine>(
         new Engine{.graph = {}, .kernels = std::move(*kernels), .executor = std::move(*executor)});
   }

@@ -88,9 +88,7 @@ TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
                        : perspective_view("", 1.2, 1.8, 0.125 * unit, kInfinity, true);
       const std::vector<Images> found = strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
                                                everything(quality, static_cast<float>(unit)), 3);
-      if (exponent == 0) {
-        expected = found;
-      }
+      if (exponent == 0) expected = found;
       for (std::size_t i = 0; i < found.size(); ++i) {
         EXPECT_EQ(found[i].visibility.texels, expected[i].visibility.texels) << "frame " << i;
         EXPECT_EQ(found[i].bent_normal.texels, expected[i].bent_normal.texels) << "frame " << i;
@@ -111,12 +109,9 @@ TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
       const TestView view = orthographic_view("", 3.0, 2.0, 0.125 - shift, 16.125 - shift);
       const std::vector<Images> found =
           strafe(view, shifted(scene.scene, {0.0, 0.0, shift}), 0.05, settings, 4);
-      if (shift == 0.0) {
-        expected = found;
-      }
-      for (std::size_t i = 0; i < found.size(); ++i) {
+      if (shift == 0.0) expected = found;
+      for (std::size_t i = 0; i < found.size(); ++i)
         EXPECT_LT(rms(found[i].visibility, expected[i].visibility), 0.002) << "frame " << i;
-      }
     }
   }
 }
@@ -153,12 +148,11 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
     glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
     turned = glm::translate(turned, distance * glm::dvec3(-1.0, -0.3, 0.8));
     View far = view.view;
-    for (int i = 0; i < 16; ++i) {
+    for (int i = 0; i < 16; ++i)
       far.view_from_world.at(static_cast<std::size_t>(i)) =
           static_cast<float>(turned[i / 4][i % 4]);
-    }
     HostImage visibility;
-    for (std::uint32_t i = 0; i < 8; ++i) {
+    for (std::uint32_t i = 0; i < 8; ++i)
       visibility = run_occlusion({.view = far,
                                   .depth_ndc = drawing.depth_ndc,
                                   .normal_vs = &drawing.normal_vs,
@@ -167,7 +161,6 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
                                   .reset = i == 0},
                                  settings)
                        .visibility;
-    }
     return visibility;
   };
   EXPECT_LT(rms(visibility_at(1e6), visibility_at(0.0)), 1e-3);
@@ -209,9 +202,7 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
         SCOPED_TRACE(testing::Message() << view.name << ": " << wrong
                                         << (in_normals ? " in normals" : " as roughness"));
         const std::vector<Images> found = frames(wrong, in_normals);
-        for (const Images& images : found) {
-          expect_sound(images);
-        }
+        for (const Images& images : found) expect_sound(images);
         // The wrong values are in one of the five accumulated frames, so that pixels with wrong
         // values may differ a little.
         EXPECT_LT(rms(found[4].visibility, expected[4].visibility), 2e-3);
@@ -243,9 +234,7 @@ TEST_F(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
         {.view = view.view, .depth_ndc = far.depth_ndc, .normal_vs = &far.normal_vs}, settings);
     expect_sound(images);
     double sum = 0.0;
-    for (const float texel : images.visibility.texels) {
-      sum += texel;
-    }
+    for (const float texel : images.visibility.texels) sum += texel;
     means.push_back(sum / (kSide * kSide));
   }
   EXPECT_LT(means[0], 0.997);
@@ -265,12 +254,8 @@ TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
           {.view = view.view, .depth_ndc = drawing.depth_ndc, .normal_vs = &drawing.normal_vs},
           settings);
       expect_sound(images);
-      if (radius <= 1e-3f) {
-        EXPECT_THAT(images.visibility.texels, testing::Each(1.0f));
-      }
-      if (radius >= 1e6f) {
-        largest.push_back(images.visibility);
-      }
+      if (radius <= 1e-3f) EXPECT_THAT(images.visibility.texels, testing::Each(1.0f));
+      if (radius >= 1e6f) largest.push_back(images.visibility);
     }
     for (const HostImage& visibility : largest) {
       EXPECT_THAT(visibility.texels,

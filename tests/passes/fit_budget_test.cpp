@@ -164,14 +164,12 @@ TEST(FitBudget, BudgetThatCannotBeUsedIsReported) {
     const auto fitted = fit_budget(budget, {}, settings);
     return fitted ? std::string() : fitted.error().message;
   };
-  for (const double target : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+  for (const double target : {0.0, -1.0, std::nan(""), HUGE_VAL})
     EXPECT_THAT(said({.target_ms = target}), HasSubstr("target")) << target;
-  }
   for (const Budget& budget :
        {Budget{1.0, 0, 2, 6, 12}, Budget{1.0, 3, 2, 6, 12}, Budget{1.0, 1, 65, 6, 12},
-        Budget{1.0, 1, 2, 1, 12}, Budget{1.0, 1, 2, 13, 12}, Budget{1.0, 1, 2, 6, 65}}) {
+        Budget{1.0, 1, 2, 1, 12}, Budget{1.0, 1, 2, 13, 12}, Budget{1.0, 1, 2, 6, 65}})
     EXPECT_THAT(said(budget), HasSubstr("limits"));
-  }
 }
 
 }  // namespace

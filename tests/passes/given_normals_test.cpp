@@ -23,16 +23,13 @@ OcclusionSettings all_outputs(Quality quality, Specular specular = Specular::sli
 
 // Returns `image` with the normal of every `stride`th pixel replaced.
 HostImage replaced(HostImage image, std::array<float, 3> with, std::size_t stride) {
-  for (std::size_t i = 0; i < image.texels.size() / image.channels; i += stride) {
+  for (std::size_t i = 0; i < image.texels.size() / image.channels; i += stride)
     std::ranges::copy(with, image.texels.begin() + static_cast<std::ptrdiff_t>(i * image.channels));
-  }
   return image;
 }
 
 HostImage inverted(HostImage image) {
-  for (float& component : image.texels) {
-    component = -component;
-  }
+  for (float& component : image.texels) component = -component;
   return image;
 }
 
@@ -111,9 +108,8 @@ TEST_F(GivenNormals, NaNNormalsNextToTheSkyOrInTinyImagesGiveValidResults) {
     const HostImage normals = replaced(drawing.normal_vs, {kNaN, kNaN, kNaN}, 1);
     const OcclusionImages images = images_of(view, drawing, normals, all_outputs(Quality::medium));
     EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.97f)));
-    for (const HostImage* image : {&images.bent_normal, &images.specular}) {
+    for (const HostImage* image : {&images.bent_normal, &images.specular})
       EXPECT_TRUE(std::ranges::all_of(image->texels, [](float t) { return std::isfinite(t); }));
-    }
   }
 }
 

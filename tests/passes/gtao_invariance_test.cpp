@@ -141,9 +141,8 @@ TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
         for (std::uint32_t i = 0; i < width * height; ++i) {
           ASSERT_NEAR(images.visibility.texels[i], 1.0, 0.05) << "pixel " << i;
           double dot = 0.0;
-          for (std::uint32_t c = 0; c < 3; ++c) {
+          for (std::uint32_t c = 0; c < 3; ++c)
             dot += images.bent_normal.texels[i * 4 + c] * drawing.normal_vs.texels[i * 4 + c];
-          }
           // With a single slice the bent normal is only known to lie above the surface.
           ASSERT_GT(dot, 0.0) << "pixel " << i;
         }
@@ -163,9 +162,8 @@ TEST_F(GtaoInvariance, AllTileSizesGiveTheSameMeanVisibilityInAGroove) {
       settings.advanced.filter_radius = 2;
       const HostImage image = visibility(view, drawing, settings);
       double mean = 0.0;
-      for (const float texel : image.texels) {
+      for (const float texel : image.texels)
         mean += texel / static_cast<double>(image.texels.size());
-      }
       means.push_back(mean);
     }
     EXPECT_THAT(means, testing::Each(testing::DoubleNear(means[0], 0.02)));
@@ -182,19 +180,14 @@ TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteRes
     Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
     const OcclusionFrame frame{view.view, drawing.depth_ndc, &drawing.normal_vs};
     const HostImage clean = run_occlusion(frame, settings).visibility;
-    for (const std::uint32_t hole : {0u, 20u * kWidth + 28u}) {
-      drawing.depth_ndc.texels[hole] = kNaN;
-    }
+    for (const std::uint32_t hole : {0u, 20u * kWidth + 28u}) drawing.depth_ndc.texels[hole] = kNaN;
     const OcclusionImages holed = run_occlusion(frame, settings);
     EXPECT_THAT(holed.visibility.texels,
                 testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
-    for (const float component : holed.bent_normal.texels) {
-      ASSERT_TRUE(std::isfinite(component));
-    }
+    for (const float component : holed.bent_normal.texels) ASSERT_TRUE(std::isfinite(component));
     int changed = 0;
-    for (std::size_t i = 0; i < clean.texels.size(); ++i) {
+    for (std::size_t i = 0; i < clean.texels.size(); ++i)
       changed += std::abs(clean.texels[i] - holed.visibility.texels[i]) > 0.1f ? 1 : 0;
-    }
     EXPECT_LT(changed, 40) << "of " << clean.texels.size() << " pixels";
   }
 }
@@ -237,9 +230,8 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
                             settings);
           EXPECT_THAT(images.visibility.texels,
                       testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
-          for (const float component : images.bent_normal.texels) {
+          for (const float component : images.bent_normal.texels)
             ASSERT_TRUE(std::isfinite(component));
-          }
         }
       }
     }

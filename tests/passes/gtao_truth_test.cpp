@@ -123,9 +123,7 @@ TEST_F(GtaoTruth, VisibilityOfAFloorInFrontOfAPlatformMatchesTheClosedForm) {
       const double expected = 0.5 + 0.5 * distance / std::hypot(distance, height);
       EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.025) << distance << " units away";
     }
-    for (std::uint32_t x = 66; x < 120; ++x) {
-      EXPECT_NEAR(images.visibility.at(x, 64), 1.0, 0.004);
-    }
+    for (std::uint32_t x = 66; x < 120; ++x) EXPECT_NEAR(images.visibility.at(x, 64), 1.0, 0.004);
   }
 }
 
@@ -140,9 +138,8 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
       SCOPED_TRACE(testing::Message() << name_of(estimator) << ", half angle " << half_angle);
       const auto images =
           run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, 8.0f));
-      for (const std::uint32_t x : {61u, 62u, 65u, 66u}) {
+      for (const std::uint32_t x : {61u, 62u, 65u, 66u})
         EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.03);
-      }
     }
   }
 }
@@ -150,11 +147,8 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
 // Returns the mean visibility of a drawing.
 double mean_of(const HostImage& image) {
   double sum = 0.0;
-  for (std::uint32_t y = 0; y < image.height; ++y) {
-    for (std::uint32_t x = 0; x < image.width; ++x) {
-      sum += image.at(x, y);
-    }
-  }
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) sum += image.at(x, y);
   return sum / (image.width * image.height);
 }
 
@@ -184,11 +178,9 @@ TEST_F(GtaoTruth, EstimatorBitmaskWithThickOccludersEqualsEstimatorHorizons) {
       run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, thick).visibility;
   const auto by_horizons =
       run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, horizons).visibility;
-  for (std::uint32_t y = 0; y < by_sectors.height; ++y) {
-    for (std::uint32_t x = 0; x < by_sectors.width; ++x) {
+  for (std::uint32_t y = 0; y < by_sectors.height; ++y)
+    for (std::uint32_t x = 0; x < by_sectors.width; ++x)
       EXPECT_NEAR(by_sectors.at(x, y), by_horizons.at(x, y), 0.02);
-    }
-  }
 }
 
 // All occluders have the same distance from the eye.
@@ -286,11 +278,10 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
       // 1.15 allows for that.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
-      if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius) {
+      if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius)
         EXPECT_GT(images.visibility.at(x, 64), 0.996) << "column " << x;
-      } else if (distance < 0.8 * radius) {
+      else if (distance < 0.8 * radius)
         EXPECT_LT(images.visibility.at(x, 64), 0.96) << "column " << x;
-      }
     }
   }
 }
@@ -316,11 +307,9 @@ TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible)
     for (const bool extrapolation : {false, true}) {
       const HostImage found = seen(part_view, part, extrapolation);
       int count = 0;
-      for (std::uint32_t y = 10; y < kHeight - 10; ++y) {
-        for (std::uint32_t x = 82; x < 96; ++x, ++count) {
+      for (std::uint32_t y = 10; y < kHeight - 10; ++y)
+        for (std::uint32_t x = 82; x < 96; ++x, ++count)
           off[extrapolation ? 1 : 0] += std::abs(found.at(x, y) - truth.at(x, y));
-        }
-      }
       off[extrapolation ? 1 : 0] /= count;
     }
     EXPECT_GT(off[0], 0.05);

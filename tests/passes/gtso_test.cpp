@@ -103,9 +103,7 @@ maths::Projection projection_of(const View& view) {
 float expected(const Inputs& inputs, const maths::Projection& projection, Specular model,
                std::uint32_t x, std::uint32_t y) {
   const float depth = inputs.depth.at(x, y);
-  if (depth == kSky) {
-    return 1.0f;
-  }
+  if (depth == kSky) return 1.0f;
   const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
   const vec3 view = maths::view_direction(projection, maths::position_vs(projection, uv, depth));
   const vec3 normal = maths::facing_normal(direction(inputs.normals, x, y), view);
@@ -132,11 +130,9 @@ TEST_F(GtsoPass, SpecularOcclusionAgreesWithTheFormulasOnTheCpuInEveryKindOfView
       SCOPED_TRACE(testing::Message() << view.name << ", model " << static_cast<int>(model));
       run_model(view.view, inputs, model);
       const maths::Projection projection = projection_of(view.view);
-      for (std::uint32_t y = 0; y < kHeight; ++y) {
-        for (std::uint32_t x = 0; x < kWidth; ++x) {
+      for (std::uint32_t y = 0; y < kHeight; ++y)
+        for (std::uint32_t x = 0; x < kWidth; ++x)
           EXPECT_NEAR(result().at(x, y), expected(inputs, projection, model, x, y), 2e-3f);
-        }
-      }
     }
   }
 }
@@ -183,9 +179,8 @@ float lowest_of(const HostImage& image, const PlaneScene& plane, const View& vie
       const float depth = maths::linear_depth(projection, plane.depth_ndc.at(x, y));
       const vec3 towards =
           maths::view_direction(projection, maths::position_vs(projection, uv, depth));
-      if (glm::dot(towards, direction(plane.normal_vs, x, y)) >= std::cos(glm::radians(85.0f))) {
+      if (glm::dot(towards, direction(plane.normal_vs, x, y)) >= std::cos(glm::radians(85.0f)))
         lowest = std::min(lowest, image.at(x, y));
-      }
     }
   }
   return lowest;
@@ -206,11 +201,9 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
                                 .normals = upload(graph, plane.normal_vs),
                                 .depth = *depth,
                                 .normals_in_view_space = true};
-        for (const Specular model : kModels) {
-          for (const float r : roughness) {
+        for (const Specular model : kModels)
+          for (const float r : roughness)
             read_back(graph, add(frame, inputs, settings_of(model, r)));
-          }
-        }
       });
       for (std::size_t image = 0; image < kModels.size() * roughness.size(); ++image) {
         EXPECT_GE(lowest_of(result(image), plane, view.view), 0.99f)
@@ -258,9 +251,8 @@ TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
               settings_of(Specular::table));
     read_back(graph, depth);
   });
-  for (const framegraph::PassTiming& timing : gpu().timings()) {
+  for (const framegraph::PassTiming& timing : gpu().timings())
     EXPECT_NE(timing.name, "specular occlusion");
-  }
 }
 
 TEST_F(GtsoPass, LookupTableIsCreatedOnlyForTheSpecularModelTable) {

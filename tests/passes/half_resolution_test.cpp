@@ -177,9 +177,8 @@ TEST_F(HalfResolution, UnoccludedPlaneGetsItsNormalAndSpecularVisibilityOneAtHal
           ASSERT_NEAR(found.visibility.at(x, y), 1.0, 1e-5) << "at " << x << ", " << y;
           ASSERT_NEAR(found.specular.at(x, y), 1.0, 1e-3) << "at " << x << ", " << y;
           double cosine = 0.0;
-          for (std::uint32_t c = 0; c < 3; ++c) {
+          for (std::uint32_t c = 0; c < 3; ++c)
             cosine += double{found.bent_normal.at(x, y, c)} * drawing.normal_vs.at(x, y, c);
-          }
           ASSERT_GT(cosine, 0.999) << "at " << x << ", " << y;
         }
       }

@@ -26,12 +26,8 @@ class HistoryRestart : public PassTest {
                             .reset = reset},
                            with);
     };
-    for (int i = 0; i < 4; ++i) {
-      (void)frame(before, settings, i == 0);
-    }
-    for (int i = 0; i < 4; ++i) {
-      (void)frame(now, meanwhile, false);
-    }
+    for (int i = 0; i < 4; ++i) (void)frame(before, settings, i == 0);
+    for (int i = 0; i < 4; ++i) (void)frame(now, meanwhile, false);
     return frame(now, settings, forgets);
   }
 

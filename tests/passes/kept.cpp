@@ -16,11 +16,10 @@ Kept kept_of(const framegraph::Graph& graph) {
   const framegraph::GraphDescription& declared = graph.description();
   for (const framegraph::PlannedPass& pass : plan->passes) {
     const std::string name(declared.pass_name(pass.pass));
-    if (name == "upload") {
+    if (name == "upload")
       ++kept.uploads;
-    } else if (name != "read back") {
+    else if (name != "read back")
       kept.passes.push_back(name);
-    }
   }
   for (std::uint32_t i = 0; i < declared.resources.size(); ++i) {
     const std::string name(declared.resource_name(i));

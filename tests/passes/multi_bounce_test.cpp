@@ -23,9 +23,7 @@ Inputs random_inputs() {
   Inputs inputs;
   for (std::uint32_t i = 0; i < 37 * 21; ++i) {
     inputs.visibility.texels.push_back(i == 0 ? 0.0f : i == 1 ? 1.0f : random.uniform(0.0f, 1.0f));
-    for (int c = 0; c < 4; ++c) {
-      inputs.albedo.texels.push_back(random.uniform(0.0f, 1.0f));
-    }
+    for (int c = 0; c < 4; ++c) inputs.albedo.texels.push_back(random.uniform(0.0f, 1.0f));
   }
   return inputs;
 }
@@ -60,9 +58,8 @@ TEST_F(MultiBouncePass, MultiBouncePassIsCulledIfNobodyReadsItsOutput) {
     ASSERT_TRUE(add_multi_bounce(frame, {visibility, upload(graph, inputs.albedo)}));
     read_back(graph, visibility);
   });
-  for (const framegraph::PassTiming& timing : gpu().timings()) {
+  for (const framegraph::PassTiming& timing : gpu().timings())
     EXPECT_NE(timing.name, "multi-bounce");
-  }
 }
 
 TEST_F(MultiBouncePass, MissingAlbedoAndInputsOfDifferentSizesAreRefused) {

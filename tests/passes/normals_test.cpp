@@ -52,14 +52,10 @@ double largest_error(const HostImage& normals, const Drawing& drawing) {
   double largest = 0.0;
   for (std::uint32_t y = 0; y < normals.height; ++y) {
     for (std::uint32_t x = 0; x < normals.width; ++x) {
-      if (drawing.is_sky(x, y)) {
-        continue;
-      }
+      if (drawing.is_sky(x, y)) continue;
       const glm::dvec3 made = vector_at(normals, x, y);
       EXPECT_NEAR(glm::length(made), 1.0, 2e-3);
-      if (!has_neighbours(drawing, x, y) && drawing.depth_ndc.texels.size() > 20) {
-        continue;
-      }
+      if (!has_neighbours(drawing, x, y) && drawing.depth_ndc.texels.size() > 20) continue;
       largest = std::max(largest, angle_between(made, vector_at(drawing.normal_vs, x, y)));
     }
   }
@@ -108,11 +104,9 @@ TEST_F(NormalsFromDepth, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbourin
     const HostImage made = normals(view.view, drawing.depth_ndc);
     EXPECT_LT(largest_error(made, drawing), 0.5);
     for (std::uint32_t y = 0; y < 31; ++y) {
-      for (std::uint32_t x = 0; x < 45; ++x) {
-        if (drawing.is_sky(x, y)) {
+      for (std::uint32_t x = 0; x < 45; ++x)
+        if (drawing.is_sky(x, y))
           ASSERT_LT(angle_between(vector_at(made, x, y), drawing.camera.to_eye(x, y)), 0.1);
-        }
-      }
     }
   }
 }
@@ -139,14 +133,11 @@ TEST_F(NormalsFromDepth, PixelWithNaNDepthAffectsNoOtherNormal) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Drawing drawing = draw(view, 40, 30, {tilted_plane(50.0, 4.0)});
-    for (const std::size_t pixel : {0u, 15u * 40u + 20u, 29u * 40u + 39u, 29u * 40u + 20u}) {
+    for (const std::size_t pixel : {0u, 15u * 40u + 20u, 29u * 40u + 39u, 29u * 40u + 20u})
       drawing.depth_ndc.texels[pixel] = kNaN;
-    }
     const HostImage made = normals(view.view, drawing.depth_ndc);
     EXPECT_LT(largest_error(made, drawing), 0.5);
-    for (const float component : made.texels) {
-      ASSERT_TRUE(std::isfinite(component));
-    }
+    for (const float component : made.texels) ASSERT_TRUE(std::isfinite(component));
   }
 }
 

@@ -80,9 +80,8 @@ VkFormat uploaded_format(std::uint32_t channels) {
 double rms(const HostImage& a, const HostImage& b) {
   EXPECT_EQ(a.texels.size(), b.texels.size());
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+  for (std::size_t i = 0; i < a.texels.size(); ++i)
     sum += std::pow(double{a.texels[i]} - b.texels[i], 2.0);
-  }
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
@@ -122,9 +121,8 @@ void PassTest::open_gpu() {
 void PassTest::TearDown() {
   if (shared.gpu) {
     const std::vector<std::string>& messages = shared.gpu->device().validation_messages();
-    for (; shared.messages < messages.size(); ++shared.messages) {
+    for (; shared.messages < messages.size(); ++shared.messages)
       ADD_FAILURE() << messages[shared.messages];
-    }
   }
   uploads_.clear();
   downloads_.clear();
@@ -176,17 +174,14 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
     return {};
   });
   ASSERT_TRUE(report) << report.error();
-  for (std::size_t i = 0; i < results_.size(); ++i) {
+  for (std::size_t i = 0; i < results_.size(); ++i)
     decode(downloads_[i].buffer->bytes(), downloads_[i].format, results_[i].texels);
-  }
 }
 
 PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
                                                   const OcclusionSettings& settings) {
   run([&](Graph& graph) {
-    if (given.reset) {
-      graph.reset_histories();
-    }
+    if (given.reset) graph.reset_histories();
     const Frame frame{.graph = graph,
                       .kernels = gpu().kernels(),
                       .view = given.view,
@@ -207,23 +202,13 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
     const auto outputs = add_occlusion(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);
-    if (settings.bent_normal) {
-      read_back(graph, outputs->bent_normal);
-    }
-    if (settings.specular != Specular::none) {
-      read_back(graph, outputs->specular);
-    }
+    if (settings.bent_normal) read_back(graph, outputs->bent_normal);
+    if (settings.specular != Specular::none) read_back(graph, outputs->specular);
   });
   OcclusionImages images;
-  if (!results_.empty()) {
-    images.visibility = results_[0];
-  }
-  if (settings.bent_normal && results_.size() > 1) {
-    images.bent_normal = results_[1];
-  }
-  if (settings.specular != Specular::none && results_.size() > 1) {
-    images.specular = results_.back();
-  }
+  if (!results_.empty()) images.visibility = results_[0];
+  if (settings.bent_normal && results_.size() > 1) images.bent_normal = results_[1];
+  if (settings.specular != Specular::none && results_.size() > 1) images.specular = results_.back();
   return images;
 }
 

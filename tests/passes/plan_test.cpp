@@ -53,34 +53,20 @@ class OcclusionPlan : public PassTest {
       const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
       OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
                              .normals_in_view_space = true};
-      if (given.normals) {
-        inputs.normals = upload(graph, drawing.normal_vs);
-      }
-      if (given.motion) {
-        inputs.motion = upload(graph, motion_of_nothing());
-      }
+      if (given.normals) inputs.normals = upload(graph, drawing.normal_vs);
+      if (given.motion) inputs.motion = upload(graph, motion_of_nothing());
       if (given.hidden_depths) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
         inputs.second_depth_ndc = upload(graph, drawing.depth_ndc);
       }
-      if (given.roughness) {
-        inputs.roughness = upload(graph, roughness_of_all());
-      }
+      if (given.roughness) inputs.roughness = upload(graph, roughness_of_all());
       const auto outputs = add_occlusion(frame, inputs, settings);
       ASSERT_TRUE(outputs) << outputs.error().message;
-      if (reads.visibility) {
-        read_back(graph, outputs->visibility);
-      }
-      if (reads.bent_normal) {
-        read_back(graph, outputs->bent_normal);
-      }
-      if (reads.linear_depth) {
-        read_back(graph, outputs->linear_depth);
-      }
+      if (reads.visibility) read_back(graph, outputs->visibility);
+      if (reads.bent_normal) read_back(graph, outputs->bent_normal);
+      if (reads.linear_depth) read_back(graph, outputs->linear_depth);
       EXPECT_EQ(bool(outputs->specular), settings.specular != Specular::none);
-      if (reads.specular) {
-        read_back(graph, outputs->specular);
-      }
+      if (reads.specular) read_back(graph, outputs->specular);
       found = kept_of(graph);
     });
     return found;
@@ -305,9 +291,7 @@ TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistor
   const Case cases[] = {{view, 0}, {other, 0}, {view, 1}, {view, 16}, {view, 0, true}, {view, 0}};
   for (std::uint32_t index = 0; index < std::size(cases); ++index) {
     run([&](Graph& graph) {
-      if (cases[index].cut) {
-        graph.reset_histories();
-      }
+      if (cases[index].cut) graph.reset_histories();
       add({graph, gpu().kernels(), view, index, cases[index].previous_view,
            cases[index].static_frames});
     });

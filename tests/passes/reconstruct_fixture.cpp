@@ -48,9 +48,8 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
 // Returns the texels of R16_UNORM, two in the bits of each float.
 HostImage with_16_bits(const HostImage& depth) {
   std::vector<std::uint16_t> values;
-  for (const float texel : depth.texels) {
+  for (const float texel : depth.texels)
     values.push_back(static_cast<std::uint16_t>(std::lround(texel * 65535.0f)));
-  }
   HostImage packed{depth.width, depth.height, std::vector<float>((values.size() + 1) / 2), 1};
   std::memcpy(packed.texels.data(), values.data(), values.size() * sizeof(values[0]));
   return packed;
@@ -60,9 +59,7 @@ HostImage with_16_bits(const HostImage& depth) {
 
 HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& settings) {
   run([&](framegraph::Graph& graph) {
-    if (input.reset) {
-      graph.reset_history("occlusion");
-    }
+    if (input.reset) graph.reset_history("occlusion");
     Frame frame{graph,       gpu().kernels(),     input.view,
                 input.index, input.previous_view, input.static_frames};
     frame.previous_size = input.previous_size;
@@ -80,9 +77,7 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                          : upload(graph, input.drawing.depth_ndc),
         .normals = upload(graph, input.drawing.normal_vs),
         .normals_in_view_space = true};
-    if (input.motion != nullptr) {
-      inputs.motion = upload(graph, *input.motion);
-    }
+    if (input.motion != nullptr) inputs.motion = upload(graph, *input.motion);
     const auto made = add_reconstruct(frame, inputs, settings);
     ASSERT_TRUE(made) << made.error().message;
     read_back(graph, made->visibility);

@@ -12,9 +12,7 @@ namespace {
 
 double mean_of(const HostImage& image) {
   double mean = 0.0;
-  for (const float texel : image.texels) {
-    mean += texel / static_cast<double>(image.texels.size());
-  }
+  for (const float texel : image.texels) mean += texel / static_cast<double>(image.texels.size());
   return mean;
 }
 
@@ -131,10 +129,9 @@ TEST_F(Reconstruct, ResetOrChangedImageSizeDiscardsTheHistory) {
   const HostImage bright_smaller = constant_raw_occlusion(kWidth - 3, kHeight, 0.9f);
   const OcclusionSettings settings = precise(1, 32);
   const auto gather_dark = [&] {
-    for (std::uint32_t frame = 0; frame < 6; ++frame) {
+    for (std::uint32_t frame = 0; frame < 6; ++frame)
       (void)reconstruct(
           {.view = view.view, .drawing = drawing, .raw_occlusion = dark, .index = frame}, settings);
-    }
   };
 
   gather_dark();

@@ -56,9 +56,7 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
         hidden = hidden && !same;
         seen = seen && same;
       }
-      if (std::abs(hit->normal.z) < 0.5) {
-        continue;
-      }
+      if (std::abs(hit->normal.z) < 0.5) continue;
       if (outside || hidden) {
         ASSERT_NEAR(found.at(x, y), 0.9f, 0.01) << "at " << x << ", " << y;
         ++anew;
@@ -209,11 +207,10 @@ TEST_F(Reconstruct, MotionVectorsKeepThePatternOfAMovingPlaneSharp) {
         ++count;
       }
     }
-    if (given) {
+    if (given)
       EXPECT_LT(error / count, 0.12);
-    } else {
+    else
       EXPECT_GT(error / count, 0.2);
-    }
   }
 }
 
@@ -237,11 +234,8 @@ TEST_F(Reconstruct, ApproachingSurfaceKeepsItsHistory) {
   // Returns the variance over the pixels whose surface has been on the image for many frames.
   const auto spread = [](const HostImage& image) {
     HostImage right{kWidth / 2, kHeight, {}, 1};
-    for (std::uint32_t y = 0; y < kHeight; ++y) {
-      for (std::uint32_t x = kWidth / 2; x < kWidth; ++x) {
-        right.texels.push_back(image.at(x, y));
-      }
-    }
+    for (std::uint32_t y = 0; y < kHeight; ++y)
+      for (std::uint32_t x = kWidth / 2; x < kWidth; ++x) right.texels.push_back(image.at(x, y));
     return variance(right);
   };
   double first = 0.0;
@@ -338,9 +332,8 @@ TEST_F(Reconstruct, PixelsWhoseHistoryIsRejectedAreFilteredAsInAFirstFrame) {
   };
   const HostImage found = second_frame(false);
   const HostImage anew = second_frame(true);
-  for (std::size_t i = 0; i < found.texels.size(); ++i) {
+  for (std::size_t i = 0; i < found.texels.size(); ++i)
     ASSERT_NEAR(found.texels[i], anew.texels[i], 1e-3) << "texel " << i;
-  }
 }
 
 }  // namespace

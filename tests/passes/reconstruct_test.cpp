@@ -53,9 +53,7 @@ double mean_around(const HostImage& raw_occlusion, std::uint32_t x, std::uint32_
       const auto outermost = [&](int place) {
         return place == 0 || place == 2 * filter_radius - 1;
       };
-      if (filter_radius > 1 && outermost(i) && outermost(j)) {
-        continue;
-      }
+      if (filter_radius > 1 && outermost(i) && outermost(j)) continue;
       const TracedCoordinate column =
           traced_around(x, width, tile_size, interleave_offset.x, filter_radius, i);
       const double squared = squared_distance(column.pixel, x) + squared_distance(row.pixel, y);
@@ -262,7 +260,7 @@ TEST_F(Reconstruct, NormalsOfAPlaneAreReadOnlyIfTheDepthBufferIsTooCoarseForItsT
     before.view_from_world[12] += 1e-6f;
     const auto last_frame = [&](const Drawing& last, bool coarse) {
       HostImage found;
-      for (std::uint32_t frame = 0; frame < 8; ++frame) {
+      for (std::uint32_t frame = 0; frame < 8; ++frame)
         found = reconstruct({.view = view.view,
                              .drawing = frame == 7 ? last : drawing,
                              .raw_occlusion = raw_occlusion,
@@ -272,24 +270,20 @@ TEST_F(Reconstruct, NormalsOfAPlaneAreReadOnlyIfTheDepthBufferIsTooCoarseForItsT
                              .reset = frame == 0,
                              .coarse_depth = coarse},
                             precise(2, 16));
-      }
       return found;
     };
     for (const bool coarse : {false, true}) {
       const HostImage plain = last_frame(drawing, coarse);
       const HostImage other = last_frame(turned, coarse);
       double largest = 0.0;
-      for (std::uint32_t y = 1; y + 1 < kHeight; ++y) {
-        for (std::uint32_t x = 1; x + 1 < kWidth; ++x) {
+      for (std::uint32_t y = 1; y + 1 < kHeight; ++y)
+        for (std::uint32_t x = 1; x + 1 < kWidth; ++x)
           largest = std::max<double>(largest, std::abs(plain.at(x, y) - other.at(x, y)));
-        }
-      }
       SCOPED_TRACE(testing::Message() << view.name << ", coarse " << coarse);
-      if (coarse) {
+      if (coarse)
         EXPECT_GT(largest, 0.003);
-      } else {
+      else
         EXPECT_EQ(largest, 0.0);
-      }
     }
   }
 }

@@ -34,11 +34,8 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, c
                            {"vkCmdBindPipeline", empty(PFN_vkCmdBindPipeline{})},
                            {"vkCmdBindDescriptorSets", empty(PFN_vkCmdBindDescriptorSets{})},
                            {"vkCmdDispatch", empty(PFN_vkCmdDispatch{})}};
-  for (const Entry& entry : entries) {
-    if (std::strcmp(entry.name, name) == 0) {
-      return entry.function;
-    }
-  }
+  for (const Entry& entry : entries)
+    if (std::strcmp(entry.name, name) == 0) return entry.function;
   return vkGetDeviceProcAddr(device, name);
 }
 
@@ -55,18 +52,12 @@ double median_microseconds(const sample::VulkanDevice& device, bool library_alon
   Engine engine(device);
   AlcoveContextInfo info = engine.context_info();
   info.timestamps = VK_FALSE;
-  if (library_alone) {
-    info.get_instance_proc_addr = get_instance_proc_addr;
-  }
+  if (library_alone) info.get_instance_proc_addr = get_instance_proc_addr;
   AlcoveContext* made = nullptr;
-  if (alcoveCreateContext(&info, &made, nullptr) != ALCOVE_SUCCESS) {
-    return -1.0;
-  }
+  if (alcoveCreateContext(&info, &made, nullptr) != ALCOVE_SUCCESS) return -1.0;
   const Context context(made);
   AlcoveSettings settings{.struct_size = sizeof settings};
-  if (alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings) != ALCOVE_SUCCESS) {
-    return -1.0;
-  }
+  if (alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings) != ALCOVE_SUCCESS) return -1.0;
   const auto make = [&](VkFormat format) {
     return engine.make_image(format, 16, 16,
                              VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
@@ -94,9 +85,7 @@ double median_microseconds(const sample::VulkanDevice& device, bool library_alon
       good = alcoveRecordFrame(context.get(), commands, &frame) == ALCOVE_SUCCESS;
       const std::chrono::duration<double, std::micro> time =
           std::chrono::steady_clock::now() - begin;
-      if (frame.index >= 100) {
-        times.push_back(time.count());
-      }
+      if (frame.index >= 100) times.push_back(time.count());
     });
   }
   engine.wait();

@@ -30,9 +30,8 @@ maths::mat4 to_mat4(const Matrix& matrix) {
 
 vec3 irradiance(const HostImage& harmonics, vec3 direction) {
   vec3 sum(0);
-  for (std::uint32_t i = 0; i < maths::kHarmonics; ++i) {
+  for (std::uint32_t i = 0; i < maths::kHarmonics; ++i)
     sum += rgb(harmonics, i, 0) * (maths::harmonic(i, direction) * maths::harmonic_irradiance(i));
-  }
   return max(sum, vec3(0));
 }
 
@@ -66,29 +65,24 @@ LitSurfaces random_surfaces() {
     surfaces.specular_occlusion.texels.push_back(random.uniform(0.0f, 1.0f));
     surfaces.depth.texels.push_back(i % 7 == 6 ? LitSurfaces::kSky : random.uniform(1.0f, 9.0f));
   }
-  for (std::uint32_t i = 0; i < maths::kHarmonics; ++i) {
+  for (std::uint32_t i = 0; i < maths::kHarmonics; ++i)
     append(surfaces.harmonics, i == 0 ? vec3(9, 8, 7) : colour(1.0f), 0.0f);
-  }
-  for (std::uint32_t i = 0; i < LitSurfaces::kMapSize * LitSurfaces::kMapSize; ++i) {
+  for (std::uint32_t i = 0; i < LitSurfaces::kMapSize * LitSurfaces::kMapSize; ++i)
     append(surfaces.map, colour(4.0f), 0.0f);
-  }
   return surfaces;
 }
 
 void make_white(LitSurfaces& surfaces) {
   surfaces.harmonics.texels.assign(surfaces.harmonics.texels.size(), 0.0f);
-  for (int c = 0; c < 3; ++c) {
+  for (int c = 0; c < 3; ++c)
     surfaces.harmonics.texels[c] = 1.0f / maths::harmonic(0, vec3(0, 1, 0));
-  }
   surfaces.map.texels.assign(surfaces.map.texels.size(), 1.0f);
 }
 
 Light reference_light(const LitSurfaces& surfaces, const View& view, std::uint32_t x,
                       std::uint32_t y) {
   const float depth = surfaces.depth.at(x, y);
-  if (depth == LitSurfaces::kSky) {
-    return {};
-  }
+  if (depth == LitSurfaces::kSky) return {};
   const auto projection = maths::make_projection(to_mat4(view.clip_from_view), LitSurfaces::kWidth,
                                                  LitSurfaces::kHeight)
                               .value();

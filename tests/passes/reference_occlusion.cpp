@@ -25,18 +25,13 @@ double highest_cosine(const Drawing& drawing, const Point& point, glm::dvec2 dir
   for (double step = 1.0;; step += kStepPx) {
     const glm::dvec2 at = point.pixel + step * direction_px;
     if (at.x < 0.5 || at.y < 0.5 || at.x > drawing.camera.width() - 0.5 ||
-        at.y > drawing.camera.height() - 0.5) {
+        at.y > drawing.camera.height() - 0.5)
       return highest;
-    }
     const auto hit = cast(drawing.scene, drawing.camera.ray(at.x, at.y));
-    if (!hit) {
-      continue;
-    }
+    if (!hit) continue;
     const glm::dvec3 delta = hit->position - point.position;
     const double distance = glm::length(delta);
-    if (distance <= radius) {
-      highest = std::max(highest, glm::dot(delta, point.view) / distance);
-    }
+    if (distance <= radius) highest = std::max(highest, glm::dot(delta, point.view) / distance);
   }
 }
 

@@ -19,11 +19,10 @@ using maths_test::RandomInput;
 // Returns a * b - c * d, with or without a fused multiply-add. Compilers may generate either.
 template <typename Number, bool kFused>
 Number difference_of_products(Number a, Number b, Number c, Number d) {
-  if constexpr (kFused) {
+  if constexpr (kFused)
     return std::fma(a, b, -(c * d));
-  } else {
+  else
     return a * b - c * d;
-  }
 }
 
 // Inverts a matrix by cofactors, as glm::inverse and most engines do. The last row is also computed
@@ -57,18 +56,15 @@ glm::mat<4, 4, Number> inverse_of(const glm::mat<4, 4, Number>& m) {
     }
   }
   Number determinant = 0;
-  for (int row = 0; row < 4; ++row) {
-    determinant += m[0][row] * adjugate[row][0];
-  }
+  for (int row = 0; row < 4; ++row) determinant += m[0][row] * adjugate[row][0];
   // Builds with fast-math multiply by the reciprocal in the same way.
   return adjugate * (Number(1) / determinant);
 }
 
 Matrix to_matrix(const glm::mat4& m) {
   Matrix result;
-  for (std::size_t i = 0; i < 16; ++i) {
+  for (std::size_t i = 0; i < 16; ++i)
     result[i] = m[static_cast<int>(i / 4)][static_cast<int>(i % 4)];
-  }
   return result;
 }
 
@@ -76,9 +72,7 @@ Matrix to_matrix(const glm::mat4& m) {
 glm::dmat4 random_pose(RandomInput& random, float far) {
   const glm::dvec3 axis(random.unit_vector());
   glm::dmat4 pose = glm::rotate(glm::dmat4(1.0), double{random.uniform(-3.2f, 3.2f)}, axis);
-  if (random.uniform(0.0f, 1.0f) < 0.5f) {
-    pose[0] = -pose[0];
-  }
+  if (random.uniform(0.0f, 1.0f) < 0.5f) pose[0] = -pose[0];
   pose[3] = glm::dvec4(double{far} * glm::dvec3(random.unit_vector()), 1.0);
   return pose;
 }
@@ -87,13 +81,9 @@ void expect_accepted(const glm::mat4& view_from_world, const glm::dmat4& exact) 
   const Matrix given = to_matrix(view_from_world);
   ASSERT_TRUE(is_rigid(given));
   const maths::dmat4 made = to_rigid(given);
-  for (int column = 0; column < 4; ++column) {
-    ASSERT_EQ(made[column][3], column == 3 ? 1.0 : 0.0);
-  }
+  for (int column = 0; column < 4; ++column) ASSERT_EQ(made[column][3], column == 3 ? 1.0 : 0.0);
   for (int a = 0; a < 3; ++a) {
-    for (int b = 0; b < 3; ++b) {
-      ASSERT_NEAR(glm::dot(made[a], made[b]), a == b ? 1.0 : 0.0, 1e-14);
-    }
+    for (int b = 0; b < 3; ++b) ASSERT_NEAR(glm::dot(made[a], made[b]), a == b ? 1.0 : 0.0, 1e-14);
     ASSERT_LT(glm::distance(made[a], exact[a]), 5e-6);
   }
 }
@@ -111,9 +101,7 @@ TEST(RigidTransform, ViewMatricesInvertedInFloatOrDoubleFarFromTheOriginAreAccep
          {glm::inverse(glm::mat4(pose)), inverse_of<float, false>(glm::mat4(pose)), fused,
           glm::mat4(inverse_of<double, true>(pose)), glm::mat4(glm::inverse(pose))}) {
       expect_accepted(view_from_world, exact);
-      if (HasFatalFailure()) {
-        return;
-      }
+      if (HasFatalFailure()) return;
     }
   }
   EXPECT_GT(inexact_rows, 100) << "the sweep has to meet last rows that are not exactly 0 0 0 1";
@@ -124,15 +112,10 @@ TEST(RigidTransform, ViewMatricesWithErrorsOfAFewUlpsInEveryElementAreAccepted) 
   for (int i = 0; i < 20000; ++i) {
     const glm::dmat4 exact = glm::inverse(random_pose(random, random.log_uniform(1e-2f, 1e6f)));
     glm::mat4 rounded(exact);
-    for (int column = 0; column < 4; ++column) {
-      for (int row = 0; row < 4; ++row) {
-        rounded[column][row] += random.uniform(-5e-7f, 5e-7f);
-      }
-    }
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 4; ++row) rounded[column][row] += random.uniform(-5e-7f, 5e-7f);
     expect_accepted(rounded, exact);
-    if (HasFatalFailure()) {
-      return;
-    }
+    if (HasFatalFailure()) return;
   }
 }
 

@@ -51,9 +51,7 @@ std::string error_of(const std::string& name, Value value) {
   settings.advanced.estimator = Estimator::horizons;  // allows a falloff above 0
   for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
     if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>, Value>) {
-      if (info.name == name) {
-        field = value;
-      }
+      if (info.name == name) field = value;
     }
   });
   const auto good = validate(settings);
@@ -103,9 +101,7 @@ TEST(Settings, ValidationEnforcesExactlyTheStatedRangeOfEachSetting) {
       const auto most = static_cast<std::uint32_t>(maximum);
       expect_accepted(info, least);
       expect_accepted(info, most);
-      if (least > 0) {
-        expect_refused(info, least - 1);
-      }
+      if (least > 0) expect_refused(info, least - 1);
       expect_refused(info, most + 1);
       expect_refused(info, ~0u);
       for (std::uint32_t value = least; info.range.power_of_two && value <= most; ++value) {

@@ -21,9 +21,8 @@ using testing::HasSubstr;
 
 std::vector<Shader> all_shaders() {
   std::vector<Shader> shaders;
-  for (int i = 0; i < static_cast<int>(Shader::count); ++i) {
+  for (int i = 0; i < static_cast<int>(Shader::count); ++i)
     shaders.push_back(static_cast<Shader>(i));
-  }
   return shaders;
 }
 
@@ -34,9 +33,8 @@ TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslF
     bindings.push_back(std::to_string(binding.number) + " " + std::string(binding.name) + " " +
                        std::to_string(binding.type));
   }
-  for (const ShaderConstant& constant : found.constants) {
+  for (const ShaderConstant& constant : found.constants)
     constants.push_back(std::to_string(constant.id) + " " + std::string(constant.name));
-  }
   // The blocks have no instance name.
   const std::string sampled = std::to_string(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
   EXPECT_THAT(bindings,
@@ -52,13 +50,11 @@ TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslF
 
 TEST(ShaderInterface, CombinedImageSamplersAreDistinguishedFromSampledImages) {
   const ShaderInterface found = read_shader_interface(shader_source(Shader::upsample).code);
-  for (const ShaderBinding& binding : found.bindings) {
-    if (binding.name == "half_image") {
+  for (const ShaderBinding& binding : found.bindings)
+    if (binding.name == "half_image")
       EXPECT_EQ(binding.type, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
-    } else if (binding.name == "normal_image") {
+    else if (binding.name == "normal_image")
       EXPECT_EQ(binding.type, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
-    }
-  }
 }
 
 TEST(ShaderInterface, EveryShaderHasUniqueBindingNumbersKnownTypesAndOneParameterBlock) {
@@ -92,9 +88,7 @@ class DispatchByName : public testing::Test {
     WorkList list(*work_);
     const auto image = list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8});
     std::vector<NamedTexture> images;
-    for (const std::string_view name : names) {
-      images.push_back({name, image});
-    }
+    for (const std::string_view name : names) images.push_back({name, image});
     return list.dispatch(
         {.shader = shader, .constants = constants, .images = images, .size = {8, 8, 1}});
   }
@@ -126,9 +120,8 @@ TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithTh
   ASSERT_TRUE(added) << added.error().message;
   std::vector<std::uint32_t> values;
   for (const AlcoveWorkConstant& constant :
-       std::span(work_->dispatches[0].constants).first(work_->dispatches[0].constant_count)) {
+       std::span(work_->dispatches[0].constants).first(work_->dispatches[0].constant_count))
     values.push_back(constant.value);
-  }
   EXPECT_THAT(values, ElementsAre(1, 2, 3, 1, 0));
 }
 
@@ -174,13 +167,11 @@ TEST_F(DispatchByName, ListThatIsFullIsAnError) {
 
 TEST(ShaderInterface, AccessesAreThoseOfTheImageQualifiers) {
   const ShaderInterface& found = shader_interface(Shader::reconstruct);
-  for (const ShaderBinding& binding : found.bindings) {
-    if (binding.name == "raw_image" || binding.name == "depth_image") {
+  for (const ShaderBinding& binding : found.bindings)
+    if (binding.name == "raw_image" || binding.name == "depth_image")
       EXPECT_EQ(binding.access, std::uint32_t{ALCOVE_WORK_ACCESS_READ}) << binding.name;
-    } else if (binding.name == "visibility_image") {
+    else if (binding.name == "visibility_image")
       EXPECT_EQ(binding.access, std::uint32_t{ALCOVE_WORK_ACCESS_WRITE});
-    }
-  }
 }
 
 }  // namespace

@@ -54,9 +54,8 @@ TEST_F(StaticNoise, HasNoEffectWithAHistory) {
   HostImage last[2];
   for (const bool static_noise : {false, true}) {
     settings.static_noise = static_noise;
-    for (std::uint32_t index = 0; index < 4; ++index) {
+    for (std::uint32_t index = 0; index < 4; ++index)
       last[static_noise ? 1 : 0] = images(index, settings).visibility;
-    }
   }
   EXPECT_EQ(last[0].texels, last[1].texels);
 }

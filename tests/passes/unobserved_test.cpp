@@ -56,9 +56,8 @@ double mean_difference(const HostImage& a, const HostImage& b, std::uint32_t fro
                        std::uint32_t to) {
   double sum = 0.0;
   int count = 0;
-  for (std::uint32_t y = 12; y < a.height - 12; ++y) {
+  for (std::uint32_t y = 12; y < a.height - 12; ++y)
     for (std::uint32_t x = from; x < to; ++x, ++count) sum += std::abs(a.at(x, y) - b.at(x, y));
-  }
   return sum / count;
 }
 

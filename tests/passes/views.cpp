@@ -96,9 +96,8 @@ PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t 
       const bool reversed =
           clip_from_view[2][2] * clip_from_view[3][3] > clip_from_view[3][2] * clip_from_view[2][3];
       scene.depth_ndc.texels.push_back(seen ? static_cast<float>(depth) : (reversed ? 0.0f : 1.0f));
-      for (const double component : {normal.x, normal.y, normal.z, 0.0}) {
+      for (const double component : {normal.x, normal.y, normal.z, 0.0})
         scene.normal_vs.texels.push_back(static_cast<float>(component));
-      }
     }
   }
   return scene;
@@ -110,9 +109,8 @@ TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std
   const float shift =
       (static_cast<float>(width) - 2.0f * static_cast<float>(first)) / static_cast<float>(count) -
       1.0f;
-  for (std::size_t column = 0; column < 4; ++column) {
+  for (std::size_t column = 0; column < 4; ++column)
     m[4 * column] = m[4 * column] * scale + m[4 * column + 3] * shift;
-  }
   return view;
 }
 

@@ -69,12 +69,8 @@ Vulkan12Device::Vulkan12Device(bool has_synchronization2) {
 }
 
 Vulkan12Device::~Vulkan12Device() {
-  for (const VkImage image : images_) {
-    vkDestroyImage(device_, image, nullptr);
-  }
-  for (const VkDeviceMemory memory : memories_) {
-    vkFreeMemory(device_, memory, nullptr);
-  }
+  for (const VkImage image : images_) vkDestroyImage(device_, image, nullptr);
+  for (const VkDeviceMemory memory : memories_) vkFreeMemory(device_, memory, nullptr);
   vkDestroyCommandPool(device_, pool_, nullptr);
   vkDestroyDevice(device_, nullptr);
   reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(
@@ -97,9 +93,8 @@ VkDeviceMemory Vulkan12Device::allocate(const VkMemoryRequirements& needs,
   vkGetPhysicalDeviceMemoryProperties(physical_device_, &properties);
   std::uint32_t type = 0;
   while ((needs.memoryTypeBits >> type & 1u) == 0 ||
-         (properties.memoryTypes[type].propertyFlags & flags) != flags) {
+         (properties.memoryTypes[type].propertyFlags & flags) != flags)
     ++type;
-  }
   const VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size,
                                   type};
   VkDeviceMemory memory = VK_NULL_HANDLE;

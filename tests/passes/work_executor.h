@@ -29,9 +29,8 @@ class WorkExecutor {
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
     check(vkCreateSampler(device_, &info, nullptr, &sampler_));
     std::array<VkDescriptorPoolSize, 5> sizes;
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
+    for (std::size_t i = 0; i < sizes.size(); ++i)
       sizes[i] = {descriptor_type(i), ALCOVE_MAX_WORK_DISPATCHES * ALCOVE_MAX_WORK_BINDINGS};
-    }
     const VkDescriptorPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                           .maxSets = ALCOVE_MAX_WORK_DISPATCHES,
                                           .poolSizeCount = sizes.size(),
@@ -67,9 +66,8 @@ class WorkExecutor {
       vkCmdDispatch(commands, dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
     }
     std::vector<VkImageMemoryBarrier2> barriers;
-    for (std::size_t i = 0; i < host.size(); ++i) {  // the engine's images come first
+    for (std::size_t i = 0; i < host.size(); ++i)  // the engine's images come first
       barriers.push_back(barrier(i, kRead));
-    }
     record(commands, barriers);
     destroy_histories();  // those that were not continued
     for (std::uint32_t i = 0; i < work.history_count; ++i) {
@@ -111,9 +109,8 @@ class WorkExecutor {
     VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                               .allocationSize = needed.size};
     while ((needed.memoryTypeBits & (1u << info.memoryTypeIndex)) == 0 ||
-           (properties.memoryTypes[info.memoryTypeIndex].propertyFlags & flags) != flags) {
+           (properties.memoryTypes[info.memoryTypeIndex].propertyFlags & flags) != flags)
       ++info.memoryTypeIndex;
-    }
     VkDeviceMemory memory = VK_NULL_HANDLE;
     check(vkAllocateMemory(device_, &info, nullptr, &memory));
     return memory;
@@ -148,13 +145,12 @@ class WorkExecutor {
     for (std::size_t i = 0; i < work.resource_count; ++i) {
       const AlcoveWorkResource& resource = work.resources[i];
       Image image;
-      if (i < host.size()) {
+      if (i < host.size())
         image = {.image = host[i], .layout = kRead};
-      } else if (resource.kind == ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS && work.history_valid) {
+      else if (resource.kind == ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS && work.history_valid)
         image = histories_.extract(resource.name).mapped();
-      } else if (resource.kind != ALCOVE_RESOURCE_KIND_TABLE) {
+      else if (resource.kind != ALCOVE_RESOURCE_KIND_TABLE)
         image = create_image(resource);
-      }
       images_.push_back(image);
     }
     place_transients(work);
@@ -164,9 +160,8 @@ class WorkExecutor {
                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
                                        .format = static_cast<VkFormat>(work.resources[i].format),
                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-      if (images_[i].image != VK_NULL_HANDLE && images_[i].view == VK_NULL_HANDLE) {
+      if (images_[i].image != VK_NULL_HANDLE && images_[i].view == VK_NULL_HANDLE)
         check(vkCreateImageView(device_, &info, nullptr, &images_[i].view));
-      }
     }
   }
 
@@ -201,9 +196,8 @@ class WorkExecutor {
       places.push_back(place);
     }
     transients_ = places.empty() ? VK_NULL_HANDLE : allocate(all, 0);
-    for (const Place& place : places) {
+    for (const Place& place : places)
       check(vkBindImageMemory(device_, place.image, transients_, place.begin));
-    }
   }
 
   const Pipeline& get_pipeline(const AlcoveWorkDispatch& dispatch) {
@@ -301,11 +295,8 @@ class WorkExecutor {
       }
     }
     std::vector<VkImageMemoryBarrier2> barriers;
-    for (const auto& [resource, layout] : layouts) {
-      if (images_[resource].layout != layout) {
-        barriers.push_back(barrier(resource, layout));
-      }
-    }
+    for (const auto& [resource, layout] : layouts)
+      if (images_[resource].layout != layout) barriers.push_back(barrier(resource, layout));
     record(commands, barriers);
   }
 

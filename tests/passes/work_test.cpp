@@ -73,11 +73,9 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
   // Executes the list of `view` with outputs of its own.
   Results execute(AlcoveView view, std::uint32_t index) {
     for (AlcoveImage* image :
-         {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce}) {
-      if (image->image != VK_NULL_HANDLE) {
+         {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce})
+      if (image->image != VK_NULL_HANDLE)
         *image = output(image->format, image->width, image->height);
-      }
-    }
     const AlcoveWorkInfo info = info_of(view, index, index > 0 ? work_.get() : nullptr);
     char message[ALCOVE_MAX_MESSAGE];
     EXPECT_EQ(alcoveDescribeWork(&info, work_.get(), message), ALCOVE_SUCCESS) << message;
@@ -85,11 +83,8 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
     for (const AlcoveImage& image :
          {view.depth, view.normals, view.motion, view.roughness, view.back_depth, view.second_depth,
           view.albedo, view.mask, view.visibility, view.bent_normal, view.specular,
-          view.multi_bounce}) {
-      if (image.image != VK_NULL_HANDLE) {
-        host.push_back(image.image);
-      }
-    }
+          view.multi_bounce})
+      if (image.image != VK_NULL_HANDLE) host.push_back(image.image);
     engine().submit(0,
                     [&](VkCommandBuffer commands) { executor_->record(commands, *work_, host); });
     engine().wait();
@@ -103,9 +98,8 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
     auto buffer =
         sample::HostBuffer::create(gpu().device(), 37 * 26, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
     EXPECT_TRUE(buffer);
-    for (std::size_t i = 0; i < 37 * 26; ++i) {
+    for (std::size_t i = 0; i < 37 * 26; ++i)
       (*buffer)->bytes()[i] = static_cast<std::byte>(i % 37 / 10);
-    }
     run([&](framegraph::Graph& graph) {
       const framegraph::State state{kResting.stages, kResting.access, kResting.layout};
       sample::add_copy(graph, **buffer,
@@ -144,9 +138,7 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
   for (std::uint32_t index = 0; index < 5; ++index) {
     SCOPED_TRACE("frame " + std::to_string(index));
     given.previous_view = given.view;
-    if (index == 1 || index == 2) {
-      given.view.view_from_world[12] += 0.03f;
-    }
+    if (index == 1 || index == 2) given.view.view_from_world[12] += 0.03f;
     given.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
     AlcoveSettings settings;
     AlcoveView view = view_of(given, settings);
@@ -267,9 +259,8 @@ TEST_F(WorkOfView, HistoryContinuesOnlyFromAListWithTheSameHistories) {
   info_.bent_normal = {VK_FORMAT_R8G8B8A8_SNORM, 64, 48};
   EXPECT_EQ(describe().work->history_valid, 0u) << "the bent normals have no history yet";
   info_.bent_normal = {};
-  for (AlcoveWorkImage* image : {&info_.depth, &info_.normals, &info_.visibility}) {
+  for (AlcoveWorkImage* image : {&info_.depth, &info_.normals, &info_.visibility})
     image->width = 60;
-  }
   info_.largest_width = 64;
   info_.largest_height = 48;
   EXPECT_EQ(describe().work->history_valid, 1u) << "the largest size is that of the list";
@@ -286,9 +277,7 @@ TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime)
   for (std::uint32_t i = 0; i < work.dispatch_count; ++i) {
     for (std::uint32_t b = 0; b < work.dispatches[i].binding_count; ++b) {
       const AlcoveWorkBinding& binding = work.dispatches[i].bindings[b];
-      if (binding.type == ALCOVE_BINDING_TYPE_PARAMETERS) {
-        continue;
-      }
+      if (binding.type == ALCOVE_BINDING_TYPE_PARAMETERS) continue;
       ASSERT_LT(binding.resource, work.resource_count);
       const AlcoveWorkResource& resource = work.resources[binding.resource];
       EXPECT_EQ(binding.type == ALCOVE_BINDING_TYPE_TABLE,

@@ -33,9 +33,8 @@ TEST(AblationVariants, EachVariantDiffersFromTheBaseSettingsAndHasAUniqueName) {
       parts.insert(variant.part);
     }
     for (const char* part : {"estimator", "occluders", "resolution", "work", "snap_to_texels",
-                             "border", "filter", "history"}) {
+                             "border", "filter", "history"})
       EXPECT_TRUE(parts.contains(part)) << part;
-    }
     EXPECT_GT(names.size(), 15u);
   }
 }
@@ -194,9 +193,8 @@ TEST_F(AblationTest, SnappingToTexelCentresKeepsUnoccludedSurfacesUnoccluded) {
   const FrameImages images = draw(base_);
   const auto [truth, surfaces] = truth_of(images);
   Mask open = surfaces;
-  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i)
     open.pixels[i] = surfaces.pixels[i] != 0 && truth.pixels[i] >= 1.0f ? 1 : 0;
-  }
   OcclusionSettings settings = base_;
   settings.advanced.snap_to_texels = false;
   const double with = compare_images(images.visibility, truth, open).bias;

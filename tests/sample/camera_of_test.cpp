@@ -40,9 +40,8 @@ TEST(CameraFromOptions, CameraNamesInTheErrorMessageAreQuoted) {
 
 TEST(CameraFromOptions, AtMostTenCameraNamesAreListedInTheErrorMessage) {
   Scene scene;
-  for (const char digit : {'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'}) {
+  for (const char digit : {'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'})
     scene.cameras.push_back({.name = {'c', digit}});
-  }
   ViewOptions view;
   view.camera = "hall";
   EXPECT_THAT(camera_of(view, scene).error(), testing::EndsWith("\"c8\", \"c9\""));

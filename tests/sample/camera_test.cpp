@@ -39,9 +39,8 @@ TEST(Camera, DistanceComputedFromProjectedDepthIsTheOriginalOneForEveryProjectio
         if (orthographic && std::isinf(far)) continue;
         const Camera camera = camera_of_kind(orthographic, reversed, far);
         const glm::mat4 clip = camera_matrices(camera, 160, 90).clip_from_view;
-        for (const float depth : {0.6f, 3.0f, 19.0f}) {
+        for (const float depth : {0.6f, 3.0f, 19.0f})
           EXPECT_NEAR(view_depth(clip, project(camera, {0, 0, -depth}).z), depth, 1e-3f * depth);
-        }
       }
     }
   }

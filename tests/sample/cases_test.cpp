@@ -31,17 +31,15 @@ Options view_from(glm::dvec3 eye, glm::dvec3 target) {
 
 float greatest_difference(const Image<float>& a, const Image<float>& b) {
   float greatest = 0.0f;
-  for (size_t i = 0; i < a.pixels.size(); ++i) {
+  for (size_t i = 0; i < a.pixels.size(); ++i)
     greatest = std::max(greatest, std::abs(a.pixels[i] - b.pixels[i]));
-  }
   return greatest;
 }
 
 double root_mean_square(const Image<float>& a, const Image<float>& b) {
   double sum = 0.0;
-  for (size_t i = 0; i < a.pixels.size(); ++i) {
+  for (size_t i = 0; i < a.pixels.size(); ++i)
     sum += std::pow(double{a.pixels[i]} - double{b.pixels[i]}, 2);
-  }
   return std::sqrt(sum / static_cast<double>(a.pixels.size()));
 }
 

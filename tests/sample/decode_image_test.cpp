@@ -53,9 +53,8 @@ PngRecipe random_png(int colour_type, int bits, bool interlaced, uint32_t width,
   std::minstd_rand random(static_cast<unsigned>(colour_type * 100 + bits));
   PngRecipe recipe{width, height, colour_type, bits, interlaced};
   const size_t count = size_t{width} * height * static_cast<size_t>(recipe.channels());
-  for (size_t i = 0; i < count; ++i) {
+  for (size_t i = 0; i < count; ++i)
     recipe.samples.push_back(static_cast<uint16_t>((random() >> 4) & ((1u << bits) - 1)));
-  }
   if (colour_type == PNG_COLOR_TYPE_PALETTE) {
     for (unsigned i = 0; i < 1u << bits; ++i) {
       recipe.palette.push_back({static_cast<uint8_t>(random() >> 8),
@@ -80,9 +79,8 @@ TEST_P(PngKind, PngDecodesToItsSamplesAtAnySize) {
     EXPECT_EQ(image->height, height);
     const std::vector<uint8_t> expected = expected_rgba(recipe);
     ASSERT_EQ(image->rgba.size(), expected.size());
-    for (size_t i = 0; i < expected.size(); ++i) {
+    for (size_t i = 0; i < expected.size(); ++i)
       ASSERT_NEAR(image->rgba[i], expected[i], bits == 16 ? 1 : 0) << i;
-    }
   }
 }
 
@@ -123,11 +121,9 @@ TEST(DecodeImage, GammaOfAPngIsIgnored) {
 std::vector<uint8_t> gradient(uint32_t width, uint32_t height, uint32_t components) {
   std::vector<uint8_t> out;
   for (uint32_t y = 0; y < height; ++y) {
-    for (uint32_t x = 0; x < width; ++x) {
-      for (uint32_t c = 0; c < components; ++c) {
+    for (uint32_t x = 0; x < width; ++x)
+      for (uint32_t c = 0; c < components; ++c)
         out.push_back(static_cast<uint8_t>(40 + 2 * x + y + 20 * c));
-      }
-    }
   }
   return out;
 }
@@ -196,9 +192,7 @@ TEST(DecodeImage, TruncatedImageIsRefusedUnlessAllItsPixelsArePresent) {
     ASSERT_TRUE(expected);
     for (size_t size = 0; size < whole.size(); ++size) {
       const auto image = decoded({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size)});
-      if (image) {
-        EXPECT_EQ(image->rgba, expected->rgba) << size << " of " << whole.size();
-      }
+      if (image) EXPECT_EQ(image->rgba, expected->rgba) << size << " of " << whole.size();
     }
   }
 }
@@ -212,9 +206,8 @@ TEST(DecodeImage, DamagedBytesDoNotCrashTheDecoder) {
       for (const int bit : {0, 3, 7}) {
         byte = static_cast<uint8_t>(good ^ 1u << bit);
         const auto header = read_image_header(bytes);
-        if (header && uint64_t{header->width} * header->height < 1'000'000) {
+        if (header && uint64_t{header->width} * header->height < 1'000'000)
           (void)decode_image(bytes, *header, 2);
-        }
       }
       byte = good;
     }

@@ -85,9 +85,8 @@ TEST_F(EnvironmentFile, EnvironmentMapsInExrAndRadianceHdrFormatAreRead) {
 
 TEST_F(EnvironmentFile, LargeEnvironmentMapsAreReducedByAveragingPixels) {
   EnvironmentImage image(4096, 4);
-  for (uint32_t y = 0; y < 4; ++y) {
+  for (uint32_t y = 0; y < 4; ++y)
     for (uint32_t x = 0; x < 4096; ++x) image.at(x, y) = glm::vec3(x % 2 ? 3.0f : 1.0f);
-  }
   const auto loaded = load(image);
   ASSERT_TRUE(loaded) << loaded.error();
   EXPECT_EQ(loaded->width, 2048u);
@@ -126,13 +125,11 @@ TEST_F(EnvironmentFile, EveryTruncationOfARadianceHdrFileIsRefused) {
   std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n";
   for (int row = 0; row < 2; ++row) {
     text += std::string("\x02\x02\x00\x08", 4);
-    for (int channel = 0; channel < 4; ++channel) {
+    for (int channel = 0; channel < 4; ++channel)
       text += std::string("\x84\x80\x04\x01\x02\x03\x04", 7);
-    }
   }
-  for (size_t size = 0; size <= text.size(); ++size) {
+  for (size_t size = 0; size <= text.size(); ++size)
     EXPECT_EQ(load("a.hdr", text.substr(0, size)).has_value(), size == text.size()) << size;
-  }
 }
 
 TEST_F(EnvironmentFile, RadianceRunsPastTheEndOfARowAreRefused) {
@@ -169,9 +166,8 @@ TEST_F(EnvironmentFile, ExrFileWithAnAttributeOfWrongSizeIsRefused) {
 
 TEST_F(EnvironmentFile, EveryTruncationOfAnExrFileIsRefused) {
   const std::string bytes = exr_bytes(EnvironmentImage(8, 4, glm::vec3(0.5f)));
-  for (size_t size = 0; size < bytes.size(); ++size) {
+  for (size_t size = 0; size < bytes.size(); ++size)
     EXPECT_FALSE(load("b.exr", bytes.substr(0, size))) << size;
-  }
 }
 
 TEST_F(EnvironmentFile, InvalidEnvironmentFilesAreRefusedInOneSentence) {

@@ -95,16 +95,14 @@ TEST(ExtremeViews, OutputsOfRandomExtremeViewsAreFiniteAndInRange) {
     const auto images = (*renderer)->draw_and_read(request);
     ASSERT_TRUE(images) << images.error();
     EXPECT_TRUE(in_unit_range(images->visibility));
-    for (const Image<float>& specular : images->specular_occlusion) {
+    for (const Image<float>& specular : images->specular_occlusion)
       EXPECT_TRUE(in_unit_range(specular));
-    }
     for (const glm::vec3& bounce : images->multi_bounce.pixels) {
       ASSERT_TRUE(glm::all(glm::greaterThanEqual(bounce, glm::vec3(0.0f))));
       ASSERT_TRUE(glm::all(glm::lessThanEqual(bounce, glm::vec3(1.0f))));
     }
-    for (const glm::vec3& normal : images->bent_normal_ws.pixels) {
+    for (const glm::vec3& normal : images->bent_normal_ws.pixels)
       ASSERT_TRUE(std::isfinite(glm::length(normal)) && glm::length(normal) < 1.01f);
-    }
   }
 }
 

@@ -23,9 +23,8 @@ Triangles house(float unit) {
   out.add_box(unit * glm::vec3(-4.5f, 3, -3.5f), unit * glm::vec3(4.5f, 3.3f, 3.5f));
   out.add_box(unit * glm::vec3(-1, 0, 3), unit * glm::vec3(1, 0.3f, 5));
   out.add_box(unit * glm::vec3(2, 3.3f, -1), unit * glm::vec3(3, 5, 0));
-  for (const float x : {-1.0f, 0.8f}) {
+  for (const float x : {-1.0f, 0.8f})
     out.add_box(unit * glm::vec3(x, 0.3f, 4.6f), unit * glm::vec3(x + 0.2f, 2.6f, 4.8f));
-  }
   out.add_box(unit * glm::vec3(-1.3f, 2.6f, 3), unit * glm::vec3(1.3f, 2.8f, 5));
   return out;
 }
@@ -81,11 +80,9 @@ Triangles terrain(float half, float relief) {
                      relief * (std::sin(9.0f * u) * std::cos(7.0f * v) + std::sin(23.0f * u * v)),
                      (2.0f * v - 1.0f) * half);
   };
-  for (int z = 0; z < kCells; ++z) {
-    for (int x = 0; x < kCells; ++x) {
+  for (int z = 0; z < kCells; ++z)
+    for (int x = 0; x < kCells; ++x)
       out.add_quad(point(x, z), point(x, z + 1), point(x + 1, z + 1), point(x + 1, z));
-    }
-  }
   return out;
 }
 
@@ -224,9 +221,8 @@ Triangles ground_slab() {
 Triangles table() {
   Triangles out;
   out.add_box({-0.8f, 0.7f, -0.4f}, {0.8f, 0.75f, 0.4f});
-  for (const float x : {-0.75f, 0.7f}) {
+  for (const float x : {-0.75f, 0.7f})
     for (const float z : {-0.38f, 0.33f}) out.add_box({x, 0, z}, {x + 0.05f, 0.7f, z + 0.05f});
-  }
   return out;
 }
 

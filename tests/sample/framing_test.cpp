@@ -18,9 +18,8 @@ Mesh grid(float half_width, uint32_t n, float height = 0.0f) {
       mesh.positions.emplace_back(at.x, height, at.y);
       if (x == n || z == n) continue;
       const uint32_t i = z * (n + 1) + x;
-      for (const uint32_t v : {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2}) {
+      for (const uint32_t v : {i, i + n + 1, i + 1, i + 1, i + n + 1, i + n + 2})
         mesh.indices.push_back(v);
-      }
     }
   }
   return mesh;
@@ -38,9 +37,8 @@ Mesh sphere(float radius, const glm::vec3& centre, uint32_t n) {
                                                            std::sin(polar) * std::sin(azimuth)));
       if (i == n || k == 2 * n) continue;
       const uint32_t v = i * (2 * n + 1) + k;
-      for (const uint32_t c : {v, v + 1, v + 2 * n + 1, v + 1, v + 2 * n + 2, v + 2 * n + 1}) {
+      for (const uint32_t c : {v, v + 1, v + 2 * n + 1, v + 1, v + 2 * n + 2, v + 2 * n + 1})
         mesh.indices.push_back(c);
-      }
     }
   }
   return mesh;
@@ -75,9 +73,8 @@ TEST(Framing, SkyAndGroundAreCountedOutsideTheSubject) {
 
 TEST(Framing, SubjectOfALandscapeIsTheLandscapeAndNotASmallMark) {
   Mesh terrain = grid(500.0f, 100);
-  for (size_t i = 0; i < terrain.positions.size(); ++i) {
+  for (size_t i = 0; i < terrain.positions.size(); ++i)
     terrain.positions[i].y = 100.0f * std::sin(0.37f * float(i));
-  }
   EXPECT_EQ(scene_of({terrain, sphere(1.0f, {0, 0, 0}, 8)}).subject.triangles_outside, 0u);
 }
 

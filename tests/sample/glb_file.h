@@ -12,9 +12,8 @@ inline std::vector<uint8_t> glb_file(std::string json, std::vector<uint8_t> bina
   while (binary.size() % 4) binary.push_back(0);
   std::vector<uint8_t> file;
   const auto add_word = [&](size_t value) {
-    for (int shift = 0; shift < 32; shift += 8) {
+    for (int shift = 0; shift < 32; shift += 8)
       file.push_back(static_cast<uint8_t>(value >> shift));
-    }
   };
   add_word(0x46546c67);
   add_word(2);

@@ -20,9 +20,8 @@ TEST(GltfCamera, PerspectiveAndOrthographicCamerasAreRead) {
       {{"name", "c"},
        {"type", "orthographic"},
        {"orthographic", {{"xmag", 2.0}, {"ymag", 1.5}, {"znear", 0.0}, {"zfar", 7.0}}}}};
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i)
     maker.json["nodes"].push_back({{"camera", i}, {"translation", {0, 0, 5}}});
-  }
   const Scene scene = parsed(maker.gltf());
   ASSERT_EQ(scene.cameras.size(), 3u);
   EXPECT_TRUE(std::isinf(scene.cameras[0].far_plane));

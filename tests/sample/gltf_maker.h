@@ -92,9 +92,8 @@ class GltfMaker {
     for (size_t i = 0; i < in.size(); i += 3) {
       uint32_t group = 0;
       for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < in.size() ? in[i + k] : 0u);
-      for (size_t k = 0; k < 4; ++k) {
+      for (size_t k = 0; k < 4; ++k)
         out += i + k <= in.size() ? kDigits[group >> (18 - 6 * k) & 63u] : '=';
-      }
     }
     return out;
   }
@@ -147,9 +146,8 @@ inline std::string refusal(const std::vector<uint8_t>& bytes) {
 // Corners in the order of the indices.
 inline std::vector<glm::vec3> corners(const Scene& scene) {
   std::vector<glm::vec3> out;
-  for (const Mesh& mesh : scene.meshes) {
+  for (const Mesh& mesh : scene.meshes)
     for (const uint32_t i : mesh.indices) out.push_back(mesh.positions[i]);
-  }
   return out;
 }
 

@@ -47,9 +47,8 @@ TEST(GltfSkin, VerticesOfASkinnedMeshAreTransformedByJointsAndNotByItsNode) {
   EXPECT_LT(glm::distance(read[0], glm::vec3(10, 0, 15)), 1e-5f);
   EXPECT_LT(glm::distance(read[1], glm::vec3(10, 0, 14)), 1e-5f);
   EXPECT_LT(glm::distance(read[2], glm::vec3(10, 3, 15)), 1e-5f);
-  for (const glm::vec3& normal : scene.meshes[0].normals) {
+  for (const glm::vec3& normal : scene.meshes[0].normals)
     EXPECT_LT(glm::distance(normal, glm::vec3(1, 0, 0)), 1e-5f);
-  }
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 

@@ -98,18 +98,16 @@ void add_properties(const json& value, const Property& at, std::vector<Property>
     if (value.is_object()) add_properties(child, {at.pointer / key, at.name + "." + key}, out);
     if (!value.is_array() || !child.is_object()) continue;
     const size_t index = std::stoul(key);
-    for (const auto& [name, member] : child.items()) {
+    for (const auto& [name, member] : child.items())
       add_properties(member, {at.pointer / index / name, at.name + "[" + key + "]." + name}, out);
-    }
   }
 }
 
 std::vector<Property> all_properties() {
   std::vector<Property> out;
   const json root = complete().json;
-  for (const auto& [name, value] : root.items()) {
+  for (const auto& [name, value] : root.items())
     add_properties(value, {json::json_pointer() / name, name}, out);
-  }
   return out;
 }
 
@@ -122,9 +120,8 @@ std::vector<json> wrong_values(const json& valid, const std::string& name) {
   if (valid.is_number_integer()) {
     std::vector<json> out = {-1, -2, 0.5, "0", 1e300, nullptr, true, json::array({0})};
     // Sizes and offsets may be larger than an index.
-    if (!std::regex_search(name, std::regex("accessors.*[.]count|[.]byte(Offset|Length)$"))) {
+    if (!std::regex_search(name, std::regex("accessors.*[.]count|[.]byte(Offset|Length)$")))
       out.push_back(too_large);
-    }
     return out;
   }
   if (valid.is_number()) {
@@ -133,9 +130,8 @@ std::vector<json> wrong_values(const json& valid, const std::string& name) {
     if (std::regex_search(name, not_negative)) out.push_back(-0.5);
     return out;
   }
-  if (valid.empty() || valid[0].is_object()) {
+  if (valid.empty() || valid[0].is_object())
     return {0, "a", json::object(), json::array({1}), nullptr};
-  }
   if (valid[0].is_string()) return {"a", json::array({1}), json::object(), nullptr};
   if (valid[0].is_number_integer()) {
     return {0,

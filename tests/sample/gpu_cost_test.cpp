@@ -337,9 +337,8 @@ TEST(GpuBudget, PassWithoutABudgetAndBudgetOfAnotherCompilerAreReported) {
   const std::string budget = budget_of({}, "compiler");
   EXPECT_THAT(over_budget(budget, "compiler", {one_pass(1, 1, 1, 0)}).value(),
               testing::Contains(HasSubstr("the budget is missing")));
-  for (const std::string& other : {budget_of({}, "another"), std::string(), std::string("{")}) {
+  for (const std::string& other : {budget_of({}, "another"), std::string(), std::string("{")})
     EXPECT_FALSE(over_budget(other, "compiler", {one_pass(1, 1, 1, 0)})) << other;
-  }
 }
 
 SettingsCost frames_of(const std::string& label, const GpuPart& part, double moving_ms,
@@ -400,9 +399,8 @@ std::ostream& operator<<(std::ostream& out, const BudgetCase& budgeted) {
 
 std::vector<BudgetCase> all_budgeted() {
   std::vector<BudgetCase> all;
-  for (const GpuPart& part : kGpuParts) {
+  for (const GpuPart& part : kGpuParts)
     for (const LabelledSettings& settings : budgeted_settings()) all.push_back({&part, settings});
-  }
   return all;
 }
 
@@ -424,9 +422,8 @@ TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   ASSERT_TRUE(cost) << cost.error();
   const auto complaints = over_budget(budget, compiler_name(*device), {*cost});
   if (!complaints) GTEST_SKIP() << complaints.error();
-  for (const std::string& complaint : *complaints) {
+  for (const std::string& complaint : *complaints)
     ADD_FAILURE() << complaint << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;
-  }
 }
 
 // Instructions per pixel of the passes of a moving frame.

@@ -15,9 +15,8 @@ namespace {
 Mesh cube() {
   Mesh mesh;
   mesh.positions.resize(8);
-  for (std::uint32_t i = 0; i < 8; ++i) {
+  for (std::uint32_t i = 0; i < 8; ++i)
     for (int c = 0; c < 3; ++c) mesh.positions[i][c] = (i >> c & 1u) != 0 ? 0.5f : -0.5f;
-  }
   mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                   2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   return mesh;
@@ -55,11 +54,9 @@ Scene separate_cubes() {
   for (const glm::mat4x3& placed : placements()) {
     Mesh mesh = cube();
     for (glm::vec3& position : mesh.positions) position = placed * glm::vec4(position, 1.0f);
-    if (glm::determinant(glm::mat3(placed)) < 0.0f) {
-      for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    if (glm::determinant(glm::mat3(placed)) < 0.0f)
+      for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
         std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-      }
-    }
     meshes.push_back(mesh);
   }
   return scene_of(meshes);
@@ -100,9 +97,8 @@ TEST_F(GpuMeshesTest, GridTakesUnder40BytesPerTriangleAndAbout48BytesPerInstance
       grid.normals.emplace_back(0.0f, 0.0f, 1.0f);
       if (x == 0 || y == 0) continue;
       const std::uint32_t i = y * kSide + x;
-      for (const std::uint32_t v : {i - kSide - 1, i - kSide, i, i - kSide - 1, i, i - 1}) {
+      for (const std::uint32_t v : {i - kSide - 1, i - kSide, i, i - kSide - 1, i, i - 1})
         grid.indices.push_back(v);
-      }
     }
   }
   const auto bytes = [&](std::size_t instances) {

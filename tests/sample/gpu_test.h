@@ -14,9 +14,7 @@ namespace alcove::sample {
 
 struct ReportAndClose {
   void operator()(Gpu* gpu) const {
-    for (const std::string& message : gpu->device().validation_messages()) {
-      ADD_FAILURE() << message;
-    }
+    for (const std::string& message : gpu->device().validation_messages()) ADD_FAILURE() << message;
     delete gpu;
   }
 };

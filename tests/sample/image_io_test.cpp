@@ -18,9 +18,8 @@ namespace {
 TEST(ImageIo, GreyExrImageIsReadBackExactly) {
   const TemporaryFolder folder;
   Image<float> image(7, 3);
-  for (size_t i = 0; i < image.pixels.size(); ++i) {
+  for (size_t i = 0; i < image.pixels.size(); ++i)
     image.pixels[i] = 0.1f * static_cast<float>(i) - 0.3f;
-  }
   image.at(6, 2) = std::numeric_limits<float>::infinity();
   ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
   const auto read = read_exr_grey(folder.path / "a.exr");

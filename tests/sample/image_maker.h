@@ -55,12 +55,10 @@ inline std::vector<uint8_t> make_png(const PngRecipe& recipe) {
   png_set_IHDR(png, info, recipe.width, recipe.height, recipe.bits, recipe.colour_type,
                recipe.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
-  if (!recipe.palette.empty()) {
+  if (!recipe.palette.empty())
     png_set_PLTE(png, info, recipe.palette.data(), static_cast<int>(recipe.palette.size()));
-  }
-  if (!recipe.alphas.empty()) {
+  if (!recipe.alphas.empty())
     png_set_tRNS(png, info, recipe.alphas.data(), static_cast<int>(recipe.alphas.size()), nullptr);
-  }
   if (recipe.gamma > 0.0) png_set_gAMA(png, info, recipe.gamma);
   png_write_info(png, info);
   // Samples are packed as PNG requires: the highest bits first, 16 bits as two bytes.
@@ -93,11 +91,9 @@ inline std::vector<uint8_t> make_plain_png(uint32_t width, uint32_t height, uint
 inline std::vector<uint8_t> make_png_promise(uint32_t width, uint32_t height, size_t padding) {
   std::vector<uint8_t> out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13};
   std::vector<uint8_t> header{'I', 'H', 'D', 'R'};
-  for (const uint32_t side : {width, height}) {
-    for (int shift = 24; shift >= 0; shift -= 8) {
+  for (const uint32_t side : {width, height})
+    for (int shift = 24; shift >= 0; shift -= 8)
       header.push_back(static_cast<uint8_t>(side >> shift));
-    }
-  }
   header.insert(header.end(), {8, 0, 0, 0, 0});
   uint32_t crc = 0xffffffffu;
   for (const uint8_t byte : header) {

@@ -38,11 +38,10 @@ struct Triangles {
           corner[i][u] = i == 1 || i == 2 ? high[u] : low[u];
           corner[i][v] = i >= 2 ? high[v] : low[v];
         }
-        if (top != inward) {
+        if (top != inward)
           add_quad(corner[0], corner[1], corner[2], corner[3]);
-        } else {
+        else
           add_quad(corner[3], corner[2], corner[1], corner[0]);
-        }
       }
     }
   }
@@ -63,11 +62,10 @@ struct Triangles {
       for (int side = 0; side < kSides; ++side) {
         const glm::vec3 a = point(ring, side), b = point(ring, side + 1);
         const glm::vec3 c = point(ring + 1, side + 1), d = point(ring + 1, side);
-        if (inward) {
+        if (inward)
           add_quad(d, c, b, a);
-        } else {
+        else
           add_quad(a, b, c, d);
-        }
       }
     }
   }

@@ -40,9 +40,8 @@ TEST(MotionPaths, EveryCameraPathBeginsWithTheGivenView) {
 TEST(MotionPaths, MeshesThatACameraPathAddsAreCompleteInTinyScenes) {
   const auto triangles_at = [](float scale) {
     MotionStart start = builtin_start();
-    for (glm::vec3* position : {&start.camera.eye_ws, &start.camera.target_ws, &start.ground_ws}) {
+    for (glm::vec3* position : {&start.camera.eye_ws, &start.camera.target_ws, &start.ground_ws})
       *position *= scale;
-    }
     start.depth *= scale;
     start.radius *= scale;
     std::vector<uint64_t> counts;
@@ -68,11 +67,10 @@ TEST(MotionPaths, CameraStepsAreSmallExceptAtTheCut) {
     for (std::uint32_t frame = 1; frame < kFrames; ++frame) {
       const float step =
           glm::distance(path.camera(frame).eye_ws, path.camera(frame - 1).eye_ws) / start.depth;
-      if (path.cut() == frame) {
+      if (path.cut() == frame)
         EXPECT_GT(step, 0.1f);
-      } else {
+      else
         EXPECT_LT(step, 0.01f) << frame;
-      }
     }
   }
 }
@@ -113,15 +111,12 @@ TEST(MotionPaths, MovingBlockStaysAboveTheGroundWithoutTouchingIt) {
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     path.pose(scene, frame);
     float least = 1e9f;
-    for (const glm::vec3& position : scene.meshes.back().positions) {
+    for (const glm::vec3& position : scene.meshes.back().positions)
       least = std::min(least, glm::dot(position - start.ground_ws, start.ground_normal_ws));
-    }
     EXPECT_NEAR(least, 0.2f * start.radius, 1e-4f);
     const glm::vec2 here =
         on_image(path.camera(frame), glm::vec3(path.world_from_moving(frame)[3]));
-    if (frame > 0) {
-      EXPECT_GT(here.x, last.x + 0.001f);
-    }
+    if (frame > 0) EXPECT_GT(here.x, last.x + 0.001f);
     last = here;
   }
 }

@@ -66,9 +66,8 @@ TEST_F(Motion, HistoryFromBeforeACameraCutIsRejected) {
   const auto report = run_cut(gpu(), builtin_scene(), path_of(MotionKind::cut, 32), setup());
   ASSERT_TRUE(report) << report.error();
   ASSERT_GE(report->after.size(), 4u);
-  for (const CutErrors& errors : report->after) {
+  for (const CutErrors& errors : report->after)
     EXPECT_LT(errors.kept, 1.1 * errors.restarted) << errors.frames << " frames after";
-  }
 }
 
 }  // namespace

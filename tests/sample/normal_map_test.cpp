@@ -229,9 +229,8 @@ TEST(Tangents, TriangleWithoutAreaInTheTextureGetsTheTangentOfItsNeighbour) {
   mesh.uvs = {{0, 0}, {1, 0}, {1, -1}, {0, 0}};
   mesh.indices = {0, 1, 2, 0, 2, 3};
   const auto tangents = corner_tangents(mesh, {});
-  for (const std::size_t corner : {0u, 1u, 2u, 3u, 4u}) {
+  for (const std::size_t corner : {0u, 1u, 2u, 3u, 4u})
     EXPECT_EQ(tangents[corner], glm::vec4(1, 0, 0, 1)) << corner;
-  }
 }
 
 }  // namespace

@@ -199,9 +199,8 @@ TEST(Options, LastOccurrenceOfARepeatedOptionCounts) {
 
 TEST(Options, OptionsWithoutEffectOnTheCommandAreRefused) {
   EXPECT_FALSE(parse({"view", "--spp", "16"}));
-  for (const char* command : {"render", "graph"}) {
+  for (const char* command : {"render", "graph"})
     EXPECT_TRUE(parse({command, "--spp", "16"})) << "a line for compare serves " << command;
-  }
   for (const char* command : {"motion", "ablate", "bench"}) {
     EXPECT_TRUE(parse({command, "--spp", "16"})) << command;
     EXPECT_FALSE(parse({command, "--roughness", "0.3"})) << command;

@@ -73,9 +73,7 @@ TEST(OrbitCamera, PanningMovesTheTargetWithTheMouse) {
 TEST(OrbitCamera, DollyingScalesTheDistanceToTheTargetAndNeverReachesTheTarget) {
   Camera camera = some_camera();
   EXPECT_NEAR(arm(dollied(camera, 0.5f)), 0.5f * arm(camera), 1e-5f);
-  for (int i = 0; i < 1000; ++i) {
-    camera = dollied(camera, 0.5f);
-  }
+  for (int i = 0; i < 1000; ++i) camera = dollied(camera, 0.5f);
   EXPECT_GT(arm(camera), camera.near_plane);
   camera.orthographic = true;
   EXPECT_FLOAT_EQ(dollied(camera, 2.0f).ortho_height, 2.0f * camera.ortho_height);

@@ -51,9 +51,8 @@ struct View {
 Material dark() { return {.base_color = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)}; }
 
 TEST(OutputNeeds, PlainDarkAndRoughSurfacesNeedNoOutputBesideVisibility) {
-  for (const std::string& sentence : View(dark()).needs()) {
+  for (const std::string& sentence : View(dark()).needs())
     EXPECT_THAT(sentence, HasSubstr(": not needed here, "));
-  }
 }
 
 TEST(OutputNeeds, GlossySurfacesNeedSpecularOcclusion) {
@@ -67,9 +66,8 @@ TEST(OutputNeeds, GlossySurfacesNeedSpecularOcclusion) {
 
 TEST(OutputNeeds, TiltedUnoccludedDirectionsNeedBentNormals) {
   View view(dark());
-  for (glm::vec3& direction : view.truths.scene.bent_normal_ws.pixels) {
+  for (glm::vec3& direction : view.truths.scene.bent_normal_ws.pixels)
     direction = glm::normalize(glm::vec3(1, 0, 1));
-  }
   EXPECT_THAT(view.needs()[1], AllOf(HasSubstr("45 degrees"), Not(HasSubstr("not needed"))));
 }
 
@@ -86,9 +84,7 @@ TEST(OutputNeeds, NormalMapsAlphaMasksAndAnimationsAskForInputsAndSettings) {
   leaf.alpha_mode = AlphaMode::mask;
   View view(leaf);
   view.scene.warnings = {"Animations are left out: nodes stand as the file places them."};
-  for (const std::size_t i : {3, 4, 5}) {
-    EXPECT_THAT(view.needs()[i], Not(HasSubstr("not needed")));
-  }
+  for (const std::size_t i : {3, 4, 5}) EXPECT_THAT(view.needs()[i], Not(HasSubstr("not needed")));
 }
 
 TEST(OutputNeeds, SceneOfOnePlainMaterialHasNoSentences) {

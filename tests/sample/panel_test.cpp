@@ -17,9 +17,7 @@ TEST(SmoothedTimes, OneSlowFrameChangesTheSmoothedTimesLittleAndManySlowFramesFu
   times.add({{"gtao", 12.0}});
   EXPECT_GT(times.total_ms(), 2.0);
   EXPECT_LT(times.total_ms(), 3.0);
-  for (int i = 0; i < 200; ++i) {
-    times.add({{"gtao", 12.0}});
-  }
+  for (int i = 0; i < 200; ++i) times.add({{"gtao", 12.0}});
   EXPECT_NEAR(times.total_ms(), 12.0, 0.01);
 }
 

@@ -10,9 +10,8 @@ namespace {
 
 TEST(Printable, ValidUtf8TextIsUnchanged) {
   for (const std::string text :
-       {"", "hall.glb", "caf\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xed\x9f\xbf"}) {
+       {"", "hall.glb", "caf\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xed\x9f\xbf"})
     EXPECT_EQ(printable(text), text);
-  }
 }
 
 TEST(Printable, ControlCharactersBecomeSpaces) {

@@ -62,11 +62,10 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   EXPECT_EQ(camera->far_plane, shot.camera.far_plane);
   EXPECT_EQ(camera->reversed_z, shot.camera.reversed_z);
   EXPECT_EQ(camera->orthographic, shot.camera.orthographic);
-  if (shot.camera.orthographic) {
+  if (shot.camera.orthographic)
     EXPECT_EQ(camera->ortho_height, shot.camera.ortho_height);
-  } else {
+  else
     EXPECT_EQ(camera->fov_y, shot.camera.fov_y);
-  }
   const std::vector<float> roughness =
       shot.roughness ? std::vector<float>{*shot.roughness} : std::vector<float>{};
   EXPECT_EQ(read->occlusion.roughness, roughness);

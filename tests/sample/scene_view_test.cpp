@@ -117,18 +117,15 @@ TEST_F(ViewerWindowTest, ShownVisibilityEqualsThatOfTheOffscreenRenderer) {
   const auto images = (*renderer)->draw_and_read(request);
   ASSERT_TRUE(images) << images.error();
   ASSERT_EQ(images->visibility.pixels.size(), seen.pixels.size());
-  for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < seen.pixels.size(); ++i)
     ASSERT_NEAR(seen.pixels[i].r, images->visibility.pixels[i], 0.003f) << "pixel " << i;
-  }
 }
 
 TEST_F(ViewerWindowTest, RenderedImageFollowsTheSizeOfTheWindow) {
   draw(2);
   for (const VkExtent2D size : {VkExtent2D{320, 200}, {97, 61}, {240, 135}}) {
     view_->window().resize(size);
-    for (int i = 0; i < 100 && view_->facts().width != size.width; ++i) {
-      draw(1);
-    }
+    for (int i = 0; i < 100 && view_->facts().width != size.width; ++i) draw(1);
     EXPECT_EQ(view_->facts().width, size.width);
     EXPECT_EQ(view_->facts().height, size.height);
     EXPECT_FALSE(is_plain(draw_and_look()));

@@ -79,9 +79,8 @@ class TextureTest : public QuadTest {
     });
     EXPECT_TRUE(ran) << ran.error();
     glm::u8vec4 texel;
-    for (int c = 0; c < 4; ++c) {
+    for (int c = 0; c < 4; ++c)
       texel[c] = static_cast<std::uint8_t>((*target)->bytes()[static_cast<std::size_t>(c)]);
-    }
     return texel;
   }
 };
@@ -103,9 +102,8 @@ TEST_F(TextureTest, MipsOfAOneRowTextureHalveOnlyItsWidth) {
 }
 
 TEST_F(TextureTest, CheckerboardWithMipsFinerThanPixelsIsDrawnGrey) {
-  for (const glm::vec3& albedo : drawn(quad_of(checkerboard(8 * kSize))).albedo.pixels) {
+  for (const glm::vec3& albedo : drawn(quad_of(checkerboard(8 * kSize))).albedo.pixels)
     ASSERT_NEAR(albedo.g, 0.5f, 0.02f);
-  }
 }
 
 TEST_F(TextureTest, CheckerboardWithoutMipsFinerThanPixelsIsDrawnBlackOrWhite) {

@@ -96,9 +96,8 @@ TEST(SpeedErrorTrade, ParetoFrontDoesNotChangeWithTimingNoiseWithinTheMeasuredSp
     const Trade trade = trade_of({point("a", 2.0 + noise(random), 0.06, 0.1),
                                   point("b", 2.05 + noise(random), 0.05, 0.1),
                                   point("c", 3.0 + noise(random), 0.04, 0.1)});
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i)
       EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].name != "a") << run;
-    }
   }
 }
 
@@ -138,9 +137,8 @@ std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> 
 
 std::vector<std::string> sorted_front(const Trade& trade) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < trade.points.size(); ++i) {
+  for (std::size_t i = 0; i < trade.points.size(); ++i)
     if (trade.on_pareto_front[i]) names.push_back(trade.points[i].name);
-  }
   std::ranges::sort(names);
   return names;
 }
@@ -173,9 +171,8 @@ TEST(SpeedErrorTrade, SettingThatBecomesFasterEntersTheParetoFrontOnABusyMachine
 
 TEST(VariantCost, CostIsTheMedianRatioOfTimedPairsWithHalfTheInterquartileRangeAsSpread) {
   std::vector<TimedPair> pairs;
-  for (const double ratio : {2.0, 1.0, 9.0, 3.0, 4.0}) {
+  for (const double ratio : {2.0, 1.0, 9.0, 3.0, 4.0})
     pairs.push_back({{10.0, 7.0}, {10.0 * ratio, 14.0 * ratio}});
-  }
   const VariantCost cost = cost_of(pairs, 5);
   EXPECT_DOUBLE_EQ(cost.gpu, 3.0);
   EXPECT_DOUBLE_EQ(cost.gpu_spread, 1.0);

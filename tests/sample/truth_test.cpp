@@ -45,9 +45,8 @@ struct View {
 View view_of(const RayScene& rays, const Camera& camera, uint32_t width, uint32_t height) {
   View view{cast_gbuffer(rays, camera, width, height), {}, {width, height}};
   view.points = {view.g.position_ws, view.g.geometric_normal_ws, view.g.geometric_normal_ws};
-  for (size_t i = 0; i < view.mask.pixels.size(); ++i) {
+  for (size_t i = 0; i < view.mask.pixels.size(); ++i)
     view.mask.pixels[i] = view.g.material.pixels[i] != kNoMaterial;
-  }
   return view;
 }
 
@@ -63,9 +62,8 @@ TEST(RayTracedTruth, UnoccludedPlaneHasVisibilityExactlyOneAtAnyTilt) {
 
 // A scene and its view, scaled.
 Scene scaled(Scene scene, float scale) {
-  for (Mesh& mesh : scene.meshes) {
+  for (Mesh& mesh : scene.meshes)
     for (glm::vec3& position : mesh.positions) position *= scale;
-  }
   for (Camera& camera : scene.cameras) {
     camera.eye_ws *= scale;
     camera.target_ws *= scale;
@@ -83,17 +81,15 @@ TEST(RayTracedTruth, VisibilityDoesNotDependOnTheScaleOfTheScene) {
     const auto rays = RayScene::create(other);
     const View view = view_of(*rays, other.cameras[0], 32, 18);
     const TruthSettings settings{scale, 16, 1};
-    for (const glm::vec3& light : interreflection_truth(*rays, view.points, settings).pixels) {
+    for (const glm::vec3& light : interreflection_truth(*rays, view.points, settings).pixels)
       EXPECT_TRUE(light.x >= 0.0f && light.x <= 1.0f) << light.x;
-    }
     return occlusion_truth(*rays, view.points, settings).visibility.pixels;
   };
   // Powers of two do not round.
   const auto expected = visibility(1.0f);
   EXPECT_NE(expected, Image<float>(32, 18, 1.0f).pixels);
-  for (const float scale : {0x1p-45f, 0x1p-30f, 0x1p30f, 0x1p34f}) {
+  for (const float scale : {0x1p-45f, 0x1p-30f, 0x1p30f, 0x1p34f})
     EXPECT_EQ(visibility(scale), expected) << scale;
-  }
   const auto too_large = RayScene::create(scaled(scene, 0x1p41f));
   ASSERT_FALSE(too_large);
   EXPECT_THAT(too_large.error(), testing::HasSubstr("further than 1e12"));
@@ -175,9 +171,8 @@ TEST(RayTracedTruth, RaysPassThroughTexelsCutOutByAnAlphaMask) {
   scene.images.push_back({"holes", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
   scene.materials[0].base_color_texture = {0, {Wrap::clamp, Wrap::clamp}};
   scene.materials[0].alpha_mode = AlphaMode::mask;
-  for (size_t i = 0; i < scene.meshes[0].uvs.size(); ++i) {
+  for (size_t i = 0; i < scene.meshes[0].uvs.size(); ++i)
     scene.meshes[0].uvs[i] = {scene.meshes[0].positions[i].x > 0.0f ? 1.0f : 0.0f, 0.5f};
-  }
   const auto rays = RayScene::create(scene);
   const GBuffer g = cast_gbuffer(*rays, scene.cameras[0], 16, 9);
   EXPECT_EQ(g.material.at(0, 4), 0u);
@@ -197,9 +192,8 @@ TEST(HeightFieldTruth, UnoccludedPlaneHasVisibilityOneWithinOne255thInEveryProje
           height_field_truth(view.g.depth_vs, view.g.geometric_normal_ws, camera, {0.5f, 64});
       for (size_t i = 0; i < view.mask.pixels.size(); ++i) {
         // The plane is cut off at the far plane.
-        if (view.g.depth_vs.pixels[i] < 0.5f * camera.far_plane) {
+        if (view.g.depth_vs.pixels[i] < 0.5f * camera.far_plane)
           ASSERT_NEAR(truth.visibility.pixels[i], 1.0f, 1.0f / 255.0f) << name << " " << i;
-        }
       }
     }
   }
@@ -217,9 +211,8 @@ TEST(HeightFieldTruth, HeightFieldVisibilityAgreesWithTheRayTracedOneIfTheImageS
         height_field_truth(view.g.depth_vs, view.g.geometric_normal_ws, camera, {radius, 64});
     const auto traced = occlusion_truth(*rays, view.points, {radius, 1024, 1});
     Mask middle(240, 136);
-    for (uint32_t y = 50; y < 86; ++y) {
+    for (uint32_t y = 50; y < 86; ++y)
       for (uint32_t x = 90; x < 150; ++x) middle.at(x, y) = view.mask.at(x, y);
-    }
     const ErrorSummary error = compare_images(seen.visibility, traced.visibility, middle);
     EXPECT_LT(error.rmse, 0.03) << name << " bias " << error.bias;
   }

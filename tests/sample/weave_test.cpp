@@ -14,9 +14,8 @@ constexpr std::uint32_t kSize = 256;
 
 Image<float> image_of(const std::function<float(std::uint32_t x, std::uint32_t y)>& value) {
   Image<float> image(kSize, kSize);
-  for (std::uint32_t y = 0; y < kSize; ++y) {
+  for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) image.at(x, y) = value(x, y);
-  }
   return image;
 }
 
@@ -116,11 +115,9 @@ TEST(WeavePattern, NoiseThatWasFilteredHasNoPattern) {
   const Weave weave = weave_of_error([&](std::uint32_t x, std::uint32_t y) {
     constexpr std::array<float, 5> kBinomial{1 / 16.0f, 4 / 16.0f, 6 / 16.0f, 4 / 16.0f, 1 / 16.0f};
     float sum = 0.0f;
-    for (std::uint32_t j = 0; j < 5; ++j) {
-      for (std::uint32_t i = 0; i < 5; ++i) {
+    for (std::uint32_t j = 0; j < 5; ++j)
+      for (std::uint32_t i = 0; i < 5; ++i)
         sum += kBinomial[i] * kBinomial[j] * white.at(x + i, y + j);
-      }
-    }
     return sum;
   });
   EXPECT_LT(weave.rms(), 0.0003);
@@ -162,11 +159,8 @@ TEST(WeavePattern, ImageWindowsWithSkyOrWithDetailInTheTruthAreNotCounted) {
   Mask surfaces = kEverywhere;
   surfaces.at(40, 40) = 0;  // in four windows
   Image<float> truth = smooth_truth();
-  for (std::uint32_t y = 0; y < 32; ++y) {
-    for (std::uint32_t x = 0; x < 10; ++x) {
-      truth.at(x, y) *= 0.5f;  // a crease in two others
-    }
-  }
+  for (std::uint32_t y = 0; y < 32; ++y)
+    for (std::uint32_t x = 0; x < 10; ++x) truth.at(x, y) *= 0.5f;  // a crease in two others
   EXPECT_EQ(weave_of(truth, truth, surfaces).windows, kWindowsOnASide * kWindowsOnASide - 6);
 }
 

@@ -26,9 +26,8 @@ TEST(WholeFile, FullDiskIsReportedAndNoPartialFileIsLeft) {
 
 TEST(WholeFile, TemporaryFilesOfAnHourAgoAreRemovedAndNoOthers) {
   const TemporaryFolder folder;
-  for (const char* name : {"a.txt.part123", "b.txt.part5", "c.txt"}) {
+  for (const char* name : {"a.txt.part123", "b.txt.part5", "c.txt"})
     std::ofstream(folder.path / name) << "half";
-  }
   const auto old = std::filesystem::file_time_type::clock::now() - std::chrono::hours(2);
   std::filesystem::last_write_time(folder.path / "a.txt.part123", old);
   std::filesystem::last_write_time(folder.path / "c.txt", old);

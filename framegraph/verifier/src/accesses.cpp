@@ -41,12 +41,11 @@ void Replay::check_read(const AccessRecord& access, std::uint32_t expected, cons
   const bool any = record.origin == Origin::history && expected == kGarbage;
   if (!any && (sub.content != expected || sub.spoiled))
     fail("the read of " + name(access.resource) + " does not find what was written for it");
-  for (const Operation& write : sub.last.writes) {
+  for (const Operation& write : sub.last.writes)
     if (!order_.is_ordered(write, queue, access.stages))
       fail("the read of " + name(access.resource) + " does not come after its write");
     else if (!order_.is_visible(write, queue, access.stages, access.access))
       fail("the read of " + name(access.resource) + " comes after its write, but cannot see it");
-  }
 }
 
 // Returns whether the access continues a series of writes that are not ordered among themselves.
@@ -62,17 +61,15 @@ bool Replay::continues(const Sub& sub, const AccessRecord& access, std::uint8_t 
 void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
                          std::uint8_t queue) {
   const History& before = continues(sub, access, queue) ? sub.before_series : sub.last;
-  for (const Operation& read : before.reads) {
+  for (const Operation& read : before.reads)
     if (!order_.is_ordered(read, queue, access.stages))
       fail("the write of " + name(access.resource) + " overtakes a read");
-  }
   // The earlier write must be visible even if the reads of it are ordered before this write: they
   // may have read only a part of what the two write.
-  for (const Operation& write : before.writes) {
+  for (const Operation& write : before.writes)
     if (!order_.is_available(write, queue, access.stages) ||
         !order_.is_visible(write, queue, access.stages, access.access))
       fail("the write of " + name(access.resource) + " overtakes a write, or cannot see it");
-  }
   if (access.flags & kDiscard) {
     sub.spoiled = false;
     return;
@@ -134,11 +131,10 @@ void Replay::end_frame() {
     if (record.origin != Origin::imported) continue;
     const ExternalRecord& external = graph_.externals[record.external];
     if (external.has_final_state) check_final_state(r);
-    for (const Sub& sub : resources_[r].subs) {
+    for (const Sub& sub : resources_[r].subs)
       if (external.has_contents &&
           (sub.released || (sub.family != kNone && sub.family != family(0))))
         fail(name(r) + " is left with another queue family than it came with");
-    }
   }
   for (const OutputRecord& output : graph_.outputs) {
     const auto& subs = resources_[output.resource].subs;
@@ -178,11 +174,10 @@ void Replay::check_final_state(std::uint32_t resource) {
       if (rest.stages != 0 && !order_.is_ordered(rest, queue, final_state.stages))
         fail(name(resource) + " leaves before its last read is done");
     }
-    for (const Operation& write : sub.last.writes) {
+    for (const Operation& write : sub.last.writes)
       if (!order_.is_ordered(write, queue, final_state.stages) ||
           !order_.is_visible(write, queue, final_state.stages, final_state.access))
         fail(name(resource) + " leaves before its last write can be seen");
-    }
   }
 }
 

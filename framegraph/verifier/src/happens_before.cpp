@@ -92,9 +92,8 @@ std::vector<std::uint64_t> bits_of(std::uint64_t mask) {
 // Returns whether f(i) is true for the index i of each of the bits that `mask` contains.
 template <typename Function>
 bool all_bits(const std::vector<std::uint64_t>& bits, std::uint64_t mask, const Function& f) {
-  for (std::size_t i = 0; i < bits.size(); ++i) {
+  for (std::size_t i = 0; i < bits.size(); ++i)
     if ((mask & bits[i]) && !f(i)) return false;
-  }
   return true;
 }
 
@@ -171,9 +170,8 @@ void HappensBefore::spread(const Barrier& barrier, const ScopeTimes& scope) {
         if (writes) raise(available(source, write, to), time);
         if (!barrier.memory) continue;
         Time* const seen = visible(source, write, to);
-        for (std::size_t a = 0; a < accesses_.size(); ++a) {
+        for (std::size_t a = 0; a < accesses_.size(); ++a)
           if (barrier.dst_access & accesses_[a]) raise(seen[a], time);
-        }
       }
     }
     return true;

@@ -135,10 +135,9 @@ void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& init
 void Replay::submission(std::uint32_t index) {
   const Submission& submission = plan_.submissions[index];
   const auto queue = static_cast<std::uint8_t>(submission.queue);
-  for (std::uint8_t other = 0; other < kQueueClasses && !first_frame_; ++other) {
+  for (std::uint8_t other = 0; other < kQueueClasses && !first_frame_; ++other)
     if ((submission.frame_before & (1u << other)) != 0 && other < queue_count_)
       order_.wait(queue, end_signal(other), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
-  }
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait_for = plan_.waits[submission.first_wait + w];
     order_.wait(queue, wait_for.submission, wait_for.stages);
@@ -173,9 +172,8 @@ void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue)
       });
     }
     order_.apply(barriers_);
-    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i)
       if (plan_.transitions[i].resource != kNone) change(plan_.transitions[i], queue);
-    }
   }
 }
 
@@ -183,10 +181,9 @@ void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue)
 // before the layout change. The memory dependency of an image barrier covers the bytes of its
 // image, including those that another resource wrote.
 void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrier, const Sub& sub) {
-  for (const Operation& read : sub.last.reads) {
+  for (const Operation& read : sub.last.reads)
     if (!order_.is_before(read, barrier))
       fail("a layout change of " + name(resource) + " overtakes a read");
-  }
   for (const Operation& write : sub.last.writes) {
     if (!order_.is_available_by(write, barrier))
       fail("a layout change of " + name(resource) +
@@ -290,10 +287,9 @@ void Replay::keep_former(Resource& taker, std::uint32_t resource) {
     sub.content = kGarbage;
     for (const Operation& read : sub.last.reads) keep({resource, read, false, false});
   }
-  for (const Sub& sub : giver.subs) {
+  for (const Sub& sub : giver.subs)
     for (const Operation& write : sub.last.writes)
       keep({resource, write, true, !sub.last.reads.empty()});
-  }
 }
 
 void Replay::pass(std::uint32_t position) {
@@ -301,12 +297,10 @@ void Replay::pass(std::uint32_t position) {
   const std::uint32_t first = graph_.passes[pass].first_access;
   const auto count = static_cast<std::uint32_t>(graph_.pass_accesses(pass).size());
   order_.next();
-  for (std::uint32_t i = first; i < first + count; ++i) {
+  for (std::uint32_t i = first; i < first + count; ++i)
     if (plan_.live_accesses[i]) check_access(position, i);
-  }
-  for (std::uint32_t i = first; i < first + count; ++i) {
+  for (std::uint32_t i = first; i < first + count; ++i)
     if (plan_.live_accesses[i]) apply_access(position, i);
-  }
 }
 
 void Replay::fail(const std::string& what) {

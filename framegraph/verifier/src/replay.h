@@ -115,10 +115,9 @@ class Replay {
     const bool both = record.planes == 2 && range.aspects == 0;
     const std::uint32_t from = range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT ? 1 : 0;
     for (std::uint32_t plane = from; plane < from + (both ? 2 : 1); ++plane) {
-      for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i) {
+      for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i)
         for (std::uint32_t mip = 0; mip < range.mips; ++mip)
           f(subs[(plane * record.layers + i) * record.mips + range.base_mip + mip]);
-      }
     }
   }
   // Returns the owner of a subresource after a queue has written it: kNone if any family may use

@@ -80,18 +80,16 @@ class Tables {
         return;
       }
       next += submission.pass_count;
-      for (std::uint32_t p = submission.first_pass; p < next; ++p) {
+      for (std::uint32_t p = submission.first_pass; p < next; ++p)
         if (plan_.passes[p].queue != submission.queue)
           fail("a pass is submitted to another queue than it was planned for");
-      }
       if (submission.first_wait + submission.wait_count > plan_.waits.size()) {
         fail("a submission's waits are out of range");
         return;
       }
-      for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
+      for (std::uint32_t w = 0; w < submission.wait_count; ++w)
         if (plan_.waits[submission.first_wait + w].submission >= s)
           fail("a submission waits for itself or a later one: it would hang");
-      }
     }
     if (next != plan_.passes.size()) fail("a pass is in no submission");
     const std::uint32_t final = plan_.final_submission;
@@ -101,11 +99,10 @@ class Tables {
   }
 
   void check_batches() {
-    for (const Batch& batch : plan_.batches) {
+    for (const Batch& batch : plan_.batches)
       if (batch.count > plan_.transitions.size() ||
           batch.first > plan_.transitions.size() - batch.count)
         fail("a batch's transitions are out of range");
-    }
     const auto check = [this](std::uint32_t first, std::uint32_t count) {
       if (count > plan_.batches.size() || first > plan_.batches.size() - count)
         fail("batches are out of range");
@@ -174,10 +171,9 @@ class Tables {
   // each one with its two neighbours in memory among the resources that are live at that time.
   void check_overlaps() {
     std::vector<std::uint32_t> order;
-    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r)
       if (plan_.placements[r].heap < plan_.heaps.size() && plan_.placements[r].size != 0)
         order.push_back(r);
-    }
     std::vector<std::uint32_t> ending = order;
     const auto& placements = plan_.placements;
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {

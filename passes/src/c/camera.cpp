@@ -16,22 +16,16 @@ constexpr std::uint32_t kKnownConventions =
 // Reads a matrix that lies in memory column by column.
 mat4 read(const float* values) {
   mat4 result;
-  for (int i = 0; i < 16; ++i) {
-    result[i / 4][i % 4] = values[i];
-  }
+  for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = values[i];
   return result;
 }
 
 void write(const mat4& matrix, float* values) {
-  for (int i = 0; i < 16; ++i) {
-    values[i] = matrix[i / 4][i % 4];
-  }
+  for (int i = 0; i < 16; ++i) values[i] = matrix[i / 4][i % 4];
 }
 
 void scale_row(mat4& matrix, int row, float scale) {
-  for (int column = 0; column < 4; ++column) {
-    matrix[column][row] *= scale;
-  }
+  for (int column = 0; column < 4; ++column) matrix[column][row] *= scale;
 }
 
 }  // namespace
@@ -39,23 +33,18 @@ void scale_row(mat4& matrix, int row, float scale) {
 AlcoveResult alcoveConvertCamera(const float* clip_from_view, const float* view_from_world,
                                  uint32_t conventions, AlcoveCamera* camera) {
   if (clip_from_view == nullptr || view_from_world == nullptr || camera == nullptr ||
-      (conventions & ~kKnownConventions) != 0) {
+      (conventions & ~kKnownConventions) != 0)
     return ALCOVE_ERROR_INVALID_INPUT;
-  }
   mat4 clip = read(clip_from_view);
   mat4 view = read(view_from_world);
   if ((conventions & ALCOVE_CAMERA_CONVENTION_ROW_MAJOR) != 0) {
     clip = alcove::maths::transpose(clip);
     view = alcove::maths::transpose(view);
   }
-  if ((conventions & ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE) != 0) {
-    for (int column = 0; column < 4; ++column) {
+  if ((conventions & ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE) != 0)
+    for (int column = 0; column < 4; ++column)
       clip[column][2] = 0.5f * (clip[column][2] + clip[column][3]);
-    }
-  }
-  if ((conventions & ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP) != 0) {
-    scale_row(clip, 1, -1.0f);
-  }
+  if ((conventions & ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP) != 0) scale_row(clip, 1, -1.0f);
   if ((conventions & ALCOVE_CAMERA_CONVENTION_FORWARD_Z) != 0) {
     clip[2] *= -1.0f;
     scale_row(view, 2, -1.0f);
@@ -67,18 +56,15 @@ AlcoveResult alcoveConvertCamera(const float* clip_from_view, const float* view_
 
 AlcoveResult alcoveMakePerspective(const AlcovePerspective* perspective, float* clip_from_view) {
   if (perspective == nullptr || perspective->struct_size != sizeof *perspective ||
-      clip_from_view == nullptr) {
+      clip_from_view == nullptr)
     return ALCOVE_ERROR_INVALID_INPUT;
-  }
   const AlcovePerspective& p = *perspective;
   const bool infinite = p.far_plane == 0.0f || p.far_plane == INFINITY;
   const bool good = p.fov_y > 0.0f && p.fov_y < 3.14159f && p.near_plane > 0.0f &&
                     std::isfinite(p.near_plane) && (infinite || p.far_plane > p.near_plane) &&
                     p.width > 0 && p.height > 0 && std::isfinite(p.jitter_px[0]) &&
                     std::isfinite(p.jitter_px[1]);
-  if (!good) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
+  if (!good) return ALCOVE_ERROR_INVALID_INPUT;
   const double scale = 1.0 / std::tan(0.5 * p.fov_y);
   const double near = p.near_plane;
   const double at_near = p.reversed != VK_FALSE ? 1.0 : 0.0;

@@ -27,9 +27,7 @@ std::size_t copy_text(std::string_view from, char* text, std::size_t size) {
 }
 
 AlcoveResult keep(Message& message, const Result& result) {
-  if (result) {
-    return ALCOVE_SUCCESS;
-  }
+  if (result) return ALCOVE_SUCCESS;
   copy_text(result.error().message, message.data(), message.size());
   return result.error().result;
 }
@@ -52,13 +50,9 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   options.frames_in_flight = info.frames_in_flight;
   options.timestamps = info.timestamps != VK_FALSE;
   auto executor = framegraph::Executor::create(handles, options);
-  if (!executor) {
-    return tl::unexpected(passes::failure_of(executor.error()));
-  }
+  if (!executor) return tl::unexpected(passes::failure_of(executor.error()));
   auto kernels = passes::Kernels::create(handles, info.frames_in_flight, info.pipeline_cache);
-  if (!kernels) {
-    return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
-  }
+  if (!kernels) return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
   context = std::make_unique<AlcoveContext>(std::move(host), std::move(*executor),
                                             std::move(*kernels), handles, info.frames_in_flight)
                 .release();
@@ -73,19 +67,14 @@ AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** 
                                  char* message) {
   Message said{};
   const AlcoveResult result = guarded(said, [&]() -> Result {
-    if (context == nullptr) {
-      return invalid("There is no place for the context.");
-    }
+    if (context == nullptr) return invalid("There is no place for the context.");
     *context = nullptr;
     return passes::check(info).and_then([&] { return create(*info, *context); });
   });
-  if (message != nullptr) {
-    std::memcpy(message, said.data(), said.size());
-  }
+  if (message != nullptr) std::memcpy(message, said.data(), said.size());
   if (result != ALCOVE_SUCCESS && info != nullptr && info->struct_size == sizeof *info &&
-      info->log.write != nullptr) {
+      info->log.write != nullptr)
     info->log.write(info->log.user, ALCOVE_SEVERITY_ERROR, said.data());
-  }
   return result;
 }
 

@@ -103,13 +103,9 @@ namespace alcove::passes {
 // it too.
 template <typename Call>
 AlcoveResult guarded(AlcoveContext* context, const Call& call) {
-  if (context == nullptr) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
+  if (context == nullptr) return ALCOVE_ERROR_INVALID_INPUT;
   const AlcoveResult result = guarded(context->message, call);
-  if (result != ALCOVE_SUCCESS) {
-    context->host->log(ALCOVE_SEVERITY_ERROR, context->message.data());
-  }
+  if (result != ALCOVE_SUCCESS) context->host->log(ALCOVE_SEVERITY_ERROR, context->message.data());
   return result;
 }
 

@@ -50,9 +50,7 @@ tl::expected<void, Failure> check_features(const Features& features, std::string
                             ? "synchronization2 (of Vulkan 1.3 or VK_KHR_synchronization2)"
                         : !features.write_without_format ? "shaderStorageImageWriteWithoutFormat"
                                                          : nullptr;
-  if (missing == nullptr) {
-    return {};
-  }
+  if (missing == nullptr) return {};
   return unsupported(std::string(who) + " has no feature " + missing + ", which is needed; " +
                      remedy + ".");
 }
@@ -90,16 +88,14 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
   get_features(info.physical_device, &has);
   if (auto right =
           check_features(features_in(has), name, "choose another device or update its driver");
-      !right) {
+      !right)
     return right;
-  }
   if (info.enabled_features != nullptr) {
     if (auto right = check_features(features_in(*info.enabled_features),
                                     "AlcoveContextInfo::enabled_features",
                                     "enable it when the device is created");
-        !right) {
+        !right)
       return right;
-    }
   }
   std::uint32_t count = 0;
   get_families(info.physical_device, &count, nullptr);
@@ -125,22 +121,16 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
 }  // namespace
 
 tl::expected<void, Failure> check(const AlcoveContextInfo* info) {
-  if (info == nullptr) {
-    return invalid("There is no AlcoveContextInfo.");
-  }
-  if (auto right = check_size(info->struct_size, sizeof *info, "AlcoveContextInfo"); !right) {
+  if (info == nullptr) return invalid("There is no AlcoveContextInfo.");
+  if (auto right = check_size(info->struct_size, sizeof *info, "AlcoveContextInfo"); !right)
     return right;
-  }
   const std::pair<const char*, bool> needed[] = {
       {"instance", info->instance != VK_NULL_HANDLE},
       {"physical_device", info->physical_device != VK_NULL_HANDLE},
       {"device", info->device != VK_NULL_HANDLE},
       {"get_instance_proc_addr", info->get_instance_proc_addr != nullptr}};
-  for (const auto& [name, given] : needed) {
-    if (!given) {
-      return invalid(std::string("AlcoveContextInfo::") + name + " is null.");
-    }
-  }
+  for (const auto& [name, given] : needed)
+    if (!given) return invalid(std::string("AlcoveContextInfo::") + name + " is null.");
   if (info->frames_in_flight < 1 || info->frames_in_flight > ALCOVE_MAX_FRAMES_IN_FLIGHT) {
     return invalid("AlcoveContextInfo::frames_in_flight is " +
                    std::to_string(info->frames_in_flight) + "; it must be 1 to " +

@@ -43,9 +43,7 @@ AlcoveResult result_of(const framegraph::Error& error) {
 std::string as_sentence(std::string text) {
   if (!text.empty()) {
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    if (text.back() != '.') {
-      text += '.';
-    }
+    if (text.back() != '.') text += '.';
   }
   return text;
 }
@@ -53,22 +51,19 @@ std::string as_sentence(std::string text) {
 }  // namespace
 
 Failure failure_of(const framegraph::Errors& errors) {
-  if (errors.empty()) {
-    return {ALCOVE_ERROR_INTERNAL, "The frame failed without an error."};
-  }
+  if (errors.empty()) return {ALCOVE_ERROR_INTERNAL, "The frame failed without an error."};
   return {result_of(errors.front()), as_sentence(errors.front().message)};
 }
 
 Failure failure_of(const Error& error, std::string_view where) {
   std::string message = std::string(where) + ": " + error.message;
   const AlcoveResult result = result_of(error.result);
-  if (result == ALCOVE_ERROR_OUT_OF_HOST_MEMORY) {
+  if (result == ALCOVE_ERROR_OUT_OF_HOST_MEMORY)
     message += " The host is out of memory.";
-  } else if (result == ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY) {
+  else if (result == ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY)
     message += " The device is out of memory.";
-  } else if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT) {
+  else if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT)
     message += " Vulkan's result is " + std::to_string(error.result) + ".";
-  }
   return {result, std::move(message)};
 }
 

@@ -29,9 +29,7 @@ struct Failure {
 // struct, this function is the place to accept the earlier size.
 [[nodiscard]] inline tl::expected<void, Failure> check_size(std::uint32_t given, std::size_t known,
                                                             std::string_view type) {
-  if (given == known) {
-    return {};
-  }
+  if (given == known) return {};
   return invalid(std::string(type) + "::struct_size is " + std::to_string(given) +
                  "; set it to sizeof(" + std::string(type) + "), which is " +
                  std::to_string(known) + " here.");

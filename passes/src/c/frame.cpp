@@ -28,12 +28,9 @@ static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView + 1 <= passes::Kernels::kMaxDisp
               "and one that samples pixels");
 
 Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
-  if (frame == nullptr) {
-    return invalid("There is no AlcoveFrame.");
-  }
-  if (auto right = passes::check_size(frame->struct_size, sizeof *frame, "AlcoveFrame"); !right) {
+  if (frame == nullptr) return invalid("There is no AlcoveFrame.");
+  if (auto right = passes::check_size(frame->struct_size, sizeof *frame, "AlcoveFrame"); !right)
     return right;
-  }
   if (frame->slot >= context.frames_in_flight) {
     return invalid("AlcoveFrame::slot is " + std::to_string(frame->slot) +
                    "; it must be below the " + std::to_string(context.frames_in_flight) +
@@ -46,9 +43,8 @@ Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
   }
   for (std::uint32_t i = 0; i < frame->view_count; ++i) {
     const AlcoveView& view = frame->views[i];
-    if (auto right = passes::check_size(view.struct_size, sizeof view, "AlcoveView"); !right) {
+    if (auto right = passes::check_size(view.struct_size, sizeof view, "AlcoveView"); !right)
       return right;
-    }
     for (std::uint32_t before = 0; before < i; ++before) {
       if (frame->views[before].id == view.id) {
         return invalid("Two views of the frame have the id " + std::to_string(view.id) +
@@ -62,23 +58,18 @@ Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
 // Removes the histories that the views of the last recorded frame no longer use because their
 // settings or outputs changed. It is called when that frame can no longer be discarded.
 void confirm_last_frame(AlcoveContext& context) {
-  if (!context.may_discard) {
-    return;
-  }
+  if (!context.may_discard) return;
   context.may_discard = false;
   const ViewPasses& passes = context.passes_of_views[context.slot];
-  for (std::uint32_t i = 0; i < passes.count; ++i) {
+  for (std::uint32_t i = 0; i < passes.count; ++i)
     passes::drop_reconstruct_history(context.graph, passes::ViewName(passes.views[i].id));
-  }
 }
 
 // The declaration of a frame. Its changes of histories are undone if it is not recorded.
 struct Declaration {
   explicit Declaration(framegraph::Graph& of) : graph(of) { graph.reset(); }
   ~Declaration() {
-    if (!recorded) {
-      graph.histories().undo();
-    }
+    if (!recorded) graph.histories().undo();
   }
   Declaration(const Declaration&) = delete;
   Declaration& operator=(const Declaration&) = delete;
@@ -97,12 +88,8 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
     auto added = skipped ? passes::import_view(graph, context.images, view)
                          : passes::add_view(graph, context.kernels, context.images, view, frame,
                                             prepare, inspects ? &context.pixels : nullptr);
-    if (!added) {
-      return tl::unexpected(std::move(added.error()));
-    }
-    if (skipped) {
-      continue;
-    }
+    if (!added) return tl::unexpected(std::move(added.error()));
+    if (skipped) continue;
     passes.views[passes.count++] = {view.id,
                                     static_cast<std::uint32_t>(graph.description().passes.size())};
   }
@@ -112,37 +99,27 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
 // Creates the pipelines for the frame by declaring it in a separate graph. The context's own graph,
 // its histories and its last recorded frame stay as they are.
 Result prepare(AlcoveContext& context, const AlcoveFrame* frame) {
-  if (auto right = check(context, frame); !right) {
-    return right;
-  }
+  if (auto right = check(context, frame); !right) return right;
   framegraph::Graph graph;
-  if (auto passes = add_views(graph, context, *frame, true); !passes) {
+  if (auto passes = add_views(graph, context, *frame, true); !passes)
     return tl::unexpected(std::move(passes.error()));
-  }
   // Compiles for the errors alone, such as an image that the device cannot use in this way.
-  if (const auto plan = framegraph::compile(graph, context.executor.limits()); !plan) {
+  if (const auto plan = framegraph::compile(graph, context.executor.limits()); !plan)
     return tl::unexpected(passes::failure_of(plan.error()));
-  }
   return {};
 }
 
 Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFrame* frame) {
   confirm_last_frame(context);
   context.report = {};
-  if (commands == VK_NULL_HANDLE) {
-    return invalid("There is no command buffer to record into.");
-  }
-  if (auto right = check(context, frame); !right) {
-    return right;
-  }
+  if (commands == VK_NULL_HANDLE) return invalid("There is no command buffer to record into.");
+  if (auto right = check(context, frame); !right) return right;
   Declaration declaration(context.graph);
   context.kernels.begin_frame(frame->slot);
   context.pixels.collect(frame->slot, context.finder);
   const std::size_t pipelines = context.kernels.pipeline_count();
   const auto passes = add_views(context.graph, context, *frame, false);
-  if (!passes) {
-    return tl::unexpected(passes.error());
-  }
+  if (!passes) return tl::unexpected(passes.error());
   if (context.kernels.pipeline_count() != pipelines) {
     context.host->log(
         ALCOVE_SEVERITY_WARNING,
@@ -150,16 +127,13 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
         "a second; call alcovePrepareFrame while loading.");
   }
   const auto report = context.executor.record(context.graph, commands, {frame->slot});
-  if (!report) {
-    return tl::unexpected(passes::failure_of(report.error()));
-  }
+  if (!report) return tl::unexpected(passes::failure_of(report.error()));
   context.report = *report;
   context.slot = frame->slot;
   context.may_discard = declaration.recorded = true;
   context.passes_of_views[frame->slot] = *passes;
-  if (context.finder.observe(*frame)) {
+  if (context.finder.observe(*frame))
     context.host->log(ALCOVE_SEVERITY_WARNING, passes::MistakeFinder::kTooManyViews);
-  }
   const auto recorded = std::span(passes->views).first(passes->count);
   for (const AlcoveView& view : std::span(frame->views, frame->view_count)) {
     context.still_views.observe(

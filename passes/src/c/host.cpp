@@ -11,12 +11,8 @@ tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info) {
         "AlcoveContextInfo::memory_functions has only one of allocate and free; give both.");
   }
   const AlcoveMemoryBlock& block = info.memory_block;
-  if (block.memory == VK_NULL_HANDLE) {
-    return {};
-  }
-  if (block.size == 0) {
-    return invalid("AlcoveContextInfo::memory_block has a size of 0 bytes.");
-  }
+  if (block.memory == VK_NULL_HANDLE) return {};
+  if (block.size == 0) return invalid("AlcoveContextInfo::memory_block has a size of 0 bytes.");
   const auto get_memory = reinterpret_cast<PFN_vkGetPhysicalDeviceMemoryProperties>(
       info.get_instance_proc_addr(info.instance, "vkGetPhysicalDeviceMemoryProperties"));
   VkPhysicalDeviceMemoryProperties properties{};
@@ -38,20 +34,14 @@ HostAdapter::HostAdapter(const AlcoveContextInfo& info)
 framegraph::HostServices HostAdapter::services() {
   framegraph::HostServices services;
   services.allocation_callbacks = callbacks_;
-  if (memory_.allocate != nullptr) {
-    services.memory = {&allocate, &free, this};
-  }
+  if (memory_.allocate != nullptr) services.memory = {&allocate, &free, this};
   services.block = {block_.memory, block_.offset, block_.size, block_.memory_type};
-  if (log_.write != nullptr) {
-    services.log = {&write, this};
-  }
+  if (log_.write != nullptr) services.log = {&write, this};
   return services;
 }
 
 void HostAdapter::log(AlcoveSeverity severity, const char* sentence) const {
-  if (log_.write != nullptr) {
-    log_.write(log_.user, severity, sentence);
-  }
+  if (log_.write != nullptr) log_.write(log_.user, severity, sentence);
 }
 
 VkResult HostAdapter::allocate(void* user, const framegraph::MemoryRequest& request,

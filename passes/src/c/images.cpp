@@ -67,24 +67,18 @@ constexpr std::array kDepthFormats{
 };
 
 bool suits(const ImageRole& role, VkFormat format) {
-  if (role.kind == ImageRole::Kind::depth) {
+  if (role.kind == ImageRole::Kind::depth)
     return std::ranges::find(kDepthFormats, format) != kDepthFormats.end();
-  }
-  if (role.kind == ImageRole::Kind::mask) {
+  if (role.kind == ImageRole::Kind::mask)
     return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R8_UINT;
-  }
   const auto known = std::ranges::find(kColourFormats, format, &KnownFormat::format);
   return known != kColourFormats.end() && known->channels >= role.channels &&
          (known->is_signed || role.kind != ImageRole::Kind::signed_colour);
 }
 
 std::string wanted_format(const ImageRole& role) {
-  if (role.kind == ImageRole::Kind::depth) {
-    return "a depth format or VK_FORMAT_R32_SFLOAT";
-  }
-  if (role.kind == ImageRole::Kind::mask) {
-    return "VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT";
-  }
+  if (role.kind == ImageRole::Kind::depth) return "a depth format or VK_FORMAT_R32_SFLOAT";
+  if (role.kind == ImageRole::Kind::mask) return "VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT";
   return std::string(role.kind == ImageRole::Kind::signed_colour ? "a signed normalised or float"
                                                                  : "a normalised or float") +
          " format of at least " + std::to_string(role.channels) +
@@ -114,9 +108,7 @@ ImageAreas to_areas(const AlcoveView& view) {
   };
   const bool used = is_given(areas.written) || view.output_x != 0 || view.output_y != 0 ||
                     view.largest_width != 0 || view.largest_height != 0;
-  if (used && !is_given(areas.read)) {
-    areas.read = {0, 0, view.depth.width, view.depth.height};
-  }
+  if (used && !is_given(areas.read)) areas.read = {0, 0, view.depth.width, view.depth.height};
   return areas;
 }
 
@@ -130,15 +122,10 @@ std::string size_problem(const ImageRole& role, const AlcoveImage& image, const 
   const bool in_part = role.output && has_areas(frame);
   const AlcoveArea written = written_area(frame, read_size(frame, depth));
   VkExtent2D wanted = in_part ? VkExtent2D{written.width, written.height} : depth;
-  if (role.half_size) {
+  if (role.half_size)
     wanted = {wanted.width / 2 + wanted.width % 2, wanted.height / 2 + wanted.height % 2};
-  }
-  if (in_part) {
-    return output_problem(frame, wanted, size);
-  }
-  if (size.width == wanted.width && size.height == wanted.height) {
-    return {};
-  }
+  if (in_part) return output_problem(frame, wanted, size);
+  if (size.width == wanted.width && size.height == wanted.height) return {};
   return role.half_size
              ? "is " + size_text(size) + " pixels; with half_size_outputs it must be " +
                    size_text(wanted) + ", half of depth's " + size_text(depth) + " rounded up."
@@ -157,9 +144,8 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
     return fail("is " + size_text({image.width, image.height}) +
                 " pixels; each side must be at least 1.");
   }
-  if (const std::string problem = size_problem(role, image, view); !problem.empty()) {
+  if (const std::string problem = size_problem(role, image, view); !problem.empty())
     return fail(problem);
-  }
   if (image.samples > 1 && !role.may_have_samples) {
     return fail("has " + std::to_string(image.samples) +
                 " samples a pixel; resolve it first, depths and normals to sample 0.");
@@ -177,9 +163,8 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
                 wanted_format(role) + ".");
   }
   if (image.final_state.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
-      image.final_state.layout == VK_IMAGE_LAYOUT_PREINITIALIZED) {
+      image.final_state.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
     return fail("has no layout to be left in; set AlcoveImage::final_state.");
-  }
   if ((!role.output || role.keeps_channels) &&
       image.initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
     return fail(
@@ -200,12 +185,9 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
 tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, const ImageRole& role,
                                                   const AlcoveImage& image,
                                                   const AlcoveView& view) {
-  if (image.image == VK_NULL_HANDLE) {
-    return Texture{};
-  }
-  if (auto right = check_image(role, image, view); !right) {
+  if (image.image == VK_NULL_HANDLE) return Texture{};
+  if (auto right = check_image(role, image, view); !right)
     return tl::unexpected(std::move(right.error()));
-  }
   const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
   const auto found = std::find_if(entries_.begin(), end, [&](const Entry& entry) {
     return entry.image.image == image.image && entry.image.layer == image.layer;

@@ -34,9 +34,7 @@ bool describe(AlcoveWork& work, OcclusionSettings settings, VkExtent2D size, std
   const Occlusion& into = inputs.occlusion.into;
   settings.visibility = into.visibility || inputs.multi_bounce;
   settings.bent_normal = bool(into.bent_normal);
-  if (!into.specular) {
-    settings.specular = Specular::none;
-  }
+  if (!into.specular) settings.specular = Specular::none;
   return describe_view(list, {.view = kView}, inputs, settings).has_value();
 }
 
@@ -49,22 +47,18 @@ AlcoveResult alcoveEstimateMemory(const AlcoveSettings* settings, uint32_t width
                                   uint32_t outputs, VkBool32 normals_given, AlcoveMemory* memory) {
   constexpr std::uint32_t kLargest = 1u << 16;
   if (memory == nullptr || memory->struct_size != sizeof *memory || width < 1 || height < 1 ||
-      width > kLargest || height > kLargest || outputs == 0 || (outputs & ~kKnownOutputs) != 0) {
+      width > kLargest || height > kLargest || outputs == 0 || (outputs & ~kKnownOutputs) != 0)
     return ALCOVE_ERROR_INVALID_INPUT;
-  }
   const auto given = to_settings(settings);
   AlcoveWork work;
-  if (!given || !describe(work, *given, {width, height}, outputs, normals_given != VK_FALSE)) {
+  if (!given || !describe(work, *given, {width, height}, outputs, normals_given != VK_FALSE))
     return ALCOVE_ERROR_INVALID_INPUT;
-  }
   std::uint64_t transients = 0, history = 0;
-  for (const AlcoveWorkResource& resource : std::span(work.resources).first(work.resource_count)) {
-    if (resource.kind == ALCOVE_RESOURCE_KIND_TRANSIENT) {
+  for (const AlcoveWorkResource& resource : std::span(work.resources).first(work.resource_count))
+    if (resource.kind == ALCOVE_RESOURCE_KIND_TRANSIENT)
       transients += resource.size;
-    } else if (resource.kind != ALCOVE_RESOURCE_KIND_TABLE) {
+    else if (resource.kind != ALCOVE_RESOURCE_KIND_TABLE)
       history += resource.size;  // the engine's images have a size of 0
-    }
-  }
   *memory = {.struct_size = sizeof *memory,
              .transients = transients,
              .transients_unshared = transients,

@@ -20,9 +20,7 @@ constexpr int kMostDepth = 32;          // of objects in objects that are skippe
 // Returns the beginning of a text for a sentence, without bytes that cannot be printed.
 std::string shown(std::string_view text) {
   std::string result(text.substr(0, kMostShown));
-  for (char& byte : result) {
-    byte = byte >= ' ' && byte <= '~' ? byte : '?';
-  }
+  for (char& byte : result) byte = byte >= ' ' && byte <= '~' ? byte : '?';
   return result;
 }
 
@@ -48,57 +46,40 @@ class JsonReader {
 
   // A string without its quotes. Escapes are kept as they are: no setting has one in its name.
   std::optional<std::string_view> string() {
-    if (!take('"')) {
-      return std::nullopt;
-    }
+    if (!take('"')) return std::nullopt;
     const std::size_t begin = at_;
-    while (at_ < text_.size() && text_[at_] != '"') {
-      at_ += text_[at_] == '\\' ? 2 : 1;
-    }
-    if (at_ >= text_.size()) {
-      return std::nullopt;
-    }
+    while (at_ < text_.size() && text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
+    if (at_ >= text_.size()) return std::nullopt;
     return text_.substr(begin, at_++ - begin);
   }
 
   // A string, a number, true, false or null, as text.
   std::optional<std::string_view> scalar() {
     skip_space();
-    if (at_ < text_.size() && text_[at_] == '"') {
-      return string();
-    }
+    if (at_ < text_.size() && text_[at_] == '"') return string();
     const std::size_t begin = at_;
     while (at_ < text_.size() &&
-           std::string_view(" \t\r\n,:{}[]\"").find(text_[at_]) == std::string_view::npos) {
+           std::string_view(" \t\r\n,:{}[]\"").find(text_[at_]) == std::string_view::npos)
       ++at_;
-    }
     return at_ > begin ? std::optional(text_.substr(begin, at_ - begin)) : std::nullopt;
   }
 
   // Any value.
   bool skip(int depth = 0) {
-    for (const auto& [open, close] : {std::pair('{', '}'), std::pair('[', ']')}) {
-      if (take(open)) {
+    for (const auto& [open, close] : {std::pair('{', '}'), std::pair('[', ']')})
+      if (take(open))
         return depth < kMostDepth && (take(close) || skip_members(open == '{', close, depth));
-      }
-    }
     return scalar().has_value();
   }
 
   // The members of an object: calls `visit(name)`, which reads the value.
   template <typename Visit>
   bool object(const Visit& visit) {
-    if (!take('{')) {
-      return false;
-    }
-    if (take('}')) {
-      return true;
-    }
+    if (!take('{')) return false;
+    if (take('}')) return true;
     do {
       const auto name = string();
-      if (!name || !take(':') || !visit(*name)) {
-        return false;
-      }
+      if (!name || !take(':') || !visit(*name)) return false;
     } while (take(','));
     return take('}');
   }
@@ -106,16 +87,13 @@ class JsonReader {
  private:
   void skip_space() {
     while (at_ < text_.size() &&
-           std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) {
+           std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
       ++at_;
-    }
   }
 
   bool skip_members(bool named, char close, int depth) {
     do {
-      if ((named && (!string() || !take(':'))) || !skip(depth + 1)) {
-        return false;
-      }
+      if ((named && (!string() || !take(':'))) || !skip(depth + 1)) return false;
     } while (take(','));
     return take(close);
   }
@@ -164,46 +142,32 @@ tl::expected<OcclusionSettings, Failure> read(std::string_view text, OcclusionSe
   const auto no_settings = invalid(
       "The text holds no settings; give the contents of a file that `alcove recommend --out` "
       "wrote.");
-  if (text.size() > kMostBytes) {
-    return no_settings;
-  }
+  if (text.size() > kMostBytes) return no_settings;
   JsonReader reader(text);
   bool found = false;
   Result changed;
   const bool complete = reader.object([&](std::string_view member) {
-    if (member != "settings" || found) {
-      return reader.skip();
-    }
+    if (member != "settings" || found) return reader.skip();
     found = true;
     return reader.object([&](std::string_view name) {
       const auto value = reader.scalar();
-      if (value) {
-        changed = change(settings, name, *value);
-      }
+      if (value) changed = change(settings, name, *value);
       return value && changed;
     });
   });
-  if (!changed) {
-    return tl::unexpected(changed.error());
-  }
-  if (!complete || !found || !reader.at_end()) {
-    return no_settings;
-  }
-  if (auto good = validate(settings); !good) {
-    return invalid(std::move(good.error().message));
-  }
+  if (!changed) return tl::unexpected(changed.error());
+  if (!complete || !found || !reader.at_end()) return no_settings;
+  if (auto good = validate(settings); !good) return invalid(std::move(good.error().message));
   return settings;
 }
 
 Result read(const char* text, std::size_t length, AlcoveSettings* settings,
             AlcoveAdvancedSettings* advanced) {
-  if (text == nullptr || advanced == nullptr) {
+  if (text == nullptr || advanced == nullptr)
     return invalid("There is no text of settings or no AlcoveAdvancedSettings.");
-  }
   if (auto right = check_size(advanced->struct_size, sizeof *advanced, "AlcoveAdvancedSettings");
-      !right) {
+      !right)
     return right;
-  }
   return to_settings(settings)
       .and_then([&](const OcclusionSettings& known) {
         return read({text, length}, known);
@@ -217,12 +181,10 @@ Result read(const char* text, std::size_t length, AlcoveSettings* settings,
 
 Result fit(const AlcoveBudget* budget, const double* milliseconds, std::uint32_t count,
            AlcoveSettings* settings, std::uint32_t* changed) {
-  if (budget == nullptr || changed == nullptr || (milliseconds == nullptr && count > 0)) {
+  if (budget == nullptr || changed == nullptr || (milliseconds == nullptr && count > 0))
     return invalid("There is no AlcoveBudget, no times or no place for the result.");
-  }
-  if (auto right = check_size(budget->struct_size, sizeof *budget, "AlcoveBudget"); !right) {
+  if (auto right = check_size(budget->struct_size, sizeof *budget, "AlcoveBudget"); !right)
     return right;
-  }
   const Budget limits{budget->target_ms, budget->least_slices, budget->most_slices,
                       budget->least_steps, budget->most_steps};
   return to_settings(settings).and_then([&](const OcclusionSettings& known) -> Result {

@@ -15,13 +15,10 @@ using passes::Result;
 
 AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
   return guarded(context, [&]() -> Result {
-    if (memory == nullptr) {
-      return invalid("There is no AlcoveMemory.");
-    }
+    if (memory == nullptr) return invalid("There is no AlcoveMemory.");
     if (auto right = passes::check_size(memory->struct_size, sizeof *memory, "AlcoveMemory");
-        !right) {
+        !right)
       return right;
-    }
     const framegraph::MemoryStatistics& found = context->report.memory;
     const bool recorded = context->report.plan != nullptr;
     *memory = {.struct_size = sizeof *memory,
@@ -36,13 +33,10 @@ AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
 AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* count,
                               AlcoveTiming* timings) {
   return guarded(context, [&]() -> Result {
-    if (count == nullptr) {
-      return invalid("There is no place for the number of timings.");
-    }
-    if (slot >= context->frames_in_flight) {
+    if (count == nullptr) return invalid("There is no place for the number of timings.");
+    if (slot >= context->frames_in_flight)
       return invalid("Slot " + std::to_string(slot) + " is not below the " +
                      std::to_string(context->frames_in_flight) + " frames in flight.");
-    }
     const auto found = context->executor.timings(slot);
     const auto there = static_cast<std::uint32_t>(found.size());
     *count = timings == nullptr ? there : std::min(*count, there);
@@ -57,9 +51,7 @@ AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* c
 
 size_t alcovePrintPlan(AlcoveContext* context, char* text, size_t size) {
   copy_text("", text, size);
-  if (context == nullptr || context->report.plan == nullptr) {
-    return 0;
-  }
+  if (context == nullptr || context->report.plan == nullptr) return 0;
   std::size_t length = 0;
   guarded(context, [&]() -> Result {
     length = copy_text(framegraph::print_text(context->graph.description(), *context->report.plan),

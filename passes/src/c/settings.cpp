@@ -105,26 +105,22 @@ bool is_quality(std::uint32_t number) { return number < kNames<Quality>.size(); 
 
 template <typename Value>
 std::string value_text(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
+  if constexpr (std::is_enum_v<Value>)
     return std::string(name_of(value));
-  } else if constexpr (std::is_same_v<Value, float>) {
+  else if constexpr (std::is_same_v<Value, float>)
     return number_text(value);
-  } else if constexpr (std::is_same_v<Value, bool>) {
+  else if constexpr (std::is_same_v<Value, bool>)
     return value ? "true" : "false";
-  } else {
+  else
     return std::to_string(value);
-  }
 }
 
 }  // namespace
 
 tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given) {
-  if (given == nullptr) {
-    return invalid("There are no settings: alcoveGetSettings gives some.");
-  }
-  if (auto right = check_size(given->struct_size, sizeof *given, "AlcoveSettings"); !right) {
+  if (given == nullptr) return invalid("There are no settings: alcoveGetSettings gives some.");
+  if (auto right = check_size(given->struct_size, sizeof *given, "AlcoveSettings"); !right)
     return tl::unexpected(std::move(right.error()));
-  }
   OcclusionSettings settings;
   for_each_pair(*given, settings, kToCpp);
   if (settings.specular == Specular::none) {
@@ -135,14 +131,11 @@ tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given
   if (given->advanced != nullptr) {
     if (auto right = check_size(given->advanced->struct_size, sizeof *given->advanced,
                                 "AlcoveAdvancedSettings");
-        !right) {
+        !right)
       return tl::unexpected(std::move(right.error()));
-    }
     for_each_advanced_pair(*given->advanced, settings.advanced, kToCpp);
   }
-  if (auto good = validate(settings); !good) {
-    return invalid(std::move(good.error().message));
-  }
+  if (auto good = validate(settings); !good) return invalid(std::move(good.error().message));
   return settings;
 }
 
@@ -150,9 +143,7 @@ AlcoveSettings from_settings(const OcclusionSettings& settings, AlcoveAdvancedSe
   advanced = from_advanced(settings.advanced);
   AlcoveSettings result{.struct_size = sizeof(AlcoveSettings)};
   for_each_pair(result, settings, kToC);
-  if (settings.specular == Specular::none) {
-    result.specular = ALCOVE_SPECULAR_SLICES;
-  }
+  if (settings.specular == Specular::none) result.specular = ALCOVE_SPECULAR_SLICES;
   result.advanced = &advanced;
   return result;
 }
@@ -163,13 +154,10 @@ using namespace alcove::passes;
 
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings) {
   const std::uint32_t number = number_of(quality);
-  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number)) {
+  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number))
     return ALCOVE_ERROR_INVALID_INPUT;
-  }
   const OcclusionSettings preset = quality_settings(static_cast<Quality>(number), radius);
-  if (!validate(preset)) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
+  if (!validate(preset)) return ALCOVE_ERROR_INVALID_INPUT;
   AlcoveAdvancedSettings unused;
   *settings = from_settings(preset, unused);
   settings->advanced = preset.advanced == AdvancedSettings{} ? nullptr : reference_advanced();
@@ -178,29 +166,20 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
 
 AlcoveResult alcoveGetAdvancedSettings(AlcoveQuality quality, AlcoveAdvancedSettings* settings) {
   const std::uint32_t number = number_of(quality);
-  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number)) {
+  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number))
     return ALCOVE_ERROR_INVALID_INPUT;
-  }
   *settings = from_advanced(quality_settings(static_cast<Quality>(number), 1.0f).advanced);
   return ALCOVE_SUCCESS;
 }
 
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size) {
-  if (text != nullptr && size > 0) {
-    text[0] = '\0';
-  }
-  if (text == nullptr && size > 0) {
-    return 0;
-  }
+  if (text != nullptr && size > 0) text[0] = '\0';
+  if (text == nullptr && size > 0) return 0;
   const auto known = to_settings(settings);
-  if (!known) {
-    return 0;
-  }
+  if (!known) return 0;
   std::size_t length = 0;
   for_each_setting(*known, [&](const SettingInfo& info, const auto& value) {
-    if (info.group == SettingGroup::output) {
-      return;
-    }
+    if (info.group == SettingGroup::output) return;
     const bool room = length < size;
     const int more = std::snprintf(room ? text + length : nullptr, room ? size - length : 0,
                                    "%s = %s\n", info.name, value_text(value).c_str());

@@ -18,9 +18,7 @@ std::array<const AlcoveImage*, 4> outputs(const AlcoveView& view) {
 
 StillViews::Description StillViews::describe(const AlcoveView& view) {
   Description result;
-  if (const auto settings = to_settings(view.settings)) {
-    result.settings = *settings;
-  }
+  if (const auto settings = to_settings(view.settings)) result.settings = *settings;
   auto number = std::copy_n(view.camera.clip_from_view, 16, result.numbers.begin());
   number = std::copy_n(view.camera.view_from_world, 16, number);
   std::copy_n(view.motion_offset, 2, std::copy_n(view.motion_scale, 2, number));
@@ -67,9 +65,7 @@ bool StillViews::is_converged(const AlcoveView& view) const {
   const View* const known = find(view.id);
   const bool continues =
       view.skip_converged != VK_FALSE && view.static_frames > 0 && view.reset_history == VK_FALSE;
-  if (known == nullptr || !continues) {
-    return false;
-  }
+  if (known == nullptr || !continues) return false;
   const bool has_results = std::ranges::none_of(outputs(view), [](const AlcoveImage* output) {
     return output->image != VK_NULL_HANDLE &&
            output->initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED;
@@ -84,9 +80,7 @@ void StillViews::observe(const AlcoveView& view, bool skipped) {
     drop(view.id);
     return;
   }
-  for (View& other : views_) {
-    ++other.age;
-  }
+  for (View& other : views_) ++other.age;
   const View* known = find(view.id);
   if (known == nullptr) {
     known = &*std::ranges::max_element(views_, {}, [](const View& place) {
@@ -96,9 +90,7 @@ void StillViews::observe(const AlcoveView& view, bool skipped) {
   View& place = views_[static_cast<std::size_t>(known - views_.data())];
   place.age = 0;
   place.skipped = skipped;
-  if (skipped) {
-    return;
-  }
+  if (skipped) return;
   const Description description = describe(view);
   const bool continues = place.frames > 0 && place.id == view.id && view.static_frames > 0 &&
                          view.reset_history == VK_FALSE && place.description == description;
@@ -108,9 +100,8 @@ void StillViews::observe(const AlcoveView& view, bool skipped) {
 }
 
 void StillViews::drop(std::uint32_t id) {
-  if (const View* const known = find(id)) {
+  if (const View* const known = find(id))
     views_[static_cast<std::size_t>(known - views_.data())].frames = 0;
-  }
 }
 
 AlcoveViewState StillViews::state(std::uint32_t id) const {
@@ -133,9 +124,7 @@ uint32_t alcoveGetConvergedFrames(const AlcoveSettings* settings) {
 }
 
 AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view) {
-  if (view == nullptr || view->struct_size != sizeof *view) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
+  if (view == nullptr || view->struct_size != sizeof *view) return ALCOVE_ERROR_INVALID_INPUT;
   view->reset_history = number == 0 ? VK_TRUE : VK_FALSE;
   view->static_frames = number;
   view->previous_camera = view->camera;
@@ -147,12 +136,9 @@ AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view) {
 
 AlcoveResult alcoveGetViewState(AlcoveContext* context, uint32_t id, AlcoveViewState* state) {
   return guarded(context, [&]() -> Result {
-    if (state == nullptr) {
-      return invalid("There is no AlcoveViewState.");
-    }
-    if (auto right = check_size(state->struct_size, sizeof *state, "AlcoveViewState"); !right) {
+    if (state == nullptr) return invalid("There is no AlcoveViewState.");
+    if (auto right = check_size(state->struct_size, sizeof *state, "AlcoveViewState"); !right)
       return right;
-    }
     *state = context->still_views.state(id);
     return {};
   });

@@ -28,16 +28,12 @@ tl::expected<void, Failure> check_given(const AlcoveView& view) {
     return invalid(view_name(view) + " has no image " + what);
   };
   const auto given = [](const AlcoveImage& image) { return image.image != VK_NULL_HANDLE; };
-  if (!given(view.depth)) {
-    return lacks("of depth, which everything is made from.");
-  }
-  if (given(view.multi_bounce) && !given(view.albedo)) {
+  if (!given(view.depth)) return lacks("of depth, which everything is made from.");
+  if (given(view.multi_bounce) && !given(view.albedo))
     return lacks("of albedo, which multi-bounce is made from.");
-  }
   if (!given(view.visibility) && !given(view.bent_normal) && !given(view.specular) &&
-      !given(view.multi_bounce)) {
+      !given(view.multi_bounce))
     return lacks("to write to; give one of visibility, bent_normal, specular and multi_bounce.");
-  }
   return {};
 }
 
@@ -89,9 +85,7 @@ ImageRole visibility_role(VisibilityChannel channel, bool half_size) {
 // Checks what outputs of half size need.
 tl::expected<void, Failure> check_half_size(const AlcoveView& view,
                                             const OcclusionSettings& settings) {
-  if (view.half_size_outputs == VK_FALSE) {
-    return {};
-  }
+  if (view.half_size_outputs == VK_FALSE) return {};
   if (!settings.half_resolution) {
     return invalid(view_name(view) +
                    " has half_size_outputs, which needs half_resolution in its settings.");
@@ -107,9 +101,7 @@ tl::expected<void, Failure> check_half_size(const AlcoveView& view,
 MotionConvention motion_convention(const AlcoveView& view) {
   MotionConvention result{{view.motion_scale[0], view.motion_scale[1]},
                           {view.motion_offset[0], view.motion_offset[1]}};
-  if (result.scale[0] == 0.0f && result.scale[1] == 0.0f) {
-    result.scale = {1.0f, 1.0f};
-  }
+  if (result.scale[0] == 0.0f && result.scale[1] == 0.0f) result.scale = {1.0f, 1.0f};
   return result;
 }
 
@@ -121,14 +113,10 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
                             std::min(settings.roughness_channel, 3u) + 1};
   const auto encoding =
       to_enum(view, "normal_encoding", view.normal_encoding, NormalEncoding::unsigned_octahedral);
-  if (!encoding) {
-    return tl::unexpected(encoding.error());
-  }
+  if (!encoding) return tl::unexpected(encoding.error());
   const auto channel =
       to_enum(view, "visibility_channel", view.visibility_channel, VisibilityChannel::alpha);
-  if (!channel) {
-    return tl::unexpected(channel.error());
-  }
+  if (!channel) return tl::unexpected(channel.error());
   const bool half_size = view.half_size_outputs != VK_FALSE;
   const ImageRole normals = normals_role(*encoding);
   const ImageRole visibility = visibility_role(*channel, half_size);
@@ -166,9 +154,7 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
       {kMultiBounce, view.multi_bounce, inputs.multi_bounce}};
   for (const Import& import : imports) {
     auto texture = importer.import(importer.user, import.role, import.image, view);
-    if (!texture) {
-      return tl::unexpected(std::move(texture.error()));
-    }
+    if (!texture) return tl::unexpected(std::move(texture.error()));
     import.texture = *texture;
   }
   return inputs;
@@ -191,30 +177,21 @@ ViewName::ViewName(std::uint32_t id) {
 
 tl::expected<SettledView, Failure> settle(const AlcoveView& view, const ImageImporter& importer) {
   auto given = to_settings(view.settings);
-  if (!given) {
-    return tl::unexpected(std::move(given.error()));
-  }
+  if (!given) return tl::unexpected(std::move(given.error()));
   OcclusionSettings& settings = *given;
   auto right =
       check_given(view).and_then([&] { return check_hidden(view, settings); }).and_then([&] {
         return check_half_size(view, settings);
       });
-  if (!right) {
-    return tl::unexpected(std::move(right.error()));
-  }
-  if (auto good = check_areas(to_areas(view), {view.depth.width, view.depth.height}); !good) {
+  if (!right) return tl::unexpected(std::move(right.error()));
+  if (auto good = check_areas(to_areas(view), {view.depth.width, view.depth.height}); !good)
     return tl::unexpected(failure_of(good.error(), view_name(view)));
-  }
   auto inputs = import_images(view, settings, importer);
-  if (!inputs) {
-    return tl::unexpected(std::move(inputs.error()));
-  }
+  if (!inputs) return tl::unexpected(std::move(inputs.error()));
   const Occlusion& into = inputs->occlusion.into;
   settings.visibility = into.visibility || inputs->multi_bounce;
   settings.bent_normal = bool(into.bent_normal);
-  if (!into.specular) {
-    settings.specular = Specular::none;
-  }
+  if (!into.specular) settings.specular = Specular::none;
   return SettledView{*inputs, settings};
 }
 
@@ -246,13 +223,9 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
                                      const AlcoveView& view, const AlcoveFrame& described,
                                      bool prepare, PixelObserver* observer) {
   const auto settled = settle_in(graph, images, view);
-  if (!settled) {
-    return tl::unexpected(settled.error());
-  }
+  if (!settled) return tl::unexpected(settled.error());
   const bool reset = view.reset_history != VK_FALSE;
-  if (reset) {
-    graph.reset_history(ViewName(view.id));
-  }
+  if (reset) graph.reset_history(ViewName(view.id));
   Frame frame{graph,
               kernels,
               to_view(view.camera),
@@ -262,16 +235,10 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   frame.prepare = prepare;
   frame.areas = to_areas(view);
   frame.largest_size = {view.largest_width, view.largest_height};
-  if (!reset) {
-    frame.previous_size = {view.previous_width, view.previous_height};
-  }
+  if (!reset) frame.previous_size = {view.previous_width, view.previous_height};
   const auto added = passes::add_view(frame, settled->inputs, settled->settings, ViewName(view.id));
-  if (!added) {
-    return tl::unexpected(failure_of(added.error(), view_name(view)));
-  }
-  if (observer == nullptr || view.depth.samples > 1) {
-    return {};
-  }
+  if (!added) return tl::unexpected(failure_of(added.error(), view_name(view)));
+  if (observer == nullptr || view.depth.samples > 1) return {};
   return observer->add(frame, view, settled->inputs.occlusion, described.slot)
       .map_error([](const Error& error) { return failure_of(error, "View"); });
 }

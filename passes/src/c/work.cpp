@@ -18,9 +18,7 @@ namespace {
 // The image of an engine without Vulkan, as one that could be used with Vulkan. Its number takes
 // the place of the handle.
 AlcoveImage to_image(const AlcoveWorkImage& image, std::uintptr_t number) {
-  if (image.format == 0) {
-    return {};
-  }
+  if (image.format == 0) return {};
   const AlcoveState state{0, 0, VK_IMAGE_LAYOUT_GENERAL};
   // NOLINTNEXTLINE(performance-no-int-to-ptr): a handle is a pointer or an integer
   return {.image = (VkImage)number,
@@ -67,17 +65,14 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
 }
 
 Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
-  if (given == nullptr || work == nullptr) {
+  if (given == nullptr || work == nullptr)
     return invalid("There is no AlcoveWorkInfo or no AlcoveWork.");
-  }
   const AlcoveWorkInfo& info = *given;
-  if (auto right = passes::check_size(info.struct_size, sizeof info, "AlcoveWorkInfo"); !right) {
+  if (auto right = passes::check_size(info.struct_size, sizeof info, "AlcoveWorkInfo"); !right)
     return right;
-  }
   if (info.previous != nullptr && (info.previous->history_count > ALCOVE_MAX_WORK_HISTORIES ||
-                                   info.previous->resource_count > ALCOVE_MAX_WORK_RESOURCES)) {
+                                   info.previous->resource_count > ALCOVE_MAX_WORK_RESOURCES))
     return invalid("AlcoveWorkInfo::previous is not a list that alcoveDescribeWork has filled.");
-  }
   passes::WorkFrame frame{.view = passes::to_view(info.camera),
                           .index = info.index,
                           .static_frames = info.static_frames,
@@ -96,9 +91,7 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
   const auto settled = passes::settle(
       view, {[](void* user, const passes::ImageRole& role, const AlcoveImage& image,
                 const AlcoveView& of) -> tl::expected<framegraph::Texture, passes::Failure> {
-               if (image.image == VK_NULL_HANDLE) {
-                 return framegraph::Texture{};
-               }
+               if (image.image == VK_NULL_HANDLE) return framegraph::Texture{};
                return passes::check_image(role, image, of).map([&] {
                  return static_cast<passes::WorkList*>(user)->add(
                      role.output ? ALCOVE_RESOURCE_KIND_OUTPUT : ALCOVE_RESOURCE_KIND_INPUT,
@@ -107,13 +100,10 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
                });
              },
              &list});
-  if (!settled) {
-    return tl::unexpected(settled.error());
-  }
+  if (!settled) return tl::unexpected(settled.error());
   if (const auto made = passes::describe_view(list, frame, settled->inputs, settled->settings);
-      !made) {
+      !made)
     return tl::unexpected(passes::failure_of(made.error(), "The view"));
-  }
   return {};
 }
 
@@ -122,9 +112,7 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
 AlcoveResult alcoveDescribeWork(const AlcoveWorkInfo* info, AlcoveWork* work, char* message) {
   passes::Message said{};
   const AlcoveResult result = guarded(said, [&] { return describe(info, work); });
-  if (message != nullptr) {
-    std::memcpy(message, said.data(), said.size());
-  }
+  if (message != nullptr) std::memcpy(message, said.data(), said.size());
   return result;
 }
 
@@ -144,9 +132,7 @@ size_t alcovePrintWork(const AlcoveWork* work, char* text, size_t size) {
 AlcoveResult alcoveGetShader(const char* name, AlcoveShader* shader) {
   const passes::Shader found =
       name == nullptr ? passes::Shader::count : passes::shader_of_name(name);
-  if (shader == nullptr || found == passes::Shader::count) {
-    return ALCOVE_ERROR_INVALID_INPUT;
-  }
+  if (shader == nullptr || found == passes::Shader::count) return ALCOVE_ERROR_INVALID_INPUT;
   const auto code = passes::shader_source(found).code;
   *shader = {code.data(), code.size_bytes()};
   return ALCOVE_SUCCESS;

@@ -22,9 +22,7 @@ constexpr double kLargestSpread = 0.5;  // between the quartiles of the ratios' 
 
 // Returns true if a number has at most so many significant digits, as near planes that people type.
 bool is_round(double value, double digits) {
-  if (!(value > 0.0) || !std::isfinite(value)) {
-    return false;
-  }
+  if (!(value > 0.0) || !std::isfinite(value)) return false;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - (digits - 1.0));
   const double whole = value / unit;
   return std::abs(whole - std::round(whole)) <= 3e-7 * whole;
@@ -66,9 +64,8 @@ class Inspector {
     const bool geometry_is_right = depth_fits() && (!frame_.has_normals || normals_fit());
     if (pictures_.size() > 1) {
       inspect_size_changes();
-      if (geometry_is_right && frame_.continues_history) {
+      if (geometry_is_right && frame_.continues_history)
         inspect_motion(pictures_, given_, findings_);
-      }
     }
     return findings_;
   }
@@ -111,9 +108,7 @@ class Inspector {
         close += now_.distance(sample.depth) < 1.3 * near;
       }
     }
-    if (at_far == 0 && at_near * 50 > frame_.samples.size()) {
-      return true;
-    }
+    if (at_far == 0 && at_near * 50 > frame_.samples.size()) return true;
     return now_.perspective && at_far == 0 && surfaces >= kEnoughSamples &&
            static_cast<double>(close) > 0.95 * static_cast<double>(surfaces);
   }
@@ -137,9 +132,7 @@ class Inspector {
   // near plane is then a round number before the conversion only, or the depths 0 and 1 do not both
   // lie before the eye.
   bool is_converted_from_minus_one() const {
-    if (!now_.perspective) {
-      return false;
-    }
+    if (!now_.perspective) return false;
     const dvec2 c = depth_coefficients();
     const double at_0 = now_.distance(0.0), at_1 = now_.distance(1.0);
     const double nearer = std::min(at_0, at_1);  // behind the eye if it is negative
@@ -151,14 +144,9 @@ class Inspector {
   // Compares the steps of the depths with those of 16 bits. Other formats cannot be told apart.
   bool inspect_depth_format() {
     std::set<float> depths;
-    for (const PixelSample& sample : frame_.samples) {
-      if (!is_sky(sample.depth)) {
-        depths.insert(sample.depth);
-      }
-    }
-    if (depths.size() < kEnoughSamples) {
-      return true;
-    }
+    for (const PixelSample& sample : frame_.samples)
+      if (!is_sky(sample.depth)) depths.insert(sample.depth);
+    if (depths.size() < kEnoughSamples) return true;
     const double in_steps = share_of(depths, [](float depth) {
       return std::abs(65535.0 * depth - std::round(65535.0 * depth)) < 0.01;
     });
@@ -193,26 +181,21 @@ class Inspector {
     for (std::size_t i = 0; i < frame_.samples.size(); ++i) {
       const PixelSample& s = frame_.samples[i];
       const maths::vec3 stored{s.normal[0], s.normal[1], s.normal[2]};
-      if (!now_.gradients[i] || !maths::has_direction(stored)) {
-        continue;
-      }
+      if (!now_.gradients[i] || !maths::has_direction(stored)) continue;
       const dvec3 own = plane_normal(now_, s, *now_.gradients[i], reading);
       const dvec3 tilted =
           plane_normal(now_, s, *now_.gradients[i] + 0.5 * now_.depth_step(s.depth), reading);
       const double tilt_error = angle_between(own, tilted) / kDegrees;
-      if (tilt_error <= 0.02) {
-        call(own, given_normal(stored, reading), tilt_error);
-      }
+      if (tilt_error <= 0.02) call(own, given_normal(stored, reading), tilt_error);
     }
   }
 
   dvec3 given_normal(const maths::vec3& stored, const Reading& reading) const {
     dvec3 given(maths::decode_normal(stored, reading.encoding));
-    if (!reading.in_view_space) {
+    if (!reading.in_view_space)
       given = dvec3(now_.view_by(reading) * dvec4(given, 0.0));
-    } else if (reading.forward_z) {
+    else if (reading.forward_z)
       given.z = -given.z;
-    }
     return given;
   }
 
@@ -229,11 +212,8 @@ class Inspector {
           .push_back(angle_between(own, given));
     });
     double largest = 0.0;
-    for (const std::vector<double>& direction : angles) {
-      if (direction.size() >= kEnoughOfSome) {
-        largest = std::max(largest, quantile(direction, 0.75));
-      }
-    }
+    for (const std::vector<double>& direction : angles)
+      if (direction.size() >= kEnoughOfSome) largest = std::max(largest, quantile(direction, 0.75));
     return largest;
   }
 
@@ -244,9 +224,7 @@ class Inspector {
     std::size_t count = 0;
     dvec3 before(0.0, 0.0, 1.0);
     for_normals(given_, [&](const dvec3& own, const dvec3& given, double) {
-      if (angle_between(own, before) < kSameSurface) {
-        angles.push_back(angle_between(own, given));
-      }
+      if (angle_between(own, before) < kSameSurface) angles.push_back(angle_between(own, given));
       before = own;
       ++count;
     });
@@ -266,15 +244,13 @@ class Inspector {
   bool normals_fit() {
     const double now = error_of(given_);
     Mistake found = best_reading(now);
-    if (found == Mistake::count && now_.perspective && angles_to_view_axis_differ()) {
+    if (found == Mistake::count && now_.perspective && angles_to_view_axis_differ())
       found = Mistake::field_of_view;
-    }
     // Floors that are seen from above have the normals of ceilings that are seen from below.
     Reading flipped = given_;
     flipped.flip_y = true;
-    if (found == Mistake::count && facing_away(given_) > 0.2 && facing_away(flipped) < 0.02) {
+    if (found == Mistake::count && facing_away(given_) > 0.2 && facing_away(flipped) < 0.02)
       found = Mistake::flipped_y;
-    }
     // A jitter in another unit shifts the whole projection.
     const double jitter =
         pictures_.size() > 1 ? maths::length(now_.jitter() - pictures_[1].jitter()) : 0.0;
@@ -283,15 +259,12 @@ class Inspector {
       findings_.set(Mistake::jitter_wrong, true, jitter);
     }
     const double typical = typical_angle();
-    if (found == Mistake::count && typical > 25.0) {
-      found = Mistake::normals_disagree;
-    }
+    if (found == Mistake::count && typical > 25.0) found = Mistake::normals_disagree;
     for (const Mistake mistake :
          {Mistake::normal_space, Mistake::normal_encoding, Mistake::normal_forward_z,
           Mistake::view_inverted, Mistake::flipped_y, Mistake::image_too_large,
-          Mistake::field_of_view, Mistake::normals_disagree}) {
+          Mistake::field_of_view, Mistake::normals_disagree})
       findings_.set(mistake, mistake == found, typical);
-    }
     return found == Mistake::count;
   }
 
@@ -299,9 +272,7 @@ class Inspector {
   // is one. `now` is the error without a correction.
   Mistake best_reading(double now) const {
     // Normal maps tilt normals by some degrees from the surface.
-    if (now < 4.0) {
-      return Mistake::count;
-    }
+    if (now < 4.0) return Mistake::count;
     double least = std::min(0.4 * now, 15.0);
     Mistake best = Mistake::count;
     const auto consider = [&](Mistake mistake, const Reading& reading) {
@@ -316,11 +287,8 @@ class Inspector {
     consider(Mistake::normal_space, reading);
     for (const bool other_space : {false, true}) {
       reading.in_view_space = given_.in_view_space != other_space;
-      for (reading.encoding = 0; reading.encoding < 4; ++reading.encoding) {
-        if (reading.encoding != given_.encoding) {
-          consider(Mistake::normal_encoding, reading);
-        }
-      }
+      for (reading.encoding = 0; reading.encoding < 4; ++reading.encoding)
+        if (reading.encoding != given_.encoding) consider(Mistake::normal_encoding, reading);
     }
     reading = given_;
     if (given_.in_view_space) {
@@ -331,9 +299,7 @@ class Inspector {
       consider(Mistake::view_inverted, reading);
     }
     for_projections(now_, given_, [&](Mistake mistake, const Reading& projection) {
-      if (mistake == Mistake::field_of_view) {
-        least = std::min(least, 3.1);
-      }
+      if (mistake == Mistake::field_of_view) least = std::min(least, 3.1);
       consider(mistake, projection);
     });
     return best;
@@ -353,30 +319,22 @@ class Inspector {
       const double side = own.z * stored.z < 0.0 ? -1.0 : 1.0;  // either may face away
       // An angle of view does not rotate a normal about the view axis.
       const double in_same_direction = side * (own.x * stored.x + own.y * stored.y);
-      if (!(in_same_direction > kSameAngleAboutAxis * own_across * stored_across)) {
-        return;
-      }
+      if (!(in_same_direction > kSameAngleAboutAxis * own_across * stored_across)) return;
       const double ratio =
           std::log(own_across * std::abs(stored.z) / (stored_across * std::abs(own.z)));
       // The sensitivity is half the sine of twice the angle to the view axis. An error of the angle
       // changes the logarithm of the ratio by the error divided by the sensitivity.
       const double sensitivity =
           std::min(own_across * std::abs(own.z), stored_across * std::abs(stored.z));
-      if (sensitivity * kRatioError > std::max(tilt_error, kStoredError)) {
-        exact.push_back(ratio);
-      }
-      if (sensitivity > kOblique) {
-        oblique.push_back(ratio);
-      }
+      if (sensitivity * kRatioError > std::max(tilt_error, kStoredError)) exact.push_back(ratio);
+      if (sensitivity > kOblique) oblique.push_back(ratio);
     });
     return is_another_scale(exact) || is_another_scale_with_noise(oblique);
   }
 
   // Returns true if more than half of the logarithms agree on a number that is not near 0.
   static bool is_another_scale(const std::vector<double>& logarithms) {
-    if (logarithms.size() < kEnoughSamples) {
-      return false;
-    }
+    if (logarithms.size() < kEnoughSamples) return false;
     const double median = quantile(logarithms, 0.5);
     const auto share_near = [&](double value) {
       return share_of(logarithms, [&](double log) { return std::abs(log - value) <= kRatioError; });
@@ -386,9 +344,7 @@ class Inspector {
 
   // Shading normals and normal maps make each logarithm uncertain, but not their median.
   static bool is_another_scale_with_noise(const std::vector<double>& logarithms) {
-    if (logarithms.size() < kEnoughSamples) {
-      return false;
-    }
+    if (logarithms.size() < kEnoughSamples) return false;
     const double median = quantile(logarithms, 0.5);
     const double spread = quantile(logarithms, 0.75) - quantile(logarithms, 0.25);
     // The standard error of the median, for normally distributed numbers with this distance
@@ -423,9 +379,7 @@ void Findings::set(Mistake mistake, bool is_seen, double measure) {
   const std::uint64_t bit = std::uint64_t{1} << static_cast<int>(mistake);
   judged |= bit;
   seen = is_seen ? seen | bit : seen & ~bit;
-  if (is_seen) {
-    measures.at(static_cast<std::size_t>(mistake)) = static_cast<float>(measure);
-  }
+  if (is_seen) measures.at(static_cast<std::size_t>(mistake)) = static_cast<float>(measure);
 }
 
 Findings inspect(std::span<const InspectedFrame> frames) { return Inspector(frames).run(); }

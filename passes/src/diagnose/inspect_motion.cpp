@@ -92,14 +92,10 @@ class MotionInspector {
          {Mistake::camera_of_another_frame, Mistake::jitter_missing, Mistake::jitter_unused,
           Mistake::jitter_wrong, Mistake::translation_scale, Mistake::no_translation,
           Mistake::cameras_disagree, Mistake::image_too_large, Mistake::field_of_view,
-          Mistake::flipped_y, Mistake::view_inverted}) {
-      if (mistake == found || (findings_.seen >> static_cast<int>(mistake) & 1u) == 0) {
+          Mistake::flipped_y, Mistake::view_inverted})
+      if (mistake == found || (findings_.seen >> static_cast<int>(mistake) & 1u) == 0)
         findings_.set(mistake, mistake == found, measure);
-      }
-    }
-    if (found == Mistake::count && share > kMisfits && frame_.has_motion) {
-      inspect_motion_vectors();
-    }
+    if (found == Mistake::count && share > kMisfits && frame_.has_motion) inspect_motion_vectors();
   }
 
  private:
@@ -128,26 +124,21 @@ class MotionInspector {
     for (const PixelSample& s : now.frame.samples) {
       const dvec4 ndc(now.ndc(s, reading), s.depth, 1.0);
       const dvec4 clip = to_before * ndc;
-      if (is_sky(s.depth) || !(clip.w > 0.0)) {
-        continue;
-      }
+      if (is_sky(s.depth) || !(clip.w > 0.0)) continue;
       const auto to_pixel = [&](const dvec4& p) {
         return (0.5 * dvec2(p) / p.w + 0.5) * before.size(reading);
       };
       const dvec2 pixel = to_pixel(clip);
       const dvec2 cell = pixel * grid - 0.5;  // between four samples
       if (!(cell.x >= 0.0 && cell.y >= 0.0 && cell.x < kInspectColumns - 1.0 &&
-            cell.y < kInspectRows - 1.0)) {
+            cell.y < kInspectRows - 1.0))
         continue;
-      }
       const auto sample_at = [](double x, double y) {
         return static_cast<std::size_t>(y) * kInspectColumns + static_cast<std::size_t>(x);
       };
       const std::size_t nearest = sample_at(cell.x + 0.5, cell.y + 0.5);
       const auto& gradient = before.gradients[nearest];
-      if (!gradient) {
-        continue;
-      }
+      if (!gradient) continue;
       const PixelSample& found = before.frame.samples[nearest];
       const double slope = maths::length(*gradient);
       const double step = before.depth_step(found.depth);
@@ -189,9 +180,8 @@ class MotionInspector {
     if (pictures_.size() > 2) {
       const Picture& oldest = pictures_[2];
       if (fits(displacements(before, oldest, now_, before, given_), dvec2(0.0)) ||
-          fits(displacements(now_, before, before, oldest, given_), dvec2(0.0))) {
+          fits(displacements(now_, before, before, oldest, given_), dvec2(0.0)))
         return Mistake::camera_of_another_frame;
-      }
     }
     // Jitter: the whole image is shifted from where the cameras expect it.
     const dvec2 in_cameras = now_.jitter() - before.jitter();
@@ -226,20 +216,15 @@ class MotionInspector {
     reading = given_;
     reading.invert_view = true;
     consider(Mistake::view_inverted, reading);
-    if (best != Mistake::count) {
-      return best;
-    }
+    if (best != Mistake::count) return best;
     measure = 100.0 * (1.0 - share);
     const auto has_translation = [](const Picture& picture) {
       return dvec3(picture.view_from_world[3]) != dvec3(0.0);
     };
-    if (!has_translation(now_) && !has_translation(before)) {
-      return Mistake::no_translation;
-    }
+    if (!has_translation(now_) && !has_translation(before)) return Mistake::no_translation;
     // Where objects move, depth alone does not tell whether the cameras fit.
-    if (by_cameras.size() < kEnoughSamples || share_of_all > 0.25 || frame_.has_motion) {
+    if (by_cameras.size() < kEnoughSamples || share_of_all > 0.25 || frame_.has_motion)
       return Mistake::count;
-    }
     if (maths::length(in_cameras) > kLargestJitter) {
       measure = maths::length(in_cameras);
       return Mistake::jitter_wrong;
@@ -267,9 +252,7 @@ class MotionInspector {
         lengths.push_back(maths::length(motion));
       }
     }
-    if (vectors.size() < kEnoughSamples || quantile(lengths, 0.5) < 0.3) {
-      return;
-    }
+    if (vectors.size() < kEnoughSamples || quantile(lengths, 0.5) < 0.3) return;
     const dvec2 scale(frame_.motion.scale[0], frame_.motion.scale[1]);
     const dvec2 offset(frame_.motion.offset[0], frame_.motion.offset[1]);
     const auto share = [&](const dvec2& factor, const dvec2& shift) {
@@ -301,14 +284,12 @@ class MotionInspector {
       }
       if (found == Mistake::count && share_of(vectors, [&](const Vector& v) {
                                        return maths::length(scale * v.stored * size) < 0.02;
-                                     }) > 0.9) {
+                                     }) > 0.9)
         found = Mistake::motion_zero;
-      }
     }
-    for (const Mistake mistake : {Mistake::motion_zero, Mistake::motion_sign, Mistake::motion_unit,
-                                  Mistake::motion_jitter}) {
+    for (const Mistake mistake :
+         {Mistake::motion_zero, Mistake::motion_sign, Mistake::motion_unit, Mistake::motion_jitter})
       findings_.set(mistake, mistake == found);
-    }
   }
 
   const std::vector<Picture>& pictures_;  // this frame, then earlier ones

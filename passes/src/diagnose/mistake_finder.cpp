@@ -13,14 +13,9 @@ namespace {
 // Engines compute one matrix in several ways, so matrices that differ by rounding count as equal.
 bool same(std::span<const float, 16> a, std::span<const float, 16> b) {
   float largest = 0.0f;
-  for (const float element : a) {
-    largest = std::max(largest, std::abs(element));
-  }
-  for (std::size_t i = 0; i < 16; ++i) {
-    if (!(std::abs(a[i] - b[i]) <= 1e-6f * largest)) {
-      return false;
-    }
-  }
+  for (const float element : a) largest = std::max(largest, std::abs(element));
+  for (std::size_t i = 0; i < 16; ++i)
+    if (!(std::abs(a[i] - b[i]) <= 1e-6f * largest)) return false;
   return true;
 }
 
@@ -149,9 +144,7 @@ Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::ui
   result.set(Mistake::index_repeats, reads_index && index == view.index);
   result.set(Mistake::index_goes_back, reads_index && index < view.index);
   result.set(Mistake::history_reset, reset);
-  if (reset || given.settings->history_frames == 0) {
-    return result;
-  }
+  if (reset || given.settings->history_frames == 0) return result;
   if (!same(given.camera, view.camera)) {
     const bool is_last = same(given.previous_camera, view.camera);
     const bool is_this = same(given.previous_camera, given.camera);
@@ -176,11 +169,10 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
   is_new_ = false;
   for (const AlcoveView& given : std::span(frame.views, frame.view_count)) {
     View* view = find(given.id);
-    if (view == nullptr) {
+    if (view == nullptr)
       view = &create(given);
-    } else {
+    else
       observe(given.id, judge(*view, given, frame.index));
-    }
     view->last_frame = frames_;
     view->has_history = given.settings->history_frames > 0;
     view->index = frame.index;

@@ -62,9 +62,7 @@ class Picture {
         view_from_world(to_rigid(of.view.view_from_world)),
         perspective(of.view.clip_from_view[15] == 0.0f) {
     gradients.reserve(of.samples.size());
-    for (const PixelSample& sample : of.samples) {
-      gradients.push_back(gradient(sample));
-    }
+    for (const PixelSample& sample : of.samples) gradients.push_back(gradient(sample));
   }
 
   // The distance from the eye along the view axis.
@@ -131,9 +129,8 @@ class Picture {
     };
     const bool inside =
         s.x > 0 && s.y > 0 && s.x + 1 < frame.size.width && s.y + 1 < frame.size.height;
-    if (!inside || is_sky(s.depth) || !is_line(s.left, s.right) || !is_line(s.up, s.down)) {
+    if (!inside || is_sky(s.depth) || !is_line(s.left, s.right) || !is_line(s.up, s.down))
       return std::nullopt;
-    }
     return 0.5 * dvec2(double{s.right} - s.left, double{s.down} - s.up);
   }
 };
@@ -147,9 +144,8 @@ template <typename Call>
 void for_projections(const Picture& picture, const Reading& given, const Call& call) {
   Reading reading = given;
   reading.whole_image = true;
-  if (is_smaller(picture.frame.size, picture.frame.depth_size)) {
+  if (is_smaller(picture.frame.size, picture.frame.depth_size))
     call(Mistake::image_too_large, reading);
-  }
   reading = given;
   reading.flip_y = true;
   call(Mistake::flipped_y, reading);

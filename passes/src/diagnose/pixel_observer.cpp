@@ -30,15 +30,12 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
   Pending& pending = pending_.at(slot);
   if (!pending.buffer) {
     auto made = HostBuffer::create(vk_, device_, kBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!made) {
+    if (!made)
       return tl::unexpected(Error{"The buffer for pixels could not be created.", made.error()});
-    }
     pending.buffer = std::move(*made);
   }
   const auto kernel = frame.kernels.get(Shader::inspect);
-  if (!kernel) {
-    return tl::unexpected(kernel.error());
-  }
+  if (!kernel) return tl::unexpected(kernel.error());
   const Texture depth = inputs.depth_ndc, normals = inputs.normals;
   const Texture motion = view.static_frames == 0 ? inputs.motion : Texture{};
   const AlcoveArea& read = frame.areas.read;
@@ -70,11 +67,8 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
       {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kInspectColumns, kTexelRows)});
   auto sampling = graph.add_pass("inspect");
   sampling.read(depth, framegraph::access::sampled_compute);
-  for (const Texture texture : {normals, motion}) {
-    if (texture) {
-      sampling.read(texture, framegraph::access::sampled_compute);
-    }
-  }
+  for (const Texture texture : {normals, motion})
+    if (texture) sampling.read(texture, framegraph::access::sampled_compute);
   samples = sampling.write(samples, framegraph::access::storage_write_compute, {},
                            framegraph::Contents::discard);
   const maths::InspectParameters parameters{
@@ -114,17 +108,13 @@ void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
   ++serial_;
   Pending& pending = pending_.at(slot);
   pending.declared = false;
-  if (!std::exchange(pending.recorded, false)) {
-    return;
-  }
+  if (!std::exchange(pending.recorded, false)) return;
   std::uint32_t finished = 0;
   std::memcpy(&finished, pending.buffer->bytes() + kTexelBytes, sizeof finished);
   Findings reused;
   reused.set(Mistake::slot_reused, finished != pending.serial);
   finder.observe(pending.id, reused);
-  if (finished != pending.serial) {
-    return;
-  }
+  if (finished != pending.serial) return;
   const auto texel = [&](std::uint32_t x, std::uint32_t y) {
     Texel result;
     std::memcpy(result.data(),
@@ -161,9 +151,7 @@ void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
                                {c[0], c[1]}});
     }
   }
-  if (pending.id != view_ || pending.serial != newest_ + 1) {
-    frames_.clear();
-  }
+  if (pending.id != view_ || pending.serial != newest_ + 1) frames_.clear();
   view_ = pending.id;
   newest_ = pending.serial;
   frames_.insert(frames_.begin(), std::move(frame));

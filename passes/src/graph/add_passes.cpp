@@ -28,37 +28,30 @@ void for_each_texture(Occlusion& of, const Visit& visit) {
 template <typename Visit>
 void for_each_texture(GtaoInputs& of, const Visit& visit) {
   for (Texture* texture : {&of.depth_ndc, &of.normals, &of.roughness, &of.back_depth_ndc,
-                           &of.second_depth_ndc, &of.receiver_depth_ndc}) {
+                           &of.second_depth_ndc, &of.receiver_depth_ndc})
     visit(*texture);
-  }
 }
 template <typename Visit>
 void for_each_texture(ReconstructInputs& of, const Visit& visit) {
   for_each_texture(of.raw_occlusion, visit);
-  for (Texture* texture : {&of.depth_ndc, &of.normals, &of.motion, &of.roughness}) {
-    visit(*texture);
-  }
+  for (Texture* texture : {&of.depth_ndc, &of.normals, &of.motion, &of.roughness}) visit(*texture);
   for_each_texture(of.into, visit);
 }
 template <typename Visit>
 void for_each_texture(MultiBounceInputs& of, const Visit& visit) {
-  for (Texture* texture : {&of.visibility, &of.albedo, &of.into}) {
-    visit(*texture);
-  }
+  for (Texture* texture : {&of.visibility, &of.albedo, &of.into}) visit(*texture);
 }
 template <typename Visit>
 void for_each_texture(GtsoInputs& of, const Visit& visit) {
   for (Texture* texture :
-       {&of.visibility, &of.bent_normal, &of.normals, &of.depth, &of.roughness, &of.into}) {
+       {&of.visibility, &of.bent_normal, &of.normals, &of.depth, &of.roughness, &of.into})
     visit(*texture);
-  }
 }
 template <typename Visit>
 void for_each_texture(OcclusionInputs& of, const Visit& visit) {
   for (Texture* texture : {&of.depth_ndc, &of.normals, &of.motion, &of.roughness,
-                           &of.back_depth_ndc, &of.second_depth_ndc, &of.mask}) {
+                           &of.back_depth_ndc, &of.second_depth_ndc, &of.mask})
     visit(*texture);
-  }
   for_each_texture(of.into, visit);
 }
 template <typename Visit>
@@ -70,23 +63,19 @@ void for_each_texture(ViewInputs& of, const Visit& visit) {
 template <typename Visit>
 void for_each_texture(OcclusionOutputs& of, const Visit& visit) {
   for (Texture* texture :
-       {&of.visibility, &of.bent_normal, &of.specular, &of.linear_depth, &of.normals}) {
+       {&of.visibility, &of.bent_normal, &of.specular, &of.linear_depth, &of.normals})
     visit(*texture);
-  }
 }
 template <typename Visit>
 void for_each_texture(ApplyInputs& of, const Visit& visit) {
   for (Texture* texture :
        {&of.depth, &of.normals, &of.albedo, &of.roughness, &of.metallic, &of.visibility,
-        &of.bent_normal, &of.specular_occlusion, &of.light, &of.harmonics, &of.map}) {
+        &of.bent_normal, &of.specular_occlusion, &of.light, &of.harmonics, &of.map})
     visit(*texture);
-  }
 }
 template <typename Visit>
 void for_each_texture(AppliedLight& of, const Visit& visit) {
-  for (Texture* texture : {&of.lit, &of.diffuse, &of.specular}) {
-    visit(*texture);
-  }
+  for (Texture* texture : {&of.lit, &of.diffuse, &of.specular}) visit(*texture);
 }
 template <typename Visit>
 void for_each_texture(Environment& of, const Visit& visit) {
@@ -105,12 +94,9 @@ auto add_described(const Frame& frame, const Inputs& given, const Describe& desc
   Inputs inputs = given;
   for_each_texture(inputs, [&](Texture& texture) { texture = work.import(texture); });
   auto result = describe(work.list(), work.frame(), inputs);
-  if (!result) {
-    return result;
-  }
-  if (auto created = work.create_pipelines(); !created) {
+  if (!result) return result;
+  if (auto created = work.create_pipelines(); !created)
     return tl::unexpected(std::move(created.error()));
-  }
   if (histories == Histories::of_graph) {
     work.add();
     for_each_texture(*result, [&](Texture& texture) { texture = work.texture(texture); });
@@ -124,11 +110,9 @@ template <typename Inputs, typename Describe>
 auto add_with_history(const Frame& frame, const Inputs& inputs, const OcclusionSettings& settings,
                       std::string_view history_name, const Describe& describe) {
   if (frame.prepare && settings.history_frames > 0) {
-    for (const Histories histories : {Histories::moving, Histories::unchanged}) {
-      if (auto made = add_described(frame, inputs, describe, history_name, histories); !made) {
+    for (const Histories histories : {Histories::moving, Histories::unchanged})
+      if (auto made = add_described(frame, inputs, describe, history_name, histories); !made)
         return made;
-      }
-    }
   }
   return add_described(frame, inputs, describe, history_name);
 }
@@ -182,16 +166,13 @@ tl::expected<OcclusionOutputs, Error> add_occlusion(const Frame& frame,
                                     return describe_occlusion(list, of, listed, settings);
                                   });
   if (!outputs || outputs->normals ||
-      frame.graph.description().resources[inputs.depth_ndc.index].samples > 1) {
+      frame.graph.description().resources[inputs.depth_ndc.index].samples > 1)
     return outputs;
-  }
   // For the caller. The graph culls these passes if nothing reads them.
   auto depth = outputs->linear_depth ? tl::expected<Texture, Error>(outputs->linear_depth)
                                      : add_linear_depth(frame, inputs.depth_ndc);
   auto normals = depth.and_then([&](Texture linear) { return add_normals(frame, linear); });
-  if (!normals) {
-    return tl::unexpected(std::move(normals.error()));
-  }
+  if (!normals) return tl::unexpected(std::move(normals.error()));
   outputs->linear_depth = *depth;
   outputs->normals = *normals;
   return outputs;
@@ -222,9 +203,7 @@ tl::expected<Environment, Error> add_environment(const Frame& frame, Texture equ
 }
 
 void drop_reconstruct_history(framegraph::Graph& graph, std::string_view history_name) {
-  for (const HistoryRole role : kHistoryRoles) {
-    graph.drop_history(HistoryName(history_name, role));
-  }
+  for (const HistoryRole role : kHistoryRoles) graph.drop_history(HistoryName(history_name, role));
 }
 
 }  // namespace alcove::passes

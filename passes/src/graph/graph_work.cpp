@@ -23,21 +23,16 @@ bool same_mips(const AlcoveWorkBinding& a, const AlcoveWorkBinding& b) {
 }
 
 Access access_of(const AlcoveWorkBinding& binding) {
-  if (binding.type != ALCOVE_BINDING_TYPE_STORAGE_IMAGE) {
-    return framegraph::access::sampled_compute;
-  }
-  if (binding.access == ALCOVE_WORK_ACCESS_READ) {
-    return framegraph::access::storage_read_compute;
-  }
+  if (binding.type != ALCOVE_BINDING_TYPE_STORAGE_IMAGE) return framegraph::access::sampled_compute;
+  if (binding.access == ALCOVE_WORK_ACCESS_READ) return framegraph::access::storage_read_compute;
   return binding.access == ALCOVE_WORK_ACCESS_WRITE
              ? framegraph::access::storage_write_compute
              : framegraph::access::storage_read_write_compute;
 }
 
 Range range_of(const AlcoveWorkBinding& binding, const AlcoveWork& work) {
-  if (binding.mip == 0 && binding.mip_count == work.resources[binding.resource].mip_count) {
+  if (binding.mip == 0 && binding.mip_count == work.resources[binding.resource].mip_count)
     return {};
-  }
   return {static_cast<std::uint16_t>(binding.mip), static_cast<std::uint16_t>(binding.mip_count)};
 }
 
@@ -45,9 +40,7 @@ Range range_of(const AlcoveWorkBinding& binding, const AlcoveWork& work) {
 // import, of which the pass may write a part, as may earlier passes of the frame.
 bool has_other_contents(const Graph& graph, Texture texture) {
   const framegraph::GraphDescription& declared = graph.description();
-  if (texture.index >= declared.resources.size()) {
-    return false;
-  }
+  if (texture.index >= declared.resources.size()) return false;
   const framegraph::ResourceRecord& record = declared.resources[texture.index];
   return record.origin == framegraph::Origin::imported &&
          (texture.version > 0 || declared.externals[record.external].has_contents != 0);
@@ -69,9 +62,8 @@ struct Dispatch {
 
   void operator()(RecordContext& context) const {
     std::array<VkImageView, ALCOVE_MAX_WORK_BINDINGS> views;
-    for (std::uint32_t i = 0; i < image_count; ++i) {
+    for (std::uint32_t i = 0; i < image_count; ++i)
       views[i] = context.view(images[i].texture, images[i].range);
-    }
     kernels->dispatch(context, kernel, std::span<const VkImageView>(views).first(image_count),
                       std::span(parameters).first(parameter_bytes), groups);
   }
@@ -116,14 +108,9 @@ GraphWork::GraphWork(const Frame& frame, std::string_view history_name, Historie
 }
 
 Texture GraphWork::import(Texture texture) {
-  if (!texture) {
-    return {};
-  }
-  for (std::uint32_t i = 0; i < work_.resource_count; ++i) {
-    if (textures_[i] == texture) {
-      return {i};
-    }
-  }
+  if (!texture) return {};
+  for (std::uint32_t i = 0; i < work_.resource_count; ++i)
+    if (textures_[i] == texture) return {i};
   const VkExtent3D size = frame_.graph.extent(texture);
   const auto& resources = frame_.graph.description().resources;
   const Texture listed =
@@ -131,9 +118,7 @@ Texture GraphWork::import(Texture texture) {
                 {size.width, size.height},
                 texture.index < resources.size() ? resources[texture.index].mips : 1u,
                 texture.index < resources.size() ? resources[texture.index].samples : 1u);
-  if (listed) {
-    textures_[listed.index] = texture;
-  }
+  if (listed) textures_[listed.index] = texture;
   return listed;
 }
 
@@ -143,9 +128,7 @@ Texture GraphWork::texture(Texture listed) const {
 
 bool GraphWork::declare_history(HistoryRole role, const WorkList::History& history) {
   declared_.at(static_cast<std::size_t>(role)) = true;
-  if (histories_ != Histories::of_graph) {
-    return true;
-  }
+  if (histories_ != Histories::of_graph) return true;
   const VkExtent2D size = list_.size(history.current);
   const framegraph::TextureHistory made = frame_.graph.create_texture_history(
       HistoryName(history_name_, role),
@@ -160,9 +143,7 @@ tl::expected<void, Error> GraphWork::create_pipelines() {
     const AlcoveWorkDispatch& dispatch = work_.dispatches[i];
     auto kernel = frame_.kernels.get(shader_of_name(dispatch.shader),
                                      std::span(dispatch.constants).first(dispatch.constant_count));
-    if (!kernel) {
-      return tl::unexpected(std::move(kernel.error()));
-    }
+    if (!kernel) return tl::unexpected(std::move(kernel.error()));
     kernels_[i] = *kernel;
   }
   return {};
@@ -179,14 +160,10 @@ void GraphWork::add() {
     }
   }
   // A history that is not wanted in this frame will be out of date when it is wanted again.
-  for (const HistoryRole role : kHistoryRoles) {
-    if (!history_name_.empty() && !declared_.at(static_cast<std::size_t>(role))) {
+  for (const HistoryRole role : kHistoryRoles)
+    if (!history_name_.empty() && !declared_.at(static_cast<std::size_t>(role)))
       frame_.graph.reset_history(HistoryName(history_name_, role));
-    }
-  }
-  for (std::uint32_t i = 0; i < work_.dispatch_count; ++i) {
-    add(work_.dispatches[i], kernels_[i]);
-  }
+  for (std::uint32_t i = 0; i < work_.dispatch_count; ++i) add(work_.dispatches[i], kernels_[i]);
 }
 
 void GraphWork::add(const AlcoveWorkDispatch& dispatch, Kernel kernel) {
@@ -215,9 +192,7 @@ void GraphWork::declare_accesses(framegraph::PassBuilder& pass,
   const auto bindings = std::span(dispatch.bindings).first(dispatch.binding_count);
   for (auto binding = bindings.begin(); binding != bindings.end(); ++binding) {
     const auto is_same = [&](const AlcoveWorkBinding& other) { return same_mips(*binding, other); };
-    if (!is_image(*binding) || std::any_of(bindings.begin(), binding, is_same)) {
-      continue;
-    }
+    if (!is_image(*binding) || std::any_of(bindings.begin(), binding, is_same)) continue;
     Access access = access_of(*binding);
     std::uint32_t ways = binding->access;
     for (auto other = binding + 1; other != bindings.end(); ++other) {

@@ -41,9 +41,8 @@ tl::expected<std::unique_ptr<DescriptorSets>, Error> DescriptorSets::create(
 }
 
 DescriptorSets::~DescriptorSets() {
-  for (const FrameSlot& frame : slots_) {
+  for (const FrameSlot& frame : slots_)
     vk_.vkDestroyDescriptorPool(device_.device, frame.pool, device_.host.allocation_callbacks);
-  }
 }
 
 VkResult DescriptorSets::create_pools(std::uint32_t slot_count) {
@@ -54,22 +53,18 @@ VkResult DescriptorSets::create_pools(std::uint32_t slot_count) {
                                              {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
                                              {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                              {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}}};
-  for (VkDescriptorPoolSize& size : sizes) {
-    size.descriptorCount = kSets * most_bound(size.type);
-  }
+  for (VkDescriptorPoolSize& size : sizes) size.descriptorCount = kSets * most_bound(size.type);
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
                                         .maxSets = kSets,
                                         .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                         .pPoolSizes = sizes.data()};
   slots_.resize(slot_count);
-  for (FrameSlot& frame : slots_) {
+  for (FrameSlot& frame : slots_)
     if (const VkResult result = vk_.vkCreateDescriptorPool(
             device_.device, &info, device_.host.allocation_callbacks, &frame.pool);
-        result != VK_SUCCESS) {
+        result != VK_SUCCESS)
       return result;
-    }
-  }
   return VK_SUCCESS;
 }
 
@@ -86,16 +81,12 @@ VkDescriptorSet DescriptorSets::get(framegraph::RecordContext& context,
     return VK_NULL_HANDLE;
   }
   const Claim own = claim(context, bound);
-  if (own.set == VK_NULL_HANDLE) {
-    return VK_NULL_HANDLE;
-  }
+  if (own.set == VK_NULL_HANDLE) return VK_NULL_HANDLE;
   assert(bound.parameters.size() <= Kernels::kMaxParameterBytes);
   const VkDeviceSize offset =
       (slot_ * Kernels::kMaxDispatches + own.number) * Kernels::kMaxParameterBytes;
   std::memcpy(parameters_->bytes() + offset, bound.parameters.data(), bound.parameters.size());
-  if (!own.is_written) {
-    write(own.set, bound, offset);
-  }
+  if (!own.is_written) write(own.set, bound, offset);
   return own.set;
 }
 
@@ -116,13 +107,9 @@ bool DescriptorSets::holds(const Set& set, const DispatchBindings& bound,
 // Gives `set` a descriptor set with the shader's layout and undefined contents. The pools are sized
 // for the largest possible frame, so an allocation fails only if memory runs out.
 VkResult DescriptorSets::allocate(Set& set, const DispatchBindings& bound) {
-  if (set.shader == bound.shader) {
-    return VK_SUCCESS;
-  }
+  if (set.shader == bound.shader) return VK_SUCCESS;
   const VkDescriptorPool pool = slots_[slot_].pool;
-  if (set.set != VK_NULL_HANDLE) {
-    vk_.vkFreeDescriptorSets(device_.device, pool, 1, &set.set);
-  }
+  if (set.set != VK_NULL_HANDLE) vk_.vkFreeDescriptorSets(device_.device, pool, 1, &set.set);
   set = {};
   const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                          .descriptorPool = pool,
@@ -173,9 +160,7 @@ bool DescriptorSets::is_stored_to(const DispatchBindings& bound, VkImageView vie
   std::size_t image = 0;
   for (const ShaderBinding& binding : bound.interface->bindings) {
     const bool stored = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    if (stored && bound.views[image] == view) {
-      return true;
-    }
+    if (stored && bound.views[image] == view) return true;
     image += binding.is_image() ? 1 : 0;
   }
   return false;

@@ -12,9 +12,8 @@ std::uint32_t coherent_type(const VkPhysicalDeviceMemoryProperties& memory, std:
   std::uint32_t type = 0;
   while (type < memory.memoryTypeCount &&
          ((bits >> type & 1u) == 0 ||
-          (memory.memoryTypes[type].propertyFlags & kProperties) != kProperties)) {
+          (memory.memoryTypes[type].propertyFlags & kProperties) != kProperties))
     ++type;
-  }
   return type;
 }
 
@@ -28,12 +27,8 @@ tl::expected<std::unique_ptr<HostBuffer>, VkResult> HostBuffer::create(
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
   VkResult result =
       vk.vkCreateBuffer(device.device, &info, device.host.allocation_callbacks, &made->buffer_);
-  if (result == VK_SUCCESS) {
-    result = made->allocate();
-  }
-  if (result != VK_SUCCESS) {
-    return tl::unexpected(result);
-  }
+  if (result == VK_SUCCESS) result = made->allocate();
+  if (result != VK_SUCCESS) return tl::unexpected(result);
   return made;
 }
 
@@ -42,9 +37,8 @@ VkResult HostBuffer::allocate() {
   vk_.vkGetBufferMemoryRequirements(device_.device, buffer_, &needs);
   VkResult result = device_.host.memory.allocate != nullptr ? allocate_from_caller(needs)
                                                             : allocate_from_vulkan(needs);
-  if (result == VK_SUCCESS) {
+  if (result == VK_SUCCESS)
     result = vk_.vkBindBufferMemory(device_.device, buffer_, memory_.memory, memory_.offset);
-  }
   bytes_ = static_cast<std::byte*>(memory_.mapped);
   return result;
 }
@@ -75,14 +69,11 @@ VkResult HostBuffer::allocate_from_vulkan(const VkMemoryRequirements& needs) {
 HostBuffer::~HostBuffer() {
   const framegraph::HostServices& host = device_.host;
   vk_.vkDestroyBuffer(device_.device, buffer_, host.allocation_callbacks);
-  if (memory_.memory == VK_NULL_HANDLE) {
-    return;
-  }
-  if (host.memory.free != nullptr) {
+  if (memory_.memory == VK_NULL_HANDLE) return;
+  if (host.memory.free != nullptr)
     host.memory.free(host.memory.user, memory_);
-  } else {
+  else
     vk_.vkFreeMemory(device_.device, memory_.memory, host.allocation_callbacks);
-  }
 }
 
 }  // namespace alcove::passes

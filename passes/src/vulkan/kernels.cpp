@@ -71,12 +71,9 @@ struct Kernels::State {
 };
 
 Kernels::State::~State() {
-  if (device() == VK_NULL_HANDLE) {
-    return;
-  }
-  for (const Pipeline& pipeline : pipelines) {
+  if (device() == VK_NULL_HANDLE) return;
+  for (const Pipeline& pipeline : pipelines)
     vk.vkDestroyPipeline(device(), pipeline.pipeline, callbacks());
-  }
   for (const ShaderObjects& shader : shaders) {
     vk.vkDestroyShaderModule(device(), shader.module, callbacks());
     vk.vkDestroyPipelineLayout(device(), shader.pipeline_layout, callbacks());
@@ -97,9 +94,7 @@ tl::expected<void, Error> Kernels::State::check_limits() const {
         needed, std::ranges::count(interface_of(shader).bindings, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                                    &ShaderBinding::type));
   }
-  if (limit >= static_cast<std::size_t>(needed)) {
-    return {};
-  }
+  if (limit >= static_cast<std::size_t>(needed)) return {};
   return tl::unexpected(Error{"The device '" + std::string(properties.deviceName) +
                                   "' binds at most " + std::to_string(limit) +
                                   " storage images to a shader; the occlusion passes need " +
@@ -114,9 +109,8 @@ tl::expected<void, Error> Kernels::State::create_sampler() {
                                  .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
   if (const VkResult result = vk.vkCreateSampler(device(), &info, callbacks(), &sampler);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return failure("a sampler", result);
-  }
   return {};
 }
 
@@ -135,64 +129,52 @@ tl::expected<void, Error> Kernels::State::create_layout(std::size_t shader) {
   ShaderObjects& made = shaders[shader];
   if (const VkResult result =
           vk.vkCreateDescriptorSetLayout(device(), &set_info, callbacks(), &made.set_layout);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return failure("a descriptor set layout", result);
-  }
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
                                         .pSetLayouts = &made.set_layout};
   if (const VkResult result =
           vk.vkCreatePipelineLayout(device(), &info, callbacks(), &made.pipeline_layout);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return failure("a pipeline layout", result);
-  }
   return {};
 }
 
 tl::expected<void, Error> Kernels::State::create_layouts() {
   tl::expected<void, Error> done;
-  for (std::size_t shader = 0; done && shader < kShaderCount; ++shader) {
+  for (std::size_t shader = 0; done && shader < kShaderCount; ++shader)
     done = create_layout(shader);
-  }
   return done;
 }
 
 tl::expected<void, Error> Kernels::State::create_sets(std::uint32_t slot_count) {
   auto made = DescriptorSets::create(vk, handles, slot_count);
-  if (!made) {
-    return tl::unexpected(std::move(made.error()));
-  }
+  if (!made) return tl::unexpected(std::move(made.error()));
   sets = std::move(*made);
   return {};
 }
 
 tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
   VkShaderModule& module = shaders[shader].module;
-  if (module != VK_NULL_HANDLE) {
-    return {};
-  }
+  if (module != VK_NULL_HANDLE) return {};
   const std::span<const std::uint32_t> code = shader_source(static_cast<Shader>(shader)).code;
   const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                       .codeSize = code.size_bytes(),
                                       .pCode = code.data()};
   if (const VkResult result = vk.vkCreateShaderModule(device(), &info, callbacks(), &module);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return failure("a shader module", result);
-  }
   return {};
 }
 
 // Creates the shader's storage buffer with its table, if it has one and the buffer does not exist.
 tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
   const std::span<const std::uint32_t> table = shader_source(static_cast<Shader>(shader)).table;
-  if (table.empty() || shaders[shader].table) {
-    return {};
-  }
+  if (table.empty() || shaders[shader].table) return {};
   auto made =
       HostBuffer::create(vk, handles, table.size_bytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  if (!made) {
-    return failure("the buffer of a table", made.error());
-  }
+  if (!made) return failure("the buffer of a table", made.error());
   std::memcpy((*made)->bytes(), table.data(), table.size_bytes());
   shaders[shader].table = std::move(*made);
   return {};
@@ -201,9 +183,8 @@ tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
 tl::expected<Kernel, Error> Kernels::State::create_pipeline(
     Shader shader, std::span<const AlcoveWorkConstant> constants) {
   const auto index = static_cast<std::size_t>(shader);
-  if (auto made = create_module(index).and_then([&] { return create_table(index); }); !made) {
+  if (auto made = create_module(index).and_then([&] { return create_table(index); }); !made)
     return tl::unexpected(std::move(made.error()));
-  }
   std::array<VkSpecializationMapEntry, kMaxConstants> entries;
   for (std::uint32_t i = 0; i < constants.size(); ++i) {
     entries.at(i) = {constants[i].id,
@@ -224,19 +205,15 @@ tl::expected<Kernel, Error> Kernels::State::create_pipeline(
       .layout = shaders[index].pipeline_layout};
   // The vector of pipelines grows before the pipeline is created, so that a failed allocation
   // cannot leak the pipeline.
-  if (pipelines.size() == pipelines.capacity()) {
-    pipelines.reserve(2 * pipelines.size() + 8);
-  }
+  if (pipelines.size() == pipelines.capacity()) pipelines.reserve(2 * pipelines.size() + 8);
   Pipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
   if (const VkResult result =
           vk.vkCreateComputePipelines(device(), cache, 1, &info, callbacks(), &made.pipeline);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return failure("a compute pipeline", result);
-  }
   pipelines.push_back(std::move(made));
-  if (const framegraph::Log& log = handles.host.log; log.write != nullptr) {
+  if (const framegraph::Log& log = handles.host.log; log.write != nullptr)
     log.write(log.user, framegraph::Severity::info, "A compute pipeline has been created.");
-  }
   return Kernel{pipelines.back().pipeline, shader};
 }
 
@@ -274,9 +251,7 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
                   .and_then([&] { return state->create_sampler(); })
                   .and_then([&] { return state->create_layouts(); })
                   .and_then([&] { return state->create_sets(frames_in_flight); });
-  if (!done) {
-    return tl::unexpected(std::move(done.error()));
-  }
+  if (!done) return tl::unexpected(std::move(done.error()));
   return Kernels(std::move(state));
 }
 
@@ -284,13 +259,11 @@ void Kernels::begin_frame(std::uint32_t slot) { state_->sets->begin_frame(slot);
 
 tl::expected<Kernel, Error> Kernels::get(Shader shader,
                                          std::span<const AlcoveWorkConstant> constants) {
-  for (const Pipeline& made : state_->pipelines) {
+  for (const Pipeline& made : state_->pipelines)
     if (made.shader == shader &&
         std::ranges::equal(made.constants, constants, {}, &AlcoveWorkConstant::value,
-                           &AlcoveWorkConstant::value)) {
+                           &AlcoveWorkConstant::value))
       return Kernel{made.pipeline, shader};
-    }
-  }
   return state_->create_pipeline(shader, constants);
 }
 
@@ -298,9 +271,7 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                        std::span<const VkImageView> views, std::span<const std::byte> parameters,
                        const std::array<std::uint32_t, 3>& groups) {
   // A view that could not be created is an error of the frame's record already.
-  if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) {
-    return;
-  }
+  if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) return;
   const State& s = *state_;
   const ShaderObjects& shader = s.shaders[static_cast<std::size_t>(kernel.shader)];
   const VkDescriptorSet set = s.sets->get(
@@ -310,9 +281,7 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                 .table = shader.table ? shader.table->buffer() : VkBuffer{VK_NULL_HANDLE},
                 .views = views,
                 .parameters = parameters});
-  if (set == VK_NULL_HANDLE) {
-    return;
-  }
+  if (set == VK_NULL_HANDLE) return;
   const VkCommandBuffer commands = context.commands;
   s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   s.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline_layout, 0,
@@ -328,11 +297,8 @@ VkDeviceSize Kernels::memory_bytes() const {
 
 std::size_t Kernels::table_bytes() const {
   std::size_t bytes = 0;
-  for (std::size_t i = 0; i < kShaderCount; ++i) {
-    if (state_->shaders[i].table) {
-      bytes += shader_source(static_cast<Shader>(i)).table.size_bytes();
-    }
-  }
+  for (std::size_t i = 0; i < kShaderCount; ++i)
+    if (state_->shaders[i].table) bytes += shader_source(static_cast<Shader>(i)).table.size_bytes();
   return bytes;
 }
 

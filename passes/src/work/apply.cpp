@@ -38,16 +38,14 @@ tl::expected<void, Error> check_settings(const ApplySettings& settings) {
                      " of its texture; channels are 0 to 3.");
     }
   }
-  if (settings.precision == Precision::unorm8) {
+  if (settings.precision == Precision::unorm8)
     return refusal("Probe light was asked for in 8 bits, which end at 1; use float16 or float32.");
-  }
   return {};
 }
 
 tl::expected<void, Error> check_probe(const WorkList& list, const ApplyInputs& inputs) {
-  if (!inputs.harmonics) {
+  if (!inputs.harmonics)
     return refusal("The pass probe light needs a texture of harmonics; it was given none.");
-  }
   const VkExtent2D harmonics = list.size(inputs.harmonics);
   if (harmonics.width != maths::kHarmonics || harmonics.height != 1) {
     return refusal("The pass probe light was given harmonics of " +
@@ -124,32 +122,23 @@ tl::expected<AppliedLight, Error> describe_apply(WorkList& list, const WorkFrame
                                                  const ApplyInputs& given,
                                                  const ApplySettings& settings) {
   const ApplyInputs inputs = given.map ? given : without_specular(given);
-  if (has_areas(frame)) {
+  if (has_areas(frame))
     return tl::unexpected(Error{"Probe light is computed for whole images; it was given areas."});
-  }
   auto good =
       check_settings(settings).and_then([&] { return check_textures(list, inputs); }).and_then([&] {
         return check_probe(list, inputs);
       });
-  if (!good) {
-    return tl::unexpected(std::move(good.error()));
-  }
+  if (!good) return tl::unexpected(std::move(good.error()));
   const VkExtent2D size = list.size(inputs.depth);
   const auto projection = projection_of(frame.view, size);
-  if (!projection) {
-    return tl::unexpected(projection.error());
-  }
+  if (!projection) return tl::unexpected(projection.error());
   const auto create = [&](const char* name) {
     return list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, colour_format(settings.precision), size);
   };
   AppliedLight result;
   result.lit = create("lit");
-  if (settings.parts) {
-    result.diffuse = create("diffuse light");
-  }
-  if (settings.parts && inputs.map) {
-    result.specular = create("specular light");
-  }
+  if (settings.parts) result.diffuse = create("diffuse light");
+  if (settings.parts && inputs.map) result.specular = create("specular light");
   // An optional image that is null is replaced by another image, which the shader does not read.
   const NamedTexture images[] = {
       {"depth_image", inputs.depth},

@@ -45,14 +45,11 @@ tl::expected<void, Error> check_areas(const ImageAreas& areas, VkExtent2D whole)
                ? tl::expected<void, Error>()
                : refuse("read", read, "it must be given with the area that is written");
   }
-  for (const auto& [name, area] : {std::pair{"read", read}, {"written", written}}) {
-    if (!is_empty(area) && (area.width == 0 || area.height == 0)) {
+  for (const auto& [name, area] : {std::pair{"read", read}, {"written", written}})
+    if (!is_empty(area) && (area.width == 0 || area.height == 0))
       return refuse(name, area, "each side must be at least 1");
-    }
-  }
-  if (!fits(read.x, read.width, whole.width) || !fits(read.y, read.height, whole.height)) {
+  if (!fits(read.x, read.width, whole.width) || !fits(read.y, read.height, whole.height))
     return refuse("read", read, "it must lie within depth's " + size_text(whole));
-  }
   const bool inside = written.x >= read.x && written.y >= read.y &&
                       fits(written.x, written.width, std::uint64_t{read.x} + read.width) &&
                       fits(written.y, written.height, std::uint64_t{read.y} + read.height);
@@ -67,9 +64,7 @@ std::string output_problem(const WorkFrame& frame, VkExtent2D written, VkExtent2
   const bool room =
       fits(x, written.width, texture.width) && fits(y, written.height, texture.height);
   const bool same = texture.width == written.width && texture.height == written.height;
-  if (has_areas(frame) ? room : same) {
-    return {};
-  }
+  if (has_areas(frame) ? room : same) return {};
   return "is " + size_text(texture) + " pixels; it needs " +
          (has_areas(frame) ? "room for " + area_text({x, y, written.width, written.height})
                            : size_text(written)) +

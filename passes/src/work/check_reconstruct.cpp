@@ -55,21 +55,16 @@ tl::expected<void, Error> check_result_sizes(const WorkList& list, const WorkFra
                                          {"bent normals", inputs.into.bent_normal},
                                          {"specular occlusion", inputs.into.specular}}};
   for (const NamedInput& texture : given) {
-    if (!texture.texture) {
-      continue;
-    }
-    if (auto good = check_output(frame, wanted, list.size(texture.texture), texture.name); !good) {
+    if (!texture.texture) continue;
+    if (auto good = check_output(frame, wanted, list.size(texture.texture), texture.name); !good)
       return good;
-    }
   }
   return {};
 }
 
 // Checks that the channels beside that of visibility can be read and written back.
 tl::expected<void, Error> check_channel(const WorkList& list, const ReconstructInputs& inputs) {
-  if (inputs.visibility_channel == VisibilityChannel::all) {
-    return {};
-  }
+  if (inputs.visibility_channel == VisibilityChannel::all) return {};
   const VkFormat format = list.format(inputs.into.visibility);
   if (channel_index(inputs.visibility_channel) >= kept_channels(format)) {
     return tl::unexpected(Error{"Visibility cannot be written to a channel of the format " +
@@ -86,9 +81,8 @@ tl::expected<void, Error> check_blocks(const WorkList& list, VkExtent2D pixels,
   const VkFormat found_format = list.format(texture);
   const VkExtent2D blocks{(pixels.width + tile_size - 1) / tile_size,
                           (pixels.height + tile_size - 1) / tile_size};
-  if (found.width == blocks.width && found.height == blocks.height && found_format == format) {
+  if (found.width == blocks.width && found.height == blocks.height && found_format == format)
     return {};
-  }
   return tl::unexpected(Error{"The pass reconstruct was given " + std::string(name) + " of " +
                               size_text(found) + " texels and " + format_name(found_format) +
                               "; it needs " + size_text(blocks) + ", one for each tile, and " +
@@ -141,10 +135,9 @@ tl::expected<void, Error> check_reconstruct(const WorkList& list, const WorkFram
   return validate(settings)
       .and_then([&] { return check_motion(inputs.motion_convention); })
       .and_then([&]() -> tl::expected<void, Error> {
-        if (inputs.half_size_results && !settings.half_resolution) {
+        if (inputs.half_size_results && !settings.half_resolution)
           return tl::unexpected(
               Error{"Outputs of half size need the setting half_resolution; it is off."});
-        }
         return {};
       })
       .and_then([&] { return check_textures(list, inputs); })
@@ -166,9 +159,7 @@ tl::expected<ReconstructSizes, Error> reconstruct_sizes(const WorkFrame& frame, 
     return size.width > 0 && size.height > 0 && size.width <= sizes.largest.width &&
            size.height <= sizes.largest.height;
   };
-  if (fits(sizes.now) && fits(sizes.previous)) {
-    return sizes;
-  }
+  if (fits(sizes.now) && fits(sizes.previous)) return sizes;
   return tl::unexpected(Error{"The depth has " + size_text(sizes.now) + " pixels and had " +
                               size_text(sizes.previous) +
                               " in the frame before; both must be within " +

@@ -28,17 +28,15 @@ tl::expected<void, Error> check(const WorkList& list, Texture equirectangular,
     return tl::unexpected(Error{"The environment's " + std::string(what) + " is " +
                                 std::to_string(given) + "; it must be " + wanted + "."});
   };
-  if (!std::has_single_bit(settings.size) || settings.size < 16 || settings.size > 2048) {
+  if (!std::has_single_bit(settings.size) || settings.size < 16 || settings.size > 2048)
     return refuse("size", settings.size, "a power of two from 16 to 2048");
-  }
   const auto most = static_cast<std::uint32_t>(std::countr_zero(settings.size)) - 1;
   if (settings.levels < 2 || settings.levels > most) {
     return refuse("number of levels", settings.levels,
                   "2 to " + std::to_string(most) + " at this size");
   }
-  if (settings.samples < 1 || settings.samples > kMostSamples) {
+  if (settings.samples < 1 || settings.samples > kMostSamples)
     return refuse("number of samples", settings.samples, "1 to " + std::to_string(kMostSamples));
-  }
   return check_inputs(list, "environment", {{"equirectangular light", equirectangular}});
 }
 
@@ -163,17 +161,14 @@ Texture add_harmonics(Steps& steps, Texture source, std::uint32_t size) {
 
 tl::expected<Environment, Error> describe_environment(WorkList& list, Texture equirectangular,
                                                       const EnvironmentSettings& settings) {
-  if (auto good = check(list, equirectangular, settings); !good) {
+  if (auto good = check(list, equirectangular, settings); !good)
     return tl::unexpected(std::move(good.error()));
-  }
   Steps steps(list);
   const Texture source = add_source(steps, equirectangular, settings.size);
   Environment result;
   result.map = add_map(steps, source, settings);
   result.harmonics = add_harmonics(steps, source, settings.size);
-  if (!steps.error().message.empty()) {
-    return tl::unexpected(steps.error());
-  }
+  if (!steps.error().message.empty()) return tl::unexpected(steps.error());
   return result;
 }
 

@@ -41,24 +41,17 @@ void for_each_choice(const Budget& budget, const Visit& visit) {
 double median_ms(std::span<const double> milliseconds) {
   std::array<double, kMostTimes> times;
   std::size_t count = 0;
-  for (auto time = milliseconds.rbegin(); time != milliseconds.rend() && count < kMostTimes;
-       ++time) {
-    if (std::isfinite(*time) && *time > 0.0) {
-      times[count++] = *time;
-    }
-  }
-  if (count < kFewestTimes) {
-    return 0.0;
-  }
+  for (auto time = milliseconds.rbegin(); time != milliseconds.rend() && count < kMostTimes; ++time)
+    if (std::isfinite(*time) && *time > 0.0) times[count++] = *time;
+  if (count < kFewestTimes) return 0.0;
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(times.begin(), middle, times.begin() + static_cast<std::ptrdiff_t>(count));
   return *middle;
 }
 
 tl::expected<void, Error> check(const Budget& budget) {
-  if (!std::isfinite(budget.target_ms) || budget.target_ms <= 0.0) {
+  if (!std::isfinite(budget.target_ms) || budget.target_ms <= 0.0)
     return tl::unexpected(Error{"The target of a budget is not a time above 0 milliseconds."});
-  }
   if (budget.least_slices < 1 || budget.most_slices > 64 ||
       budget.least_slices > budget.most_slices || budget.least_steps < 2 ||
       budget.most_steps > 64 || budget.least_steps > budget.most_steps) {
@@ -74,9 +67,8 @@ tl::expected<void, Error> check(const Budget& budget) {
 tl::expected<OcclusionSettings, Error> fit_budget(const Budget& budget,
                                                   std::span<const double> milliseconds,
                                                   const OcclusionSettings& settings) {
-  if (auto good = check(budget).and_then([&] { return validate(settings); }); !good) {
+  if (auto good = check(budget).and_then([&] { return validate(settings); }); !good)
     return tl::unexpected(good.error());
-  }
   const Samples now{settings.slices, settings.steps};
   const bool outside = now.slices < budget.least_slices || now.slices > budget.most_slices ||
                        now.steps < budget.least_steps || now.steps > budget.most_steps;

@@ -158,14 +158,10 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
                                          {"second depth", second},
                                          {"depth of receivers", receiver}});
                   });
-  if (!good) {
-    return tl::unexpected(std::move(good.error()));
-  }
+  if (!good) return tl::unexpected(std::move(good.error()));
   const VkExtent2D pixels = read_size(frame, list.size(inputs.depth_ndc));
   const auto projection = projection_of(frame.view, pixels);
-  if (!projection) {
-    return tl::unexpected(projection.error());
-  }
+  if (!projection) return tl::unexpected(projection.error());
   const std::uint32_t tile = settings.tile_size;
   const VkExtent2D size{(pixels.width + tile - 1) / tile, (pixels.height + tile - 1) / tile};
   const AlcoveArea traced = traced_tiles(frame, pixels, settings);

@@ -18,9 +18,7 @@ namespace {
 
 tl::expected<void, Error> check(const WorkList& list, const WorkFrame& frame,
                                 const GtsoInputs& inputs, const OcclusionSettings& settings) {
-  if (auto good = validate(settings); !good) {
-    return good;
-  }
+  if (auto good = validate(settings); !good) return good;
   if (!specular_reads_bent_normal(settings)) {
     return tl::unexpected(Error{"The pass specular occlusion has the setting 'specular' " +
                                 std::string(name_of(settings.specular)) +
@@ -32,11 +30,9 @@ tl::expected<void, Error> check(const WorkList& list, const WorkFrame& frame,
     for (const NamedInput& output :
          {NamedInput{"visibility", inputs.visibility},
           {"bent normals", inputs.bent_normal},
-          {"specular occlusion", or_else(inputs.into, inputs.visibility)}}) {
-      if (auto good = check_output(frame, size, list.size(output.texture), output.name); !good) {
+          {"specular occlusion", or_else(inputs.into, inputs.visibility)}})
+      if (auto good = check_output(frame, size, list.size(output.texture), output.name); !good)
         return good;
-      }
-    }
     return check_areas(frame.areas,
                        list.size(inputs.roughness ? inputs.roughness : inputs.normals));
   }
@@ -55,14 +51,11 @@ tl::expected<void, Error> check(const WorkList& list, const WorkFrame& frame,
 tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& frame,
                                            const GtsoInputs& inputs,
                                            const OcclusionSettings& settings) {
-  if (auto good = check(list, frame, inputs, settings); !good) {
+  if (auto good = check(list, frame, inputs, settings); !good)
     return tl::unexpected(std::move(good.error()));
-  }
   const VkExtent2D size = list.size(inputs.depth);
   const auto projection = projection_of(frame.view, size);
-  if (!projection) {
-    return tl::unexpected(projection.error());
-  }
+  if (!projection) return tl::unexpected(projection.error());
   const AlcoveArea written = written_area(frame, size);
   const VkExtent2D results{written.width, written.height};
   const Texture result =

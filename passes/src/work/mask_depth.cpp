@@ -58,14 +58,11 @@ tl::expected<void, Error> check_mask(const WorkList& list, const OcclusionInputs
 
 tl::expected<Depths, Error> describe_mask(WorkList& list, const WorkFrame& frame,
                                           const OcclusionInputs& inputs, Texture depth) {
-  if (auto good = check_mask(list, inputs, depth); !good) {
+  if (auto good = check_mask(list, inputs, depth); !good)
     return tl::unexpected(std::move(good.error()));
-  }
   maths::DepthCopyParameters parameters = copy_parameters(frame, list.size(depth));
   const auto projection = projection_of(frame.view, read_size(frame, list.size(depth)));
-  if (!projection) {
-    return tl::unexpected(projection.error());
-  }
+  if (!projection) return tl::unexpected(projection.error());
   parameters.not_receiving = inputs.not_receiving;
   parameters.not_occluding = inputs.not_occluding;
   parameters.sky = is_reversed(*projection) ? 0.0f : 1.0f;
@@ -93,9 +90,8 @@ tl::expected<Depths, Error> describe_mask(WorkList& list, const WorkFrame& frame
 tl::expected<Depths, Error> describe_depths(WorkList& list, const WorkFrame& frame,
                                             const OcclusionInputs& inputs) {
   const Texture given = inputs.depth_ndc;
-  if (auto good = check_areas(frame.areas, list.size(given)); given && !good) {
+  if (auto good = check_areas(frame.areas, list.size(given)); given && !good)
     return tl::unexpected(std::move(good.error()));
-  }
   const auto depth = list.samples(given) > 1 ? describe_resolve(list, frame, given)
                                              : tl::expected<Texture, Error>(given);
   return depth.and_then([&](Texture single) {

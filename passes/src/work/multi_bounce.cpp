@@ -34,9 +34,7 @@ tl::expected<void, Error> check(const WorkList& list, const WorkFrame& frame,
 tl::expected<Texture, Error> describe_multi_bounce(WorkList& list, const WorkFrame& frame,
                                                    const MultiBounceInputs& inputs,
                                                    Precision precision) {
-  if (auto good = check(list, frame, inputs); !good) {
-    return tl::unexpected(std::move(good.error()));
-  }
+  if (auto good = check(list, frame, inputs); !good) return tl::unexpected(std::move(good.error()));
   const AlcoveArea written = written_area(frame, read_size(frame, list.size(inputs.visibility)));
   const VkExtent2D size{written.width, written.height};
   const Texture result = given_or_added(list, inputs.into, "multi-bounce", colour_format(precision),

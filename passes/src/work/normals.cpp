@@ -10,14 +10,11 @@ using framegraph::Texture;
 
 tl::expected<Texture, Error> describe_normals(WorkList& list, const WorkFrame& frame,
                                               Texture depth) {
-  if (auto good = check_inputs(list, "normals", {{"linear depth", depth}}); !good) {
+  if (auto good = check_inputs(list, "normals", {{"linear depth", depth}}); !good)
     return tl::unexpected(std::move(good.error()));
-  }
   const VkExtent2D size = list.size(depth);
   const auto projection = projection_of(frame.view, size);
-  if (!projection) {
-    return tl::unexpected(projection.error());
-  }
+  if (!projection) return tl::unexpected(projection.error());
   const Texture normals = list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, "normals from depth",
                                    VK_FORMAT_R16G16B16A16_SFLOAT, size);
   const NamedTexture images[] = {{"depth_image", depth}, {"normal_image", normals}};

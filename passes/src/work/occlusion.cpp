@@ -49,32 +49,24 @@ tl::expected<OcclusionOutputs, Error> describe_model(WorkList& list, const WorkF
 tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const WorkFrame& frame,
                                                          const OcclusionInputs& inputs,
                                                          const OcclusionSettings& settings) {
-  if (auto good = validate(settings); !good) {
-    return tl::unexpected(std::move(good.error()));
-  }
+  if (auto good = validate(settings); !good) return tl::unexpected(std::move(good.error()));
   if (inputs.half_size_outputs && specular_reads_bent_normal(settings)) {
     return tl::unexpected(Error{
         "The setting 'specular' is " + std::string(name_of(settings.specular)) +
         "; outputs of half size need slices, because that model reads outputs of full size."});
   }
   const auto depths = describe_depths(list, frame, inputs);
-  if (!depths) {
-    return tl::unexpected(depths.error());
-  }
+  if (!depths) return tl::unexpected(depths.error());
   const VkFormat depth_format = inputs.depth_format != VK_FORMAT_UNDEFINED
                                     ? inputs.depth_format
                                     : list.format(inputs.depth_ndc);
   const auto depth = describe_linear(list, frame, depths->all, settings);
-  if (!depth) {
-    return tl::unexpected(depth.error());
-  }
+  if (!depth) return tl::unexpected(depth.error());
   framegraph::Texture normals = inputs.normals;
   const bool in_view_space = inputs.normals_in_view_space || !normals;
   if (!normals && specular_reads_bent_normal(settings)) {
     auto made = describe_normals(list, frame, *depth);
-    if (!made) {
-      return tl::unexpected(std::move(made.error()));
-    }
+    if (!made) return tl::unexpected(std::move(made.error()));
     normals = *made;
   }
   const auto raw_occlusion =
@@ -90,9 +82,7 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
                      .normal_encoding = inputs.normal_encoding,
                      .normals_forward_z = inputs.normals_forward_z},
                     settings);
-  if (!raw_occlusion) {
-    return tl::unexpected(raw_occlusion.error());
-  }
+  if (!raw_occlusion) return tl::unexpected(raw_occlusion.error());
   const auto filtered = describe_reconstruct(list, frame,
                                              {.raw_occlusion = *raw_occlusion,
                                               .depth_ndc = depths->receivers,
@@ -108,9 +98,7 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
                                               .visibility_channel = inputs.visibility_channel,
                                               .half_size_results = inputs.half_size_outputs},
                                              settings);
-  if (!filtered) {
-    return tl::unexpected(filtered.error());
-  }
+  if (!filtered) return tl::unexpected(filtered.error());
   const OcclusionOutputs outputs{filtered->visibility, filtered->bent_normal, filtered->specular,
                                  *depth, normals};
   return specular_reads_bent_normal(settings)
@@ -122,9 +110,7 @@ tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFr
                                                     const ViewInputs& inputs,
                                                     const OcclusionSettings& settings) {
   auto outputs = describe_occlusion(list, frame, inputs.occlusion, settings);
-  if (!outputs || !inputs.multi_bounce) {
-    return outputs;
-  }
+  if (!outputs || !inputs.multi_bounce) return outputs;
   const VisibilityChannel channel = inputs.occlusion.into.visibility
                                         ? inputs.occlusion.visibility_channel
                                         : VisibilityChannel::all;

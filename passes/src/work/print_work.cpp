@@ -33,12 +33,8 @@ void print(Text& to, const AlcoveWorkResource& resource) {
     to << ", " << format_name(static_cast<VkFormat>(resource.format)) << ", "
        << std::uint64_t{resource.width} << "x" << std::uint64_t{resource.height};
   }
-  if (resource.mip_count > 1) {
-    to << ", " << std::uint64_t{resource.mip_count} << " mips";
-  }
-  if (resource.size > 0) {
-    to << ", " << resource.size << " bytes";
-  }
+  if (resource.mip_count > 1) to << ", " << std::uint64_t{resource.mip_count} << " mips";
+  if (resource.size > 0) to << ", " << resource.size << " bytes";
   if (resource.first_dispatch == ALCOVE_WORK_NONE) {
     to << ", not used\n";
   } else {
@@ -69,9 +65,7 @@ void print(Text& to, const AlcoveWorkDispatch& dispatch, const AlcoveWork& work)
        << std::uint64_t{dispatch.constants[i].value}
        << (i + 1 == dispatch.constant_count ? "\n" : "");
   }
-  for (std::uint32_t i = 0; i < dispatch.binding_count; ++i) {
-    print(to, dispatch.bindings[i], work);
-  }
+  for (std::uint32_t i = 0; i < dispatch.binding_count; ++i) print(to, dispatch.bindings[i], work);
 }
 
 }  // namespace
@@ -88,9 +82,8 @@ std::string print_work(const AlcoveWork& work) {
     to << "  " << std::uint64_t{i} << " ";
     print(to, work.dispatches[i], work);
   }
-  if (work.history_count > 0) {
+  if (work.history_count > 0)
     to << "histories, " << (work.history_valid != 0 ? "which continue\n" : "which begin\n");
-  }
   for (std::uint32_t i = 0; i < work.history_count; ++i) {
     const AlcoveWorkHistory& history = work.histories[i];
     to << "  " << work.resources[history.current].name << ": " << std::uint64_t{history.current}

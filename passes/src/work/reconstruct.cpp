@@ -29,28 +29,19 @@ enum class Past : std::uint8_t {
 };
 
 Shader shader_of(bool history, bool lobe, bool half) {
-  if (half && lobe) {
+  if (half && lobe)
     return history ? Shader::reconstruct_half_specular_history : Shader::reconstruct_half_specular;
-  }
-  if (half) {
-    return history ? Shader::reconstruct_half_history : Shader::reconstruct_half;
-  }
-  if (lobe) {
-    return history ? Shader::reconstruct_specular_history : Shader::reconstruct_specular;
-  }
+  if (half) return history ? Shader::reconstruct_half_history : Shader::reconstruct_half;
+  if (lobe) return history ? Shader::reconstruct_specular_history : Shader::reconstruct_specular;
   return history ? Shader::reconstruct_history : Shader::reconstruct;
 }
 
 Past past_of(const WorkFrame& frame, const ReconstructSizes& sizes, bool history_valid,
              bool motion) {
-  if (!history_valid) {
-    return Past::none;
-  }
+  if (!history_valid) return Past::none;
   const bool same_size =
       sizes.now.width == sizes.previous.width && sizes.now.height == sizes.previous.height;
-  if (motion || !same_size || frame.view != frame.previous_view) {
-    return Past::moving;
-  }
+  if (motion || !same_size || frame.view != frame.previous_view) return Past::moving;
   return Past::unchanged;
 }
 
@@ -187,37 +178,24 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   const bool half = settings.half_resolution;
   WorkFrame frame = history ? given_frame : without_past(given_frame);
   ReconstructInputs inputs = given;
-  if (frame.view == frame.previous_view && frame.static_frames > 0) {
-    inputs.motion = {};
-  }
-  if (!inputs.raw_occlusion.lobe) {
-    inputs.roughness = {};
-  }
+  if (frame.view == frame.previous_view && frame.static_frames > 0) inputs.motion = {};
+  if (!inputs.raw_occlusion.lobe) inputs.roughness = {};
   if (!inputs.normals) {  // those from depth are in view space
     inputs.normals_in_view_space = true;
     inputs.normals_forward_z = false;
   }
-  if (!inputs.into.visibility || !needs_visibility(settings)) {
+  if (!inputs.into.visibility || !needs_visibility(settings))
     inputs.visibility_channel = VisibilityChannel::all;
-  }
-  if (auto good = check_reconstruct(list, frame, inputs, settings); !good) {
+  if (auto good = check_reconstruct(list, frame, inputs, settings); !good)
     return tl::unexpected(good.error());
-  }
-  if (!history) {
-    inputs.motion = {};
-  }
+  if (!history) inputs.motion = {};
   const auto sizes = reconstruct_sizes(frame, read_size(frame, list.size(inputs.depth_ndc)));
-  if (!sizes) {
-    return tl::unexpected(sizes.error());
-  }
+  if (!sizes) return tl::unexpected(sizes.error());
   const auto projection = projection_of(frame.view, sizes->now);
-  if (!projection) {
-    return tl::unexpected(projection.error());
-  }
+  if (!projection) return tl::unexpected(projection.error());
   const Textures textures = add_textures(list, frame, inputs, settings, *sizes);
-  if (!textures.valid) {  // the previous view is not read
+  if (!textures.valid)  // the previous view is not read
     frame.previous_view = frame.view;
-  }
   const auto previous = projection_of(frame.previous_view, sizes->previous, "The previous view");
   if (!previous) {
     return tl::unexpected(Error{previous.error().message +
@@ -229,9 +207,8 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
       inputs.depth_format != VK_FORMAT_UNDEFINED ? inputs.depth_format
                                                  : list.format(inputs.depth_ndc));
   // In a static view all frames get the same weight in the history.
-  if (past == Past::unchanged && frame.static_frames >= kConvergedFrames) {
+  if (past == Past::unchanged && frame.static_frames >= kConvergedFrames)
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
-  }
   const VkExtent2D stored =
       textures.texels.current ? list.size(textures.texels.current) : VkExtent2D{1, 1};
   parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
@@ -256,12 +233,8 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                               .images = images_of(inputs, textures, half),
                               .parameters = bytes_of(parameters),
                               .size = {covered.width, (covered.height + blocks - 1) / blocks, 1}});
-  if (!added) {
-    return tl::unexpected(std::move(added.error()));
-  }
-  if (!half) {
-    return textures.result;
-  }
+  if (!added) return tl::unexpected(std::move(added.error()));
+  if (!half) return textures.result;
   return describe_upsample(list, frame,
                            {.half = textures.texels.current,
                             .half_depth = textures.depth.current,

@@ -181,9 +181,8 @@ maths::ReconstructParameters reconstruct_parameters(
   const maths::vec4 y = previous_from_pixel[1] / texel - 0.5f * previous_from_pixel[3];
   parameters.previous_from_pixel =
       maths::transpose(maths::mat4(x, y, previous_from_pixel[3], previous_from_pixel[2]));
-  if (!is_perspective(projection)) {
+  if (!is_perspective(projection))
     std::swap(parameters.previous_from_pixel[2], parameters.previous_from_pixel[3]);
-  }
   parameters.normal_from_view = maths::transpose(to_view);
   parameters.plane_from_normal = plane_from_normal(projection, to_view);
   parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));

@@ -11,9 +11,7 @@ namespace alcove::passes {
 
 [[nodiscard]] inline maths::mat4 to_mat4(const Matrix& matrix) {
   maths::mat4 result;
-  for (int i = 0; i < 16; ++i) {
-    result[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)];
-  }
+  for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)];
   return result;
 }
 
@@ -28,9 +26,7 @@ namespace alcove::passes {
       const float* const u = &m[4 * a];
       const float* const v = &m[4 * b];
       const float dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-      if (!(std::abs(dot - (a == b ? 1.0f : 0.0f)) <= kAxes)) {
-        return false;
-      }
+      if (!(std::abs(dot - (a == b ? 1.0f : 0.0f)) <= kAxes)) return false;
     }
   }
   return std::abs(m[3]) <= kRow && std::abs(m[7]) <= kRow && std::abs(m[11]) <= kRow &&

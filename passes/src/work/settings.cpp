@@ -35,12 +35,9 @@ std::string complaint(const SettingInfo& info, const Value& value) {
 tl::expected<void, Error> check_ranges(const OcclusionSettings& settings) {
   tl::expected<void, Error> result;
   for_each_setting(settings, [&](const SettingInfo& info, const auto& value) {
-    if (!result) {
-      return;
-    }
-    if (const std::string said = complaint(info, value); !said.empty()) {
+    if (!result) return;
+    if (const std::string said = complaint(info, value); !said.empty())
       result = tl::unexpected(Error{"The setting '" + std::string(info.name) + "' is " + said});
-    }
   });
   return result;
 }
@@ -59,15 +56,12 @@ bool SettingRange::contains(std::uint32_t value) const {
 std::string SettingRange::text() const {
   if (power_of_two) {
     std::string all = number_text(minimum);
-    for (float value = minimum * 2.0f; value <= maximum; value *= 2.0f) {
+    for (float value = minimum * 2.0f; value <= maximum; value *= 2.0f)
       all += (value < maximum ? ", " : " or ") + number_text(value);
-    }
     return all;
   }
   const std::string low = number_text(minimum);
-  if (std::isinf(maximum)) {
-    return (above_minimum ? "above " : "at least ") + low + " and finite";
-  }
+  if (std::isinf(maximum)) return (above_minimum ? "above " : "at least ") + low + " and finite";
   return (above_minimum ? "above " + low + " and at most " : low + " to ") + number_text(maximum);
 }
 
@@ -109,9 +103,7 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
 }
 
 tl::expected<void, Error> validate(const OcclusionSettings& settings) {
-  if (auto good = check_ranges(settings); !good) {
-    return good;
-  }
+  if (auto good = check_ranges(settings); !good) return good;
   if (settings.half_resolution && settings.tile_size < 2) {
     return tl::unexpected(Error{
         "The setting 'half_resolution' is true with a tile_size of 1; choose a tile_size of at "

@@ -58,15 +58,14 @@ void read_instruction(Words words, std::vector<Id>& ids) {
       ids.at(words[1]).name = string_of(words.subspan(2));
       break;
     case kOpDecorate:
-      if (words[2] == kDecorationBinding) {
+      if (words[2] == kDecorationBinding)
         ids.at(words[1]).binding = words[3];
-      } else if (words[2] == kDecorationSpecId) {
+      else if (words[2] == kDecorationSpecId)
         ids.at(words[1]).constant_id = words[3];
-      } else if (words[2] == kDecorationNonWritable) {
+      else if (words[2] == kDecorationNonWritable)
         ids.at(words[1]).non_writable = true;
-      } else if (words[2] == kDecorationNonReadable) {
+      else if (words[2] == kDecorationNonReadable)
         ids.at(words[1]).non_readable = true;
-      }
       break;
     case kOpTypeImage:
     case kOpTypeSampledImage:
@@ -85,9 +84,8 @@ std::vector<Id> ids_of(Words module) {
   std::vector<Id> ids(module[kBoundWord]);
   for (std::size_t at = kHeaderWords; at < module.size();) {
     const Words instruction = module.subspan(at, module[at] >> 16);
-    if (opcode_of(instruction) == kOpFunction) {
+    if (opcode_of(instruction) == kOpFunction)
       break;  // names, decorations, types and variables come before the functions
-    }
     read_instruction(instruction, ids);
     at += instruction.size();
   }
@@ -96,20 +94,12 @@ std::vector<Id> ids_of(Words module) {
 
 VkDescriptorType descriptor_type(const std::vector<Id>& ids, const Id& variable) {
   const std::uint32_t storage_class = variable.definition[3];
-  if (storage_class == kStorageClassUniform) {
-    return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-  }
-  if (storage_class == kStorageClassStorageBuffer) {
-    return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  }
+  if (storage_class == kStorageClassUniform) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  if (storage_class == kStorageClassStorageBuffer) return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   const Words pointer = ids.at(variable.definition[1]).definition;
   const Words type = ids.at(pointer[3]).definition;
-  if (type.empty()) {
-    return VK_DESCRIPTOR_TYPE_MAX_ENUM;
-  }
-  if (opcode_of(type) == kOpTypeSampledImage) {
-    return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-  }
+  if (type.empty()) return VK_DESCRIPTOR_TYPE_MAX_ENUM;
+  if (opcode_of(type) == kOpTypeSampledImage) return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   return type[7] == kImageWithoutSampler ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                                          : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
 }
@@ -117,16 +107,10 @@ VkDescriptorType descriptor_type(const std::vector<Id>& ids, const Id& variable)
 // Only storage images are written. (The members of a storage block, not the variable, have the
 // decoration of a block that is only read. The blocks of this library are tables.)
 std::uint32_t access_of(const Id& variable, VkDescriptorType type) {
-  if (type != VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) {
-    return ALCOVE_WORK_ACCESS_READ;
-  }
+  if (type != VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) return ALCOVE_WORK_ACCESS_READ;
   std::uint32_t access = ALCOVE_WORK_ACCESS_READ | ALCOVE_WORK_ACCESS_WRITE;
-  if (variable.non_readable) {
-    access &= ~std::uint32_t{ALCOVE_WORK_ACCESS_READ};
-  }
-  if (variable.non_writable) {
-    access &= ~std::uint32_t{ALCOVE_WORK_ACCESS_WRITE};
-  }
+  if (variable.non_readable) access &= ~std::uint32_t{ALCOVE_WORK_ACCESS_READ};
+  if (variable.non_writable) access &= ~std::uint32_t{ALCOVE_WORK_ACCESS_WRITE};
   return access;
 }
 

@@ -88,14 +88,10 @@ const Interfaces& interfaces() {
     Interfaces read;
     for (std::size_t i = 0; i < kShaderCount; ++i) {
       read.shaders[i] = read_shader_interface(kSources[i].code);
-      for (const ShaderConstant& constant : read.shaders[i].constants) {
+      for (const ShaderConstant& constant : read.shaders[i].constants)
         read.constant_names.push_back(constant.name);
-      }
-      for (const ShaderBinding& binding : read.shaders[i].bindings) {
-        if (binding.is_image()) {
-          read.image_names.push_back(binding.name);
-        }
-      }
+      for (const ShaderBinding& binding : read.shaders[i].bindings)
+        if (binding.is_image()) read.image_names.push_back(binding.name);
     }
     std::ranges::sort(read.constant_names);
     std::ranges::sort(read.image_names);

@@ -37,9 +37,7 @@ struct ShaderSource {
 template <typename Element>
 const Element* find_named(std::span<const Element> given, std::string_view name,
                           std::size_t expected) {
-  if (expected < given.size() && given[expected].name == name) {
-    return &given[expected];
-  }
+  if (expected < given.size() && given[expected].name == name) return &given[expected];
   const auto found = std::ranges::find(given, name, &Element::name);
   return found == given.end() ? nullptr : &*found;
 }

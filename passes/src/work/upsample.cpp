@@ -20,9 +20,8 @@ namespace {
 constexpr float kTolerancePx = 1.0f;
 
 Shader shader_of(const UpsampleInputs& inputs, const Occlusion& result) {
-  if (inputs.half_size_results) {
+  if (inputs.half_size_results)
     return result.specular ? Shader::half_output_specular : Shader::half_output;
-  }
   return result.specular ? Shader::upsample_specular : Shader::upsample;
 }
 
@@ -77,9 +76,7 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
                                                  const OcclusionSettings& settings) {
   const VkExtent2D read = read_size(frame, list.size(inputs.depth_ndc));
   const auto projection = projection_of(frame.view, read);
-  if (!projection) {
-    return tl::unexpected(projection.error());
-  }
+  if (!projection) return tl::unexpected(projection.error());
   const Texture written = or_else(or_else(result.visibility, result.bent_normal), result.specular);
   const bool bent = bool(result.bent_normal);
   const bool keeps = inputs.visibility_channel != VisibilityChannel::all;

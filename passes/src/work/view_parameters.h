@@ -35,9 +35,8 @@ namespace alcove::passes {
         unusable("view_from_world is not a rotation and translation; it must be column-major, "
                  "without scale and finite"));
   }
-  if (is_transposed(view.clip_from_view)) {
+  if (is_transposed(view.clip_from_view))
     return tl::unexpected(unusable("clip_from_view is transposed; it must be column-major"));
-  }
   return maths::make_projection(to_mat4(view.clip_from_view), size.width, size.height)
       .map_error(unusable);
 }
@@ -48,9 +47,7 @@ namespace alcove::passes {
                                                   bool forward_z = false) {
   maths::mat4 result =
       normals_in_view_space ? maths::mat4(1.0f) : maths::mat4(to_rigid(view.view_from_world));
-  if (normals_in_view_space && forward_z) {
-    result[2][2] = -1.0f;
-  }
+  if (normals_in_view_space && forward_z) result[2][2] = -1.0f;
   return result;
 }
 
@@ -68,9 +65,7 @@ namespace alcove::passes {
   const bool perspective = is_perspective(projection);
   const maths::dvec2 linear = perspective ? maths::dvec2(unproject.z, unproject.w) / unproject.y
                                           : maths::dvec2(unproject.x, unproject.y) / unproject.w;
-  if (!perspective) {
-    return {static_cast<float>(linear.x), static_cast<float>(linear.y)};
-  }
+  if (!perspective) return {static_cast<float>(linear.x), static_cast<float>(linear.y)};
   const double far = is_reversed(projection) ? linear.y : linear.x + linear.y;
   // If the matrix has rounding errors, its inverse depth at the far plane can be slightly negative.
   return {static_cast<float>(std::abs(linear.x)), static_cast<float>(std::max(far, 0.0))};

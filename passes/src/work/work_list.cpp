@@ -35,9 +35,8 @@ AlcoveBindingType binding_type(VkDescriptorType type) {
 // Returns the size of the texels of an image that the passes create.
 std::uint64_t image_bytes(VkFormat format, VkExtent2D size, std::uint32_t mips) {
   std::uint64_t texels = 0;
-  for (std::uint32_t mip = 0; mip < mips; ++mip) {
+  for (std::uint32_t mip = 0; mip < mips; ++mip)
     texels += std::uint64_t{std::max(size.width >> mip, 1u)} * std::max(size.height >> mip, 1u);
-  }
   return texels * texel_bytes(format);
 }
 
@@ -64,9 +63,7 @@ WorkList::WorkList(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
 
 Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format, VkExtent2D size,
                       std::uint32_t mips, std::uint32_t samples) {
-  if (work_.resource_count == ALCOVE_MAX_WORK_RESOURCES) {
-    return {};
-  }
+  if (work_.resource_count == ALCOVE_MAX_WORK_RESOURCES) return {};
   work_.resources[work_.resource_count] = {
       .name = name,
       .kind = kind,
@@ -87,9 +84,7 @@ WorkList::History WorkList::add_history(HistoryRole role, VkFormat format, VkExt
   const char* const name = kHistoryNames.at(static_cast<std::size_t>(role));
   History history{add(ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS, name, format, size),
                   add(ALCOVE_RESOURCE_KIND_HISTORY_CURRENT, name, format, size)};
-  if (!history.current || work_.history_count == ALCOVE_MAX_WORK_HISTORIES) {
-    return {};
-  }
+  if (!history.current || work_.history_count == ALCOVE_MAX_WORK_HISTORIES) return {};
   work_.histories[work_.history_count++] = {history.previous.index, history.current.index};
   history.valid = source_.is_valid != nullptr
                       ? source_.is_valid(source_.user, role, history)
@@ -119,9 +114,8 @@ tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
                                 std::string(what) + "."});
   };
   if (work_.dispatch_count == ALCOVE_MAX_WORK_DISPATCHES ||
-      info.parameters.size() > ALCOVE_MAX_WORK_PARAMETER_BYTES) {
+      info.parameters.size() > ALCOVE_MAX_WORK_PARAMETER_BYTES)
     return fail("does not fit into the list of work");
-  }
   AlcoveWorkDispatch& made = work_.dispatches[work_.dispatch_count];
   made.label = info.label;
   made.shader = source.name.data();
@@ -129,18 +123,14 @@ tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
   made.groups[1] = groups(info.size.height);
   made.groups[2] = info.size.depth;
   const auto constants = resolve_constants(info.shader, info.constants, made.constants);
-  if (!constants) {
-    return tl::unexpected(constants.error());
-  }
+  if (!constants) return tl::unexpected(constants.error());
   made.constant_count = *constants;
   made.binding_count = 0;
   std::size_t images = 0;
   for (const ShaderBinding& binding : shader_interface(info.shader).bindings) {
     const NamedTexture table{"", {}};
     const NamedTexture* given = &table;
-    if (binding.is_image()) {
-      given = find_named(info.images, binding.name, images++);
-    }
+    if (binding.is_image()) given = find_named(info.images, binding.name, images++);
     if (given == nullptr || !bind(made, binding, *given, source.table)) {
       return fail(std::string("has a binding '").append(binding.name) +
                   "', for which its pass gives no image; name it in the pass's list of images");
@@ -170,14 +160,10 @@ bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding,
            .resource = ALCOVE_WORK_NONE,
            .mip = given.range.base_mip,
            .mip_count = 0};
-  if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS) {
-    return true;
-  }
+  if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS) return true;
   const Texture used =
       bound.type == ALCOVE_BINDING_TYPE_TABLE ? Texture{add_table("table", table)} : given.texture;
-  if (find(used) == nullptr) {
-    return false;
-  }
+  if (find(used) == nullptr) return false;
   AlcoveWorkResource& resource = work_.resources[used.index];
   bound.resource = used.index;
   bound.mip_count = given.range.mips == framegraph::kAll ? resource.mip_count : given.range.mips;

@@ -73,12 +73,10 @@ Result<void> run_cost(const Options& options) {
   ALCOVE_TRY(const auto costs, measure(options));
   std::cout << table_of(costs, options.cost.loops);
   Result<void> written;
-  if (!options.cost.json.empty()) {
+  if (!options.cost.json.empty())
     written = write_text(options.cost.json, to_json(costs).dump(2) + "\n");
-  }
-  if (written && !options.cost.chart.empty()) {
+  if (written && !options.cost.chart.empty())
     written = write_text(options.cost.chart, chart_of(costs));
-  }
   return written;
 }
 

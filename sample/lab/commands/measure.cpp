@@ -90,9 +90,8 @@ Json print(const MeasuredFrame& frame) {
   const auto models = modelled(inputs);
   std::cout << fmt::format("{}, {}x{}, moving camera: measured ms", frame.settings.label,
                            inputs.width, inputs.height);
-  for (const auto& [part, model] : models) {
+  for (const auto& [part, model] : models)
     std::cout << fmt::format("; modelled {} ms, measured / modelled", part->family);
-  }
   std::cout << "\n";
   Json passes = Json::array();
   for (const PassTime& pass : frame.passes) {
@@ -128,15 +127,13 @@ Json print_registers(const Session& session) {
       break;
     }
     std::cout << fmt::format("  subgroup {}:", compiled->wave);
-    for (const auto& [name, value] : compiled->statistics) {
+    for (const auto& [name, value] : compiled->statistics)
       std::cout << fmt::format(" {} {:g},", name, value);
-    }
     std::cout << "\n";
     list.push_back({{"subgroup", compiled->wave}, {"statistics", compiled->statistics}});
   }
-  if (captured_pipelines().empty()) {
+  if (captured_pipelines().empty())
     std::cout << "  The device does not have VK_KHR_pipeline_executable_properties.\n";
-  }
   return list;
 }
 
@@ -145,9 +142,8 @@ Result<void> compile(const Session& session, const Options& options, const CostI
   ALCOVE_TRY(const auto renderer,
              FrameRenderer::create(*session.gpu, session.scene, {inputs.width, inputs.height},
                                    options.occlusion.normals));
-  for (std::uint32_t i = 0; i < 3; ++i) {
+  for (std::uint32_t i = 0; i < 3; ++i)
     ALCOVE_TRY_VOID(renderer->draw(moving_request(session, inputs, i)));
-  }
   return {};
 }
 

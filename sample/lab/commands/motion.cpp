@@ -134,9 +134,8 @@ std::string table_of(MotionKind kind, const MotionReport& report) {
 
 std::string table_of(const CutReport& report) {
   std::string out = "cut: RMSE by frames since the cut   kept     restarted history\n";
-  for (const CutErrors& errors : report.after) {
+  for (const CutErrors& errors : report.after)
     out += fmt::format("  {:<34}{:.4f}   {:.4f}\n", errors.frames, errors.kept, errors.restarted);
-  }
   return out;
 }
 

@@ -95,9 +95,8 @@ class ScenePage {
         found.chosen.settings.slices, found.chosen.settings.steps,
         found.chosen.settings.depth_layers, goal.rmse(found.chosen));
     json_["requirements"] = Json::array();
-    for (const FeatureEffect& feature : found.features) {
+    for (const FeatureEffect& feature : found.features)
       json_["requirements"].push_back(feature.sentence());
-    }
     ALCOVE_TRY(const auto needs, view_needs(session_, errors_, times_, goal, found.chosen));
     for (const std::string& need : needs) json_["requirements"].push_back(need);
     return {};

@@ -179,9 +179,8 @@ Result<void> EngineRun::State::create_context() {
   info.frames_in_flight = kSlots;
   AlcoveContext* made = nullptr;
   std::array<char, ALCOVE_MAX_MESSAGE> message{};
-  if (alcoveCreateContext(&info, &made, message.data()) != ALCOVE_SUCCESS) {
+  if (alcoveCreateContext(&info, &made, message.data()) != ALCOVE_SUCCESS)
     return Failure(message.data());
-  }
   context = Context(made);
   return {};
 }
@@ -240,9 +239,8 @@ Result<void> EngineRun::State::draw_frame(std::uint32_t frame) {
                         .normal = import(graph, view.normals, true),
                         .albedo = import(graph, drawn.other.albedo, true),
                         .motion = import(graph, view.motion, true)});
-    if (course.other_inputs) {
+    if (course.other_inputs)
       (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
-    }
     return {};
   });
   if (!report) return Failure(report.error());
@@ -363,18 +361,16 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
     const VkCommandBuffer commands = s.commands.at(i % kSlots);
     device = s.begin(commands);
     if (device == VK_SUCCESS &&
-        alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS) {
+        alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
       result.said = std::string(alcoveGetMessage(context)) + "\n";
-    }
     device = device == VK_SUCCESS ? vkEndCommandBuffer(commands) : device;
     if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) device = s.submit(waiting);
     waiting = late ? commands : VK_NULL_HANDLE;
     if (device == VK_SUCCESS && !late) device = s.submit(commands);
     if (device != VK_SUCCESS) return device_failure("run a frame", device);
   }
-  if (waiting != VK_NULL_HANDLE && s.submit(waiting) != VK_SUCCESS) {
+  if (waiting != VK_NULL_HANDLE && s.submit(waiting) != VK_SUCCESS)
     return Failure("The last frame could not be run.");
-  }
   if (result.said.empty()) {
     result.said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
     alcoveDiagnose(context, result.said.data(), result.said.size());

@@ -79,9 +79,8 @@ Result<void> Splitter::add_noise(const StaticSetup& setup, const OcclusionSettin
   split_.rmse = std::sqrt(whole_error_);
   current_error_ = whole_error_ - noise;
   current_ = std::move(other);
-  for (std::size_t i = 0; i < current_.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < current_.pixels.size(); ++i)
     current_.pixels[i] = 0.5f * (current_.pixels[i] + own.pixels[i]);
-  }
   split_.causes.push_back({"noise", "noise", noise / whole_error_, own, current_});
   return {};
 }
@@ -145,9 +144,8 @@ std::string table_of(const ErrorSplit& split) {
 
 nlohmann::ordered_json to_json(const ErrorSplit& split) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const ErrorCause& cause : split.causes) {
+  for (const ErrorCause& cause : split.causes)
     list.push_back({{"cause", cause.key}, {"share", cause.share}});
-  }
   return list;
 }
 
@@ -156,9 +154,8 @@ Image<glm::vec3> picture_of(const ErrorCause& cause) {
 }
 
 Result<void> write_pictures(const ErrorSplit& split, const std::filesystem::path& folder) {
-  for (const ErrorCause& cause : split.causes) {
+  for (const ErrorCause& cause : split.causes)
     ALCOVE_TRY_VOID(write_png(folder / ("split_" + cause.key + ".png"), picture_of(cause)));
-  }
   return {};
 }
 

@@ -14,17 +14,15 @@ namespace {
 
 Image<glm::vec3> bounced(const Image<float>& visibility, const Image<glm::vec3>& albedo) {
   Image<glm::vec3> result(visibility.width, visibility.height);
-  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < result.pixels.size(); ++i)
     result.pixels[i] = maths::multi_bounce(visibility.pixels[i], albedo.pixels[i]);
-  }
   return result;
 }
 
 Image<glm::vec3> grey(const Image<float>& values) {
   Image<glm::vec3> result(values.width, values.height);
-  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < result.pixels.size(); ++i)
     result.pixels[i] = glm::vec3(values.pixels[i]);
-  }
   return result;
 }
 

@@ -110,9 +110,8 @@ std::vector<Image<float>> roughness_images(const Rendering& rendering) {
   const Image<float>& materials = rendering.images.roughness;
   if (rendering.light.roughness.empty()) return {materials};
   std::vector<Image<float>> images;
-  for (const float roughness : rendering.light.roughness) {
+  for (const float roughness : rendering.light.roughness)
     images.emplace_back(materials.width, materials.height, roughness);
-  }
   return images;
 }
 
@@ -123,14 +122,12 @@ Result<IndirectTruths> indirect_truths_of(const Rendering& rendering, const Trut
   truths.block = block_size(depth, options.indirect_points);
   truths.sampled = choose_pixels(depth, truths.block);
   truths.points = surface_points(rays, rendering.camera, rendering.images.normal_ws, depth);
-  for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < truths.sampled.pixels.size(); ++i)
     if (truths.sampled.pixels[i] == 0) truths.points.normal_ws.pixels[i] = glm::vec3(0.0f);
-  }
   const CachedTracer tracer(rendering, options, rays, truths.points);
   truths.interreflection = tracer.interreflection();
-  for (const Image<float>& roughness : roughness_images(rendering)) {
+  for (const Image<float>& roughness : roughness_images(rendering))
     truths.specular.push_back(tracer.specular(roughness));
-  }
   if (rendering.light.lit_steps) truths.lit = tracer.lit(roughness_images(rendering).front());
   return truths;
 }

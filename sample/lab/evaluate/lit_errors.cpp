@@ -40,11 +40,9 @@ Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths
   Image<glm::vec3> small((picture.width + block - 1) / block, (picture.height + block - 1) / block);
   for (const bool sky : {true, false}) {
     for (std::uint32_t y = 0; y < picture.height; ++y) {
-      for (std::uint32_t x = 0; x < picture.width; ++x) {
-        if (sky ? std::isinf(depth.at(x, y)) : light.sampled.at(x, y) != 0) {
+      for (std::uint32_t x = 0; x < picture.width; ++x)
+        if (sky ? std::isinf(depth.at(x, y)) : light.sampled.at(x, y) != 0)
           small.at(x / block, y / block) = picture.at(x, y);
-        }
-      }
     }
   }
   return small;
@@ -52,9 +50,8 @@ Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths
 
 void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
            Image<glm::vec3>& canvas) {
-  for (std::uint32_t y = 0; y < tile.height; ++y) {
+  for (std::uint32_t y = 0; y < tile.height; ++y)
     for (std::uint32_t x = 0; x < tile.width; ++x) canvas.at(left + x, top + y) = tile.at(x, y);
-  }
 }
 
 // Returns an image of the signed error relative to `mean`: grey where there is no error, brighter
@@ -152,9 +149,8 @@ Result<void> write_lit_steps(const Rendering& rendering, const IndirectTruths& l
   const std::uint32_t width = tiles[0].width + 2;
   const std::uint32_t height = tiles[0].height + 2;
   Image<glm::vec3> canvas(width * kColumns, height * 2, glm::vec3(1.0f));
-  for (std::uint32_t i = 0; i < tiles.size(); ++i) {
+  for (std::uint32_t i = 0; i < tiles.size(); ++i)
     paste(tiles[i], i % kColumns * width, i / kColumns * height, canvas);
-  }
   ALCOVE_TRY_VOID(write_png(folder / "lit_steps.png", canvas));
   ALCOVE_TRY_VOID(write_png(folder / "truth_lit.png", tiles[kTruth]));
   Image<glm::vec3> comparison(width * 3 - 2, tiles[0].height, glm::vec3(1.0f));

@@ -113,9 +113,8 @@ Result<std::vector<double>> measure_grid(const Session& session, const StaticSet
   ALCOVE_TRY(const auto report, run_variants(session, setup, truth_options,
                                              sampling_grid(session.settings), "grid", 0));
   std::vector<double> rmse;
-  for (auto row = report.rows.begin() + 1; row != report.rows.end(); ++row) {
+  for (auto row = report.rows.begin() + 1; row != report.rows.end(); ++row)
     rmse.push_back(row->scene.rmse);
-  }
   return rmse;
 }
 

@@ -65,16 +65,14 @@ void change_view_matrices(F& frame, const Change& change) {
 }
 
 void transpose(float* matrix, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) {
+  for (std::size_t i = 0; i < size; ++i)
     for (std::size_t k = 0; k < i; ++k) std::swap(matrix[4 * i + k], matrix[4 * k + i]);
-  }
 }
 
 void invert(float* m) {
   const float x = m[12], y = m[13], z = m[14];
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i)
     m[12 + i] = -(m[4 * i] * x + m[4 * i + 1] * y + m[4 * i + 2] * z);
-  }
   transpose(m, 3);
 }
 
@@ -305,10 +303,9 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"jitter added to motion vectors that have it", "with other jitter",
        [](F& f) {
          scale_motion(f, 1.0f, 1.0f);
-         for (std::size_t i = 0; i < 2; ++i) {
+         for (std::size_t i = 0; i < 2; ++i)
            f.view.motion_offset[i] = 0.5f * (f.view.previous_camera.clip_from_view[8 + i] -
                                              f.view.camera.clip_from_view[8 + i]);
-         }
        }},
       {"motion vectors without the camera's motion", "motion vectors are 0",
        [](F& f) { scale_motion(f, 1e-6f, 1e-6f); }},

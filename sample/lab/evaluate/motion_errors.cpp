@@ -89,9 +89,8 @@ std::uint8_t same_surface(const Eye& eye, const RenderedFrame& before, glm::vec2
     const glm::vec3 there =
         eye.position(static_cast<std::uint32_t>(index % before.depth.width),
                      static_cast<std::uint32_t>(index / before.depth.width), depth);
-    if (std::abs(glm::dot(normal_ws, there - position_ws)) < kOffPlane * depth) {
+    if (std::abs(glm::dot(normal_ws, there - position_ws)) < kOffPlane * depth)
       found = static_cast<std::uint8_t>(found | 1u << static_cast<unsigned>(i));
-    }
   }
   return found;
 }
@@ -116,9 +115,8 @@ double change_at(std::size_t pixel, const Image<float>& now, const Image<float>&
                  const Reprojection& reprojection) {
   const Texels texels(reprojection.position_px.pixels[pixel]);
   float then = 0.0f;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4; ++i)
     then += texels.weight(i) * before.pixels[static_cast<std::size_t>(texels.index(i, before))];
-  }
   return now.pixels[pixel] - then;
 }
 
@@ -151,9 +149,8 @@ Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
 
 Image<Age> first_ages(const RenderedFrame& now) {
   Image<Age> ages(now.depth.width, now.depth.height);
-  for (std::size_t i = 0; i < ages.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < ages.pixels.size(); ++i)
     ages.pixels[i].frames = std::isfinite(now.depth.pixels[i]) ? 1 : 0;
-  }
   return ages;
 }
 
@@ -181,11 +178,9 @@ RunningMean& RunningMean::operator+=(const RunningMean& more) {
 RunningMean visibility_change(const Image<float>& now, const Image<float>& before,
                               const Reprojection& reprojection) {
   RunningMean change;
-  for (std::size_t pixel = 0; pixel < now.pixels.size(); ++pixel) {
-    if (reprojection.texels.pixels[pixel] == kAllTexels) {
+  for (std::size_t pixel = 0; pixel < now.pixels.size(); ++pixel)
+    if (reprojection.texels.pixels[pixel] == kAllTexels)
       change += {std::abs(change_at(pixel, now, before, reprojection)), 1};
-    }
-  }
   return change;
 }
 
@@ -238,9 +233,8 @@ Speed speed_of(const Reprojection& reprojection) {
 
 Image<float> mean_of(const SplitTruth<float>& truth) {
   Image<float> mean = truth.first;
-  for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < mean.pixels.size(); ++i)
     mean.pixels[i] = 0.5f * (truth.first.pixels[i] + truth.second.pixels[i]);
-  }
   return mean;
 }
 

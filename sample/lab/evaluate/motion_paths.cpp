@@ -103,9 +103,8 @@ bool is_surface(const GBuffer& view, std::size_t pixel) {
 
 float median_depth(const GBuffer& view) {
   std::vector<float> depths;
-  for (std::size_t i = 0; i < view.material.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < view.material.pixels.size(); ++i)
     if (is_surface(view, i)) depths.push_back(view.depth_vs.pixels[i]);
-  }
   return median(std::move(depths));
 }
 

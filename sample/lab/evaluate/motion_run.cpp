@@ -116,9 +116,8 @@ Result<MotionTruth> MotionRenderer::truth(std::uint32_t frame, const RenderedFra
   MotionTruth truth{{no_visibility, no_visibility}, {no_directions, no_directions}};
   auto& [visibility, bent_normal_ws] = truth;
   if (cache.read_all(key, visibility.first, visibility.second, bent_normal_ws.first,
-                     bent_normal_ws.second)) {
+                     bent_normal_ws.second))
     return truth;
-  }
   ALCOVE_TRY(const auto rays, RayScene::create(*scene_));
   const SurfacePoints points = surface_points(rays, seen.camera, seen.normal_ws, seen.depth);
   const Progress whole = progress(fmt::format("truth of frame {}", frame));
@@ -169,9 +168,8 @@ struct PathResult {
 std::uint32_t first_converged(const MotionPath& path) { return path.frames() / kCompared; }
 
 bool is_compared(const MotionPath& path, std::uint32_t frame) {
-  for (std::uint32_t i = 1; i <= kCompared; ++i) {
+  for (std::uint32_t i = 1; i <= kCompared; ++i)
     if (frame + 1 == i * path.frames() / kCompared) return true;
-  }
   return false;
 }
 
@@ -201,15 +199,13 @@ Result<PathResult> render_path(MotionRenderer& renderer, Filtering filtering) {
         return path.position_before(position, frame);
       });
       ages = next_ages(seen, reprojection, ages);
-      if (frame >= first_converged(path)) {
+      if (frame >= first_converged(path))
         passed.change += visibility_change(seen.visibility, before.visibility, reprojection);
-      }
       const Speed speed = speed_of(reprojection);
       passed.speed += {speed.mean, 1};
       passed.fast += {speed.percentile_95, 1};
-      if (history && is_compared(path, frame)) {
+      if (history && is_compared(path, frame))
         passed.compared.push_back({frame, seen, ages, std::move(before), reprojection});
-      }
     }
     before = std::move(seen);
     progress(static_cast<double>(frame + 1 - first) / (path.frames() - first));
@@ -236,11 +232,9 @@ Result<StaticResult> render_static(MotionRenderer& renderer, std::uint32_t frame
   ALCOVE_TRY(const auto before, read(frame - 1));
   ALCOVE_TRY(auto last, read(frame));
   StaticResult standing;
-  for (std::size_t i = 0; i < last.depth.pixels.size(); ++i) {
-    if (std::isfinite(last.depth.pixels[i])) {
+  for (std::size_t i = 0; i < last.depth.pixels.size(); ++i)
+    if (std::isfinite(last.depth.pixels[i]))
       standing.change += {std::abs(last.visibility.pixels[i] - before.visibility.pixels[i]), 1};
-    }
-  }
   standing.visibility = std::move(last.visibility);
   standing.bent_normal_ws = std::move(last.bent_normal_ws);
   return standing;
@@ -334,9 +328,8 @@ Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& 
   ALCOVE_TRY(const auto unkept, render_path(renderer, Filtering::spatial));
   ALCOVE_TRY(const auto unfiltered, render_path(renderer, Filtering::none));
   Comparison sums;
-  for (const Compared& compared : passed.compared) {
+  for (const Compared& compared : passed.compared)
     ALCOVE_TRY_VOID(compare(renderer, compared, sums));
-  }
   return MotionReport{
       .speed = {passed.speed.mean(), passed.fast.mean()},
       .all = sums.all.errors(),

@@ -77,9 +77,7 @@ class Search {
     std::ranges::stable_sort(ladder_, {}, [](const Rung& r) { return samples_of(r.settings); });
     ALCOVE_TRY_VOID(choose_samples());
     for (const Feature& feature : kFeatures) try_feature(feature);
-    if (goal_.tolerance && goal_.met(found_.chosen)) {
-      try_with_fewer_samples(found_.chosen.settings);
-    }
+    if (goal_.tolerance && goal_.met(found_.chosen)) try_with_fewer_samples(found_.chosen.settings);
     refine();
     return std::move(found_);
   }
@@ -127,9 +125,8 @@ class Search {
   // Measures settings and chooses them if the goal prefers them by the margin.
   Result<Achievement> consider(const OcclusionSettings& settings, double margin = 0) {
     auto result = measure(settings);
-    if (result && (found_.measured.size() == 1 || goal_.prefers(*result, found_.chosen, margin))) {
+    if (result && (found_.measured.size() == 1 || goal_.prefers(*result, found_.chosen, margin)))
       found_.chosen = *result;
-    }
     return result;
   }
 
@@ -215,9 +212,8 @@ class Search {
         if (!goal_.met(before) || !too_slow) consider_if_promising(changed);
       };
       for (const std::uint32_t steps :
-           {from.steps * 3 / 4, from.steps - 1, from.steps + 1, (from.steps * 4 + 2) / 3}) {
+           {from.steps * 3 / 4, from.steps - 1, from.steps + 1, (from.steps * 4 + 2) / 3})
         change(&OcclusionSettings::steps, steps);
-      }
       change(&OcclusionSettings::slices, from.slices - 1);
       change(&OcclusionSettings::slices, from.slices + 1);
       change(&OcclusionSettings::tile_size, from.tile_size / 2);

@@ -79,9 +79,8 @@ Result<SituationErrors> SituationErrors::create(const Session& session, const St
                                      images.depth_ndc, images.normal_ws},
                                     truth_options));
   made.truths_ = std::move(truths);
-  if (truth_options.use_cache && !program_hash().empty()) {
+  if (truth_options.use_cache && !program_hash().empty())
     made.cache_ = TruthCache(TruthCache::default_folder());
-  }
   const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
   made.key_.add(std::string_view("situation errors"), std::string_view(program_hash()),
                 std::string_view(device.deviceName), device.driverVersion, session.scene,

@@ -120,9 +120,8 @@ std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> sce
     all[i].time_ms = mean([](const TradePoint& p) { return p.time_ms; });
     all[i].spread_ms = mean([](const TradePoint& p) { return p.spread_ms; });
     all[i].processor_ms = mean([](const TradePoint& p) { return p.processor_ms; });
-    for (const std::vector<TradePoint>& points : scenes) {
+    for (const std::vector<TradePoint>& points : scenes)
       all[i].bytes = std::max(all[i].bytes, points[i].bytes);
-    }
   }
   return all;
 }

@@ -75,11 +75,9 @@ void draw_axes(Svg& svg, const Axes& axes, const std::string& clock_title) {
 
 void draw_pareto_front(Svg& svg, const Trade& trade, const Axes& axes) {
   std::vector<glm::vec2> points;
-  for (std::size_t i = 0; i < trade.points.size(); ++i) {
-    if (trade.on_pareto_front[i]) {
+  for (std::size_t i = 0; i < trade.points.size(); ++i)
+    if (trade.on_pareto_front[i])
       points.emplace_back(axes.x(trade.points[i].time_ms), axes.y(trade.points[i].rmse));
-    }
-  }
   svg.polyline(points, "stroke=\"#1f6f8b\" stroke-width=\"2\"");
 }
 

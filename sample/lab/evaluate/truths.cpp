@@ -52,9 +52,8 @@ Result<Truths> truths_of(const TruthFrame& frame, const TruthOptions& options) {
   const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
   Truths truths;
   truths.surfaces = Mask(depth.width, depth.height);
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < depth.pixels.size(); ++i)
     truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
-  }
   if (std::ranges::find(truths.surfaces.pixels, 1) == truths.surfaces.pixels.end()) {
     return tl::unexpected<std::string>(
         "the view shows nothing but sky: turn it with --eye and --target, or widen --near and "

@@ -119,9 +119,8 @@ class Experiment {
 
 Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
                                 const OcclusionSettings& settings) {
-  for (std::uint32_t i = 0; i + 1 < setup.frames; ++i) {
+  for (std::uint32_t i = 0; i + 1 < setup.frames; ++i)
     ALCOVE_TRY_VOID(renderer.draw(request_of(setup, settings, i)));
-  }
   return renderer.draw_and_read(request_of(setup, settings, setup.frames - 1));
 }
 
@@ -143,9 +142,8 @@ Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const St
   camera.offset_ndc /= scale;
   ALCOVE_TRY(const FrameImages images, draw_static(gpu, scene, wide, settings));
   Image<float> middle(setup.width, setup.height);
-  for (std::uint32_t y = 0; y < setup.height; ++y) {
+  for (std::uint32_t y = 0; y < setup.height; ++y)
     std::copy_n(&images.visibility.at(band.width, y + band.height), setup.width, &middle.at(0, y));
-  }
   return middle;
 }
 

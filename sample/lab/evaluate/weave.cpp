@@ -54,11 +54,9 @@ Window without_plane(const Window& values) {
 // The image in the window whose upper left pixel is (left, top).
 Window window_of(const Image<float>& image, std::uint32_t left, std::uint32_t top) {
   Window window;
-  for (std::uint32_t y = 0; y < kWindow; ++y) {
-    for (std::uint32_t x = 0; x < kWindow; ++x) {
+  for (std::uint32_t y = 0; y < kWindow; ++y)
+    for (std::uint32_t x = 0; x < kWindow; ++x)
       window[y * kWindow + x] = image.at(left + x, top + y);
-    }
-  }
   return window;
 }
 
@@ -75,9 +73,8 @@ bool is_smooth(const Window& truth) {
   constexpr std::uint32_t kBlocks = kWindow / kBlock;
   std::array<double, std::size_t{kBlocks} * kBlocks> means{};
   const Window rest = without_plane(truth);
-  for (std::uint32_t i = 0; i < kBins; ++i) {
+  for (std::uint32_t i = 0; i < kBins; ++i)
     means[i / kWindow / kBlock * kBlocks + i % kWindow / kBlock] += rest[i] / (kBlock * kBlock);
-  }
   const double squares = std::inner_product(means.begin(), means.end(), means.begin(), 0.0);
   return std::sqrt(squares / means.size()) <= kSmooth;
 }
@@ -106,18 +103,16 @@ std::vector<double> power_spectrum(const Window& values) {
   for (std::uint32_t y = 0; y < kWindow; ++y) {
     for (std::uint32_t x = 0; x < kWindow; ++x) {
       const double value = values[y * kWindow + x] * kHann[x] * kHann[y];
-      for (std::uint32_t u = 0; u < kWindow; ++u) {
+      for (std::uint32_t u = 0; u < kWindow; ++u)
         rows[y * kWindow + u] += value * kWaves[u * x % kWindow];
-      }
     }
   }
   std::vector<double> powers(kBins);
   for (std::uint32_t v = 0; v < kWindow; ++v) {
     for (std::uint32_t u = 0; u < kWindow; ++u) {
       std::complex<double> sum = 0;
-      for (std::uint32_t y = 0; y < kWindow; ++y) {
+      for (std::uint32_t y = 0; y < kWindow; ++y)
         sum += rows[y * kWindow + u] * kWaves[v * y % kWindow];
-      }
       powers[v * kWindow + u] = std::norm(sum);
     }
   }
@@ -265,9 +260,8 @@ Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask
                      std::minus<>());
       // The comparisons are false for NaN.
       if (!is_smooth(true_values) ||
-          !std::isfinite(std::accumulate(error.begin(), error.end(), 0.0))) {
+          !std::isfinite(std::accumulate(error.begin(), error.end(), 0.0)))
         continue;
-      }
       std::vector<double> powers = power_spectrum(without_plane(error));
       const bool visible = pattern_of(powers, 1.0).variance > Weave::kVisible * Weave::kVisible;
       weave += {1, visible ? 1u : 0u, std::move(powers)};

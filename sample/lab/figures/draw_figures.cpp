@@ -99,9 +99,8 @@ Drawing slice_and_horizons() {
   }
   d.polygon(circular_sector(p.shaded, 1.9f, angles[1], angles[0]), kOpen);
   draw_profile(d, p);
-  for (const float angle : angles) {
+  for (const float angle : angles)
     d.line(p.shaded, p.shaded + 3.0f * vec2(std::sin(angle), std::cos(angle)), kDashed);
-  }
   d.text({2.05f, 2.75f}, "horizon h1");
   d.text({-2.75f, 1.45f}, "horizon h2", "end");
   const vec2 along(p.normal.y, -p.normal.x);
@@ -215,9 +214,8 @@ Drawing tile_interleave() {
       for (std::uint32_t frame = 0; frame < 4; ++frame) {
         const auto offset = passes::interleave_offset_of(2, frame);
         if (offset.x == static_cast<std::uint32_t>(x % 2) &&
-            offset.y == static_cast<std::uint32_t>(y % 2)) {
+            offset.y == static_cast<std::uint32_t>(y % 2))
           traced = frame;
-        }
       }
       d.polygon(
           {low, low + vec2(1, 0), low + vec2(1, 1), low + vec2(0, 1)},

@@ -32,11 +32,9 @@ LabelledSettings preset(Quality quality) {
 Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
   Json instructions = Json::array();
   for (const ModelledFrame& frame : cost.frames) {
-    for (const ModelledPass& pass : frame.passes) {
-      if (pass.pass == occupancy.pass) {
+    for (const ModelledPass& pass : frame.passes)
+      if (pass.pass == occupancy.pass)
         instructions.push_back(std::ceil(10 * pass.instructions_per_pixel) / 10);
-      }
-    }
   }
   return {{"part", cost.part->family},
           {"settings", cost.settings.label},
@@ -111,11 +109,9 @@ std::string compiler_name(const NullDevice& device) {
 std::string budget_of(const std::vector<SettingsCost>& costs, const std::string& compiler) {
   std::string lines =
       Json{{"written_by", "alcove cost --write-budget"}, {"compiler", compiler}}.dump();
-  for (const SettingsCost& cost : costs) {
-    for (const Occupancy& occupancy : cost.occupancies) {
+  for (const SettingsCost& cost : costs)
+    for (const Occupancy& occupancy : cost.occupancies)
       (lines += "\n") += row_of(cost, occupancy).dump();
-    }
-  }
   return lines += "\n";
 }
 
@@ -123,9 +119,8 @@ Result<std::vector<std::string>> over_budget(const std::string& budget, const st
                                              const std::vector<SettingsCost>& costs) {
   std::vector<Json> rows;
   std::istringstream lines(budget);
-  for (std::string line; std::getline(lines, line);) {
+  for (std::string line; std::getline(lines, line);)
     rows.push_back(Json::parse(line, nullptr, false));
-  }
   if (rows.empty() || !rows.front().is_object() || rows.front().value("compiler", "") != compiler) {
     return Failure("The budget was written with another compiler than " + compiler +
                    ", which makes other code.");

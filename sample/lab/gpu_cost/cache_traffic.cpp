@@ -214,9 +214,8 @@ class Simulation {
         use_l2(line, true);
       } else if (!unit.l1.access(line, false).hit) {
         ++misses;
-        if (arrays_.empty() || !arrays_[index / part_.array_units].access(line, false).hit) {
+        if (arrays_.empty() || !arrays_[index / part_.array_units].access(line, false).hit)
           use_l2(line, false);
-        }
       }
     }
     if (!store) {

@@ -31,9 +31,8 @@ std::vector<std::string> pass_names(std::span<const SettingsCost> costs) {
   std::vector<std::string> names;
   for (const SettingsCost& cost : costs) {
     for (const ModelledFrame& frame : cost.frames) {
-      for (const ModelledPass& pass : frame.passes) {
+      for (const ModelledPass& pass : frame.passes)
         if (std::ranges::find(names, pass.pass) == names.end()) names.push_back(pass.pass);
-      }
     }
   }
   return names;

@@ -53,9 +53,8 @@ std::string settings_rows(const SettingsCost& cost, bool loops) {
     out += fmt::format("  {}, {} frame: {:.3f} ms, {:.2f} of {} at this size\n",
                        cost.settings.label, name_of(frame.state), frame.milliseconds(),
                        frame.milliseconds() / peer_ms, kXeGtaoHigh.name);
-    for (const ModelledPass& pass : frame.passes) {
+    for (const ModelledPass& pass : frame.passes)
       out += pass_row(pass) + (loops ? wave_rows(pass) : "");
-    }
   }
   for (const Occupancy& occupancy : cost.occupancies) {
     out += fmt::format("    {:20}vector registers and waves per SIMD:", occupancy.pass);
@@ -73,16 +72,14 @@ std::string ratio_rows(std::span<const SettingsCost> costs, const GpuPart& part)
   std::string rows;
   for (const SettingsCost& cost : costs) {
     const std::vector<double> ratios = output_ratios(cost, costs);
-    if (cost.part == &part && !ratios.empty()) {
+    if (cost.part == &part && !ratios.empty())
       rows += fmt::format("    {:36}{:11.3f}\n", cost.settings.label, fmt::join(ratios, ""));
-    }
   }
   if (rows.empty()) return rows;
   std::string heading =
       "  Time of a frame over its time without the output:\n" + std::string(40, ' ');
-  for (const ModelledFrame& frame : costs.front().frames) {
+  for (const ModelledFrame& frame : costs.front().frames)
     heading += fmt::format("{:>11}", name_of(frame.state));
-  }
   return heading + "\n" + rows;
 }
 
@@ -196,9 +193,8 @@ std::string table_of(std::span<const SettingsCost> costs, bool loops) {
         "; all passes of the paper on a PS4 0.5 (as published, 1920x1080)\n"
         "    pass                      ms  limit          instr/px fetches stores    L2 memory"
         "  VGPRs  waves  spills    code  shared  lines   ALU texture shared L2 memory latency\n";
-    for (const SettingsCost& cost : costs) {
+    for (const SettingsCost& cost : costs)
       if (cost.part == &part) out += settings_rows(cost, loops);
-    }
     out += ratio_rows(costs, part);
   }
   return out;
@@ -212,9 +208,8 @@ Json to_json(std::span<const SettingsCost> costs) {
     for (const SettingsCost& cost : costs) {
       if (cost.part != &part) continue;
       const CostInputs& size = cost.settings.inputs;
-      for (const XeGtao& peer : kXeGtao) {
+      for (const XeGtao& peer : kXeGtao)
         peers[std::string(peer.name)] = xegtao_ms(part, peer, size.width, size.height);
-      }
       settings.push_back(
           to_json(cost, peers[std::string(kXeGtaoHigh.name)], output_ratios(cost, costs)));
     }

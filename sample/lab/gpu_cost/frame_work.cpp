@@ -82,9 +82,8 @@ Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs) {
   std::vector<AlcoveWork> frames(passes::cost::kFrameStates);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     passes::WorkList list(frames[i], i == 0 ? nullptr : &frames[i - 1]);
-    if (const auto described = describe(list, inputs, static_cast<FrameState>(i)); !described) {
+    if (const auto described = describe(list, inputs, static_cast<FrameState>(i)); !described)
       return tl::unexpected(described.error().message);
-    }
   }
   return frames;
 }
@@ -98,17 +97,15 @@ std::vector<PassImage> images_of(const AlcoveWork& work, const AlcoveWorkDispatc
       return other.resource == binding->resource && other.mip == binding->mip;
     };
     if (binding->type <= ALCOVE_BINDING_TYPE_TABLE ||
-        std::any_of(bindings.begin(), binding, is_same)) {
+        std::any_of(bindings.begin(), binding, is_same))
       continue;
-    }
     std::uint32_t access = 0;
     for (const AlcoveWorkBinding& other : bindings) access |= is_same(other) ? other.access : 0;
     const AlcoveWorkResource& resource = work.resources[binding->resource];
     PassImage image{resource.name, Direction::read, texel_bytes(resource), resource.width,
                     resource.height};
-    if (resource.kind == ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS) {
+    if (resource.kind == ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS)
       image.name = "previous " + image.name;
-    }
     if ((access & ALCOVE_WORK_ACCESS_READ) != 0) images.push_back(image);
     if ((access & ALCOVE_WORK_ACCESS_WRITE) != 0) {
       image.direction = Direction::write;

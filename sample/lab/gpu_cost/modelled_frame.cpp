@@ -97,9 +97,8 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
   ALCOVE_TRY(const auto iterations, passes::cost::iterations(work, summaries));
   ModelledPass cost;
   cost.pass = dispatch.label;
-  for (std::size_t i = 0; i < summaries.size(); ++i) {
+  for (std::size_t i = 0; i < summaries.size(); ++i)
     cost.loops.push_back({summaries[i], iterations[i]});
-  }
   std::vector<Branch> branches = branches_of(*blocks);
   for (Branch& branch : branches) {
     branch.summary.loops =
@@ -176,11 +175,9 @@ Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part, const Nu
   // Returns the cost of a dispatch of an earlier frame that does the same work, or null.
   const auto find_same = [&](const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch) {
     for (std::size_t i = 0; i < costs.size(); ++i) {
-      for (std::size_t j = 0; j < costs[i].passes.size(); ++j) {
-        if (is_same(frames[i], frames[i].dispatches[j], frame, dispatch)) {
+      for (std::size_t j = 0; j < costs[i].passes.size(); ++j)
+        if (is_same(frames[i], frames[i].dispatches[j], frame, dispatch))
           return &costs[i].passes[j];
-        }
-      }
     }
     return static_cast<ModelledPass*>(nullptr);
   };

@@ -27,11 +27,9 @@ std::optional<std::string> radv_manifest() {
   for (const char* folder : kManifestFolders) {
     std::error_code error;
     std::vector<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-      if (entry.path().filename().string().starts_with("radeon_icd")) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+      if (entry.path().filename().string().starts_with("radeon_icd"))
         found.push_back(entry.path().string());
-      }
-    }
     if (!found.empty()) return *std::ranges::min_element(found);
   }
   return std::nullopt;
@@ -67,11 +65,10 @@ class ScopedVariable {
     setenv(name, value.c_str(), 1);
   }
   ~ScopedVariable() {
-    if (before_) {
+    if (before_)
       setenv(name_, before_->c_str(), 1);
-    } else {
+    else
       unsetenv(name_);
-    }
   }
   ScopedVariable(const ScopedVariable&) = delete;
   ScopedVariable& operator=(const ScopedVariable&) = delete;
@@ -150,9 +147,8 @@ VkResult create_layout(VkDevice device, const AlcoveWorkDispatch& dispatch,
                                          .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
   VkSampler sampler = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateSampler(device, &sampler_info, nullptr, &sampler);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return result;
-  }
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const AlcoveWorkBinding& binding :
        std::span(dispatch.bindings).first(dispatch.binding_count)) {
@@ -166,9 +162,8 @@ VkResult create_layout(VkDevice device, const AlcoveWorkDispatch& dispatch,
       .pBindings = bindings.data()};
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return result;
-  }
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
                                         .pSetLayouts = &set};
@@ -182,17 +177,15 @@ VkResult create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch,
   VkPipelineLayout layout = VK_NULL_HANDLE;
   AlcoveShader shader{};
   if (alcoveGetShader(dispatch.shader, &shader) != ALCOVE_SUCCESS ||
-      create_layout(device, dispatch, layout) != VK_SUCCESS) {
+      create_layout(device, dispatch, layout) != VK_SUCCESS)
     return VK_ERROR_INITIALIZATION_FAILED;
-  }
   const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                              .codeSize = shader.code_size,
                                              .pCode = shader.code};
   VkShaderModule module = VK_NULL_HANDLE;
   if (const VkResult result = vkCreateShaderModule(device, &module_info, nullptr, &module);
-      result != VK_SUCCESS) {
+      result != VK_SUCCESS)
     return result;
-  }
   std::vector<VkSpecializationMapEntry> entries;
   for (std::uint32_t i = 0; i < dispatch.constant_count; ++i) {
     entries.push_back({dispatch.constants[i].id,
@@ -259,16 +252,14 @@ Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline
       load("vkGetPipelineExecutableStatisticsKHR"));
   const auto get_texts = reinterpret_cast<PFN_vkGetPipelineExecutableInternalRepresentationsKHR>(
       load("vkGetPipelineExecutableInternalRepresentationsKHR"));
-  if (get_properties == nullptr || get_statistics == nullptr || get_texts == nullptr) {
+  if (get_properties == nullptr || get_statistics == nullptr || get_texts == nullptr)
     return Failure("The device lacks VK_KHR_pipeline_executable_properties.");
-  }
   const VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
   std::uint32_t count = 1;
   VkPipelineExecutablePropertiesKHR properties{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR};
-  if (get_properties(device, &info, &count, &properties) < VK_SUCCESS || count == 0) {
+  if (get_properties(device, &info, &count, &properties) < VK_SUCCESS || count == 0)
     return Failure("The driver reports no executable for a pipeline that it compiled.");
-  }
   CompiledShader shader;
   shader.wave = properties.subgroupSize;
   const VkPipelineExecutableInfoKHR executable{
@@ -277,9 +268,8 @@ Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline
   std::vector<VkPipelineExecutableStatisticKHR> statistics(
       count, {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
   get_statistics(device, &executable, &count, statistics.data());
-  for (const VkPipelineExecutableStatisticKHR& statistic : statistics) {
+  for (const VkPipelineExecutableStatisticKHR& statistic : statistics)
     shader.statistics[statistic.name] = value_of(statistic);
-  }
   get_texts(device, &executable, &count, nullptr);
   std::vector<VkPipelineExecutableInternalRepresentationKHR> texts(
       count, {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR});
@@ -290,9 +280,8 @@ Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline
     texts[i].pData = contents[i].data();
   }
   get_texts(device, &executable, &count, texts.data());
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < count; ++i)
     shader.texts[texts[i].name] = contents[i].c_str();  // up to the null terminator
-  }
   return shader;
 }
 
@@ -302,9 +291,8 @@ Result<const CompiledShader*> compile_dispatch(const NullDevice& device,
   static std::map<std::tuple<VkDevice, std::string, std::vector<std::uint32_t>>, CompiledShader>
       known;
   std::vector<std::uint32_t> constants;
-  for (std::uint32_t i = 0; i < dispatch.constant_count; ++i) {
+  for (std::uint32_t i = 0; i < dispatch.constant_count; ++i)
     constants.push_back(dispatch.constants[i].value);
-  }
   const std::tuple key{device.device, std::string(dispatch.shader), std::move(constants)};
   if (const auto found = known.find(key); found != known.end()) return &found->second;
   VkPipeline pipeline = VK_NULL_HANDLE;

@@ -28,9 +28,8 @@ bool ends_with_any(std::string_view text, std::initializer_list<std::string_view
 
 // The encoding suffixes of the disassembly do not affect the cost.
 std::string_view without_encoding(std::string_view operation) {
-  for (const std::string_view suffix : {"_e32", "_e64", "_sdwa", "_dpp"}) {
+  for (const std::string_view suffix : {"_e32", "_e64", "_sdwa", "_dpp"})
     if (operation.ends_with(suffix)) operation.remove_suffix(suffix.size());
-  }
   return operation;
 }
 
@@ -78,9 +77,8 @@ double words_of(std::string_view text) {
     return number_at(first, colon + 1) - number_at(first, range + 2) + 1.0;
   }
   const std::size_t begin = first.find_first_not_of(" \t");
-  if (begin != std::string_view::npos && first[begin] == 'v') {
+  if (begin != std::string_view::npos && first[begin] == 'v')
     return std::max(1.0, static_cast<double>(number_at(first, begin + 1)));
-  }
   return 1.0;
 }
 
@@ -107,9 +105,8 @@ Instruction instruction_of_aco(std::string_view line) {
                                                  line[from] == '-' || std::isdigit(line[from]));
     operation = result.starts_with("v") ? "v_mov_b32" : constant ? "s_mov_b32" : operation;
   }
-  if (operation == "p_cbranch_z" || operation == "p_cbranch_nz" || operation == "p_branch") {
+  if (operation == "p_cbranch_z" || operation == "p_cbranch_nz" || operation == "p_branch")
     operation = "s_cbranch";
-  }
   return {std::move(operation), words_of(results.empty() ? line : results), 1};
 }
 
@@ -143,10 +140,8 @@ std::vector<std::uint32_t> predecessors_of(std::string_view line) {
   const std::size_t begin = line.find("linear preds:");
   if (begin == std::string_view::npos) return found;
   std::string_view list = line.substr(begin, line.find("/ kind:") - begin);
-  for (std::size_t at = list.find("BB"); at != std::string_view::npos;
-       at = list.find("BB", at + 2)) {
+  for (std::size_t at = list.find("BB"); at != std::string_view::npos; at = list.find("BB", at + 2))
     found.push_back(number_at(list, at + 2));
-  }
   return found;
 }
 
@@ -196,9 +191,8 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
 }
 
 const std::string* text_of(const CompiledShader& shader, std::string_view name) {
-  for (const auto& [title, text] : shader.texts) {
+  for (const auto& [title, text] : shader.texts)
     if (title == name) return &text;
-  }
   return nullptr;
 }
 
@@ -226,9 +220,8 @@ void add_memory(const Instruction& instruction, bool rdna, std::uint32_t wave, d
                 WaveWork& work) {
   const std::string_view operation = instruction.operation;
   const bool plain_load = operation.starts_with("image_load");
-  if (plain_load || starts_with_any(operation, {"image_sample", "image_gather"})) {
+  if (plain_load || starts_with_any(operation, {"image_sample", "image_gather"}))
     work.loads += times;
-  }
   work.stores += operation.starts_with("image_store") ? times : 0.0;
   work.memory_cycles += (rdna ? 1.0 : 4.0) * times;
   // The texture unit processes four lanes a cycle; loads of over 64 bits a lane take twice as long.
@@ -249,9 +242,7 @@ double shared_words(std::string_view operation) {
 void add(const Instruction& instruction, bool rdna, std::uint32_t wave, double times,
          WaveWork& work) {
   const std::string_view operation = instruction.operation;
-  if (operation.empty() || operation.starts_with("p_")) {
-    return;  // a pseudo instruction
-  }
+  if (operation.empty() || operation.starts_with("p_")) return;  // a pseudo instruction
   work.instructions += times;
   work.scalar_instructions += operation.starts_with("s_") ? times : 0.0;
   if (is_free(operation)) {
@@ -275,11 +266,9 @@ void add(const Instruction& instruction, bool rdna, std::uint32_t wave, double t
 WaveWork work_between(const std::vector<BasicBlock>& blocks, std::uint32_t first,
                       std::uint32_t last) {
   WaveWork work;
-  for (std::uint32_t i = first; i <= last; ++i) {
-    for (const Instruction& instruction : blocks[i].instructions) {
+  for (std::uint32_t i = first; i <= last; ++i)
+    for (const Instruction& instruction : blocks[i].instructions)
       add(instruction, false, 64, instruction.repeats, work);
-    }
-  }
   return work;
 }
 
@@ -291,9 +280,8 @@ double WaveWork::busiest() const {
 
 Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader) {
   const std::string* aco = text_of(shader, "ACO IR");
-  if (aco == nullptr) {
+  if (aco == nullptr)
     return Failure("The driver gives no 'ACO IR' for its pipelines; Mesa's AMD driver is needed.");
-  }
   // LLVM disassembles GFX8 and later; for older GPUs ACO's own text has the instructions.
   const std::string* assembly = text_of(shader, "Assembly");
   const bool disassembled = assembly != nullptr && assembly->starts_with("BB");
@@ -305,9 +293,8 @@ Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader) {
     }
   }
   if (disassembled) add_disassembly(*assembly, blocks);
-  if (blocks.empty()) {
+  if (blocks.empty())
     return Failure("The driver's 'ACO IR' has an unknown format: it has no blocks.");
-  }
   return blocks;
 }
 
@@ -317,9 +304,8 @@ std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks) {
   std::vector<Loop> loops;
   for (const BasicBlock& block : blocks) {
     const auto last = std::ranges::max_element(block.predecessors);
-    if (last != block.predecessors.end() && *last >= block.index) {
+    if (last != block.predecessors.end() && *last >= block.index)
       loops.push_back({{}, block.index, *last});
-    }
   }
   for (std::size_t i = 0; i < loops.size(); ++i) {
     Loop& loop = loops[i];
@@ -365,15 +351,12 @@ WaveWork wave_work(const std::vector<BasicBlock>& blocks, const std::vector<Loop
   WaveWork work;
   for (const BasicBlock& block : blocks) {
     double times = 1.0;
-    for (std::size_t i = 0; i < loops.size(); ++i) {
+    for (std::size_t i = 0; i < loops.size(); ++i)
       if (loops[i].first <= block.index && block.index <= loops[i].last) times *= iterations[i];
-    }
-    for (const Branch& branch : branches) {
+    for (const Branch& branch : branches)
       if (branch.first <= block.index && block.index <= branch.last) times *= branch.share;
-    }
-    for (const Instruction& instruction : block.instructions) {
+    for (const Instruction& instruction : block.instructions)
       add(instruction, rdna, wave, times * instruction.repeats, work);
-    }
   }
   return work;
 }

@@ -94,11 +94,9 @@ DispatchAccesses search_accesses(const XeGtao& preset, std::uint32_t width, std:
   search.accesses = {at_invocation(depth, 1, {-1, -1}, 2), at_invocation(depth, 1, {0, 0}, 2),
                      at_invocation({"normals", Direction::read, 4, width, height})};
   for (std::uint32_t slice = 0; slice < preset.slices; ++slice) {
-    for (std::uint32_t step = 0; step < preset.steps; ++step) {
-      for (const float side : {1.0f, -1.0f}) {
+    for (std::uint32_t step = 0; step < preset.steps; ++step)
+      for (const float side : {1.0f, -1.0f})
         search.accesses.push_back(depth_sample(depth, preset, slice, side, step));
-      }
-    }
   }
   search.accesses.push_back(at_invocation({"occlusion", Direction::write, 1, width, height}));
   search.accesses.push_back(at_invocation({"edges", Direction::write, 1, width, height}));
@@ -112,9 +110,8 @@ DispatchAccesses prefilter_accesses(std::uint32_t width, std::uint32_t height) {
   prefilter.accesses.push_back(
       at_invocation({"depth", Direction::read, 4, width, height}, 2, {}, 2));
   const PassImage levels{"depth levels", Direction::write, 4, width, height};
-  for (std::int32_t i = 0; i < 4; ++i) {
+  for (std::int32_t i = 0; i < 4; ++i)
     prefilter.accesses.push_back(at_invocation(levels, 2, {i % 2, i / 2}));
-  }
   for (std::uint32_t level = 1; level < 5; ++level) {
     prefilter.accesses.push_back(
         {levels, 1, [level](Texel invocation) {
@@ -135,9 +132,8 @@ DispatchAccesses denoise_accesses(std::uint32_t width, std::uint32_t height) {
   const PassImage edges{"edges", Direction::read, 1, width, height};
   const PassImage occlusion{"occlusion", Direction::read, 1, width, height};
   for (const Texel at : {Texel{-1, -1}, Texel{1, -1}, Texel{0, 1}}) gather(edges, at.x, at.y);
-  for (const Texel at : {Texel{-1, -1}, Texel{1, -1}, Texel{-1, 1}, Texel{1, 1}}) {
+  for (const Texel at : {Texel{-1, -1}, Texel{1, -1}, Texel{-1, 1}, Texel{1, 1}})
     gather(occlusion, at.x, at.y);
-  }
   for (const std::int32_t x : {0, 1}) {
     denoise.accesses.push_back(
         {{"result", Direction::write, 1, width, height}, 1, [x](Texel invocation) {

@@ -189,9 +189,8 @@ float squared_horizon(const March& m) {
     const int count = std::min(kBlock, m.steps - first + 1);
     load_values(m, first, count, values.data());
     squared_cosines(m, first, count, values.data(), cosines.data(), slack.data());
-    for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+    for (size_t i = 0; i < static_cast<size_t>(count); ++i)
       best = std::max(best, slack[i] >= 0.0f ? cosines[i] : -1.0f);
-    }
   }
   return best;
 }
@@ -252,11 +251,10 @@ HeightField make_height_field(const Image<float>& depth_vs, const Camera& camera
   for (size_t i = 0; i < depth_vs.pixels.size(); ++i) {
     const float depth = depth_vs.pixels[i];
     const bool surface = std::isfinite(depth) && (field.orthographic || depth > 0.0f);
-    if (field.orthographic) {
+    if (field.orthographic)
       field.value[i] = surface ? std::min(depth, kFarAway) : kFarAway;
-    } else {
+    else
       field.value[i] = surface ? 1.0f / depth : 0.0f;
-    }
   }
   find_connections(field);
   // A walk along the last row or column reads beyond it, with a weight of zero.

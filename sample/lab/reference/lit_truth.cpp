@@ -204,10 +204,9 @@ LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
         const Scattered diffused = scatter_diffuse(surface, u);
         diffuse.means[half] += diffused.weight * tracer.trace(origin, diffused.direction_ws,
                                                               hash(seed, uint64_t{2} * i));
-        if (const auto mirrored = scatter_specular(surface, u)) {
+        if (const auto mirrored = scatter_specular(surface, u))
           specular.means[half] += mirrored->weight * tracer.trace(origin, mirrored->direction_ws,
                                                                   hash(seed, uint64_t{2} * i + 1));
-        }
       }
       diffuse.means[half] /= double(samples);
       specular.means[half] /= double(samples);

@@ -216,9 +216,8 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
     // The vertex normal is flipped on a back face, as the triangle's normal is, even if the vertex
     // normal faces the ray already.
     const float side = glm::dot(normal, direction) > 0.0f ? -1.0f : 1.0f;
-    if (glm::length(smooth) > 1e-6f && smooth_ws != glm::vec3(0.0f)) {
+    if (glm::length(smooth) > 1e-6f && smooth_ws != glm::vec3(0.0f))
       hit.shading_normal_ws = side * smooth_ws;
-    }
   }
   hit.uvs = uvs_within(mesh, query.hit.primID, u, v);
   return hit;
@@ -248,9 +247,8 @@ uint32_t RayScene::Impl::blocked(const glm::vec3& origin, std::span<const glm::v
   rtcInitIntersectContext(&context);
   rtcOccluded16(valid, tree, &context, &rays);
   uint32_t bits = 0;
-  for (uint32_t i = 0; i < directions.size(); ++i) {
+  for (uint32_t i = 0; i < directions.size(); ++i)
     if (rays.tfar[i] < 0.0f) bits |= 1u << i;
-  }
   return bits;
 }
 

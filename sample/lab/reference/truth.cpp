@@ -67,9 +67,8 @@ OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, 
   std::array<glm::vec3, kPacket> directions;
   for (uint32_t first = 0; first < settings.spp; first += kPacket) {
     const uint32_t count = std::min(kPacket, settings.spp - first);
-    for (uint32_t i = 0; i < count; ++i) {
+    for (uint32_t i = 0; i < count; ++i)
       directions[i] = basis.to_world(cosine_direction(r2_point(first + i, seed)));
-    }
     const uint32_t blocked =
         scene.blocked(origin, std::span(directions).first(count), settings.radius);
     for (uint32_t i = 0; i < count; ++i) {

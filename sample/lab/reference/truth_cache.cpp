@@ -101,9 +101,8 @@ std::string CacheKey::hex() const {
 }
 
 std::filesystem::path TruthCache::default_folder() {
-  if (const auto cache = from_environment("XDG_CACHE_HOME"); cache.is_absolute()) {
+  if (const auto cache = from_environment("XDG_CACHE_HOME"); cache.is_absolute())
     return cache / "alcove";
-  }
   const auto home = from_environment("HOME");
   return home.empty() ? home : home / ".cache" / "alcove";
 }
@@ -119,9 +118,8 @@ std::optional<std::vector<float>> TruthCache::read(const CacheKey& key, size_t c
   Header header;
   const Header expected;
   if (!file || std::fread(&header, sizeof(header), 1, file->get()) != 1 ||
-      header.magic != expected.magic || header.count != count) {
+      header.magic != expected.magic || header.count != count)
     return std::nullopt;
-  }
   std::vector<float> values(count);
   const bool whole = std::fread(values.data(), sizeof(float), count, file->get()) == count &&
                      std::getc(file->get()) == EOF;

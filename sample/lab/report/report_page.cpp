@@ -30,12 +30,10 @@ std::string base64(const std::string& bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t three = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t j = 0; j < 3; ++j)
       three = three << 8u | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0u);
-    }
-    for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t j = 0; j < 4; ++j)
       text += i + j > bytes.size() ? '=' : kDigits[three >> (18u - 6u * j) & 63u];
-    }
   }
   return text;
 }
@@ -51,16 +49,14 @@ Result<std::string> encoded(const Image<Pixel>& image, const std::filesystem::pa
 }
 
 void replace(std::string& text, const std::string& what, const std::string& by) {
-  if (const std::size_t at = text.find(what); at != std::string::npos) {
+  if (const std::size_t at = text.find(what); at != std::string::npos)
     text.replace(at, what.size(), by);
-  }
 }
 
 // A script element ends at the first "</script", also within a string.
 std::string within_script(std::string text) {
-  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3)) {
+  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3))
     text.replace(at, 2, "<\\/");
-  }
   return text;
 }
 

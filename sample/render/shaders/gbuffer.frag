@@ -27,9 +27,7 @@ layout(location = 3) out vec4 out_emissive;   // linear RGB; alpha: metallic
 vec3 mapped_normal(vec3 normal, vec3 texel) {
   vec3 across = tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz);
   float squared = dot(across, across);
-  if (material.has_normal_map == 0u || !(squared > 1e-12)) {
-    return normal;
-  }
+  if (material.has_normal_map == 0u || !(squared > 1e-12)) return normal;
   vec3 tangent = across * inversesqrt(squared);
   vec3 bitangent = cross(normal, tangent) * (tangent_ws.w < 0.0 ? -1.0 : 1.0);
   vec2 slope = texel.xy * material.normal_scale;
@@ -42,9 +40,7 @@ vec3 facing_normal(vec3 texel) {
   vec3 to_eye = parameters.eye_ws.xyz - position_ws * parameters.eye_ws.w;
   vec3 face = dot(face_normal_ws, to_eye) < 0.0 ? -face_normal_ws : face_normal_ws;
   float squared = dot(normal_ws, normal_ws);
-  if (kGeometricNormals || !(squared > 1e-12)) {
-    return face;
-  }
+  if (kGeometricNormals || !(squared > 1e-12)) return face;
   vec3 normal = normal_ws * inversesqrt(squared);
   vec3 mapped = mapped_normal(normal, texel);
   // The whole tangent frame is flipped on a back face. If the normal map tilts the normal below the
@@ -63,9 +59,7 @@ void main() {
   vec2 surface = texture(textures[kMetallicRoughnessTexture], surface_uv.zw).gb;
   vec3 emissive = texture(textures[kEmissiveTexture], detail_uv.xy).rgb;
   vec3 mapped_normal = texture(textures[kNormalTexture], detail_uv.zw).xyz * 2.0 - 1.0;
-  if (is_cut_out(surface_uv.xy, color.a)) {
-    discard;
-  }
+  if (is_cut_out(surface_uv.xy, color.a)) discard;
   out_normal_ws = vec4(facing_normal(mapped_normal), 0.0);
   out_albedo = vec4(material.base_colour.rgb * color.rgb * base, material.roughness * surface.x);
   out_motion_uv = 0.5 * (clip.xy / clip.w - previous_clip.xy / previous_clip.w);

@@ -24,9 +24,8 @@ vec3 ray_direction(ivec2 pixel) {
 }
 
 vec3 display_colour(vec3 radiance, ivec2 pixel) {
-  if (texelFetch(linear_depth, pixel, 0).r >= kSkyDepth) {
+  if (texelFetch(linear_depth, pixel, 0).r >= kSkyDepth)
     radiance = textureLod(environment, map_uv(ray_direction(pixel)), 0.0).rgb;
-  }
   return encode_srgb(1.0 - exp(-parameters.scale * radiance));
 }
 

@@ -21,7 +21,6 @@ float linear_depth(float depth_ndc) {
 void main() {
   float first = linear_depth(texelFetch(first_depth, ivec2(gl_FragCoord.xy), 0).r);
   // Discards the surface of the first layer, which is drawn again and is equal except for rounding.
-  if (is_cut_out(base_colour_uv, vertex_alpha) || linear_depth(gl_FragCoord.z) <= first * 1.001) {
+  if (is_cut_out(base_colour_uv, vertex_alpha) || linear_depth(gl_FragCoord.z) <= first * 1.001)
     discard;
-  }
 }

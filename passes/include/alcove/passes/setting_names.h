@@ -43,9 +43,8 @@ template <typename Choice>
 std::string names_text() {
   const auto& names = kNames<Choice>;
   std::string all(names.front());
-  for (std::size_t i = 1; i < names.size(); ++i) {
+  for (std::size_t i = 1; i < names.size(); ++i)
     all.append(i + 1 < names.size() ? ", " : " or ").append(names[i]);
-  }
   return all;
 }
 
