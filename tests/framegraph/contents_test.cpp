@@ -414,8 +414,9 @@ void run_frames(Gpu& gpu, Executor& executor, const Way& way, std::uint64_t seed
     ASSERT_TRUE(executor.wait());
     ASSERT_EQ(std::memcmp(host.mapped, maker.expected.data(), 4 * maker.expected.size()), 0);
     maker.finish();
-    if (way.path < Path::submit_to_two)
+    if (way.path < Path::submit_to_two) {
       ASSERT_EQ(messages(gpu, way), "") << print_text(graph.description(), *report->plan);
+    }
     totals.aliased += report->memory.aliased;
     totals.unaliased += report->memory.unaliased;
     // The validation layer does not follow timeline semaphores and keeps the accesses of all frames

@@ -401,8 +401,9 @@ TEST_F(Scenario, WorkOfTwoQueuesWithoutCommonResourcesOverlapsAcrossFrames) {
     // of them.
     if (frame == 3)
       EXPECT_EQ(waits, 0);
-    else if (frame == 4)
+    else if (frame == 4) {
       EXPECT_GT(waits, 0);
+    }
   }
 }
 

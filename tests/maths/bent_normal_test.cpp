@@ -75,8 +75,9 @@ TEST(BentNormal, BentNormalOfAnUnoccludedSurfaceIsItsNormalEvenFromASingleSlice)
     const vec3 residual =
         maths::converged_residual(maths::residual_of(part, open, normal),
                                   maths::expected_residual(s, direction, view, normal, open), 1.0f);
-    if (open > 1e-2f)
+    if (open > 1e-2f) {
       EXPECT_LT(distance(maths::finish_bent_normal(residual, open, normal), normal), 1e-4f);
+    }
   }
 }
 

@@ -133,7 +133,9 @@ TEST(Gtso, BentNormalIsRaisedUntilTheVisibilityConeLiesAboveTheSurface) {
     const float room = float(kPi) / 2 - maths::visibility_cone(v);
     EXPECT_NEAR(glm::length(raised), 1.0f, 1e-4f);
     EXPECT_LE(maths::angle_between(raised, normal), room + 1e-3f);
-    if (maths::angle_between(bent, normal) < room - 1e-3f) EXPECT_EQ(raised, bent);
+    if (maths::angle_between(bent, normal) < room - 1e-3f) {
+      EXPECT_EQ(raised, bent);
+    }
     EXPECT_LT(maths::angle_between(maths::raised_bent_normal(bent, normal, 1.0f), normal), 1e-3f);
   }
 }
@@ -145,8 +147,9 @@ TEST(Gtso, MirrorDirectionIsAUnitVectorAboveTheSurface) {
     const vec3 mirror = maths::mirror_direction(normal, view);
     EXPECT_NEAR(glm::length(mirror), 1.0f, 1e-4f);
     EXPECT_GE(glm::dot(mirror, normal), 0.0f);
-    if (glm::dot(normal, view) > 1e-3f)
+    if (glm::dot(normal, view) > 1e-3f) {
       EXPECT_NEAR(glm::dot(mirror, normal), glm::dot(normal, view), 1e-5f);
+    }
   }
 }
 

@@ -41,7 +41,9 @@ TEST(RawOcclusion, PackingKeepsVisibilityApproximatelyAndVisibilityOneExactly) {
         maths::pack_raw_occlusion(raw_occlusion_of(ratio * open, open), 0xffu));
     EXPECT_NEAR(back.open, open, open / 120);
     EXPECT_NEAR(back.visible, ratio * back.open, 6.2e-5f * back.open);
-    if (ratio == 1.0f) EXPECT_EQ(back.visible, back.open);
+    if (ratio == 1.0f) {
+      EXPECT_EQ(back.visible, back.open);
+    }
   }
 }
 
@@ -54,7 +56,9 @@ TEST(RawOcclusion, PackingKeepsSpecularLobeSumsOfAnyMagnitude) {
         maths::unpack_lobe(maths::pack_lobe(raw_occlusion_of(ratio * open, open)));
     EXPECT_NEAR(back.open / open, 1.0f, 1.0f / 256);
     EXPECT_NEAR(back.visible / back.open, ratio, 2e-5f);
-    if (ratio == 1.0f) EXPECT_EQ(back.visible, back.open);
+    if (ratio == 1.0f) {
+      EXPECT_EQ(back.visible, back.open);
+    }
   }
   EXPECT_EQ(maths::unpack_lobe(maths::pack_lobe(raw_occlusion_of(0, 0))).open, 0.0f);
 }
@@ -175,9 +179,12 @@ TEST(QuantisedNormal, SquaredAngleToAnotherNormalIsApproximatedForSmallAngles) {
     EXPECT_NEAR(angle_to(own), 0.0f, 1e-12f);
     const float cosine = dot(own, other);
     const float found = angle_to(other);
-    if (cosine > 0.97f)
+    if (cosine > 0.97f) {
       EXPECT_NEAR(found, 2.0f - 2.0f * cosine, 0.3f * (2.0f - 2.0f * cosine) + 2e-5f);
-    if (cosine < 0.5f) EXPECT_GT(found, 0.5f);
+    }
+    if (cosine < 0.5f) {
+      EXPECT_GT(found, 0.5f);
+    }
   }
 }
 

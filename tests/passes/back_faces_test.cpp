@@ -96,8 +96,9 @@ TEST_F(BackFaceDepth, VisibilityUnderABallWithBackFaceDepthMatchesTheClosedFormI
       EXPECT_LT(error, 0.01);
       // The visible width limits the setting of `connected`, so that a large one does no harm
       // there.
-      if (estimator == Estimator::bitmask)
+      if (estimator == Estimator::bitmask) {
         EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1.0f)));
+      }
     }
   }
 }

@@ -228,8 +228,9 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
     const AlcoveArea corner{0, 0, written.width, written.height};
     EXPECT_EQ(part_of(found.visibility, corner).texels,
               part_of(expected.visibility, written).texels);
-    if (!found.specular.texels.empty())
+    if (!found.specular.texels.empty()) {
       EXPECT_EQ(part_of(found.specular, corner).texels, part_of(expected.specular, written).texels);
+    }
   }
 }
 

@@ -131,7 +131,9 @@ class CDiagnoseFrames : public CInterface {
           throw_away(commands);
         }
       });
-      if (discards) EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
+      if (discards) {
+        EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
+      }
     }
     engine().wait();
     std::string text(alcoveDiagnose(context.get(), nullptr, 0) + 1, '\0');

@@ -254,7 +254,9 @@ TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
           {.view = view.view, .depth_ndc = drawing.depth_ndc, .normal_vs = &drawing.normal_vs},
           settings);
       expect_sound(images);
-      if (radius <= 1e-3f) EXPECT_THAT(images.visibility.texels, testing::Each(1.0f));
+      if (radius <= 1e-3f) {
+        EXPECT_THAT(images.visibility.texels, testing::Each(1.0f));
+      }
       if (radius >= 1e6f) largest.push_back(images.visibility);
     }
     for (const HostImage& visibility : largest) {

@@ -280,8 +280,9 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
       const double distance = std::hypot(across, height);
       if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius)
         EXPECT_GT(images.visibility.at(x, 64), 0.996) << "column " << x;
-      else if (distance < 0.8 * radius)
+      else if (distance < 0.8 * radius) {
         EXPECT_LT(images.visibility.at(x, 64), 0.96) << "column " << x;
+      }
     }
   }
 }

@@ -105,8 +105,9 @@ TEST_F(NormalsFromDepth, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbourin
     EXPECT_LT(largest_error(made, drawing), 0.5);
     for (std::uint32_t y = 0; y < 31; ++y) {
       for (std::uint32_t x = 0; x < 45; ++x)
-        if (drawing.is_sky(x, y))
+        if (drawing.is_sky(x, y)) {
           ASSERT_LT(angle_between(vector_at(made, x, y), drawing.camera.to_eye(x, y)), 0.1);
+        }
     }
   }
 }

@@ -53,8 +53,9 @@ TEST(ShaderInterface, CombinedImageSamplersAreDistinguishedFromSampledImages) {
   for (const ShaderBinding& binding : found.bindings)
     if (binding.name == "half_image")
       EXPECT_EQ(binding.type, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
-    else if (binding.name == "normal_image")
+    else if (binding.name == "normal_image") {
       EXPECT_EQ(binding.type, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
+    }
 }
 
 TEST(ShaderInterface, EveryShaderHasUniqueBindingNumbersKnownTypesAndOneParameterBlock) {
@@ -170,8 +171,9 @@ TEST(ShaderInterface, AccessesAreThoseOfTheImageQualifiers) {
   for (const ShaderBinding& binding : found.bindings)
     if (binding.name == "raw_image" || binding.name == "depth_image")
       EXPECT_EQ(binding.access, std::uint32_t{ALCOVE_WORK_ACCESS_READ}) << binding.name;
-    else if (binding.name == "visibility_image")
+    else if (binding.name == "visibility_image") {
       EXPECT_EQ(binding.access, std::uint32_t{ALCOVE_WORK_ACCESS_WRITE});
+    }
 }
 
 }  // namespace

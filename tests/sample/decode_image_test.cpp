@@ -192,7 +192,9 @@ TEST(DecodeImage, TruncatedImageIsRefusedUnlessAllItsPixelsArePresent) {
     ASSERT_TRUE(expected);
     for (size_t size = 0; size < whole.size(); ++size) {
       const auto image = decoded({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size)});
-      if (image) EXPECT_EQ(image->rgba, expected->rgba) << size << " of " << whole.size();
+      if (image) {
+        EXPECT_EQ(image->rgba, expected->rgba) << size << " of " << whole.size();
+      }
     }
   }
 }

@@ -116,7 +116,9 @@ TEST(MotionPaths, MovingBlockStaysAboveTheGroundWithoutTouchingIt) {
     EXPECT_NEAR(least, 0.2f * start.radius, 1e-4f);
     const glm::vec2 here =
         on_image(path.camera(frame), glm::vec3(path.world_from_moving(frame)[3]));
-    if (frame > 0) EXPECT_GT(here.x, last.x + 0.001f);
+    if (frame > 0) {
+      EXPECT_GT(here.x, last.x + 0.001f);
+    }
     last = here;
   }
 }

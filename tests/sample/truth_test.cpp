@@ -192,8 +192,9 @@ TEST(HeightFieldTruth, UnoccludedPlaneHasVisibilityOneWithinOne255thInEveryProje
           height_field_truth(view.g.depth_vs, view.g.geometric_normal_ws, camera, {0.5f, 64});
       for (size_t i = 0; i < view.mask.pixels.size(); ++i) {
         // The plane is cut off at the far plane.
-        if (view.g.depth_vs.pixels[i] < 0.5f * camera.far_plane)
+        if (view.g.depth_vs.pixels[i] < 0.5f * camera.far_plane) {
           ASSERT_NEAR(truth.visibility.pixels[i], 1.0f, 1.0f / 255.0f) << name << " " << i;
+        }
       }
     }
   }
