@@ -159,6 +159,17 @@ TEST(Recommendation, EachFeatureHasASentenceAboutItsErrorAndTime) {
   EXPECT_NE(found->chosen.settings.thickness, 0.05f);
 }
 
+TEST(Recommendation, FeatureThatHelpsButTakesTooLongIsOverTheBudget) {
+  World world{.layer_gain = 0.05, .samples_of_dear_layer = 0.0};
+  const auto found = recommend({}, within_ms(1.5), world.functions());
+  ASSERT_TRUE(found) << found.error();
+  const auto layer =
+      std::ranges::find(found->features, "a second depth layer", &FeatureEffect::name);
+  ASSERT_NE(layer, found->features.end());
+  EXPECT_THAT(layer->sentence(), testing::HasSubstr("5.0 % less error for"));
+  EXPECT_THAT(layer->sentence(), testing::EndsWith("more time; over the budget"));
+}
+
 TEST(Recommendation, FeatureThatGainsLessThanOnePercentIsNotUsed) {
   for (const auto& [gain, layers] : {std::pair(0.008, 1u), {0.03, 2u}}) {
     World world{gain};

@@ -259,8 +259,11 @@ std::string FeatureEffect::sentence() const {
 
 FeatureEffect effect_of(const std::string& feature, const RecommendationGoal& goal,
                         const Achievement& with, const Achievement& without) {
-  return {feature, goal.rmse(with) / goal.rmse(without) - 1.0,
-          goal.ms(with) / goal.ms(without) - 1.0};
+  FeatureEffect effect{feature, goal.rmse(with) / goal.rmse(without) - 1.0,
+                       goal.ms(with) / goal.ms(without) - 1.0};
+  if (effect.rmse_change < -kWorthwhile && goal.budget_ms && !goal.met(with))
+    effect.verdict = "over the budget";
+  return effect;
 }
 
 Result<Recommendation> recommend(const OcclusionSettings& base, const RecommendationGoal& goal,
