@@ -56,7 +56,7 @@ Result<std::array<double, 3>> cached(const TruthCache& cache, const CacheKey& ke
     std::ranges::copy(*known, values.begin());
     return values;
   }
-  const Result<std::array<double, 3>> computed = compute();
+  Result<std::array<double, 3>> computed = compute();
   if (computed) {
     const std::vector<float> floats(computed->begin(), computed->end());
     cache.write(key, floats);
