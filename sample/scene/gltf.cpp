@@ -71,7 +71,8 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
         "it has no triangles to draw; points, lines, triangles without an area and materials with "
         "an alpha of 0 are not drawn");
   }
-  if (!model.animations.empty()) {
+  scene.has_animations = !model.animations.empty();
+  if (scene.has_animations) {
     scene.warnings.push_back(
         "Animations are left out: nodes, joints and morph targets stand as the file places them.");
   }

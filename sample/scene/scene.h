@@ -120,6 +120,7 @@ struct Scene {
   Bounds bounds_ws;                   // of all triangles
   Subject subject;                    // see find_subject()
   float suggested_radius = 0.0f;      // scene units; 0: the view decides (radius_for_view())
+  bool has_animations = false;        // in the file; they are not played
   std::vector<std::string> warnings;  // one sentence for each part that is not drawn as stored
 };
 

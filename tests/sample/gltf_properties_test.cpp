@@ -234,6 +234,7 @@ TEST(GltfProperties, PropertiesThatTheLoaderDoesNotReadAreNotChecked) {
   maker.json["materials"][0]["occlusionTexture"] = "?";
   maker.json["extensions"] = {{"KHR_lights_punctual", {{"lights", 7}}}};
   const Scene scene = parsed(maker.gltf());
+  EXPECT_TRUE(scene.has_animations);
   EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("Animations are left out")));
 }
 

@@ -95,7 +95,7 @@ TEST(Recommendation, ToleranceIsMetInNearlyTheTimeOfABruteForceSearch) {
   }
 }
 
-// As where the search with two layers exceeds a cache.
+// The time of a second layer rises in steps where the search exceeds a cache.
 TEST(Recommendation, FeatureThatIsCheapAtFewSamplesOnlyIsUsedThere) {
   for (const double gain : {0.15, 0.2, 0.3, 0.5}) {
     for (const double samples : {0.2, 0.4, 0.6, 0.9}) {

@@ -88,11 +88,10 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
           "{:.0f} % of the surfaces are cut out by their alpha; thickness, hidden occlusion "
           "and back faces above are measured with them",
           100.0 * share_of(thin, surfaces)));
-  const bool moves = std::ranges::any_of(
-      scene.warnings, [](const std::string& note) { return note.starts_with("Animations"); });
-  add(moves, "motion vectors as an input",
-      moves ? "the file has animations, and motion vectors follow what moves"
-            : "nothing moves by itself, and the history follows the camera without them");
+  add(scene.has_animations, "motion vectors as an input",
+      scene.has_animations
+          ? "the file has animations, and motion vectors follow what moves"
+          : "nothing moves by itself, and the history follows the camera without them");
   return sentences;
 }
 
