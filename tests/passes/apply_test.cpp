@@ -167,7 +167,7 @@ TEST_F(LightingPass, FrameWithoutSpecularLightHasNoSpecularPassesTexturesOrTable
     const auto occlusion = add_occlusion(frame,
                                          {.depth_ndc = upload(graph, plane.depth_ndc),
                                           .normals = upload(graph, plane.normal_vs),
-                                          .normals_in_view_space = true},
+                                          .normal_convention = {.in_view_space = true}},
                                          settings);
     ASSERT_TRUE(occlusion) << occlusion.error().message;
     const auto probe = add_environment(frame, upload(graph, inputs.map), {.size = 16, .levels = 2});

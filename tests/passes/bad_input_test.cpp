@@ -214,7 +214,7 @@ TEST_F(BadInput, RawOcclusionWithWrongTileSizeSlicesOrImageSizeIsReported) {
       OcclusionSettings search;
       search.tile_size = 2;
       search.bent_normal = true;
-      const auto raw_occlusion = add_gtao(frame, {depth, normals, true}, search);
+      const auto raw_occlusion = add_gtao(frame, {depth, normals, {.in_view_space = true}}, search);
       ASSERT_TRUE(raw_occlusion);
       RawOcclusionTextures spoilt = *raw_occlusion;
       OcclusionSettings settings;
@@ -280,7 +280,7 @@ TEST_F(BadInput, InputImagesOfDifferentSizesAreReported) {
     const auto normals = add_occlusion(frame,
                                        {.depth_ndc = depth,
                                         .normals = upload(graph, small.normal_vs),
-                                        .normals_in_view_space = true},
+                                        .normal_convention = {.in_view_space = true}},
                                        {});
     ASSERT_FALSE(normals);
     EXPECT_THAT(normals.error().message, HasSubstr("normals of 16x11"));

@@ -242,17 +242,18 @@ Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
                       .previous_size = given.reset ? VkExtent2D{} : given.previous_size};
     OcclusionSettings settings = given.settings;
     settings.visibility = settings.visibility || given.multi_bounce;
-    const auto outputs = add_occlusion(frame,
-                                       {.depth_ndc = upload_of(given.depth_ndc),
-                                        .depth_format = given.depth_format,
-                                        .normals = upload_of(given.normals),
-                                        .normals_in_view_space = given.normals_in_view_space,
-                                        .motion = upload_of(given.motion),
-                                        .roughness = upload_of(given.roughness),
-                                        .back_depth_ndc = upload_of(given.back_depth_ndc),
-                                        .second_depth_ndc = upload_of(given.second_depth_ndc),
-                                        .half_size_outputs = given.half_size_outputs},
-                                       settings, name);
+    const auto outputs =
+        add_occlusion(frame,
+                      {.depth_ndc = upload_of(given.depth_ndc),
+                       .depth_format = given.depth_format,
+                       .normals = upload_of(given.normals),
+                       .normal_convention = {.in_view_space = given.normals_in_view_space},
+                       .motion = upload_of(given.motion),
+                       .roughness = upload_of(given.roughness),
+                       .back_depth_ndc = upload_of(given.back_depth_ndc),
+                       .second_depth_ndc = upload_of(given.second_depth_ndc),
+                       .half_size_outputs = given.half_size_outputs},
+                      settings, name);
     ASSERT_TRUE(outputs) << outputs.error().message;
     if (given.settings.visibility) read_back(graph, outputs->visibility);
     if (given.settings.bent_normal) read_back(graph, outputs->bent_normal);

@@ -286,7 +286,7 @@ TEST_F(COutputs, VisibilityInOneChannelOfAnImageEqualsVisibilityInAnImageOfItsOw
     const auto outputs = add_occlusion({graph, gpu().kernels(), given.view},
                                        {.depth_ndc = upload(graph, given.depth_ndc),
                                         .normals = upload(graph, given.normals),
-                                        .normals_in_view_space = true,
+                                        .normal_convention = {.in_view_space = true},
                                         .motion = upload(graph, given.motion),
                                         .into = {.visibility = shared},
                                         .visibility_channel = VisibilityChannel::alpha},

@@ -33,7 +33,7 @@ class DepthPrecision : public PassTest {
                                           {.depth_ndc = upload(graph, drawing.depth_ndc),
                                            .depth_format = format,
                                            .normals = upload(graph, drawing.normal_vs),
-                                           .normals_in_view_space = true},
+                                           .normal_convention = {.in_view_space = true}},
                                           written);
         ASSERT_TRUE(result) << result.error().message;
         read_back(graph, result->visibility);

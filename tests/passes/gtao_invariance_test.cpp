@@ -249,7 +249,7 @@ TEST_F(GtaoInvariance, BothEyesOfAStereoFrameGetTheSameNoise) {
       const Frame frame{graph, gpu().kernels(), view.view, index, view.view};
       const OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
                                    .normals = upload(graph, drawing.normal_vs),
-                                   .normals_in_view_space = true};
+                                   .normal_convention = {.in_view_space = true}};
       for (const std::string_view eye : {"left", "right"}) {
         const auto outputs = add_occlusion(frame, inputs, settings, eye);
         ASSERT_TRUE(outputs) << outputs.error().message;

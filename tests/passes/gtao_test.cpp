@@ -45,7 +45,7 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
             const auto outputs = add_occlusion(frame,
                                                {.depth_ndc = upload(graph, plane.depth_ndc),
                                                 .normals = upload(graph, plane.normal_vs),
-                                                .normals_in_view_space = true},
+                                                .normal_convention = {.in_view_space = true}},
                                                precise(preset.quality));
             ASSERT_TRUE(outputs) << outputs.error().message;
             read_back(graph, outputs->visibility);

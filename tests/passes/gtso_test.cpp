@@ -87,7 +87,7 @@ class GtsoPass : public PassTest {
                             .normals = upload(graph, inputs.normals),
                             .depth = upload(graph, inputs.depth),
                             .roughness = upload(graph, inputs.surface),
-                            .normals_in_view_space = true},
+                            .normal_convention = {.in_view_space = true}},
                            settings_of(model, 0.5f, 3)));
     });
   }
@@ -200,7 +200,7 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
                                 .bent_normal = upload(graph, open.bent),
                                 .normals = upload(graph, plane.normal_vs),
                                 .depth = *depth,
-                                .normals_in_view_space = true};
+                                .normal_convention = {.in_view_space = true}};
         for (const Specular model : kModels)
           for (const float r : roughness)
             read_back(graph, add(frame, inputs, settings_of(model, r)));
@@ -223,7 +223,7 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
                             .bent_normal = upload(graph, inputs.bent),
                             .normals = upload(graph, inputs.normals),
                             .depth = upload(graph, inputs.depth),
-                            .normals_in_view_space = in_view_space},
+                            .normal_convention = {.in_view_space = in_view_space}},
                            settings_of(Specular::table, 0.4f)));
     });
     return result();

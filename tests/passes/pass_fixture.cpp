@@ -194,7 +194,7 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
     };
     const OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
                                  .normals = upload_of(given.normal_vs),
-                                 .normals_in_view_space = true,
+                                 .normal_convention = {.in_view_space = true},
                                  .motion = upload_of(given.motion),
                                  .roughness = upload_of(given.roughness),
                                  .back_depth_ndc = upload_of(given.back_depth_ndc),

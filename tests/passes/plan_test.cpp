@@ -52,7 +52,7 @@ class OcclusionPlan : public PassTest {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
       OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
-                             .normals_in_view_space = true};
+                             .normal_convention = {.in_view_space = true}};
       if (given.normals) inputs.normals = upload(graph, drawing.normal_vs);
       if (given.motion) inputs.motion = upload(graph, motion_of_nothing());
       if (given.hidden_depths) {
@@ -270,7 +270,7 @@ TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistor
     const auto outputs = add_occlusion(frame,
                                        {.depth_ndc = upload(frame.graph, drawing.depth_ndc),
                                         .normals = upload(frame.graph, drawing.normal_vs),
-                                        .normals_in_view_space = true,
+                                        .normal_convention = {.in_view_space = true},
                                         .motion = upload(frame.graph, motion_of_nothing())},
                                        settings);
     ASSERT_TRUE(outputs) << outputs.error().message;

@@ -76,7 +76,7 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                          ? upload(graph, with_16_bits(input.drawing.depth_ndc), VK_FORMAT_R16_UNORM)
                          : upload(graph, input.drawing.depth_ndc),
         .normals = upload(graph, input.drawing.normal_vs),
-        .normals_in_view_space = true};
+        .normal_convention = {.in_view_space = true}};
     if (input.motion != nullptr) inputs.motion = upload(graph, *input.motion);
     const auto made = add_reconstruct(frame, inputs, settings);
     ASSERT_TRUE(made) << made.error().message;

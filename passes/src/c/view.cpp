@@ -125,9 +125,8 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
   const ImageRole specular{"specular occlusion", Kind::colour, 1, true, false, false, half_size};
   ViewInputs inputs;
   inputs.occlusion.depth_format = view.depth_format;
-  inputs.occlusion.normals_in_view_space = view.normals_in_view_space != VK_FALSE;
-  inputs.occlusion.normal_encoding = *encoding;
-  inputs.occlusion.normals_forward_z = view.normals_forward_z != VK_FALSE;
+  inputs.occlusion.normal_convention = {*encoding, view.normals_in_view_space != VK_FALSE,
+                                        view.normals_forward_z != VK_FALSE};
   inputs.occlusion.motion_convention = motion_convention(view);
   inputs.occlusion.visibility_channel = *channel;
   inputs.occlusion.half_size_outputs = half_size;

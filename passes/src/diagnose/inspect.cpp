@@ -55,8 +55,7 @@ class Inspector {
         now_(pictures_.front()),
         frame_(now_.frame),
         reversed_(std::abs(now_.distance(0.0)) > std::abs(now_.distance(1.0 - 1e-7))) {
-    given_ = {static_cast<std::uint32_t>(frame_.normal_encoding), frame_.normals_in_view_space,
-              frame_.normals_forward_z};
+    given_.normals = frame_.normals;
   }
 
   // Stops at the first mistake of the geometry, because others would be its consequences.
@@ -191,10 +190,10 @@ class Inspector {
   }
 
   dvec3 given_normal(const maths::vec3& stored, const Reading& reading) const {
-    dvec3 given(maths::decode_normal(stored, reading.encoding));
-    if (!reading.in_view_space)
+    dvec3 given(maths::decode_normal(stored, static_cast<std::uint32_t>(reading.normals.encoding)));
+    if (!reading.normals.in_view_space)
       given = dvec3(now_.view_by(reading) * dvec4(given, 0.0));
-    else if (reading.forward_z)
+    else if (reading.normals.forward_z)
       given.z = -given.z;
     return given;
   }
@@ -283,16 +282,20 @@ class Inspector {
       }
     };
     Reading reading = given_;
-    reading.in_view_space = !given_.in_view_space;
+    reading.normals.in_view_space = !given_.normals.in_view_space;
     consider(Mistake::normal_space, reading);
     for (const bool other_space : {false, true}) {
-      reading.in_view_space = given_.in_view_space != other_space;
-      for (reading.encoding = 0; reading.encoding < 4; ++reading.encoding)
-        if (reading.encoding != given_.encoding) consider(Mistake::normal_encoding, reading);
+      reading.normals.in_view_space = given_.normals.in_view_space != other_space;
+      for (const NormalEncoding encoding :
+           {NormalEncoding::signed_xyz, NormalEncoding::unsigned_xyz, NormalEncoding::octahedral,
+            NormalEncoding::unsigned_octahedral}) {
+        reading.normals.encoding = encoding;
+        if (encoding != given_.normals.encoding) consider(Mistake::normal_encoding, reading);
+      }
     }
     reading = given_;
-    if (given_.in_view_space) {
-      reading.forward_z = !given_.forward_z;
+    if (given_.normals.in_view_space) {
+      reading.normals.forward_z = !given_.normals.forward_z;
       consider(Mistake::normal_forward_z, reading);
     } else {
       reading.invert_view = true;

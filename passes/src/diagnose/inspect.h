@@ -92,9 +92,7 @@ struct InspectedFrame {
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   bool has_normals = false;
   bool has_motion = false;
-  bool normals_in_view_space = false;
-  bool normals_forward_z = false;
-  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
+  NormalConvention normals;
   MotionConvention motion;
   float radius = 0.0f;
   bool is_static = false;          // static_frames is not 0

@@ -23,9 +23,7 @@ inline constexpr std::size_t kEnoughOfSome = 12;
 
 // A hypothesis of how the inputs are meant.
 struct Reading {
-  std::uint32_t encoding = 0;  // of normals
-  bool in_view_space = false;
-  bool forward_z = false;
+  NormalConvention normals;
   bool flip_y = false;
   bool invert_view = false;        // view_from_world is world_from_view
   bool whole_image = false;        // the whole image is in use

@@ -62,7 +62,7 @@ std::array<NamedConstant, 20> constants_of(const WorkFrame& frame, const GtaoInp
            {"kSecondLayer", flag(reads.second_layer)},
            {"kExtrapolation", flag(advanced.extrapolation)},
            {"kUnobserved", flag(advanced.unobserved)},
-           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
+           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_convention.encoding)},
            {"kReversed", flag(is_reversed(projection))},
            {"kInfiniteFar", flag(has_infinite_far(projection))},
            {"kAreas", flag(has_areas(frame))},
@@ -117,8 +117,7 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
   return {
       maths::uvec4(frame.areas.read.x, frame.areas.read.y, read.width, read.height),
       maths::uvec4(tiles.x, tiles.y, tiles.x + tiles.width - 1, tiles.y + tiles.height - 1),
-      view_from_normal(frame.view, inputs.normals_in_view_space || !inputs.normals,
-                       inputs.normals && inputs.normals_forward_z),
+      view_from_normal(frame.view, inputs.normals ? inputs.normal_convention : kOwnNormals),
       maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                   projection.uv_to_slope.w),
       inverse_depth_from_ndc(projection),

@@ -65,7 +65,7 @@ tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& fram
   const NamedConstant constants[] = {
       {"kRoughnessTexture", flag(textured)},
       {"kRoughnessChannel", channel_if(textured, settings.roughness_channel)},
-      {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_encoding)},
+      {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_convention.encoding)},
       {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
       {"kAreas", flag(has_areas(frame))}};
   const NamedTexture images[] = {{"visibility_image", inputs.visibility},
@@ -84,7 +84,7 @@ tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& fram
       maths::uvec4(cropped ? 0u : read.x, cropped ? 0u : read.y, read.x, read.y),
       maths::ivec4(written.x, written.y, x, y),
       *projection,
-      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z),
+      view_from_normal(frame.view, inputs.normal_convention),
       maths::uvec2(results.width, results.height),
       settings.roughness};
   return list

@@ -4,6 +4,7 @@
 #include "alcove/passes/setting_names.h"
 #include "alcove/passes/work.h"
 #include "work/mask_depth.h"
+#include "work/view_parameters.h"
 #include "work/view_work.h"
 
 namespace alcove::passes {
@@ -22,22 +23,19 @@ tl::expected<framegraph::Texture, Error> describe_linear(WorkList& list, const W
 tl::expected<OcclusionOutputs, Error> describe_model(WorkList& list, const WorkFrame& frame,
                                                      OcclusionOutputs outputs,
                                                      const OcclusionInputs& inputs,
-                                                     bool in_view_space,
                                                      const OcclusionSettings& settings) {
-  return describe_gtso(list, frame,
-                       {.visibility = outputs.visibility,
-                        .bent_normal = outputs.bent_normal,
-                        .normals = outputs.normals,
-                        .depth = outputs.linear_depth,
-                        .roughness = inputs.roughness,
-                        .normals_in_view_space = in_view_space,
-                        .normal_encoding =
-                            inputs.normals ? inputs.normal_encoding : NormalEncoding::signed_xyz,
-                        .normals_forward_z = inputs.normals && inputs.normals_forward_z,
-                        .into = inputs.into.specular,
-                        .visibility_channel = inputs.into.visibility ? inputs.visibility_channel
-                                                                     : VisibilityChannel::all},
-                       settings)
+  return describe_gtso(
+             list, frame,
+             {.visibility = outputs.visibility,
+              .bent_normal = outputs.bent_normal,
+              .normals = outputs.normals,
+              .depth = outputs.linear_depth,
+              .roughness = inputs.roughness,
+              .normal_convention = inputs.normals ? inputs.normal_convention : kOwnNormals,
+              .into = inputs.into.specular,
+              .visibility_channel =
+                  inputs.into.visibility ? inputs.visibility_channel : VisibilityChannel::all},
+             settings)
       .map([&](framegraph::Texture specular) {
         outputs.specular = specular;
         return outputs;
@@ -63,7 +61,6 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
   const auto depth = describe_linear(list, frame, depths->all, settings);
   if (!depth) return tl::unexpected(depth.error());
   framegraph::Texture normals = inputs.normals;
-  const bool in_view_space = inputs.normals_in_view_space || !normals;
   if (!normals && specular_reads_bent_normal(settings)) {
     auto made = describe_normals(list, frame, *depth);
     if (!made) return tl::unexpected(std::move(made.error()));
@@ -73,14 +70,12 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
       describe_gtao(list, frame,
                     {.depth_ndc = depths->occluders,
                      .normals = inputs.normals,
-                     .normals_in_view_space = in_view_space,
+                     .normal_convention = inputs.normal_convention,
                      .roughness = inputs.roughness,
                      .back_depth_ndc = inputs.back_depth_ndc,
                      .second_depth_ndc = inputs.second_depth_ndc,
                      .receiver_depth_ndc = inputs.mask ? depths->receivers : framegraph::Texture{},
-                     .depth_format = depth_format,
-                     .normal_encoding = inputs.normal_encoding,
-                     .normals_forward_z = inputs.normals_forward_z},
+                     .depth_format = depth_format},
                     settings);
   if (!raw_occlusion) return tl::unexpected(raw_occlusion.error());
   const auto filtered = describe_reconstruct(list, frame,
@@ -88,12 +83,10 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
                                               .depth_ndc = depths->receivers,
                                               .depth_format = depth_format,
                                               .normals = inputs.normals,
-                                              .normals_in_view_space = in_view_space,
+                                              .normal_convention = inputs.normal_convention,
                                               .motion = inputs.motion,
                                               .roughness = inputs.roughness,
                                               .into = inputs.into,
-                                              .normal_encoding = inputs.normal_encoding,
-                                              .normals_forward_z = inputs.normals_forward_z,
                                               .motion_convention = inputs.motion_convention,
                                               .visibility_channel = inputs.visibility_channel,
                                               .half_size_results = inputs.half_size_outputs},
@@ -102,7 +95,7 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
   const OcclusionOutputs outputs{filtered->visibility, filtered->bent_normal, filtered->specular,
                                  *depth, normals};
   return specular_reads_bent_normal(settings)
-             ? describe_model(list, frame, outputs, inputs, in_view_space, settings)
+             ? describe_model(list, frame, outputs, inputs, settings)
              : tl::expected<OcclusionOutputs, Error>(outputs);
 }
 

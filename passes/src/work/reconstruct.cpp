@@ -60,7 +60,7 @@ std::array<NamedConstant, 17> constants_of(const WorkFrame& frame, const Reconst
            {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},
            {"kFresh", flag(past == Past::none)},
            {"kVisibility", flag(needs_visibility(settings))},
-           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_encoding)},
+           {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_convention.encoding)},
            {"kShaped", flag(!settings.half_resolution && shaped)},
            {"kReversed", flag(is_reversed(projection))},
            {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
@@ -180,10 +180,7 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   ReconstructInputs inputs = given;
   if (frame.view == frame.previous_view && frame.static_frames > 0) inputs.motion = {};
   if (!inputs.raw_occlusion.lobe) inputs.roughness = {};
-  if (!inputs.normals) {  // those from depth are in view space
-    inputs.normals_in_view_space = true;
-    inputs.normals_forward_z = false;
-  }
+  if (!inputs.normals) inputs.normal_convention = kOwnNormals;
   if (!inputs.into.visibility || !needs_visibility(settings))
     inputs.visibility_channel = VisibilityChannel::all;
   if (auto good = check_reconstruct(list, frame, inputs, settings); !good)
@@ -242,9 +239,7 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                             .lobes = textures.lobe.current,
                             .depth_ndc = inputs.depth_ndc,
                             .normals = inputs.normals,
-                            .normals_in_view_space = inputs.normals_in_view_space,
-                            .normal_encoding = inputs.normal_encoding,
-                            .normals_forward_z = inputs.normals_forward_z,
+                            .normal_convention = inputs.normal_convention,
                             .visibility_channel = inputs.visibility_channel,
                             .half_size_results = inputs.half_size_results},
                            textures.result, settings);

@@ -170,8 +170,7 @@ maths::ReconstructParameters reconstruct_parameters(
   // from the origin.
   const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
                                    maths::inverse(to_rigid(frame.view.view_from_world));
-  const maths::mat4 to_view =
-      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z);
+  const maths::mat4 to_view = view_from_normal(frame.view, inputs.normal_convention);
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
       maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));

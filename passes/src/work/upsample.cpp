@@ -30,7 +30,7 @@ std::array<NamedConstant, 9> constants_of(const WorkFrame& frame, const Upsample
                                           const OcclusionSettings& settings,
                                           const maths::Projection& projection) {
   const std::uint32_t encoding =
-      result.bent_normal ? encoding_of(inputs.normals, inputs.normal_encoding) : 0u;
+      result.bent_normal ? encoding_of(inputs.normals, inputs.normal_convention.encoding) : 0u;
   return {{{"kPerspective", flag(is_perspective(projection))},
            {"kVisibility", flag(bool(result.visibility))},
            {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
@@ -54,8 +54,8 @@ maths::UpsampleParameters parameters_of(const WorkList& list, const WorkFrame& f
   parameters.to_outputs =
       maths::ivec2(frame.areas.output_x, frame.areas.output_y) -
       maths::ivec2(parameters.written.x, parameters.written.y) / (inputs.half_size_results ? 2 : 1);
-  parameters.normal_from_view = maths::transpose(
-      view_from_normal(frame.view, inputs.normals_in_view_space, inputs.normals_forward_z));
+  parameters.normal_from_view =
+      maths::transpose(view_from_normal(frame.view, inputs.normal_convention));
   parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
   parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
   parameters.pixel_uv = 1.0f / projection.size_px;

@@ -11,10 +11,8 @@ struct UpsampleInputs {
   framegraph::Texture residuals;  // maths::pack_half_residual(); null where there is no bent normal
   framegraph::Texture lobes;      // maths::LobeTexel; null where there is no lobe
   framegraph::Texture depth_ndc;  // as GtaoInputs has it
-  framegraph::Texture normals;    // as ReconstructInputs has it, as are the next two
-  bool normals_in_view_space = false;
-  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
-  bool normals_forward_z = false;
+  framegraph::Texture normals;    // as ReconstructInputs has it
+  NormalConvention normal_convention;
   VisibilityChannel visibility_channel = VisibilityChannel::all;  // as ReconstructInputs has it
   bool half_size_results = false;  // as ReconstructInputs has it: nothing is upsampled
 };

@@ -41,13 +41,15 @@ namespace alcove::passes {
       .map_error(unusable);
 }
 
-// Returns the rotation or reflection from the space of the normals to view space. `forward_z` says
-// that the normals are in a view space whose z axis points away from the eye.
-[[nodiscard]] inline maths::mat4 view_from_normal(const View& view, bool normals_in_view_space,
-                                                  bool forward_z = false) {
-  maths::mat4 result =
-      normals_in_view_space ? maths::mat4(1.0f) : maths::mat4(to_rigid(view.view_from_world));
-  if (normals_in_view_space && forward_z) result[2][2] = -1.0f;
+// The convention of the normals that the passes make from depth.
+inline constexpr NormalConvention kOwnNormals{.in_view_space = true};
+
+// Returns the rotation or reflection from the space of the normals to view space.
+[[nodiscard]] inline maths::mat4 view_from_normal(const View& view,
+                                                  const NormalConvention& convention) {
+  if (!convention.in_view_space) return maths::mat4(to_rigid(view.view_from_world));
+  maths::mat4 result(1.0f);
+  if (convention.forward_z) result[2][2] = -1.0f;
   return result;
 }
 

@@ -57,7 +57,7 @@ tl::expected<passes::OcclusionOutputs, passes::Error> describe(passes::WorkList&
   given.mask = add(inputs.mask, "mask", VK_FORMAT_R8_UNORM);
   given.not_receiving = given.not_occluding = inputs.mask ? 1 : 0;
   given.normals = add(inputs.normals, "normals", VK_FORMAT_R16G16B16A16_SFLOAT);
-  given.normal_encoding = inputs.normal_encoding;
+  given.normal_convention.encoding = inputs.normal_encoding;
   given.motion = add(inputs.motion, "motion vectors", VK_FORMAT_R16G16_SFLOAT);
   given.back_depth_ndc =
       add(passes::needs_back_depth(settings), "back-face depth", VK_FORMAT_D32_SFLOAT);

@@ -46,6 +46,15 @@ enum class NormalEncoding : std::uint8_t {
   unsigned_octahedral,  // the same packed into [0,1]
 };
 
+// How normals are meant. A default is the world space and xyz as they are.
+struct NormalConvention {
+  NormalEncoding encoding = NormalEncoding::signed_xyz;
+  bool in_view_space = false;  // else in world space
+  // Whether the z axis of normals in view space points away from the eye, as in engines whose
+  // camera looks along +Z. Bent normals are then written with the same axis.
+  bool forward_z = false;
+};
+
 // The channels of the visibility texture to which visibility is written: all of them, or one, while
 // the others keep their contents. To write one channel of a texture of your own, the texture also
 // needs VK_IMAGE_USAGE_SAMPLED_BIT, and a format from which every other channel can be read and

@@ -17,11 +17,11 @@ struct GtaoInputs {
   // 2^-23 with reversed floats. While the step grows from a quarter of the radius to the radius,
   // visibility fades to 1.
   framegraph::Texture depth_ndc;
-  // Unit vectors in xyz, in world space unless `normals_in_view_space`. AlcoveView::normals
-  // (alcove.h) documents what happens to normals that face away from the eye, are zero or are not
-  // numbers. If null, the pass computes normals from depth at the traced pixels.
+  // Unit vectors, as `normal_convention` says. AlcoveView::normals (alcove.h) documents what
+  // happens to normals that face away from the eye, are zero or are not numbers. If null, the pass
+  // computes normals from depth at the traced pixels.
   framegraph::Texture normals;
-  bool normals_in_view_space = false;
+  NormalConvention normal_convention;
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
   // See OcclusionInputs::back_depth_ndc. Needed only if needs_back_depth() returns true.
   framegraph::Texture back_depth_ndc;
@@ -34,8 +34,6 @@ struct GtaoInputs {
   // The format in which the depths were first stored, if `depth_ndc` is a copy in another format.
   // By default it is the format of `depth_ndc`.
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
-  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
-  bool normals_forward_z = false;  // see OcclusionInputs
 };
 
 // The raw occlusion of a frame, one texel per tile: sums over slices, which reconstruction filters.

@@ -11,12 +11,10 @@ namespace alcove::passes {
 struct GtsoInputs {
   framegraph::Texture visibility;   // [0,1], 1 open
   framegraph::Texture bent_normal;  // xyz unit, in the space of the normals
-  framegraph::Texture normals;      // xyz unit, in world space unless `normals_in_view_space`
+  framegraph::Texture normals;      // unit vectors, as `normal_convention` says
   framegraph::Texture depth;        // linear, as add_linear_depth makes it
   framegraph::Texture roughness;    // perceptual, [0,1]; null: OcclusionSettings::roughness
-  bool normals_in_view_space = false;
-  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;  // of `normals`
-  bool normals_forward_z = false;                               // see OcclusionInputs
+  NormalConvention normal_convention;
   framegraph::Texture
       into;  // the texture to write completely; null: a transient of OcclusionSettings::precision
   VisibilityChannel visibility_channel = VisibilityChannel::all;  // that holds it; `all`: red

@@ -17,7 +17,7 @@ struct OcclusionInputs {
   framegraph::Texture depth_ndc;
   VkFormat depth_format = VK_FORMAT_UNDEFINED;  // see GtaoInputs::depth_format
   framegraph::Texture normals;                  // unit vectors; null: they are made from depth
-  bool normals_in_view_space = false;           // else in world space
+  NormalConvention normal_convention;
   framegraph::Texture motion;     // as ReconstructInputs::motion; null: only the camera moves
   framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
   // The depth of back faces, for ThicknessUnit::back_faces. It is ignored unless
@@ -41,10 +41,6 @@ struct OcclusionInputs {
   std::uint32_t not_occluding = 0;
   // Textures of the caller for the outputs: see ReconstructInputs::into.
   Occlusion into;
-  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
-  // Whether the z axis of normals in view space points away from the eye, as in engines whose
-  // camera looks along +Z. Bent normals are then written with the same axis.
-  bool normals_forward_z = false;
   MotionConvention motion_convention;
   VisibilityChannel visibility_channel = VisibilityChannel::all;  // see ReconstructInputs
   // Whether the outputs have half the depth's size: see ReconstructInputs::half_size_results.

@@ -36,7 +36,7 @@ struct ReconstructInputs {
   framegraph::Texture depth_ndc;       // See GtaoInputs::depth_ndc and depth_format.
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   framegraph::Texture normals;  // The same texture as GtaoInputs::normals.
-  bool normals_in_view_space = false;
+  NormalConvention normal_convention;
   // Motion vectors in xy: how far each surface moved on the image, in the units of
   // `motion_convention`. If null, only the camera is assumed to move. With motion vectors,
   // occluders may move too, which changes the visibility of surfaces that do not move. The history
@@ -48,8 +48,6 @@ struct ReconstructInputs {
   // texture is null, its result is a transient with OcclusionSettings::precision. A texture whose
   // result was not requested is ignored.
   Occlusion into;
-  NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
-  bool normals_forward_z = false;  // see OcclusionInputs
   MotionConvention motion_convention;
   // The channel of `into.visibility` that is written; `all` if that is null.
   VisibilityChannel visibility_channel = VisibilityChannel::all;
