@@ -58,7 +58,7 @@ void add_half_slice(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
     case kBitmask:
       add_bitmask(sum, half_slice, slice);
       break;
-    default:
+    default:  // horizons
       add_horizons(sum, half_slice, slice);
   }
 }

@@ -25,6 +25,7 @@ layout(constant_id = 17) const bool kInfiniteFar = false;   // the far plane is 
 layout(constant_id = 18) const bool kAreas = false;         // images are read in part (areas.h)
 layout(constant_id = 19) const bool kMask = false;          // depth_image has kNoOccluder
 
+// Values of kEstimator; 0 is `horizons`.
 const uint kBitmask = 1;
 const uint kConnected = 2;
 const bool kLeaveOutUnobserved = kEstimator == kConnected && kUnobserved;

@@ -8,6 +8,7 @@
 #define ALCOVE_GTAO_CONNECTED_H
 
 #include "gtao_search_line.h"
+#include "gtao_slice_sum.h"
 #include "maths/connected_samples.h"
 #include "maths/gtao.h"
 #include "maths/lobe_slice.h"
@@ -311,11 +312,8 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   float open = open_arc(slice, half_slice.side);
   float arc =
       part.found.occluded == 0u ? open : light_arc(slice, half_slice.side, part.first_light);
-  float left_out = 0.0;
-  if (kLeaveOutUnobserved) {
-    left_out =
-        part.unobserved.share * (arc - light_arc(slice, half_slice.side, part.unobserved.from));
-  }
+  float left_out =
+      kLeaveOutUnobserved ? unobserved_part(part.unobserved, slice, half_slice.side, arc) : 0.0;
   if (kBackFaces && part.found.known_back) {
     // Back faces show which directions behind an occluder are visible. They are integrated exactly.
     VisiblePart visible =

@@ -4,6 +4,7 @@
 #define ALCOVE_GTAO_HORIZONS_H
 
 #include "gtao_search_line.h"
+#include "gtao_slice_sum.h"
 #include "maths/gtao.h"
 #include "maths/lobe_slice.h"
 
@@ -11,7 +12,7 @@
 const float kNoHorizon = -2.0;
 
 // The cosine of the angle between the view direction and a sample. With a falloff, it falls to that
-// of the tangent plane towards the radius. -1 beyond the radius.
+// of the tangent plane towards the radius. kNoHorizon beyond the radius.
 float sample_cosine(HalfSlice half_slice, vec3 point) {
   float squared = squared_length(point.xy);
   float inverse = inversesqrt(max(squared, 1e-30));

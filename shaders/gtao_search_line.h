@@ -18,29 +18,6 @@
 #include "maths/slice.h"
 #include "maths/slice_line.h"
 
-// Sums over the two half-slices of a slice.
-struct SliceSum {
-  RawOcclusion raw_occlusion;  // visible and open part, weighted by the cosine of the normal,
-                               // without what is unobserved
-  float visible;               // visible part with what is unobserved; only with kBentNormal
-  vec2 bent;          // sum of visible directions: along the slice's direction, along the view's
-  RawOcclusion lobe;  // visible part of the GGX lobe and the whole lobe, without what is unobserved
-  float roughness;    // of the surface, perceptual
-};
-
-SliceSum no_sum(Surface surface) {
-  return SliceSum(RawOcclusion(0.0, 0.0), 0.0, vec2(0.0), RawOcclusion(0.0, 0.0),
-                  surface.roughness);
-}
-
-// Adds the visible part of a half-slice and the part without occluders, of both of which `left_out`
-// is unobserved.
-void add_arc(inout SliceSum sum, float visible, float open, float left_out) {
-  sum.raw_occlusion.visible += visible - left_out;
-  sum.raw_occlusion.open += open - left_out;
-  if (kBentNormal) sum.visible += visible;
-}
-
 // A float of this size has no fraction bits, so that adding it rounds to the nearest integer, which
 // then stands in the low bits. One addition replaces a rounding and a conversion, which costs as
 // much as four additions on GCN.
@@ -149,7 +126,7 @@ float nearest_offset(HalfSlice half_slice) {
 
 // Samples in one iteration of the loop over samples. An iteration costs as many instructions as
 // half a sample, but each of its samples holds registers, and several slices hold more registers
-// than one. passes/cost/gtao.cpp has the same numbers.
+// than one. passes/cost/work.cpp has the same numbers.
 const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
 
 // Up to this number, samples are not reduced to one per pixel.

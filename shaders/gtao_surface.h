@@ -5,9 +5,7 @@
 #include "depth_normal.h"
 #include "gtao_bindings.h"
 #include "maths/normal_encoding.h"
-#include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
-#include "maths/slice.h"
 #include "maths/slice_line.h"
 
 // The surface that a traced pixel shows.

@@ -10,10 +10,8 @@
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
 #include "maths/history.h"
-#include "maths/lobe_slice.h"
 #include "maths/normal_encoding.h"
 #include "maths/raw_occlusion.h"
-#include "maths/slice_line.h"
 #include "store_visibility.h"
 #include "upsample_parameters.h"
 

@@ -2,7 +2,6 @@
 #ifndef ALCOVE_RECONSTRUCT_FILTER_H
 #define ALCOVE_RECONSTRUCT_FILTER_H
 
-#include "maths/lobe_slice.h"
 #include "maths/quantised_normal.h"
 #include "reconstruct_surface.h"
 #include "reconstruct_tiles.h"

@@ -4,7 +4,6 @@
 #define ALCOVE_RECONSTRUCT_HALF_HISTORY_H
 
 #include "maths/half_texel.h"
-#include "maths/history.h"
 #include "reconstruct_previous.h"
 #include "reconstruct_store.h"
 

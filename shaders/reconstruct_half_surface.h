@@ -79,7 +79,7 @@ Surface fetch_surface(Place place) {
   surface.pixel = place.texel * 2 + ivec2(found.way.x < 0.0 ? 1 : 0, found.way.y < 0.0 ? 1 : 0);
   // The texel beyond the border has none of its own.
   surface.pixel = min(surface.pixel, size_px() - 1);
-  surface.sky = is_sky_depth(found.depth_ndc, kReversed);
+  surface.sky = is_sky_ndc(found.depth_ndc, kReversed);
   float scale = kPerspective ? inverse_depth : 1.0;
   // The change of inverse depth per unit of raw depth.
   float per_ndc = is_counted_from_zero(kPerspective, kReversed)

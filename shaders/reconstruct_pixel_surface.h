@@ -35,7 +35,7 @@ Surface fetch_surface(Place place) {
   vec4 before = gather_depth(place.texel, place.uv);
   vec4 after = gather_depth(place.texel + 1, place.uv + parameters.pixel_uv);
   float depth_ndc = after.w;
-  surface.sky = is_sky_depth(depth_ndc, kReversed);
+  surface.sky = is_sky_ndc(depth_ndc, kReversed);
   surface.inverse_depth = inverse_depth_of(depth_ndc);
   surface.depth = kPerspective ? 1.0 / surface.inverse_depth : 1.0;
   // The plane comes from the depths where they are linear, because a normal has more bytes.

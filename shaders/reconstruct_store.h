@@ -6,7 +6,6 @@
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
 #include "maths/history.h"
-#include "maths/lobe_slice.h"
 #include "reconstruct_filter.h"
 #include "store_visibility.h"
 #ifdef HALF

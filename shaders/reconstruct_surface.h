@@ -4,7 +4,6 @@
 #define ALCOVE_RECONSTRUCT_SURFACE_H
 
 #include "depth_normal.h"
-#include "maths/history.h"
 #include "maths/normal_encoding.h"
 #include "maths/raw_occlusion.h"
 #include "maths/slice_line.h"

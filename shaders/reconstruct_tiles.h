@@ -4,7 +4,6 @@
 #define ALCOVE_RECONSTRUCT_TILES_H
 
 #include "maths/bent_normal.h"
-#include "maths/lobe_slice.h"
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
 #include "reconstruct_bindings.h"

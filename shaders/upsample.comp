@@ -177,7 +177,7 @@ void main() {
     ivec2 output_pixel = in_outputs(pixel);
     vec4 weights = weights_of(cell, j);
     float inverse_sum = 1.0 / (weights.x + weights.y + weights.z + weights.w);
-    bool sky = is_sky_depth(cell.depths_ndc[j], kReversed);
+    bool sky = is_sky_ndc(cell.depths_ndc[j], kReversed);
     float occlusion = dot(weights, cell.occlusions) * inverse_sum;
     float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
     if (kVisibility && inside) {

@@ -20,7 +20,7 @@ constexpr double kOccluderRuns = 2.5;
 // identify it.
 struct Samples {
   std::uint32_t loads_per_step = 1;       // image loads of one step in one depth layer
-  std::uint32_t steps_per_iteration = 1;  // of the loop over steps, kUnrolled of gtao.comp
+  std::uint32_t steps_per_iteration = 1;  // of the loop over steps, kUnrolled of gtao_search_line.h
   std::uint32_t iterations = 1;           // of the loop over steps
   std::uint32_t half_slice = 1;           // image loads of a half-slice
   // Image loads of a half-slice whose loops over steps are unrolled. A texel of back faces that

@@ -8,8 +8,8 @@
 // halfway between them (kEdgeShare). Every sample has a thickness, either along the view direction
 // or up to its back face (height_of_back()). A surface that leaves the image is extrapolated beyond
 // the border (kExtrapolationRatio). hidden_occlusion_behind() in visibility_bitmask.h estimates how
-// much of the volume behind an occluder is solid. passes/ALGORITHM.md has figures; sample/README.md
-// compares the estimators.
+// much of the volume behind an occluder is solid. passes/ALGORITHM.md has figures;
+// sample/lab/README.md compares the estimators.
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 
@@ -27,16 +27,16 @@ struct SliceSample {
   vec2 back;            // x w and y w of the occluder's end, if a back face is known
 };
 
-// Whether the slope of the inverse depth changes abruptly at a sample, as between two surfaces.
+// Whether the slope of the depth changes abruptly at a sample, as between two surfaces.
 struct DepthDiscontinuity {
   bool convex;   // the slope before is larger than the slope after
   bool concave;  // the slope before is smaller
 };
 
-// Returns whether the slope of the inverse depth changes abruptly at a sample. `rise_before` and
-// `rise_after` are the changes of inverse depth over the intervals before and after the sample,
-// whose widths in pixels, above 0, are `width_before` and `width_after`. `smallest` is the smallest
-// change of slope that counts.
+// Returns whether the slope of a line of samples changes abruptly at one of them. `rise_before` and
+// `rise_after` are the changes of height over the intervals before and after the sample, whose
+// widths, above 0, are `width_before` and `width_after`, in any one unit. `smallest` is the
+// smallest change of slope that counts.
 ALCOVE_INLINE DepthDiscontinuity depth_discontinuity(float rise_before, float width_before,
                                                      float rise_after, float width_after,
                                                      float smallest) {
@@ -90,11 +90,11 @@ ALCOVE_INLINE float height_of_back(float height, float scale, float thickness) {
 // multiple of the distance that was searched within the image.
 const float kExtrapolationRatio = 4.0f;
 
-// Returns how many pixels beyond the border a plane is extrapolated: `way_px`, but in perspective
-// views at most until the plane is ten times as far away from the eye as its last sample. `last` is
-// the inverse depth of that sample, and `slope` the change of inverse depth per pixel.
-ALCOVE_INLINE float extrapolated_way(float last, float slope, float way_px, bool perspective) {
-  return perspective ? min(way_px, 0.9f * last / max(-slope, 1e-30f)) : way_px;
+// Returns how far beyond the border a plane is extrapolated: `way`, but in perspective views at
+// most until the plane is ten times as far away from the eye as its last sample. `last` is the
+// inverse depth of that sample, and `slope` the change of inverse depth per unit of `way`.
+ALCOVE_INLINE float extrapolated_way(float last, float slope, float way, bool perspective) {
+  return perspective ? min(way, 0.9f * last / max(-slope, 1e-30f)) : way;
 }
 
 ALCOVE_MATHS_END

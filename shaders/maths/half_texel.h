@@ -83,7 +83,7 @@ ALCOVE_INLINE float representative_depth(ivec2 texel, vec4 depths_ndc, bool reve
   float largest = max(max(depths_ndc.x, depths_ndc.y), max(depths_ndc.z, depths_ndc.w));
   float nearest = reversed ? largest : smallest;
   float farthest = reversed ? smallest : largest;
-  bool takes_nearest = ((texel.x ^ texel.y) & 1) == 0 || is_sky_depth(farthest, reversed);
+  bool takes_nearest = ((texel.x ^ texel.y) & 1) == 0 || is_sky_ndc(farthest, reversed);
   return takes_nearest ? nearest : farthest;
 }
 

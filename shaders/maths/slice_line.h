@@ -36,7 +36,7 @@ ALCOVE_INLINE bool is_counted_from_zero(bool perspective, bool reversed) {
 }
 
 // Whether a value of the depth buffer is the sky's: the far plane, beyond it or NaN.
-ALCOVE_INLINE bool is_sky_depth(float depth_ndc, bool reversed) {
+ALCOVE_INLINE bool is_sky_ndc(float depth_ndc, bool reversed) {
   return reversed ? !(depth_ndc > 0.0f) : !(depth_ndc < 1.0f);
 }
 
@@ -49,8 +49,8 @@ ALCOVE_INLINE float inverse_depth_of_ndc(vec2 from_ndc, float depth_ndc, bool pe
                                          bool reversed) {
   float d =
       clamp(is_counted_from_zero(perspective, reversed) ? depth_ndc : 1.0f - depth_ndc, 0.0f, 1.0f);
-  return is_sky_depth(depth_ndc, reversed) ? sky_inverse_depth(perspective)
-                                           : from_ndc.x * d + from_ndc.y;
+  return is_sky_ndc(depth_ndc, reversed) ? sky_inverse_depth(perspective)
+                                         : from_ndc.x * d + from_ndc.y;
 }
 
 // Whether the back face at a pixel can be the end of the occluder whose front face is at that
@@ -154,11 +154,6 @@ struct DepthStep {
 
 ALCOVE_INLINE float depth_step_at(DepthStep s, float inverse_depth) {
   return max(s.constant + s.per_inverse_depth * inverse_depth, 0.0f);
-}
-
-// Converts a small difference `step` of inverse depth at `inverse_depth` to scene units.
-ALCOVE_INLINE float depth_step_length(float step, float inverse_depth, bool perspective) {
-  return perspective ? step / (inverse_depth * inverse_depth) : step;
 }
 
 // The fraction by which occlusion is faded to open because the depth buffer is too coarse: 0 if its

@@ -7,7 +7,6 @@
 #ifndef ALCOVE_MATHS_SPHERICAL_HARMONICS_H
 #define ALCOVE_MATHS_SPHERICAL_HARMONICS_H
 
-#include "constants.h"
 #include "language.h"
 
 ALCOVE_MATHS_BEGIN

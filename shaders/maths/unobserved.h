@@ -13,20 +13,17 @@
 #include "language.h"
 #include "lobe_slice.h"
 #include "slice.h"
-#include "visibility_bitmask.h"
 
 ALCOVE_MATHS_BEGIN
 
 // The offset that means that there is no unobserved column. It is larger than any other offset.
 const float kNowhere = 1e9f;
 
-// The unobserved columns of a half-slice. Columns are added from the shaded pixel outwards. Lengths
-// along the line are in any unit, but all in the same.
+// The unobserved columns of a half-slice. Lengths along the line are in any one unit.
 struct Unobserved {
   float first;  // distance of the nearest unobserved column from the shaded pixel
   float width;  // sum of the widths of the unobserved columns
   float rows;   // number of runs of adjacent unobserved columns
-  bool last;    // whether the column that was added last is unobserved
 };
 
 ALCOVE_INLINE Unobserved nothing_unobserved() {
@@ -34,18 +31,7 @@ ALCOVE_INLINE Unobserved nothing_unobserved() {
   none.first = kNowhere;
   none.width = 0.0f;
   none.rows = 0.0f;
-  none.last = false;
   return none;
-}
-
-// Adds the next column outwards. It is `offset` away from the shaded pixel and `width` wide,
-// and `hides` says whether it is unobserved.
-ALCOVE_INLINE Unobserved add_column(Unobserved sum, bool hides, float offset, float width) {
-  sum.first = min(sum.first, hides ? offset : kNowhere);
-  sum.width += hides ? width : 0.0f;
-  sum.rows += hides && !sum.last ? 1.0f : 0.0f;
-  sum.last = hides;
-  return sum;
 }
 
 // Replaces the total width of the unobserved columns by the mean width of a row, because the
@@ -72,7 +58,9 @@ ALCOVE_INLINE float border_share(float other_outside, float nearness) {
 ALCOVE_INLINE Unobserved add_beyond_border(Unobserved sum, float offset, float beyond,
                                            float share) {
   bool hides = beyond > 0.0f && offset < kNowhere;
-  return add_column(sum, hides, offset, share * share * beyond);
+  sum.first = min(sum.first, hides ? offset : kNowhere);
+  sum.width += hides ? share * share * beyond : 0.0f;
+  return sum;
 }
 
 // The directions between `from` and `to`, of which a share is excluded.
@@ -99,9 +87,10 @@ ALCOVE_INLINE UnobservedArc make_unobserved_arc(vec2 first, Unobserved unobserve
   return arc;
 }
 
-// Returns the excluded part of a half-slice, weighted by the cosine.
-ALCOVE_INLINE float unobserved_part(UnobservedArc arc, Slice s, float side) {
-  return arc.share * (light_arc(s, side, arc.to) - light_arc(s, side, arc.from));
+// Returns the excluded part of a half-slice, weighted by the cosine. `arc_to` is light_arc() of the
+// direction at which the arc ends.
+ALCOVE_INLINE float unobserved_part(UnobservedArc arc, Slice s, float side, float arc_to) {
+  return arc.share * (arc_to - light_arc(s, side, arc.from));
 }
 
 // Returns the excluded part of the GGX lobe in a half-slice. `lobe_to` is lobe_light_arc() of the

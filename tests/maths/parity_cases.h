@@ -214,13 +214,15 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
     case 24u: {
       Slice s = parity_slice(a);
       HalfLobe lobe = make_half_lobe(s, 1.0f, 0.05f + 0.95f * b.x);
-      Unobserved unobserved =
-          add_beyond_border(mean_row(add_column(nothing_unobserved(), true, b.y, b.z)), b.w, b.z,
-                            border_share(b.x, b.y));
+      Unobserved unobserved = nothing_unobserved();
+      unobserved.first = b.y;
+      unobserved.width = b.z;
+      unobserved.rows = 2.0f;
+      unobserved = add_beyond_border(mean_row(unobserved), b.w, b.z, border_share(b.x, b.y));
       // No sector is occluded in this case, because rounding could otherwise move an end of the arc
       // by a whole sector.
       UnobservedArc arc = make_unobserved_arc(tangent_light(s, 1.0f), unobserved, 1.0f);
-      return vec4(unobserved_part(arc, s, 1.0f),
+      return vec4(unobserved_part(arc, s, 1.0f, light_arc(s, 1.0f, arc.to)),
                   unobserved_lobe(arc, lobe, lobe_light_arc(lobe, arc.to)), arc.share, 0.0f);
     }
   }

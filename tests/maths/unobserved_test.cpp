@@ -35,12 +35,17 @@ struct Case {
         unobserved(maths::nothing_unobserved()) {
     const float first = random.uniform(0.0f, 1.2f) * kRadiusPx;
     const float width = random.uniform(0.0f, 0.3f) * kRadiusPx;
-    for (unsigned k = random.bits() % 4; k > 0; --k)
-      unobserved = maths::add_column(unobserved, true, first + float(k - 1) * width, width);
+    if (const auto columns = float(random.bits() % 4); columns > 0.0f)
+      unobserved = {first, columns * width, 1.0f};
   }
 
   UnobservedArc arc() const {
     return maths::make_unobserved_arc(first_light(), unobserved, kRadiusPx);
+  }
+
+  // Returns the excluded part of the half-slice.
+  float excluded() const {
+    return maths::unobserved_part(arc(), slice, side, maths::light_arc(slice, side, arc().to));
   }
 
   // Returns sine and cosine of the angle of the first occluded direction, or of the tangent plane.
@@ -80,7 +85,7 @@ TEST(UnobservedDirections, ExcludedPartOfAHalfSliceEqualsQuadratureOfTheExcluded
   for (int i = 0; i < kCases; ++i) {
     const Case c(random);
     const SliceTruth slice(c.slice);
-    const double found = maths::unobserved_part(c.arc(), c.slice, c.side);
+    const double found = c.excluded();
     const double truth = c.truth([&](double t) { return slice.density(double(c.side) * t); });
     worst = std::max(worst, std::abs(found - truth));
     sum += std::abs(found - truth);
@@ -117,31 +122,23 @@ TEST(UnobservedDirections, NothingIsExcludedFromAHalfSliceWhoseDirectionsAreAllO
   for (int i = 0; i < 1000; ++i) {
     Case c(random);
     c.unobserved = maths::nothing_unobserved();
-    EXPECT_EQ(maths::unobserved_part(c.arc(), c.slice, c.side), 0.0f);
+    EXPECT_EQ(c.excluded(), 0.0f);
     // Behind the first occluder, the setting `hidden_occlusion` applies instead.
     c = Case(random);
     c.occluded |= 1u;
-    EXPECT_EQ(maths::unobserved_part(c.arc(), c.slice, c.side), 0.0f);
+    EXPECT_EQ(c.excluded(), 0.0f);
   }
 }
 
-TEST(UnobservedDirections,
-     ManyShortUnobservedIntervalsExcludeNoMoreDirectionsOfASliceThanOneInterval) {
-  Unobserved row = maths::add_column(maths::nothing_unobserved(), true, 4.0f, 1.0f);
-  row = maths::add_column(row, true, 6.0f, 3.0f);
-  EXPECT_EQ(maths::mean_row(row).width, 4.0f) << "adjacent columns are one row";
-  Unobserved leaves = row;
-  for (int i = 1; i < 5; ++i) {
-    leaves = maths::add_column(leaves, false, 10.0f * float(i), 5.0f);
-    leaves = maths::add_column(leaves, true, 10.0f * float(i) + 5.0f, 4.0f);
-  }
+TEST(UnobservedDirections, ManyShortRowsExcludeNoMoreDirectionsOfASliceThanOneRow) {
+  const Unobserved leaves{.first = 4.0f, .width = 20.0f, .rows = 5.0f};
   EXPECT_EQ(maths::mean_row(leaves).width, 4.0f);
   EXPECT_EQ(maths::mean_row(leaves).first, 4.0f);
   EXPECT_EQ(maths::mean_row(maths::nothing_unobserved()).width, 0.0f);
 }
 
 TEST(UnobservedDirections, GivenFractionOfTheDirectionsBeyondTheImageBorderIsExcluded) {
-  const Unobserved some = maths::add_column(maths::nothing_unobserved(), true, 7.0f, 2.0f);
+  const Unobserved some{.first = 7.0f, .width = 2.0f, .rows = 1.0f};
   const Unobserved border = maths::add_beyond_border(some, 9.0f, 12.0f, 0.5f);
   EXPECT_EQ(border.first, 7.0f);
   EXPECT_EQ(border.width, 5.0f);
@@ -176,8 +173,7 @@ TEST(UnobservedDirections, DirectionsOfAHalfSliceAreNeverAllExcluded) {
     c.occluded = 0;
     c.unobserved = {.first = 0.0f, .width = 3.0f * kRadiusPx};
     const float whole = maths::light_arc(c.slice, c.side, maths::tangent_light(c.slice, c.side));
-    EXPECT_LE(maths::unobserved_part(c.arc(), c.slice, c.side),
-              maths::kMostUnobserved * whole + 1e-6f);
+    EXPECT_LE(c.excluded(), maths::kMostUnobserved * whole + 1e-6f);
   }
 }
 

@@ -63,7 +63,7 @@ TEST(ShaderInterface, EveryShaderHasUniqueBindingNumbersKnownTypesAndOneParamete
     SCOPED_TRACE(shader_source(shader).name);
     const ShaderInterface found = read_shader_interface(shader_source(shader).code);
     EXPECT_LE(found.bindings.size(), kMaxBindings);
-    EXPECT_LE(found.constants.size(), Kernels::kMaxConstants);
+    EXPECT_LE(found.constants.size(), std::size_t{ALCOVE_MAX_WORK_CONSTANTS});
     std::set<std::uint32_t> numbers, ids;
     std::size_t parameter_blocks = 0, tables = 0;
     for (const ShaderBinding& binding : found.bindings) {

@@ -82,16 +82,16 @@ VkDescriptorSet DescriptorSets::get(framegraph::RecordContext& context,
   }
   const Claim own = claim(context, bound);
   if (own.set == VK_NULL_HANDLE) return VK_NULL_HANDLE;
-  assert(bound.parameters.size() <= Kernels::kMaxParameterBytes);
+  assert(bound.parameters.size() <= ALCOVE_MAX_WORK_PARAMETER_BYTES);
   const VkDeviceSize offset =
-      (slot_ * Kernels::kMaxDispatches + own.number) * Kernels::kMaxParameterBytes;
+      (slot_ * Kernels::kMaxDispatches + own.number) * ALCOVE_MAX_WORK_PARAMETER_BYTES;
   std::memcpy(parameters_->bytes() + offset, bound.parameters.data(), bound.parameters.size());
   if (!own.is_written) write(own.set, bound, offset);
   return own.set;
 }
 
 VkDeviceSize DescriptorSets::parameter_bytes() const {
-  return VkDeviceSize{slots_.size()} * Kernels::kMaxDispatches * Kernels::kMaxParameterBytes;
+  return VkDeviceSize{slots_.size()} * Kernels::kMaxDispatches * ALCOVE_MAX_WORK_PARAMETER_BYTES;
 }
 
 // Returns whether the set still holds the resources that the dispatch binds. Equal handles mean

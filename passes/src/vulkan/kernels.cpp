@@ -185,7 +185,7 @@ tl::expected<Kernel, Error> Kernels::State::create_pipeline(
   const auto index = static_cast<std::size_t>(shader);
   if (auto made = create_module(index).and_then([&] { return create_table(index); }); !made)
     return tl::unexpected(std::move(made.error()));
-  std::array<VkSpecializationMapEntry, kMaxConstants> entries;
+  std::array<VkSpecializationMapEntry, ALCOVE_MAX_WORK_CONSTANTS> entries;
   for (std::uint32_t i = 0; i < constants.size(); ++i) {
     entries.at(i) = {constants[i].id,
                      static_cast<std::uint32_t>(i * sizeof(AlcoveWorkConstant) +

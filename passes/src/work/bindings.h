@@ -24,6 +24,12 @@ namespace alcove::passes {
   return texture.index != framegraph::kNone ? texture : instead;
 }
 
+// Returns the format in which a depth texture was first stored: `given`, or that of the texture.
+[[nodiscard]] inline VkFormat stored_format(const WorkList& list, framegraph::Texture depth,
+                                            VkFormat given) {
+  return given != VK_FORMAT_UNDEFINED ? given : list.format(depth);
+}
+
 // Returns the texture that the caller gave for a result, or a new transient if it gave none.
 [[nodiscard]] inline framegraph::Texture given_or_added(WorkList& list, framegraph::Texture given,
                                                         const char* name, VkFormat format,

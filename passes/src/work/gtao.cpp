@@ -111,9 +111,8 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
   const float radius = std::min(settings.radius, kLargestRadius);
   const std::uint32_t index = noise_index(settings, frame.index);
   const InterleaveOffset interleave_offset = interleave_offset_of(settings.tile_size, index);
-  const maths::DepthStep step = depth_step(projection, inputs.depth_format != VK_FORMAT_UNDEFINED
-                                                           ? inputs.depth_format
-                                                           : list.format(inputs.depth_ndc));
+  const maths::DepthStep step =
+      depth_step(projection, stored_format(list, inputs.depth_ndc, inputs.depth_format));
   return {
       maths::uvec4(frame.areas.read.x, frame.areas.read.y, read.width, read.height),
       maths::uvec4(tiles.x, tiles.y, tiles.x + tiles.width - 1, tiles.y + tiles.height - 1),

@@ -3,6 +3,7 @@
 
 #include "alcove/passes/setting_names.h"
 #include "alcove/passes/work.h"
+#include "work/bindings.h"
 #include "work/mask_depth.h"
 #include "work/view_parameters.h"
 #include "work/view_work.h"
@@ -19,6 +20,11 @@ tl::expected<framegraph::Texture, Error> describe_linear(WorkList& list, const W
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
+// Returns the channel that holds visibility in its texture.
+VisibilityChannel channel_of_visibility(const OcclusionInputs& inputs) {
+  return inputs.into.visibility ? inputs.visibility_channel : VisibilityChannel::all;
+}
+
 // Adds specular occlusion from visibility and bent normals to `outputs`.
 tl::expected<OcclusionOutputs, Error> describe_model(WorkList& list, const WorkFrame& frame,
                                                      OcclusionOutputs outputs,
@@ -33,8 +39,7 @@ tl::expected<OcclusionOutputs, Error> describe_model(WorkList& list, const WorkF
               .roughness = inputs.roughness,
               .normal_convention = inputs.normals ? inputs.normal_convention : kOwnNormals,
               .into = inputs.into.specular,
-              .visibility_channel =
-                  inputs.into.visibility ? inputs.visibility_channel : VisibilityChannel::all},
+              .visibility_channel = channel_of_visibility(inputs)},
              settings)
       .map([&](framegraph::Texture specular) {
         outputs.specular = specular;
@@ -55,9 +60,7 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
   }
   const auto depths = describe_depths(list, frame, inputs);
   if (!depths) return tl::unexpected(depths.error());
-  const VkFormat depth_format = inputs.depth_format != VK_FORMAT_UNDEFINED
-                                    ? inputs.depth_format
-                                    : list.format(inputs.depth_ndc);
+  const VkFormat depth_format = stored_format(list, inputs.depth_ndc, inputs.depth_format);
   const auto depth = describe_linear(list, frame, depths->all, settings);
   if (!depth) return tl::unexpected(depth.error());
   framegraph::Texture normals = inputs.normals;
@@ -104,11 +107,9 @@ tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFr
                                                     const OcclusionSettings& settings) {
   auto outputs = describe_occlusion(list, frame, inputs.occlusion, settings);
   if (!outputs || !inputs.multi_bounce) return outputs;
-  const VisibilityChannel channel = inputs.occlusion.into.visibility
-                                        ? inputs.occlusion.visibility_channel
-                                        : VisibilityChannel::all;
   return describe_multi_bounce(list, frame,
-                               {outputs->visibility, inputs.albedo, inputs.multi_bounce, channel},
+                               {outputs->visibility, inputs.albedo, inputs.multi_bounce,
+                                channel_of_visibility(inputs.occlusion)},
                                settings.precision)
       .map([&](framegraph::Texture) { return *outputs; });
 }

@@ -18,7 +18,7 @@ using framegraph::Texture;
 namespace {
 
 // Static frames after which every pixel of a tile of 4x4 has been traced once.
-constexpr std::uint32_t kConvergedFrames = 16;
+constexpr std::uint32_t kTileFrames = 16;
 
 // The kind of history that a frame can use. The pipeline depends on it, and also on the settings,
 // the inputs and the kind of projection.
@@ -199,12 +199,11 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                                 " Where there was none, reset the history (reset_history)."});
   }
   const Past past = past_of(frame, *sizes, textures.valid, bool(inputs.motion));
-  maths::ReconstructParameters parameters = reconstruct_parameters(
-      frame, *projection, *previous, inputs, settings,
-      inputs.depth_format != VK_FORMAT_UNDEFINED ? inputs.depth_format
-                                                 : list.format(inputs.depth_ndc));
+  maths::ReconstructParameters parameters =
+      reconstruct_parameters(frame, *projection, *previous, inputs, settings,
+                             stored_format(list, inputs.depth_ndc, inputs.depth_format));
   // In a static view all frames get the same weight in the history.
-  if (past == Past::unchanged && frame.static_frames >= kConvergedFrames)
+  if (past == Past::unchanged && frame.static_frames >= kTileFrames)
     parameters.largest_weight = static_cast<float>(maths::kMaxHistoryFrames) - 1.0f;
   const VkExtent2D stored =
       textures.texels.current ? list.size(textures.texels.current) : VkExtent2D{1, 1};

@@ -187,8 +187,10 @@ maths::ReconstructParameters reconstruct_parameters(
   parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
   parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                                  projection.uv_to_slope.w);
+  // More slices reduce the distance from the tangent plane that is tolerated.
   parameters.tolerance =
-      1.0f / (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
+      std::sqrt(static_cast<float>(inputs.raw_occlusion.slices)) /
+      (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   parameters.clamp_width = settings.advanced.clamp_width;
   // The distances between the borders of the area that is read and those of the area that is
@@ -238,9 +240,6 @@ maths::ReconstructParameters reconstruct_parameters(
   parameters.wide_sharpness = 1.0f / sharpness;
   parameters.first_sharpness = sharpness * 0.125f / (window * window);
   parameters.smallest_window = smallest_window(inputs.raw_occlusion, texel) / sharpness;
-  // More slices narrow the window. They also reduce the distance from the tangent plane that is
-  // tolerated.
-  parameters.tolerance *= std::sqrt(static_cast<float>(inputs.raw_occlusion.slices));
   const auto [offset_x, offset_y] = interleave_offset_of(inputs.raw_occlusion.tile_size, index);
   parameters.interleave_pixel = {offset_x, offset_y};
   parameters.traced_range =

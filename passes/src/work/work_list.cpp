@@ -12,8 +12,6 @@ using framegraph::Texture;
 
 namespace {
 
-static_assert(Kernels::kMaxConstants == ALCOVE_MAX_WORK_CONSTANTS);
-
 constexpr std::array kHistoryNames{"visibility history", "depth history", "bent-normal history",
                                    "lobe history"};
 

@@ -78,9 +78,7 @@ struct NamedConstant {
 // function.
 class Kernels {
  public:
-  static constexpr std::uint32_t kMaxDispatches = 80;        // in a frame
-  static constexpr std::uint32_t kMaxParameterBytes = 1024;  // of a dispatch
-  static constexpr std::size_t kMaxConstants = 24;           // of a shader
+  static constexpr std::uint32_t kMaxDispatches = 80;  // in a frame
   static constexpr std::uint32_t kMaxFramesInFlight = 8;
 
   // Creates the kernels of a device. `device` must have been created with the feature
