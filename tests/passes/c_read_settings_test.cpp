@@ -180,6 +180,42 @@ TEST(CReadSettings, ArgumentsThatAreMissingAreReported) {
   EXPECT_THAT(found.said(), HasSubstr("AlcoveAdvancedSettings::struct_size is 4"));
 }
 
+// Returns another value of a setting than `value`, the `number`th that is tried.
+template <typename Value>
+Value another(Value value, std::uint32_t number) {
+  if constexpr (std::is_same_v<Value, bool>)
+    return !value;
+  else if constexpr (std::is_enum_v<Value>)
+    return static_cast<Value>((static_cast<std::size_t>(value) + number) % kNames<Value>.size());
+  else if constexpr (std::is_same_v<Value, float>)
+    return 0.1f + 0.25f * static_cast<float>(number);
+  else
+    return number;
+}
+
+TEST(CReadSettings, EachSettingGoesToCAndBack) {
+  OcclusionSettings base;
+  base.specular = Specular::slices;
+  base.advanced.estimator = Estimator::horizons;  // allows a falloff above 0
+  for_each_setting(base, [&](const SettingInfo& info, const auto&) {
+    if (info.group == SettingGroup::output) return;
+    int changes = 0;
+    for (std::uint32_t number = 0; number < 5; ++number) {
+      OcclusionSettings changed = base;
+      for_each_setting(changed, [&](const SettingInfo& other, auto& field) {
+        if (std::string_view(other.name) == info.name) field = another(field, number);
+      });
+      if (changed == base || changed.specular == Specular::none || !validate(changed)) continue;
+      AlcoveAdvancedSettings advanced;
+      const AlcoveSettings in_c = from_settings(changed, advanced);
+      const auto back = to_settings(&in_c);
+      EXPECT_TRUE(back && *back == changed) << info.name;
+      ++changes;
+    }
+    EXPECT_GT(changes, 0) << info.name;
+  });
+}
+
 TEST(CFitBudget, SettingsChangeOnlyIfTheTimesAskForIt) {
   Settings view;
   const AlcoveBudget budget{sizeof budget, 2.0, 1, 2, 4, 12};

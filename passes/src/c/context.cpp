@@ -15,25 +15,6 @@ using passes::invalid;
 using passes::Message;
 using passes::Result;
 
-namespace alcove::passes {
-
-std::size_t copy_text(std::string_view from, char* text, std::size_t size) {
-  if (text != nullptr && size > 0) {
-    const std::size_t length = std::min(from.size(), size - 1);
-    std::copy_n(from.data(), length, text);
-    text[length] = '\0';
-  }
-  return from.size();
-}
-
-AlcoveResult keep(Message& message, const Result& result) {
-  if (result) return ALCOVE_SUCCESS;
-  copy_text(result.error().message, message.data(), message.size());
-  return result.error().result;
-}
-
-}  // namespace alcove::passes
-
 namespace {
 
 Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {

@@ -1,4 +1,4 @@
-// The context of the C interface, and how its functions run calls that can fail.
+// The context of the C interface, and how its functions run calls on it that can fail.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <new>
-#include <string_view>
-#include <tl/expected.hpp>
 
 #include "alcove/alcove.h"
 #include "alcove/framegraph/executor.h"
@@ -21,9 +18,6 @@
 #include "diagnose/pixel_observer.h"
 
 namespace alcove::passes {
-
-using Message = std::array<char, ALCOVE_MAX_MESSAGE>;
-using Result = tl::expected<void, Failure>;
 
 // The views of a frame, by the number of the first pass that comes after each.
 struct ViewPasses {
@@ -38,34 +32,6 @@ struct ViewPasses {
     return std::ranges::find_if(views, [pass](const View& view) { return pass < view.end; })->id;
   }
 };
-
-// Copies a text like snprintf: writes at most `size` bytes, including the terminating zero. Returns
-// the number of bytes of the whole text without that zero. `text` may be null if `size` is 0.
-std::size_t copy_text(std::string_view from, char* text, std::size_t size);
-
-// Stores the message of a failure. Returns the result.
-AlcoveResult keep(Message& message, const Result& result);
-
-// Runs `call`, which returns a Result, and stores its message if it failed. The library itself
-// throws nothing, but operator new may: its exception becomes a failure. In a build without
-// exceptions, the program ends instead.
-template <typename Call>
-AlcoveResult guarded(Message& message, const Call& call) {
-#ifdef __cpp_exceptions
-  try {
-    return keep(message, call());
-  } catch (const std::bad_alloc&) {
-    copy_text("The host is out of memory.", message.data(), message.size());
-    return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
-  } catch (...) {
-    copy_text("The library failed for a reason that it does not know.", message.data(),
-              message.size());
-    return ALCOVE_ERROR_INTERNAL;
-  }
-#else
-  return keep(message, call());
-#endif
-}
 
 }  // namespace alcove::passes
 

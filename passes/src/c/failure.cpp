@@ -1,5 +1,6 @@
 #include "c/failure.h"
 
+#include <algorithm>
 #include <cctype>
 
 namespace alcove::passes {
@@ -65,6 +66,21 @@ Failure failure_of(const Error& error, std::string_view where) {
   else if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT)
     message += " Vulkan's result is " + std::to_string(error.result) + ".";
   return {result, std::move(message)};
+}
+
+std::size_t copy_text(std::string_view from, char* text, std::size_t size) {
+  if (text != nullptr && size > 0) {
+    const std::size_t length = std::min(from.size(), size - 1);
+    std::copy_n(from.data(), length, text);
+    text[length] = '\0';
+  }
+  return from.size();
+}
+
+AlcoveResult keep(Message& message, const Result& result) {
+  if (result) return ALCOVE_SUCCESS;
+  copy_text(result.error().message, message.data(), message.size());
+  return result.error().result;
 }
 
 }  // namespace alcove::passes

@@ -1,6 +1,10 @@
-// The result and the message of a call of the C interface that failed.
+// How functions of the C interface run calls that can fail, and the result and message of those
+// that did.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <new>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -15,6 +19,9 @@ struct Failure {
   AlcoveResult result = ALCOVE_ERROR_INVALID_INPUT;
   std::string message;
 };
+
+using Message = std::array<char, ALCOVE_MAX_MESSAGE>;
+using Result = tl::expected<void, Failure>;
 
 [[nodiscard]] inline tl::unexpected<Failure> invalid(std::string message) {
   return tl::unexpected(Failure{ALCOVE_ERROR_INVALID_INPUT, std::move(message)});
@@ -33,6 +40,41 @@ struct Failure {
   return invalid(std::string(type) + "::struct_size is " + std::to_string(given) +
                  "; set it to sizeof(" + std::string(type) + "), which is " +
                  std::to_string(known) + " here.");
+}
+
+// Copies a text like snprintf: writes at most `size` bytes, including the terminating zero. Returns
+// the number of bytes of the whole text without that zero. `text` may be null if `size` is 0.
+std::size_t copy_text(std::string_view from, char* text, std::size_t size);
+
+// Stores the message of a failure. Returns the result.
+AlcoveResult keep(Message& message, const Result& result);
+
+// Runs `call`, which returns a Result, and stores its message if it failed. The library itself
+// throws nothing, but operator new may: its exception becomes a failure. In a build without
+// exceptions, the program ends instead.
+template <typename Call>
+AlcoveResult guarded(Message& message, const Call& call) {
+#ifdef __cpp_exceptions
+  try {
+    return keep(message, call());
+  } catch (const std::bad_alloc&) {
+    copy_text("The host is out of memory.", message.data(), message.size());
+    return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
+  } catch (...) {
+    copy_text("The library failed for a reason that it does not know.", message.data(),
+              message.size());
+    return ALCOVE_ERROR_INTERNAL;
+  }
+#else
+  return keep(message, call());
+#endif
+}
+
+// Runs `call` without a place for its message.
+template <typename Call>
+AlcoveResult guarded(const Call& call) {
+  Message unused{};
+  return guarded(unused, call);
 }
 
 }  // namespace alcove::passes

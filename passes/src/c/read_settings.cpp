@@ -1,13 +1,12 @@
-// Reads settings from JSON, and fits settings to a time.
+// Reads settings from JSON.
 #include <array>
 #include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "alcove/passes/fit_budget.h"
 #include "alcove/passes/setting_table.h"
-#include "c/context.h"
+#include "c/failure.h"
 #include "c/settings.h"
 
 namespace alcove::passes {
@@ -179,26 +178,6 @@ Result read(const char* text, std::size_t length, AlcoveSettings* settings,
       });
 }
 
-Result fit(const AlcoveBudget* budget, const double* milliseconds, std::uint32_t count,
-           AlcoveSettings* settings, std::uint32_t* changed) {
-  if (budget == nullptr || changed == nullptr || (milliseconds == nullptr && count > 0))
-    return invalid("There is no AlcoveBudget, no times or no place for the result.");
-  if (auto right = check_size(budget->struct_size, sizeof *budget, "AlcoveBudget"); !right)
-    return right;
-  const Budget limits{budget->target_ms, budget->least_slices, budget->most_slices,
-                      budget->least_steps, budget->most_steps};
-  return to_settings(settings).and_then([&](const OcclusionSettings& known) -> Result {
-    const auto fitted = fit_budget(limits, {milliseconds, count}, known);
-    if (!fitted) {
-      return invalid(fitted.error().message);
-    }
-    *changed = settings->slices != fitted->slices || settings->steps != fitted->steps ? 1 : 0;
-    settings->slices = fitted->slices;
-    settings->steps = fitted->steps;
-    return {};
-  });
-}
-
 }  // namespace
 }  // namespace alcove::passes
 
@@ -211,10 +190,4 @@ AlcoveResult alcoveReadSettings(const char* text, size_t length, AlcoveSettings*
   copy_text(result == ALCOVE_SUCCESS ? "" : said.data(), message,
             message == nullptr ? 0 : said.size());
   return result;
-}
-
-AlcoveResult alcoveFitBudget(const AlcoveBudget* budget, const double* milliseconds, uint32_t count,
-                             AlcoveSettings* settings, uint32_t* changed) {
-  Message unused{};
-  return guarded(unused, [&] { return fit(budget, milliseconds, count, settings, changed); });
 }

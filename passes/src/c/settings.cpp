@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <type_traits>
 #include <utility>
 
+#include "alcove/passes/fit_budget.h"
 #include "alcove/passes/setting_table.h"
+#include "c/failure.h"
 #include "work/number_text.h"
 
 namespace alcove::passes {
@@ -105,14 +106,32 @@ bool is_quality(std::uint32_t number) { return number < kNames<Quality>.size(); 
 
 template <typename Value>
 std::string value_text(const Value& value) {
-  if constexpr (std::is_enum_v<Value>)
+  if constexpr (std::is_enum_v<Value> || std::is_same_v<Value, bool>)
     return std::string(name_of(value));
   else if constexpr (std::is_same_v<Value, float>)
     return number_text(value);
-  else if constexpr (std::is_same_v<Value, bool>)
-    return value ? "true" : "false";
   else
     return std::to_string(value);
+}
+
+Result fit(const AlcoveBudget* budget, const double* milliseconds, std::uint32_t count,
+           AlcoveSettings* settings, std::uint32_t* changed) {
+  if (budget == nullptr || changed == nullptr || (milliseconds == nullptr && count > 0))
+    return invalid("There is no AlcoveBudget, no times or no place for the result.");
+  if (auto right = check_size(budget->struct_size, sizeof *budget, "AlcoveBudget"); !right)
+    return right;
+  const Budget limits{budget->target_ms, budget->least_slices, budget->most_slices,
+                      budget->least_steps, budget->most_steps};
+  return to_settings(settings).and_then([&](const OcclusionSettings& known) -> Result {
+    const auto fitted = fit_budget(limits, {milliseconds, count}, known);
+    if (!fitted) {
+      return invalid(fitted.error().message);
+    }
+    *changed = settings->slices != fitted->slices || settings->steps != fitted->steps ? 1 : 0;
+    settings->slices = fitted->slices;
+    settings->steps = fitted->steps;
+    return {};
+  });
 }
 
 }  // namespace
@@ -153,15 +172,17 @@ AlcoveSettings from_settings(const OcclusionSettings& settings, AlcoveAdvancedSe
 using namespace alcove::passes;
 
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings) {
-  const std::uint32_t number = number_of(quality);
-  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number))
-    return ALCOVE_ERROR_INVALID_INPUT;
-  const OcclusionSettings preset = quality_settings(static_cast<Quality>(number), radius);
-  if (!validate(preset)) return ALCOVE_ERROR_INVALID_INPUT;
-  AlcoveAdvancedSettings unused;
-  *settings = from_settings(preset, unused);
-  settings->advanced = preset.advanced == AdvancedSettings{} ? nullptr : reference_advanced();
-  return ALCOVE_SUCCESS;
+  return guarded([&]() -> Result {
+    const std::uint32_t number = number_of(quality);
+    if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number))
+      return invalid("");
+    const OcclusionSettings preset = quality_settings(static_cast<Quality>(number), radius);
+    if (!validate(preset)) return invalid("");
+    AlcoveAdvancedSettings unused;
+    *settings = from_settings(preset, unused);
+    settings->advanced = preset.advanced == AdvancedSettings{} ? nullptr : reference_advanced();
+    return {};
+  });
 }
 
 AlcoveResult alcoveGetAdvancedSettings(AlcoveQuality quality, AlcoveAdvancedSettings* settings) {
@@ -173,17 +194,22 @@ AlcoveResult alcoveGetAdvancedSettings(AlcoveQuality quality, AlcoveAdvancedSett
 }
 
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size) {
-  if (text != nullptr && size > 0) text[0] = '\0';
-  if (text == nullptr && size > 0) return 0;
-  const auto known = to_settings(settings);
-  if (!known) return 0;
+  copy_text("", text, size);
   std::size_t length = 0;
-  for_each_setting(*known, [&](const SettingInfo& info, const auto& value) {
-    if (info.group == SettingGroup::output) return;
-    const bool room = length < size;
-    const int more = std::snprintf(room ? text + length : nullptr, room ? size - length : 0,
-                                   "%s = %s\n", info.name, value_text(value).c_str());
-    length += static_cast<std::size_t>(std::max(more, 0));
+  guarded([&]() -> Result {
+    return to_settings(settings).map([&](const OcclusionSettings& known) {
+      std::string lines;
+      for_each_setting(known, [&](const SettingInfo& info, const auto& value) {
+        if (info.group != SettingGroup::output)
+          lines += std::string(info.name) + " = " + value_text(value) + "\n";
+      });
+      length = copy_text(lines, text, size);
+    });
   });
   return length;
+}
+
+AlcoveResult alcoveFitBudget(const AlcoveBudget* budget, const double* milliseconds, uint32_t count,
+                             AlcoveSettings* settings, uint32_t* changed) {
+  return guarded([&] { return fit(budget, milliseconds, count, settings, changed); });
 }

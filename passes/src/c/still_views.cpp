@@ -119,8 +119,12 @@ AlcoveViewState StillViews::state(std::uint32_t id) const {
 using namespace alcove::passes;
 
 uint32_t alcoveGetConvergedFrames(const AlcoveSettings* settings) {
-  const auto known = to_settings(settings);
-  return known ? converged_frames(*known) : 0;
+  std::uint32_t frames = 0;
+  guarded([&]() -> Result {
+    return to_settings(settings).map(
+        [&](const OcclusionSettings& known) { frames = converged_frames(known); });
+  });
+  return frames;
 }
 
 AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view) {

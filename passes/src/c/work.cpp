@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "c/context.h"
+#include "c/failure.h"
 #include "c/view.h"
 #include "work/areas.h"
 #include "work/shader_table.h"
@@ -118,10 +118,9 @@ AlcoveResult alcoveDescribeWork(const AlcoveWorkInfo* info, AlcoveWork* work, ch
 
 size_t alcovePrintWork(const AlcoveWork* work, char* text, size_t size) {
   passes::copy_text("", text, size);
-  passes::Message said{};
   std::size_t length = 0;
   if (work != nullptr) {
-    guarded(said, [&]() -> Result {
+    guarded([&]() -> Result {
       length = passes::copy_text(passes::print_work(*work), text, size);
       return {};
     });
