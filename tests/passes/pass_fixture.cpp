@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "alcove/framegraph/verify.h"
+#include "drawing.h"
 
 namespace alcove::passes {
 
@@ -85,6 +87,11 @@ double rms(const HostImage& a, const HostImage& b) {
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
 }
 
+double mean(const HostImage& image) {
+  return std::accumulate(image.texels.begin(), image.texels.end(), 0.0) /
+         static_cast<double>(image.texels.size());
+}
+
 namespace {
 
 // All tests of a program use one device, and the pipelines that earlier tests created.
@@ -112,10 +119,10 @@ void PassTest::SetUp() {
 void PassTest::open_gpu() {
   shared.gpu.reset();
   shared.messages = 0;
-  auto made =
+  auto gpu =
       sample::Gpu::create({.validation = true}, {.verify = framegraph::verify, .check_uses = true});
-  ASSERT_TRUE(made) << made.error();
-  shared.gpu = std::move(*made);
+  ASSERT_TRUE(gpu) << gpu.error();
+  shared.gpu = std::move(*gpu);
 }
 
 void PassTest::TearDown() {
@@ -178,27 +185,37 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
     decode(downloads_[i].buffer->bytes(), downloads_[i].format, results_[i].texels);
 }
 
-PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
+PassTest::OcclusionImages PassTest::render(const Drawing& drawing,
+                                           const OcclusionSettings& settings, std::uint32_t index) {
+  return run_occlusion({.view = drawing.view,
+                        .depth_ndc = drawing.depth_ndc,
+                        .normal_vs = &drawing.normal_vs,
+                        .index = index,
+                        .reset = index == 0},
+                       settings);
+}
+
+PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& input,
                                                   const OcclusionSettings& settings) {
   run([&](Graph& graph) {
-    if (given.reset) graph.reset_histories();
+    if (input.reset) graph.reset_histories();
     const Frame frame{.graph = graph,
                       .kernels = gpu().kernels(),
-                      .view = given.view,
-                      .index = given.index,
-                      .previous_view = given.previous_view,
-                      .largest_size = given.largest_size,
-                      .previous_size = given.previous_size};
+                      .view = input.view,
+                      .index = input.index,
+                      .previous_view = input.previous_view,
+                      .largest_size = input.largest_size,
+                      .previous_size = input.previous_size};
     const auto upload_of = [&](const HostImage* image) {
       return image == nullptr ? Texture{} : upload(graph, *image);
     };
-    const OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
-                                 .normals = upload_of(given.normal_vs),
+    const OcclusionInputs inputs{.depth_ndc = upload(graph, input.depth_ndc),
+                                 .normals = upload_of(input.normal_vs),
                                  .normals_in_view_space = true,
-                                 .motion = upload_of(given.motion),
-                                 .roughness = upload_of(given.roughness),
-                                 .back_depth_ndc = upload_of(given.back_depth_ndc),
-                                 .second_depth_ndc = upload_of(given.second_depth_ndc)};
+                                 .motion = upload_of(input.motion),
+                                 .roughness = upload_of(input.roughness),
+                                 .back_depth_ndc = upload_of(input.back_depth_ndc),
+                                 .second_depth_ndc = upload_of(input.second_depth_ndc)};
     const auto outputs = add_occlusion(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);
@@ -220,12 +237,8 @@ void PassTest::poison_memory(std::uint32_t width, std::uint32_t height) {
   run([&](Graph& graph) {
     std::vector<Texture> textures;
     textures.reserve(kTextures);
-    for (int i = 0; i < kTextures; ++i) {
-      textures.push_back(upload(graph, poison));
-    }
-    for (const Texture texture : textures) {
-      read_back(graph, texture);
-    }
+    for (int i = 0; i < kTextures; ++i) textures.push_back(upload(graph, poison));
+    for (const Texture texture : textures) read_back(graph, texture);
   });
 }
 
