@@ -64,10 +64,8 @@ TEST_F(Scenario, DepthPrepassIsKeptForTheOpaquePassThatTestsAgainstItsDepth) {
 TEST_F(Scenario, IndirectDrawWaitsForTheComputePassThatCountsItsArguments) {
   Buffer counter = graph_.create_buffer("counter", {16});
   Texture color = graph_.create_texture("color", kColor);
-  PassBuilder clear = graph_.add_pass("clear");
-  counter = clear.write(counter, buffer_access::fill, Contents::discard);
-  PassBuilder count = graph_.add_pass("count");
-  counter = count.write(counter, buffer_access::storage_read_write_compute);
+  counter = graph_.add_pass("clear").write(counter, buffer_access::fill, Contents::discard);
+  counter = graph_.add_pass("count").write(counter, buffer_access::storage_read_write_compute);
   PassBuilder draw = graph_.add_pass("draw");
   draw.read(counter, buffer_access::indirect);
   color = draw.write(color, access::color_attachment, {}, Contents::discard);
@@ -85,11 +83,10 @@ TEST_F(Scenario, AtomicAdditionsGetNoBarrierBetweenThemOnlyIfTheyAreDeclaredAsUn
   for (const Contents contents : {Contents::accumulate, Contents::keep}) {
     graph_.reset();
     Buffer counter = graph_.create_buffer("counter", {16});
-    PassBuilder clear = graph_.add_pass("clear");
-    counter = clear.write(counter, buffer_access::fill, Contents::discard);
+    counter = graph_.add_pass("clear").write(counter, buffer_access::fill, Contents::discard);
     for (int i = 0; i < 3; ++i) {
-      PassBuilder add = graph_.add_pass("add");
-      counter = add.write(counter, buffer_access::storage_read_write_compute, contents);
+      counter = graph_.add_pass("add").write(counter, buffer_access::storage_read_write_compute,
+                                             contents);
     }
     PassBuilder reader = graph_.add_pass("reader");
     reader.read(counter, buffer_access::storage_read_fragment);
@@ -161,9 +158,8 @@ TEST_F(Scenario, TextureLeftByOneGraphInTheStateThatAnotherGraphNeedsGetsNoFurth
                          .desc = kColor,
                          .usage = ~VkImageUsageFlags{0},
                          .final_state = between};
-  PassBuilder draw = graph_.add_pass("draw");
-  (void)draw.write(graph_.import_texture("shared", import), access::color_attachment, {},
-                   Contents::discard);
+  (void)graph_.add_pass("draw").write(graph_.import_texture("shared", import),
+                                      access::color_attachment, {}, Contents::discard);
   EXPECT_EQ(plan().transitions.size(), 2u);
 
   graph_.reset();
@@ -196,8 +192,8 @@ TEST_F(Scenario, BuildingAndTracingAnAccelerationStructureNeedsEveryBarrierOfThe
   Buffer top = graph_.create_buffer("top level", {4096});
   Buffer scratch = graph_.create_buffer("scratch", {4096});
   Texture picture = graph_.create_texture("picture", kColor);
-  PassBuilder skin = graph_.add_pass("skin");
-  vertices = skin.write(vertices, buffer_access::storage_write_compute, Contents::discard);
+  vertices = graph_.add_pass("skin").write(vertices, buffer_access::storage_write_compute,
+                                           Contents::discard);
   PassBuilder build = graph_.add_pass("build bottom level");
   build.read(vertices, buffer_access::build_input);
   scratch = build.write(scratch, buffer_access::build_scratch, Contents::discard);
