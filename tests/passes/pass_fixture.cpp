@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -19,36 +20,28 @@ using framegraph::Texture;
 namespace {
 
 struct TexelLayout {
-  std::uint32_t channels = 0;
-  std::uint32_t channel_bytes = 0;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  std::uint32_t channels = 1;
+  std::uint32_t channel_bytes = 4;
 };
 
-TexelLayout layout_of(VkFormat format) {
-  switch (format) {
-    case VK_FORMAT_R8_UNORM:
-      return {1, 1};
-    case VK_FORMAT_R8G8B8A8_SNORM:
-      return {4, 1};
-    case VK_FORMAT_R16_SFLOAT:
-      return {1, 2};
-    case VK_FORMAT_R16G16_SFLOAT:
-      return {2, 2};
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-      return {4, 2};
-    case VK_FORMAT_R32_SFLOAT:
-      return {1, 4};
-    case VK_FORMAT_R32G32_SFLOAT:
-      return {2, 4};
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-      return {4, 4};
-    default:
-      ADD_FAILURE() << "The fixture cannot read format " << format << " back.";
-      return {1, 4};
-  }
+TexelLayout find_layout(VkFormat format) {
+  constexpr TexelLayout kLayouts[] = {{VK_FORMAT_R8_UNORM, 1, 1},
+                                      {VK_FORMAT_R8G8B8A8_SNORM, 4, 1},
+                                      {VK_FORMAT_R16_SFLOAT, 1, 2},
+                                      {VK_FORMAT_R16G16_SFLOAT, 2, 2},
+                                      {VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
+                                      {VK_FORMAT_R32_SFLOAT, 1, 4},
+                                      {VK_FORMAT_R32G32_SFLOAT, 2, 4},
+                                      {VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4}};
+  const auto* const layout = std::ranges::find(kLayouts, format, &TexelLayout::format);
+  if (layout != std::end(kLayouts)) return *layout;
+  ADD_FAILURE() << "The fixture cannot read format " << format << " back.";
+  return {};
 }
 
 void decode(std::span<const std::byte> bytes, VkFormat format, std::vector<float>& texels) {
-  const std::uint32_t size = layout_of(format).channel_bytes;
+  const std::uint32_t size = find_layout(format).channel_bytes;
   for (std::size_t i = 0; i < texels.size(); ++i) {
     const std::byte* from = bytes.data() + i * size;
     if (size == 4) {
@@ -66,15 +59,10 @@ void decode(std::span<const std::byte> bytes, VkFormat format, std::vector<float
   }
 }
 
-VkFormat uploaded_format(std::uint32_t channels) {
-  switch (channels) {
-    case 1:
-      return VK_FORMAT_R32_SFLOAT;
-    case 2:
-      return VK_FORMAT_R32G32_SFLOAT;
-    default:
-      return VK_FORMAT_R32G32B32A32_SFLOAT;
-  }
+VkFormat float_format(std::uint32_t channels) {
+  return channels == 1   ? VK_FORMAT_R32_SFLOAT
+         : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
+                         : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
 }  // namespace
@@ -140,9 +128,9 @@ sample::Gpu& PassTest::gpu() { return *shared.gpu; }
 Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) {
   return fill(
       graph,
-      graph.create_texture(
-          "uploaded", {format == VK_FORMAT_UNDEFINED ? uploaded_format(image.channels) : format,
-                       framegraph::Extent::absolute(image.width, image.height)}),
+      graph.create_texture("uploaded",
+                           {format == VK_FORMAT_UNDEFINED ? float_format(image.channels) : format,
+                            framegraph::Extent::absolute(image.width, image.height)}),
       image);
 }
 
@@ -161,10 +149,10 @@ void PassTest::read_back(Graph& graph, Texture texture, std::uint32_t mip) {
   HostImage image;
   image.width = std::max(extent.width >> mip, 1u);
   image.height = std::max(extent.height >> mip, 1u);
-  image.channels = layout_of(format).channels;
+  image.channels = find_layout(format).channels;
   image.texels.resize(std::size_t{image.width} * image.height * image.channels);
   auto buffer = sample::HostBuffer::create(gpu().device(),
-                                           image.texels.size() * layout_of(format).channel_bytes,
+                                           image.texels.size() * find_layout(format).channel_bytes,
                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   ASSERT_TRUE(buffer) << buffer.error();
   downloads_.push_back({std::move(*buffer), format});

@@ -23,7 +23,7 @@ struct InputImages {
 };
 
 // The outputs of add_occlusion() that the frame reads.
-struct Reads {
+struct OutputChoice {
   bool visibility = true;
   bool bent_normal = false;
   bool linear_depth = false;
@@ -44,7 +44,8 @@ class OcclusionPlan : public PassTest {
  protected:
   void SetUp() override { open_gpu(); }
 
-  FramePlan plan(const OcclusionSettings& settings, Reads reads = {}, InputImages images = {}) {
+  FramePlan plan(const OcclusionSettings& settings, OutputChoice choice = {},
+                 InputImages images = {}) {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
     FramePlan found;
     run([&](Graph& graph) {
@@ -60,11 +61,11 @@ class OcclusionPlan : public PassTest {
       if (images.roughness) inputs.roughness = upload(graph, uniform_image(4, 0.5f));
       const auto outputs = add_occlusion(frame, inputs, settings);
       ASSERT_TRUE(outputs) << outputs.error().message;
-      if (reads.visibility) read_back(graph, outputs->visibility);
-      if (reads.bent_normal) read_back(graph, outputs->bent_normal);
-      if (reads.linear_depth) read_back(graph, outputs->linear_depth);
+      if (choice.visibility) read_back(graph, outputs->visibility);
+      if (choice.bent_normal) read_back(graph, outputs->bent_normal);
+      if (choice.linear_depth) read_back(graph, outputs->linear_depth);
       EXPECT_EQ(bool(outputs->specular), settings.specular != Specular::none);
-      if (reads.specular) read_back(graph, outputs->specular);
+      if (choice.specular) read_back(graph, outputs->specular);
       found = plan_frame(graph);
     });
     return found;

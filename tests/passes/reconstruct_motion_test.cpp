@@ -35,8 +35,8 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
                                        .previous_view = view.view,
                                        .index = 8},
                                       precise(1, 32));
-  int anew = 0;
-  int gone_on = 0;
+  int uncovered_pixels = 0;
+  int visible_pixels = 0;
   for (std::uint32_t y = 0; y < kHeight; ++y) {
     for (std::uint32_t x = 0; x < kWidth; ++x) {
       const auto hit = cast(second.scene, second.camera.ray(x + 0.5, y + 0.5));
@@ -58,15 +58,15 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
       if (std::abs(hit->normal.z) < 0.5) continue;
       if (outside || hidden) {
         ASSERT_NEAR(found.at(x, y), 0.9f, 0.01) << "at " << x << ", " << y;
-        ++anew;
+        ++uncovered_pixels;
       } else if (seen && well_inside) {
         ASSERT_LT(found.at(x, y), 0.6f) << "at " << x << ", " << y;
-        ++gone_on;
+        ++visible_pixels;
       }
     }
   }
-  EXPECT_GT(anew, 30);
-  EXPECT_GT(gone_on, 200);
+  EXPECT_GT(uncovered_pixels, 30);
+  EXPECT_GT(visible_pixels, 200);
 }
 
 // A dark and a bright wall meet, and the camera moves slowly sideways. Neither wall may get the
@@ -247,10 +247,10 @@ TEST_F(Reconstruct, ApproachingSurfaceKeepsItsHistory) {
   const HostImage still = no_motion();
   const Drawing behind = draw_plane(0.0, distance / nearer * 1.02);
   const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
-  const HostImage anew =
+  const HostImage uncovered =
       reconstruct({.drawing = behind, .raw_occlusion = bright, .motion = &still, .index = frames},
                   precise(1, 32));
-  EXPECT_THAT(anew.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+  EXPECT_THAT(uncovered.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
 }
 
 // An occluder moves away from a static plane, and later comes back. Motion vectors, even if they
