@@ -6,6 +6,7 @@ set(tests "")
 foreach(suite IN LISTS suites)
   string(REGEX REPLACE "[\n.]" "" suite ${suite})
   string(APPEND tests "add_test([=[${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
-    "set_tests_properties([=[${suite}]=] PROPERTIES TIMEOUT 900 LABELS gpu WORKING_DIRECTORY [=[${FOLDER}]=])\n")
+    "set_tests_properties([=[${suite}]=] PROPERTIES TIMEOUT 900 COST 20 LABELS gpu "
+    "WORKING_DIRECTORY [=[${FOLDER}]=])\n")
 endforeach()
 file(WRITE ${FILE} "${tests}")

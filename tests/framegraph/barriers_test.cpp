@@ -77,8 +77,7 @@ TEST(Barriers, LayersAndMipsWrittenByDifferentPassesShareOneBarrierBeforeTheirRe
 TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-  PassBuilder writer = graph.add_pass("writer");
-  texture = writer.write(texture, access::storage_write_compute);
+  texture = graph.add_pass("writer").write(texture, access::storage_write_compute);
   for (int i = 0; i < 5; ++i) {
     PassBuilder reader = graph.add_pass("reader");
     reader.read(texture, i % 2 ? access::sampled_fragment : access::sampled_compute);
@@ -98,8 +97,7 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
   Graph graph;
   Buffer data = graph.create_buffer("data", {64});
   Buffer other = graph.create_buffer("other", {64});
-  PassBuilder writer = graph.add_pass("writer");
-  data = writer.write(data, buffer_access::storage_write_compute);
+  data = graph.add_pass("writer").write(data, buffer_access::storage_write_compute);
   const auto add_reader = [&](const Access& access) {
     PassBuilder reader = graph.add_pass("reader");
     reader.read(data, access);
@@ -108,8 +106,7 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
   add_reader(buffer_access::uniform_graphics);
   // The barrier before this pass comes between the write and the second reader. The second reader's
   // dependency is added to it.
-  PassBuilder fill = graph.add_pass("fill");
-  other = fill.write(other, buffer_access::fill);
+  other = graph.add_pass("fill").write(other, buffer_access::fill);
   PassBuilder mixed = graph.add_pass("mixed");
   mixed.read(other, buffer_access::storage_read_compute);
   mixed.read(data, buffer_access::storage_read_compute);
@@ -180,9 +177,8 @@ TEST_F(InitialStates,
     PassBuilder reader = graph_.add_pass("reads the last frame's");
     reader.read(history.previous(), old);
     reader.side_effect();
-    PassBuilder writer = graph_.add_pass("writer");
-    const Texture current =
-        writer.write(history.current, access::storage_write_compute, {}, Contents::discard);
+    const Texture current = graph_.add_pass("writer").write(
+        history.current, access::storage_write_compute, {}, Contents::discard);
     PassBuilder user = graph_.add_pass("reads its own");
     user.read(current, own);
     user.side_effect();
@@ -218,8 +214,7 @@ TEST_F(InitialStates, HistoryWithOnlyOneMipWrittenIsReportedAsPartlyWrittenInThe
 TEST(Barriers, AllMipsAndLayersWrittenByOnePassShareOneBarrierBeforeTheirReader) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5, 3});
-  PassBuilder writer = graph.add_pass("writer");
-  texture = writer.write(texture, access::storage_write_compute);
+  texture = graph.add_pass("writer").write(texture, access::storage_write_compute);
   PassBuilder reader = graph.add_pass("reader");
   reader.read(texture, access::sampled_compute);
   reader.side_effect();
@@ -241,13 +236,11 @@ TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands)
 TEST(Barriers, WriteAfterReadsNeedsNothingMadeAvailable) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-  PassBuilder writer = graph.add_pass("writer");
-  texture = writer.write(texture, access::storage_write_compute);
+  texture = graph.add_pass("writer").write(texture, access::storage_write_compute);
   PassBuilder reader = graph.add_pass("reader");
   reader.read(texture, access::storage_read_compute);
   reader.side_effect();
-  PassBuilder updater = graph.add_pass("updater");
-  texture = updater.write(texture, access::storage_read_write_compute);
+  texture = graph.add_pass("updater").write(texture, access::storage_read_write_compute);
   graph.output(texture);
   const auto plan = compile(graph);
   ASSERT_TRUE(plan);

@@ -12,8 +12,12 @@ const TextureDesc kDesc{VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 8)};
 class Cull : public testing::Test {
  protected:
   Texture write(const char* name, Texture texture, Contents contents = Contents::keep) {
+    return graph_.add_pass(name).write(texture, access::storage_write_compute, {}, contents);
+  }
+  Texture write_from(const char* name, Texture input, Texture output) {
     PassBuilder pass = graph_.add_pass(name);
-    return pass.write(texture, access::storage_write_compute, {}, contents);
+    pass.read(input, access::sampled_compute);
+    return pass.write(output, access::storage_write_compute);
   }
   Texture make(const char* name) { return write(name, graph_.create_texture(name, kDesc)); }
   Plan plan() {
@@ -37,10 +41,7 @@ TEST_F(Cull, PassWhoseOutputNobodyReadsIsCulledTogetherWithItsTexture) {
 
 TEST_F(Cull, PlanNamesThePassThatReadsTheOutputOfAKeptPass) {
   const Texture first = make("first");
-  Texture second = graph_.create_texture("second", kDesc);
-  PassBuilder pass = graph_.add_pass("reader");
-  pass.read(first, access::sampled_compute);
-  second = pass.write(second, access::storage_write_compute);
+  const Texture second = write_from("reader", first, graph_.create_texture("second", kDesc));
   graph_.output(second);
   const Plan result = plan();
   EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::feeds_pass);
@@ -82,8 +83,7 @@ TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
   for (std::uint32_t mip = 0; mip < 3; ++mip) {
-    PassBuilder pass = graph_.add_pass("mip");
-    texture = pass.write(texture, access::storage_write_compute, Range::mip(mip));
+    texture = graph_.add_pass("mip").write(texture, access::storage_write_compute, Range::mip(mip));
   }
   PassBuilder reader = graph_.add_pass("reader");
   reader.read(texture, access::sampled_compute, Range::mip(1));
@@ -96,10 +96,8 @@ TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
 
 TEST_F(Cull, PassThatWritesAHistoryIsKeptOnlyIfAKeptPassReadsThatHistory) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
-  Texture result = graph_.create_texture("result", kDesc);
-  PassBuilder accumulate = graph_.add_pass("accumulate");
-  accumulate.read(history.previous(), access::sampled_compute);
-  result = accumulate.write(result, access::storage_write_compute);
+  const Texture result =
+      write_from("accumulate", history.previous(), graph_.create_texture("result", kDesc));
   (void)write("remember", history.current);
   // Nobody needs the result. The pass that reads the history and the pass that writes it need only
   // each other, so that both are culled.
@@ -114,12 +112,9 @@ TEST_F(Cull, PassThatWritesAHistoryIsKeptOnlyIfAKeptPassReadsThatHistory) {
 TEST_F(Cull, PassThatUpdatesAHistoryInPlaceIsKeptOnlyIfAKeptPassReadsThatHistory) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   (void)write("remember", history.current);
-  Texture result = graph_.create_texture("result", kDesc);
-  PassBuilder look = graph_.add_pass("look");
-  look.read(history.previous(), access::sampled_compute);
-  result = look.write(result, access::storage_write_compute);
-  PassBuilder update = graph_.add_pass("update");
-  (void)update.write(history.previous(), access::storage_read_write_compute);
+  const Texture result =
+      write_from("look", history.previous(), graph_.create_texture("result", kDesc));
+  (void)graph_.add_pass("update").write(history.previous(), access::storage_read_write_compute);
   EXPECT_EQ(plan().passes.size(), 0u);
   graph_.output(result);
   const Plan kept = plan();
@@ -141,8 +136,7 @@ class CullReadModifyWrite : public Cull {
       desc.format = VK_FORMAT_D32_SFLOAT;
     Texture acc = graph_.create_texture("acc", desc);
     Texture second = graph_.create_texture("second", kDesc);
-    PassBuilder first = graph_.add_pass("clear");
-    acc = first.write(acc, clear, {}, cleared, need);
+    acc = graph_.add_pass("clear").write(acc, clear, {}, cleared, need);
     PassBuilder both = graph_.add_pass("update");
     (void)both.write(acc, update);
     second = both.write(second, access::storage_write_compute, {}, Contents::discard);

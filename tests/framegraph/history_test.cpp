@@ -1,6 +1,8 @@
 // Tests histories on the device: in every frame, each slot has the contents that history.h
 // promises.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <array>
 
 #include "alcove/framegraph/verify.h"
 #include "checksum_kernels.h"
@@ -8,6 +10,8 @@
 
 namespace alcove::framegraph {
 namespace {
+
+using testing::ElementsAre;
 
 // One frame of a test. It can write its number into the history, and can copy the older slots to
 // host memory.
@@ -103,6 +107,7 @@ class GraphHistory : public testing::Test {
   std::uint32_t slot(std::uint32_t age) const {
     return static_cast<const std::uint32_t*>(host_.mapped)[age];
   }
+  std::array<std::uint32_t, kSlots - 1> slots() const { return {slot(1), slot(2)}; }
   static std::uint32_t mixed(std::uint32_t value) { return mix_in(mix_in(mix_in(0, 0), value), 0); }
 
   Gpu gpu_;
@@ -120,8 +125,8 @@ TEST_F(GraphHistory, HistorySlotsHoldTheContentsOfThePreviousFrames) {
   for (std::uint32_t frame = 1; frame <= 6; ++frame) {
     run({frame});
     EXPECT_EQ(validity_, frame == 1 ? HistoryValidity::first_frame : HistoryValidity::valid);
-    EXPECT_EQ(slot(1), frame > 1 ? frame - 1 : kNothing);
-    EXPECT_EQ(slot(2), frame > 2 ? frame - 2 : kNothing);
+    EXPECT_THAT(slots(),
+                ElementsAre(frame > 1 ? frame - 1 : kNothing, frame > 2 ? frame - 2 : kNothing));
   }
 }
 
@@ -129,11 +134,9 @@ TEST_F(GraphHistory, FrameThatDoesNotWriteTheHistoryDoesNotRotateItsSlots) {
   run({1});
   run({2});
   run({0, false});
-  EXPECT_EQ(slot(1), 2u);
-  EXPECT_EQ(slot(2), 1u);
+  EXPECT_THAT(slots(), ElementsAre(2u, 1u));
   run({3});
-  EXPECT_EQ(slot(1), 2u);
-  EXPECT_EQ(slot(2), 1u);
+  EXPECT_THAT(slots(), ElementsAre(2u, 1u));
 }
 
 TEST_F(GraphHistory, FrameInWhichTheWriterOfTheHistoryIsCulledDoesNotRotateItsSlots) {
@@ -141,8 +144,7 @@ TEST_F(GraphHistory, FrameInWhichTheWriterOfTheHistoryIsCulledDoesNotRotateItsSl
   run({2});
   run({9, true, false});
   run({3});
-  EXPECT_EQ(slot(1), 2u);
-  EXPECT_EQ(slot(2), 1u);
+  EXPECT_THAT(slots(), ElementsAre(2u, 1u));
 }
 
 TEST_F(GraphHistory, UpdatingAnOlderHistorySlotInPlaceDoesNotRotateTheSlots) {
@@ -151,14 +153,11 @@ TEST_F(GraphHistory, UpdatingAnOlderHistorySlotInPlaceDoesNotRotateTheSlots) {
   run({.value = 5, .in_place = true});
   run({.value = 6, .in_place = true});
   run({.writes = false});
-  EXPECT_EQ(slot(1), 6u);
-  EXPECT_EQ(slot(2), 1u);
+  EXPECT_THAT(slots(), ElementsAre(6u, 1u));
   run({3});
-  EXPECT_EQ(slot(1), 6u);
-  EXPECT_EQ(slot(2), 1u);
+  EXPECT_THAT(slots(), ElementsAre(6u, 1u));
   run({4});
-  EXPECT_EQ(slot(1), 3u);
-  EXPECT_EQ(slot(2), 6u);
+  EXPECT_THAT(slots(), ElementsAre(3u, 6u));
 }
 
 TEST_F(GraphHistory, HistoryKeepsItsContentsThroughAFrameThatDoesNotDeclareIt) {
@@ -178,8 +177,7 @@ TEST_F(GraphHistory, ResizingAHistoryInvalidatesItAndReportsTheReason) {
   EXPECT_EQ(slot(1), kNothing);
   run({4, true, true, false, 16});
   EXPECT_EQ(validity_, HistoryValidity::valid);
-  EXPECT_EQ(slot(1), 3u);
-  EXPECT_EQ(slot(2), kNothing);
+  EXPECT_THAT(slots(), ElementsAre(3u, kNothing));
 }
 
 TEST_F(GraphHistory, ResettingAHistoryInvalidatesItAndReportsTheReason) {
@@ -190,8 +188,7 @@ TEST_F(GraphHistory, ResettingAHistoryInvalidatesItAndReportsTheReason) {
   EXPECT_EQ(validity_, HistoryValidity::reset);
   EXPECT_EQ(slot(1), kNothing);
   run({4});
-  EXPECT_EQ(slot(1), 3u);
-  EXPECT_EQ(slot(2), kNothing);
+  EXPECT_THAT(slots(), ElementsAre(3u, kNothing));
 }
 
 TEST_F(GraphHistory, FrameThatIsRecordedAndDiscardedDoesNotChangeTheHistory) {
@@ -223,15 +220,13 @@ TEST_F(GraphHistory, HistoryIsUnchangedIfAFrameThatResizesOrResetsItIsDiscarded)
   run({.value = 97, .size = 32, .discarded = true, .reset = true});
   run({.value = 3});
   EXPECT_EQ(validity_, HistoryValidity::valid);
-  EXPECT_EQ(slot(1), 2u);
-  EXPECT_EQ(slot(2), 1u);
+  EXPECT_THAT(slots(), ElementsAre(2u, 1u));
   EXPECT_EQ(history_bytes_, bytes);
   // A frame that runs after discarded ones is kept as usual.
   run({.value = 4, .size = 16});
   run({.value = 5, .size = 16, .discarded = true, .reset = true});
   run({.value = 6, .size = 16});
-  EXPECT_EQ(slot(1), 4u);
-  EXPECT_EQ(slot(2), kNothing);
+  EXPECT_THAT(slots(), ElementsAre(4u, kNothing));
 }
 
 TEST_F(GraphHistory, FrameThatResizesTheHistoryMustBeDeclaredAgainAfterItWasDiscarded) {
@@ -275,11 +270,9 @@ TEST_F(GraphHistory, HistoryKeepsItsContentsWhenPassesReadItThroughAnotherAccess
   run({1});
   run({2});
   run({3, true, true, true});
-  EXPECT_EQ(slot(1), mixed(2));
-  EXPECT_EQ(slot(2), mixed(1));
+  EXPECT_THAT(slots(), ElementsAre(mixed(2), mixed(1)));
   run({4});
-  EXPECT_EQ(slot(1), 3u);
-  EXPECT_EQ(slot(2), 2u);
+  EXPECT_THAT(slots(), ElementsAre(3u, 2u));
 }
 
 // The frame is recorded several times into one command buffer without being declared again. Each
@@ -306,8 +299,7 @@ TEST_F(GraphHistory, DeclaredFrameCanBeRecordedSeveralTimesIntoOneCommandBuffer)
     ASSERT_TRUE(report) << to_string(report.error());
   }
   gpu_.end_and_wait();
-  EXPECT_EQ(slot(1), 2u);
-  EXPECT_EQ(slot(2), 1u);
+  EXPECT_THAT(slots(), ElementsAre(2u, 1u));
 }
 
 // A graph moves to a new executor: the contents of its histories were lost with the first executor.

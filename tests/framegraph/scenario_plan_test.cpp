@@ -33,6 +33,18 @@ class Scenario : public testing::Test {
     }
     return count;
   }
+  // Adds a pass that writes a texture without reading it.
+  Texture write(const char* name, Texture texture, const Access& access, const Range& range = {}) {
+    return graph_.add_pass(name).write(texture, access, range, Contents::discard);
+  }
+  // Adds a pass that reads a resource and is not culled.
+  template <typename Resource, typename... Use>
+  void read(const char* name, Resource resource, const Use&... use) {
+    PassBuilder pass = graph_.add_pass(name);
+    pass.read(resource, use...);
+    pass.side_effect();
+  }
+
   Graph graph_;
 };
 
@@ -40,8 +52,7 @@ class Scenario : public testing::Test {
 TEST_F(Scenario, DepthPrepassIsKeptForTheOpaquePassThatTestsAgainstItsDepth) {
   Texture depth = graph_.create_texture("depth", kDepth);
   Texture color = graph_.create_texture("color", kColor);
-  PassBuilder prepass = graph_.add_pass("prepass");
-  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  depth = write("prepass", depth, access::depth_attachment);
   PassBuilder opaque = graph_.add_pass("opaque");
   (void)opaque.write(depth, access::depth_attachment);
   color = opaque.write(color, access::color_attachment, {}, Contents::discard);
@@ -53,10 +64,8 @@ TEST_F(Scenario, DepthPrepassIsKeptForTheOpaquePassThatTestsAgainstItsDepth) {
 TEST_F(Scenario, IndirectDrawWaitsForTheComputePassThatCountsItsArguments) {
   Buffer counter = graph_.create_buffer("counter", {16});
   Texture color = graph_.create_texture("color", kColor);
-  PassBuilder clear = graph_.add_pass("clear");
-  counter = clear.write(counter, buffer_access::fill, Contents::discard);
-  PassBuilder count = graph_.add_pass("count");
-  counter = count.write(counter, buffer_access::storage_read_write_compute);
+  counter = graph_.add_pass("clear").write(counter, buffer_access::fill, Contents::discard);
+  counter = graph_.add_pass("count").write(counter, buffer_access::storage_read_write_compute);
   PassBuilder draw = graph_.add_pass("draw");
   draw.read(counter, buffer_access::indirect);
   color = draw.write(color, access::color_attachment, {}, Contents::discard);
@@ -74,11 +83,10 @@ TEST_F(Scenario, AtomicAdditionsGetNoBarrierBetweenThemOnlyIfTheyAreDeclaredAsUn
   for (const Contents contents : {Contents::accumulate, Contents::keep}) {
     graph_.reset();
     Buffer counter = graph_.create_buffer("counter", {16});
-    PassBuilder clear = graph_.add_pass("clear");
-    counter = clear.write(counter, buffer_access::fill, Contents::discard);
+    counter = graph_.add_pass("clear").write(counter, buffer_access::fill, Contents::discard);
     for (int i = 0; i < 3; ++i) {
-      PassBuilder add = graph_.add_pass("add");
-      counter = add.write(counter, buffer_access::storage_read_write_compute, contents);
+      counter = graph_.add_pass("add").write(counter, buffer_access::storage_read_write_compute,
+                                             contents);
     }
     PassBuilder reader = graph_.add_pass("reader");
     reader.read(counter, buffer_access::storage_read_fragment);
@@ -100,8 +108,7 @@ TEST_F(Scenario, AtomicAdditionsGetNoBarrierBetweenThemOnlyIfTheyAreDeclaredAsUn
 TEST_F(Scenario, PassesThatAlternateBetweenTwoTexturesNeedOnlyTheirMemoryAndAreAllKept) {
   Texture a = graph_.create_texture("a", kColor);
   Texture b = graph_.create_texture("b", kColor);
-  PassBuilder first = graph_.add_pass("first");
-  a = first.write(a, access::storage_write_compute, {}, Contents::discard);
+  a = write("first", a, access::storage_write_compute);
   for (int i = 0; i < 4; ++i) {
     PassBuilder blur = graph_.add_pass("blur");
     blur.read(a, access::sampled_compute);
@@ -119,16 +126,13 @@ TEST_F(Scenario, ReaderOfAMipChainWrittenByOnePassPerMipNeedsAtMostTwoBarriers) 
   TextureDesc desc = kColor;
   desc.mips = 5;
   Texture chain = graph_.create_texture("chain", desc);
-  PassBuilder first = graph_.add_pass("mip 0");
-  chain = first.write(chain, access::storage_write_compute, Range::mip(0), Contents::discard);
+  chain = write("mip 0", chain, access::storage_write_compute, Range::mip(0));
   for (std::uint32_t mip = 1; mip < desc.mips; ++mip) {
     PassBuilder down = graph_.add_pass("down");
     down.read(chain, access::sampled_compute, Range::mip(mip - 1));
     chain = down.write(chain, access::storage_write_compute, Range::mip(mip), Contents::discard);
   }
-  PassBuilder reader = graph_.add_pass("reader");
-  reader.read(chain, access::sampled_fragment);
-  reader.side_effect();
+  read("reader", chain, access::sampled_fragment);
   const Plan result = plan();
   EXPECT_EQ(result.passes.size(), 6u);
   // Only the last mip still needs a layout change before the reader. A memory barrier makes the
@@ -140,11 +144,8 @@ TEST_F(Scenario, MipChainWrittenByOnePassNeedsOneBarrierBeforeAndOneAfterThatPas
   TextureDesc desc = kColor;
   desc.mips = 5;
   Texture chain = graph_.create_texture("chain", desc);
-  PassBuilder down = graph_.add_pass("down");
-  chain = down.write(chain, access::storage_read_write_compute, {}, Contents::discard);
-  PassBuilder reader = graph_.add_pass("reader");
-  reader.read(chain, access::sampled_fragment);
-  reader.side_effect();
+  chain = write("down", chain, access::storage_read_write_compute);
+  read("reader", chain, access::sampled_fragment);
   const Plan result = plan();
   EXPECT_EQ(result.transitions.size(), 2u);
 }
@@ -157,17 +158,14 @@ TEST_F(Scenario, TextureLeftByOneGraphInTheStateThatAnotherGraphNeedsGetsNoFurth
                          .desc = kColor,
                          .usage = ~VkImageUsageFlags{0},
                          .final_state = between};
-  PassBuilder draw = graph_.add_pass("draw");
-  (void)draw.write(graph_.import_texture("shared", import), access::color_attachment, {},
-                   Contents::discard);
+  (void)graph_.add_pass("draw").write(graph_.import_texture("shared", import),
+                                      access::color_attachment, {}, Contents::discard);
   EXPECT_EQ(plan().transitions.size(), 2u);
 
   graph_.reset();
   import.initial_state = between;
   import.final_state = {};
-  PassBuilder reader = graph_.add_pass("reader");
-  reader.read(graph_.import_texture("shared", import), access::sampled_fragment);
-  reader.side_effect();
+  read("reader", graph_.import_texture("shared", import), access::sampled_fragment);
   EXPECT_EQ(plan().transitions.size(), 0u);
 }
 
@@ -179,8 +177,7 @@ TEST_F(Scenario, TextureLeftByOneGraphInTheStateThatAnotherGraphNeedsGetsNoFurth
 TEST_F(Scenario, ClearOfABlendTargetIsNotCulledIfOnlyAnotherOutputOfTheBlendingPassIsRead) {
   Texture sum = graph_.create_texture("sum", kColor);
   Texture picture = graph_.create_texture("picture", kColor);
-  PassBuilder clear = graph_.add_pass("clear");
-  sum = clear.write(sum, access::clear, {}, Contents::discard);
+  sum = write("clear", sum, access::clear);
   PassBuilder accumulate = graph_.add_pass("accumulate");
   (void)accumulate.write(sum, access::color_attachment);
   picture = accumulate.write(picture, access::color_attachment, {}, Contents::discard);
@@ -195,8 +192,8 @@ TEST_F(Scenario, BuildingAndTracingAnAccelerationStructureNeedsEveryBarrierOfThe
   Buffer top = graph_.create_buffer("top level", {4096});
   Buffer scratch = graph_.create_buffer("scratch", {4096});
   Texture picture = graph_.create_texture("picture", kColor);
-  PassBuilder skin = graph_.add_pass("skin");
-  vertices = skin.write(vertices, buffer_access::storage_write_compute, Contents::discard);
+  vertices = graph_.add_pass("skin").write(vertices, buffer_access::storage_write_compute,
+                                           Contents::discard);
   PassBuilder build = graph_.add_pass("build bottom level");
   build.read(vertices, buffer_access::build_input);
   scratch = build.write(scratch, buffer_access::build_scratch, Contents::discard);
@@ -225,8 +222,7 @@ TEST_F(Scenario, BuildingAndTracingAnAccelerationStructureNeedsEveryBarrierOfThe
 TEST_F(Scenario, DepthTestAndSamplingOfOneTextureCanBeDeclaredAsOneAccess) {
   Texture depth = graph_.create_texture("depth", kDepth);
   Texture color = graph_.create_texture("color", kColor);
-  PassBuilder prepass = graph_.add_pass("prepass");
-  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  depth = write("prepass", depth, access::depth_attachment);
   PassBuilder particles = graph_.add_pass("soft particles");
   particles.read(depth, access::depth_test | access::sampled_fragment);
   color = particles.write(color, access::color_attachment, {}, Contents::discard);
@@ -245,15 +241,12 @@ TEST_F(Scenario, DepthTestAndSamplingOfOneTextureCanBeDeclaredAsOneAccess) {
 TEST_F(Scenario, DepthStaysReadableWithoutABarrierAfterAPassThatWritesOnlyTheStencil) {
   Texture depth =
       graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64)});
-  PassBuilder prepass = graph_.add_pass("prepass");
-  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  depth = write("prepass", depth, access::depth_attachment);
   PassBuilder mark = graph_.add_pass("mark");
   mark.read(depth, access::depth_test | access::sampled_fragment, Range::depth());
   depth = mark.write(depth, access::stencil_attachment, Range::stencil());
   mark.side_effect();
-  PassBuilder ambient = graph_.add_pass("ambient");
-  ambient.read(depth, access::depth_test | access::sampled_fragment, Range::depth());
-  ambient.side_effect();
+  read("ambient", depth, access::depth_test | access::sampled_fragment, Range::depth());
   const Plan result = plan();
   EXPECT_EQ(transitions_before(result, 1), 2u) << "one for each aspect";
   EXPECT_EQ(transitions_before(result, 2), 0u);
@@ -269,8 +262,7 @@ TEST_F(Scenario, DepthStaysReadableWithoutABarrierAfterAPassThatWritesOnlyTheSte
 TEST_F(Scenario, DepthAndStencilWithTheSameTransitionShareABarrier) {
   Texture depth =
       graph_.create_texture("depth", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(64, 64), 1, 2});
-  PassBuilder prepass = graph_.add_pass("prepass");
-  depth = prepass.write(depth, access::depth_attachment, {}, Contents::discard);
+  depth = write("prepass", depth, access::depth_attachment);
   PassBuilder copy = graph_.add_pass("copy");
   copy.read(depth, access::transfer_source, Range::depth());
   copy.read(depth, access::transfer_source, Range::stencil());
@@ -284,8 +276,7 @@ TEST_F(Scenario, DepthAndStencilWithTheSameTransitionShareABarrier) {
 TEST_F(Scenario, TextureReadAsAnInputAttachmentGetsTheInputAttachmentUsage) {
   Texture albedo = graph_.create_texture("albedo", kColor);
   Texture lit = graph_.create_texture("lit", kColor);
-  PassBuilder gbuffer = graph_.add_pass("gbuffer");
-  albedo = gbuffer.write(albedo, access::color_attachment, {}, Contents::discard);
+  albedo = write("gbuffer", albedo, access::color_attachment);
   PassBuilder light = graph_.add_pass("light");
   light.read(albedo, access::input_attachment);
   lit = light.write(lit, access::color_attachment, {}, Contents::discard);

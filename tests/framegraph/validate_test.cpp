@@ -180,8 +180,7 @@ TEST_F(Validate, ResourceHandleOfAnotherGraphIsRefused) {
 TEST_F(Validate, ResourceHandleFromBeforeGraphResetIsRefused) {
   const Texture old = graph_.create_texture("t", kDesc);
   graph_.reset();
-  PassBuilder writer = pass("writer");
-  (void)writer.write(old, access::storage_write_compute);
+  (void)pass("writer").write(old, access::storage_write_compute);
   expect(ErrorCode::foreign_handle, "of a frame before reset");
 }
 
@@ -199,8 +198,7 @@ TEST_F(Validate, ReadingAMipThatNoPassWroteIsRefused) {
   TextureDesc desc = kDesc;
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
-  PassBuilder writer = pass("writer");
-  texture = writer.write(texture, access::storage_write_compute, Range::mip(1));
+  texture = pass("writer").write(texture, access::storage_write_compute, Range::mip(1));
   pass("fine").read(texture, access::sampled_compute, Range::mip(1));
   pass("reader").read(texture, access::sampled_compute, Range::mip(2));
   expect(ErrorCode::read_before_write, "'reader'");
@@ -218,8 +216,7 @@ TEST_F(Validate, PassMayReadOneMipAndWriteAnotherMipOfTheSameTexture) {
   TextureDesc desc = kDesc;
   desc.mips = 2;
   Texture texture = graph_.create_texture("t", desc);
-  PassBuilder first = pass("first");
-  texture = first.write(texture, access::storage_write_compute, Range::mip(0));
+  texture = pass("first").write(texture, access::storage_write_compute, Range::mip(0));
   PassBuilder both = pass("both");
   both.read(texture, access::sampled_general_compute, Range::mip(0));
   (void)both.write(texture, access::storage_write_compute, Range::mip(1));
@@ -249,8 +246,7 @@ TEST_F(Validate, ImportWithoutTheVulkanUsageThatAPassNeedsIsRefused) {
   import.desc = kDesc;
   import.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   Texture texture = graph_.import_texture("swap", import);
-  PassBuilder writer = pass("writer");
-  (void)writer.write(texture, access::storage_write_compute);
+  (void)pass("writer").write(texture, access::storage_write_compute);
   expect(ErrorCode::missing_usage,
          "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
 }
@@ -351,8 +347,7 @@ TEST_F(Validate, AccessDeclaredForAPassAfterTheNextPassWasAddedIsRefused) {
 
 TEST_F(Validate, WriteDeclaredWithAReadOnlyAccessIsRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
-  PassBuilder writer = pass("writer");
-  (void)writer.write(texture, access::sampled_compute);
+  (void)pass("writer").write(texture, access::sampled_compute);
   expect(ErrorCode::bad_access, "declare it with read()");
 }
 

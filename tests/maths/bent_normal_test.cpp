@@ -48,12 +48,12 @@ TEST(BentNormal, BentNormalOfASliceEqualsTheFormulaOfThePaper) {
   }
 }
 
-struct Turned {
+struct DirectedSlice {
   Slice slice;
   vec3 direction;
 };
 
-Turned turned(float phi, const vec3& normal, const vec3& view) {
+DirectedSlice make_slice_at(float phi, const vec3& normal, const vec3& view) {
   const vec3 direction = maths::slice_direction(maths::make_view_basis(view), phi);
   return {maths::make_slice(normal, direction, view), direction};
 }
@@ -69,7 +69,7 @@ TEST(BentNormal, BentNormalOfAnUnoccludedSurfaceIsItsNormalEvenFromASingleSlice)
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
     const vec3 view = random.facing(vec3(0, 0, 1)), normal = random.facing(view);
-    const auto [s, direction] = turned(random.uniform(0.0f, float(kPi)), normal, view);
+    const auto [s, direction] = make_slice_at(random.uniform(0.0f, float(kPi)), normal, view);
     const float open = maths::open_slice(s);
     const vec3 part = maths::slice_bent_normal(s, direction, view, -1.0f, -1.0f);
     const vec3 residual =
@@ -88,7 +88,7 @@ TEST(BentNormal, BentNormalResidualsOfAnUnoccludedSurfaceSumToZeroOverAllSlices)
     vec3 sum(0);
     float largest = 0.0f;
     for (const float phi : even_angles(512)) {
-      const auto [s, direction] = turned(phi, normal, view);
+      const auto [s, direction] = make_slice_at(phi, normal, view);
       const vec3 residual =
           maths::expected_residual(s, direction, view, normal, maths::open_slice(s));
       largest =
@@ -117,7 +117,7 @@ TEST(BentNormal, SubtractingTheExpectedResidualReducesTheBentNormalErrorOfThreeS
       vec3 residual(0), expected_residual(0);
       float visible = 0.0f, open = 0.0f;
       for (const float phi : angles) {
-        const auto [s, direction] = turned(phi, normal, view);
+        const auto [s, direction] = make_slice_at(phi, normal, view);
         // The cosine of the horizon of a wall at unit distance.
         const float toward = dot(direction, wall);
         const float rise = height * std::abs(toward);

@@ -17,14 +17,14 @@ ComputeRun::ComputeRun(const sample::VulkanDevice& device, std::span<const std::
                        std::vector<std::uint32_t> buffer_sizes)
     : owner_(device), device_(device.device()) {
   for (std::size_t k = 0; k < buffer_sizes.size(); ++k) {
-    auto made = sample::HostBuffer::create(
+    auto buffer = sample::HostBuffer::create(
         device, buffer_sizes[k],
         k == 0 ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    if (!made) {
-      ADD_FAILURE() << made.error();
+    if (!buffer) {
+      ADD_FAILURE() << buffer.error();
       return;
     }
-    buffers_.push_back(std::move(*made));
+    buffers_.push_back(std::move(*buffer));
   }
   make_descriptors(buffer_sizes);
   make_pipeline(spirv);

@@ -298,7 +298,7 @@ TEST(LobeSlice, SliceThroughViewAndNormalContainsTheMirrorDirection) {
 
 TEST(LobeSlice, WeightedSliceAnglesConcentratedOnTheLobeGiveTheSameMeanAsUniformAngles) {
   for (const float roughness : kRoughnesses) {
-    double plain = 0.0, turned = 0.0, weights = 0.0;
+    double plain = 0.0, weighted = 0.0, weights = 0.0;
     const auto f = [](double phi) {
       return 1.0 + 0.5 * std::cos(2 * phi + 0.3) + std::sin(4 * phi);
     };
@@ -309,10 +309,10 @@ TEST(LobeSlice, WeightedSliceAnglesConcentratedOnTheLobeGiveTheSameMeanAsUniform
       EXPECT_GT(angle.weight, 0.15f);
       EXPECT_LT(angle.weight, 1.85f);
       plain += f(phi) / kTurns;
-      turned += angle.weight * f(angle.phi) / kTurns;
+      weighted += angle.weight * f(angle.phi) / kTurns;
       weights += angle.weight / kTurns;
     }
-    EXPECT_NEAR(turned, plain, 1e-4);
+    EXPECT_NEAR(weighted, plain, 1e-4);
     EXPECT_NEAR(weights, 1.0, 1e-5);
   }
   EXPECT_EQ(maths::lobe_angle(0.4f, 1.0f, 1.0f).weight, 1.0f);

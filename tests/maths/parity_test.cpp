@@ -90,9 +90,9 @@ class Parity : public ::testing::TestWithParam<std::uint32_t> {
   static void SetUpTestSuite() {
     sample::DeviceOptions options;
     options.validation = true;
-    auto made = sample::VulkanDevice::create(options);
-    ASSERT_TRUE(made.has_value()) << made.error();
-    shared_device = std::move(*made);
+    auto device = sample::VulkanDevice::create(options);
+    ASSERT_TRUE(device.has_value()) << device.error();
+    shared_device = std::move(*device);
     shared_run = std::make_unique<ComputeRun>(
         *shared_device, kParitySpirv,
         std::vector<std::uint32_t>{sizeof(maths::Projection), kInputs * 32, kInputs * 16});

@@ -87,13 +87,13 @@ Projection projection_of(const Frustum& f, unsigned width = 960, unsigned height
   return p.value_or(Projection{});
 }
 
-struct Imaged {
+struct ImagePoint {
   glm::dvec2 uv;
   double depth_ndc;
 };
 
 // The image of a view-space point, computed with the matrix itself.
-Imaged image_of(const mat4& matrix, glm::dvec3 position) {
+ImagePoint project(const mat4& matrix, glm::dvec3 position) {
   const glm::dvec4 clip = glm::dmat4(matrix) * glm::dvec4(position, 1.0);
   return {glm::dvec2(clip.x, clip.y) / clip.w * 0.5 + 0.5, clip.z / clip.w};
 }
@@ -109,9 +109,9 @@ TEST(Projection, PositionsFromDepthProjectBackToTheirPixelByTheProjectionMatrix)
     const vec2 uv(random.uniform(0, 1), random.uniform(0, 1));
     const vec3 position = maths::position_vs(p, uv, depth);
     EXPECT_EQ(position.z, -depth);
-    const Imaged imaged = image_of(matrix_of(f), position);
-    EXPECT_NEAR(imaged.uv.x, uv.x, 3e-4) << describe(f);
-    EXPECT_NEAR(imaged.uv.y, uv.y, 3e-4) << describe(f);
+    const ImagePoint point = project(matrix_of(f), position);
+    EXPECT_NEAR(point.uv.x, uv.x, 3e-4) << describe(f);
+    EXPECT_NEAR(point.uv.y, uv.y, 3e-4) << describe(f);
     const vec2 back = uv_of_position(p, position);
     EXPECT_NEAR(back.x, uv.x, 1e-4) << describe(f);
     EXPECT_NEAR(back.y, uv.y, 1e-4) << describe(f);
@@ -126,13 +126,13 @@ TEST(Projection, RawDepthConvertsToTheDistanceItWasMadeFrom) {
     const mat4 matrix = matrix_of(f);
     const double farthest = f.infinite ? 1e3 * f.near : f.far;
     const double depth = f.near + random.uniform(0.001f, 0.999f) * (farthest - f.near);
-    const double exact = image_of(matrix, glm::dvec3(0, 0, -depth)).depth_ndc;
+    const double exact = project(matrix, glm::dvec3(0, 0, -depth)).depth_ndc;
     const float ndc = float(exact);
     // The raw depth and the matrix are floats, so that two depths cannot be distinguished if they
     // differ by less than a few steps of the raw depth.
     const double step = 4e-7;
     const double slope =
-        std::abs(image_of(matrix, glm::dvec3(0, 0, -depth * 1.001)).depth_ndc - exact) /
+        std::abs(project(matrix, glm::dvec3(0, 0, -depth * 1.001)).depth_ndc - exact) /
         (std::abs(depth) * 0.001);
     const double tolerance = step / std::max(slope, 1e-30) + 1e-5 * std::abs(depth);
     const bool rounded_to_the_sky = ndc == (f.reversed ? 0.0f : 1.0f);

@@ -135,8 +135,8 @@ TEST(SliceLine, SampleOfATiltedPlaneSnappedToATexelCentreStillLiesOnThatPlane) {
     const float on_plane = dot(snapped, tangent.gradient);
     const float off_plane = inverse_depth - tangent.inverse_depth - on_plane;
     EXPECT_TRUE(maths::lies_on_tangent_plane(tangent.fading, off_plane, length(exact)));
-    const float moved = inverse_depth + dot(exact - snapped, tangent.gradient);
-    const float depth = s.perspective() ? 1.0f / moved : moved;
+    const float at_exact = inverse_depth + dot(exact - snapped, tangent.gradient);
+    const float depth = s.perspective() ? 1.0f / at_exact : at_exact;
     // Skip points of the plane that are behind the eye or too far away.
     if (!(depth > 0.0f) || depth > 10.0f * s.depth) continue;
     EXPECT_NEAR(dot(s.delta(exact, depth), s.normal), 0.0f, 2e-4f * depth);
@@ -208,14 +208,14 @@ TEST(SliceLine, RadiusInPixelsApproximatesTheSilhouetteOfASphereOfThatRadius) {
     const vec3 touch = perspective ? s.position + s.view * (radius * sine) +
                                          s.direction * (radius * std::sqrt(1.0f - sine * sine))
                                    : s.position + s.direction * radius;
-    const vec2 imaged = uv_of_position(s.projection, touch) * s.projection.size_px;
-    const float expected = distance(imaged, s.pixel);
+    const vec2 touch_px = uv_of_position(s.projection, touch) * s.projection.size_px;
+    const float expected = distance(touch_px, s.pixel);
     const float inverse_depth = s.perspective() ? 1.0f / s.depth : s.depth;
-    const float spanned = maths::sphere_reach(s.line, radius, inverse_depth, s.perspective()) *
-                          radius / s.line.x_per_step;
+    const float reach_px = maths::sphere_reach(s.line, radius, inverse_depth, s.perspective()) *
+                           radius / s.line.x_per_step;
     // Away from the view axis, sphere_reach() is exact only to first order in the ratio of radius
     // to distance.
-    EXPECT_NEAR(spanned / expected, 1.0f, 0.35f);
+    EXPECT_NEAR(reach_px / expected, 1.0f, 0.35f);
   }
 }
 

@@ -66,10 +66,10 @@ TEST(RawOcclusion, PackingKeepsSpecularLobeSumsOfAnyMagnitude) {
 TEST(RawOcclusion, WeightOfANeighboursLobeFallsWithDifferenceOfNormalAndRoughness) {
   RandomInput random;
   const auto surface = [](vec3 normal, float roughness) {
-    maths::LobeSurface made;
-    made.normal = normal;
-    made.roughness = roughness;
-    return made;
+    maths::LobeSurface lobe;
+    lobe.normal = normal;
+    lobe.roughness = roughness;
+    return lobe;
   };
   for (int i = 0; i < 5000; ++i) {
     const vec3 normal = random.unit_vector();

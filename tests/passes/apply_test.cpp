@@ -8,10 +8,10 @@
 
 #include "alcove/passes/environment.h"
 #include "alcove/passes/occlusion.h"
+#include "drawing.h"
 #include "environment_lookup.h"
-#include "kept.h"
+#include "frame_plan.h"
 #include "maths/split_sum.h"
-#include "pass_fixture.h"
 #include "reference_light.h"
 #include "views.h"
 
@@ -27,16 +27,16 @@ constexpr std::uint32_t kWidth = LitSurfaces::kWidth;
 constexpr std::uint32_t kHeight = LitSurfaces::kHeight;
 constexpr float kSky = LitSurfaces::kSky;
 
-View turned(View view) {
+View rotate(View view) {
   const maths::mat4 turn(0.8f, 0, -0.6f, 0, 0, 1, 0, 0, 0.6f, 0, 0.8f, 0, 0, 0, 0, 1);
   std::memcpy(view.view_from_world.data(), &turn[0][0], sizeof(turn));
   return view;
 }
 
-void expect_close(const HostImage& image, std::uint32_t x, std::uint32_t y, vec3 wanted) {
+void expect_close(const HostImage& image, std::uint32_t x, std::uint32_t y, vec3 expected) {
   for (std::uint32_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(image.at(x, y, c), wanted[static_cast<int>(c)],
-                2e-4f + 2e-4f * wanted[static_cast<int>(c)])
+    EXPECT_NEAR(image.at(x, y, c), expected[static_cast<int>(c)],
+                2e-4f + 2e-4f * expected[static_cast<int>(c)])
         << x << "," << y;
   }
 }
@@ -56,7 +56,7 @@ TEST_F(LightingPass, LitImageAgreesWithTheFormulasOnTheCpuInEveryKindOfView) {
   const LitSurfaces inputs = random_surfaces();
   for (const TestView& test_view : test_views()) {
     SCOPED_TRACE(test_view.name);
-    const View view = turned(test_view.view);
+    const View view = rotate(test_view.view);
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
       const Texture albedo = upload(graph, inputs.albedo);
@@ -85,10 +85,11 @@ TEST_F(LightingPass, LitImageAgreesWithTheFormulasOnTheCpuInEveryKindOfView) {
     });
     for (std::uint32_t y = 0; y < kHeight; ++y) {
       for (std::uint32_t x = 0; x < kWidth; ++x) {
-        const Light wanted = reference_light(inputs, view, x, y);
-        expect_close(result(0), x, y, wanted.diffuse + wanted.specular + rgb(inputs.light, x, y));
-        expect_close(result(1), x, y, wanted.diffuse);
-        expect_close(result(2), x, y, wanted.specular);
+        const Light expected = reference_light(inputs, view, x, y);
+        expect_close(result(0), x, y,
+                     expected.diffuse + expected.specular + rgb(inputs.light, x, y));
+        expect_close(result(1), x, y, expected.diffuse);
+        expect_close(result(2), x, y, expected.specular);
       }
     }
   }
@@ -103,11 +104,11 @@ TEST_F(LightingPass, SurfacesReflectNoMoreLightThanTheyReceiveAndWhiteDielectric
       SCOPED_TRACE(testing::Message() << "roughness " << roughness << ", metallic " << metallic);
       run([&](Graph& graph) {
         const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
-        ApplyInputs given = surfaces(graph, inputs);
-        given.map = upload(graph, inputs.map);
-        given.normals_in_view_space = true;
+        ApplyInputs images = surfaces(graph, inputs);
+        images.map = upload(graph, inputs.map);
+        images.normals_in_view_space = true;
         const auto lit = add_apply(
-            frame, given,
+            frame, images,
             {.roughness = roughness, .metallic = metallic, .precision = Precision::float32});
         ASSERT_TRUE(lit) << lit.error().message;
         read_back(graph, lit->lit);
@@ -127,17 +128,17 @@ TEST_F(LightingPass, ReflectanceTableIsCreatedOnlyIfAnEnvironmentMapIsGiven) {
   open_gpu();
   const LitSurfaces inputs = random_surfaces();
   const auto transients = [&](bool map, const ApplySettings& settings) {
-    Kept kept;
+    FramePlan plan;
     run([&](Graph& graph) {
-      ApplyInputs given = surfaces(graph, inputs);
-      given.map = map ? upload(graph, inputs.map) : Texture{};
+      ApplyInputs images = surfaces(graph, inputs);
+      images.map = map ? upload(graph, inputs.map) : Texture{};
       const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
-      const auto lit = add_apply(frame, given, settings);
+      const auto lit = add_apply(frame, images, settings);
       ASSERT_TRUE(lit) << lit.error().message;
       read_back(graph, lit->lit);
-      kept = kept_of(graph);
+      plan = plan_frame(graph);
     });
-    return kept.transients;
+    return plan.transients;
   };
   const Kernels& kernels = gpu().kernels();
   EXPECT_THAT(transients(false, {}), testing::ElementsAre("lit"));
@@ -157,9 +158,9 @@ TEST_F(LightingPass, ReflectanceTableIsCreatedOnlyIfAnEnvironmentMapIsGiven) {
 // specular occlusion pass, no environment map and no table.
 TEST_F(LightingPass, FrameWithoutSpecularLightHasNoSpecularPassesTexturesOrTables) {
   open_gpu();
-  const PlaneScene plane = plane_scene(test_views()[2], kWidth, kHeight, 30.0f);
+  const Drawing plane = draw(test_views()[2], kWidth, kHeight, {tilted_plane(30.0, 4.0)});
   const LitSurfaces inputs = random_surfaces();
-  Kept kept;
+  FramePlan plan;
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
@@ -182,14 +183,14 @@ TEST_F(LightingPass, FrameWithoutSpecularLightHasNoSpecularPassesTexturesOrTable
                                {});
     ASSERT_TRUE(lit) << lit.error().message;
     read_back(graph, lit->lit);
-    kept = kept_of(graph);
+    plan = plan_frame(graph);
   });
-  EXPECT_THAT(kept.passes, testing::Contains("probe light"));
+  EXPECT_THAT(plan.passes, testing::Contains("probe light"));
   for (const char* absent : {"specular occlusion", "environment prefilter"})
-    EXPECT_THAT(kept.passes, testing::Not(testing::Contains(absent)));
+    EXPECT_THAT(plan.passes, testing::Not(testing::Contains(absent)));
   for (const char* absent :
        {"specular occlusion", "bent normal", "environment map", "specular light", "multi-bounce"})
-    EXPECT_THAT(kept.transients, testing::Not(testing::Contains(absent)));
+    EXPECT_THAT(plan.transients, testing::Not(testing::Contains(absent)));
   EXPECT_EQ(gpu().kernels().table_bytes(), 0u);
 }
 
@@ -221,29 +222,24 @@ TEST_F(LightingPass, InvalidInputOfTheLightingPassIsReportedByName) {
     ApplyInputs good = surfaces(graph, inputs);
     good.map = upload(graph, inputs.map);
     const Texture wrong = upload(graph, small);
-    const auto refused = [&](const ApplyInputs& given, const ApplySettings& settings,
-                             const char* name) {
-      const auto result = add_apply(frame, given, settings);
-      ASSERT_FALSE(result) << name;
-      EXPECT_THAT(result.error().message, HasSubstr(name));
-    };
     const auto with = [&](Texture ApplyInputs::*input, Texture texture) {
-      ApplyInputs given = good;
-      given.*input = texture;
-      return given;
+      ApplyInputs wrong_inputs = good;
+      wrong_inputs.*input = texture;
+      return add_apply(frame, wrong_inputs, {});
     };
-    refused(with(&ApplyInputs::albedo, {}), {}, "albedo");
-    refused(with(&ApplyInputs::normals, wrong), {}, "normals of 2x3");
-    refused(with(&ApplyInputs::visibility, wrong), {}, "visibility of 2x3");
-    refused(with(&ApplyInputs::light, wrong), {}, "light of 2x3");
-    refused(with(&ApplyInputs::harmonics, {}), {}, "harmonics");
-    refused(with(&ApplyInputs::harmonics, wrong), {}, "9x1");
-    refused(with(&ApplyInputs::map, wrong), {}, "square");
-    refused(good, {.roughness = std::numeric_limits<float>::quiet_NaN()}, "roughness");
-    refused(good, {.metallic = -0.5f}, "metallic");
-    refused(good, {.roughness_channel = 4}, "channel 4");
-    refused(good, {.metallic_channel = 9}, "channel 9");
-    refused(good, {.precision = Precision::unorm8}, "8 bits");
+    expect_error(with(&ApplyInputs::albedo, {}), "albedo");
+    expect_error(with(&ApplyInputs::normals, wrong), "normals of 2x3");
+    expect_error(with(&ApplyInputs::visibility, wrong), "visibility of 2x3");
+    expect_error(with(&ApplyInputs::light, wrong), "light of 2x3");
+    expect_error(with(&ApplyInputs::harmonics, {}), "harmonics");
+    expect_error(with(&ApplyInputs::harmonics, wrong), "9x1");
+    expect_error(with(&ApplyInputs::map, wrong), "square");
+    expect_error(add_apply(frame, good, {.roughness = std::numeric_limits<float>::quiet_NaN()}),
+                 "roughness");
+    expect_error(add_apply(frame, good, {.metallic = -0.5f}), "metallic");
+    expect_error(add_apply(frame, good, {.roughness_channel = 4}), "channel 4");
+    expect_error(add_apply(frame, good, {.metallic_channel = 9}), "channel 9");
+    expect_error(add_apply(frame, good, {.precision = Precision::unorm8}), "8 bits");
     read_back(graph, good.depth);
   });
 }

@@ -37,7 +37,7 @@ TEST_F(BackFaceDepth, VisibilityUnderASlabWithBackFaceDepthMatchesTheClosedForm)
   const Drawing drawing = draw(view, 128, 128, scene);
   const HostImage backs = draw_back_faces(view, 128, 128, scene);
   const auto mean_error = [&](const OcclusionSettings& settings) {
-    const HostImage image = visibility(view, drawing, backs, settings);
+    const HostImage image = visibility(drawing, backs, settings);
     double sum = 0.0;
     for (std::uint32_t x = 44; x < 66; ++x) {
       const double at = (x + 0.5 - 64) * 8.0 / 128;
@@ -72,7 +72,7 @@ TEST_F(BackFaceDepth, VisibilityUnderABallWithBackFaceDepthMatchesTheClosedFormI
     const Drawing drawing = draw(view, 72, 48, scene);
     const HostImage backs = draw_back_faces(view, 72, 48, scene);
     const auto mean_error = [&](const OcclusionSettings& settings) {
-      const HostImage image = visibility(view, drawing, backs, settings);
+      const HostImage image = visibility(drawing, backs, settings);
       double sum = 0.0;
       int count = 0;
       for (std::uint32_t y = 0; y < image.height; ++y) {
@@ -113,10 +113,10 @@ TEST_F(BackFaceDepth, SolidThickerThanTheRadiusOccludesAtMostLikeAnInfinitelyThi
     const HostImage backs = draw_back_faces(view, 60, 40, scene);
     for (const Estimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, radius);
-      const HostImage image = visibility(view, drawing, backs, settings);
-      const HostImage thick = visibility(view, drawing, backs, of_thickness(settings, 1e4f));
+      const HostImage image = visibility(drawing, backs, settings);
+      const HostImage thick = visibility(drawing, backs, of_thickness(settings, 1e4f));
       settings.advanced.estimator = Estimator::horizons;
-      const HostImage horizons = visibility(view, drawing, backs, settings);
+      const HostImage horizons = visibility(drawing, backs, settings);
       for (std::size_t i = 0; i < image.texels.size(); ++i) {
         if (estimator == Estimator::bitmask) {
           EXPECT_NEAR(image.texels[i], thick.texels[i], 1e-5);
@@ -144,13 +144,13 @@ TEST_F(BackFaceDepth, ThicknessSettingIsUsedWhereNoBackFaceLiesBehindTheVisibleS
       OcclusionSettings settings = exact(estimator, 1.2f);
       settings.thickness = 0.2f;
       const HostImage expected =
-          visibility(view, drawing, drawing.depth_ndc, of_thickness(settings, 0.2f));
+          visibility(drawing, drawing.depth_ndc, of_thickness(settings, 0.2f));
       HostImage backs = drawing.depth_ndc;
-      EXPECT_EQ(visibility(view, drawing, backs, settings).texels, expected.texels);
+      EXPECT_EQ(visibility(drawing, backs, settings).texels, expected.texels);
       const float sky = drawing.camera.sky();
       for (const float none : {sky, 1.0f - sky, std::numeric_limits<float>::quiet_NaN()}) {
         std::ranges::fill(backs.texels, none);
-        EXPECT_EQ(visibility(view, drawing, backs, settings).texels, expected.texels) << none;
+        EXPECT_EQ(visibility(drawing, backs, settings).texels, expected.texels) << none;
       }
     }
   }

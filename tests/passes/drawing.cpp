@@ -120,8 +120,11 @@ namespace {
 template <typename HitBy>
 Drawing draw_hits(const TestView& view, std::uint32_t width, std::uint32_t height,
                   const Scene& scene, const HitBy& hit_by) {
-  Drawing drawing{
-      TestCamera(view.view, width, height), scene, {width, height, {}, 1}, {width, height, {}, 4}};
+  Drawing drawing{view.view,
+                  TestCamera(view.view, width, height),
+                  scene,
+                  {width, height, {}, 1},
+                  {width, height, {}, 4}};
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
       const std::optional<Hit> hit = hit_by(drawing.camera.ray(x + 0.5, y + 0.5));
@@ -136,14 +139,14 @@ Drawing draw_hits(const TestView& view, std::uint32_t width, std::uint32_t heigh
   return drawing;
 }
 
-// Draws only those hits of each surface for which `kept(hit, ray)` is true.
-template <typename Kept>
-Scene with_hits(const Scene& scene, const Kept& kept) {
+// Returns the scene with only those hits of each surface for which `keep(hit, ray)` is true.
+template <typename Keep>
+Scene with_hits(const Scene& scene, const Keep& keep) {
   Scene result = scene;
   for (Surface& surface : result) {
-    surface.meet = [all = surface.meet, kept](const Ray& ray) {
+    surface.meet = [all = surface.meet, keep](const Ray& ray) {
       std::vector<Hit> hits = all(ray);
-      std::erase_if(hits, [&](const Hit& hit) { return !kept(hit, ray); });
+      std::erase_if(hits, [&](const Hit& hit) { return !keep(hit, ray); });
       return hits;
     };
   }

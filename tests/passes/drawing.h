@@ -70,6 +70,7 @@ using Scene = std::vector<Surface>;
 std::optional<Hit> cast(const Scene& scene, const Ray& ray);
 
 struct Drawing {
+  View view;
   TestCamera camera;
   Scene scene;
   HostImage depth_ndc;

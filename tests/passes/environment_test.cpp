@@ -26,12 +26,12 @@ class EnvironmentPass : public PassTest {
   // Runs add_environment(). Its results are the levels of the map and then the harmonics.
   void run_environment(const HostImage& equirectangular, const EnvironmentSettings& settings) {
     run([&](Graph& graph) {
-      const auto made = add_environment({graph, gpu().kernels(), {}, 0},
-                                        upload(graph, equirectangular), settings);
-      ASSERT_TRUE(made) << made.error().message;
+      const auto light = add_environment({graph, gpu().kernels(), {}, 0},
+                                         upload(graph, equirectangular), settings);
+      ASSERT_TRUE(light) << light.error().message;
       for (std::uint32_t level = 0; level < settings.levels; ++level)
-        read_back(graph, made->map, level);
-      read_back(graph, made->harmonics);
+        read_back(graph, light->map, level);
+      read_back(graph, light->harmonics);
     });
   }
 };
@@ -76,7 +76,7 @@ void over_sphere(const Function& f) {
 
 // Returns the mean radiance of the environment `sky` over the GGX lobe around `normal`, seen along
 // the normal, by quadrature over the sphere.
-vec3 prefiltered(vec3 normal, float alpha) {
+vec3 prefilter(vec3 normal, float alpha) {
   glm::dvec3 sum(0);
   double weights = 0.0;
   over_sphere([&](vec3 light, float angle) {
@@ -96,9 +96,9 @@ TEST_F(EnvironmentPass, SphericalHarmonicsOfAnEnvironmentMapAgreeWithQuadrature)
   const HostImage source = equirectangular(512, sky);
   run_environment(source, {.size = kSize, .levels = kLevels});
   for (std::uint32_t i = 0; i < maths::kHarmonics; ++i) {
-    vec3 wanted(0);
-    over_sphere([&](vec3 d, float angle) { wanted += sky(d) * (maths::harmonic(i, d) * angle); });
-    EXPECT_LT(distance(rgb(result(kLevels), i, 0), wanted), 0.02f)
+    vec3 expected(0);
+    over_sphere([&](vec3 d, float angle) { expected += sky(d) * (maths::harmonic(i, d) * angle); });
+    EXPECT_LT(distance(rgb(result(kLevels), i, 0), expected), 0.02f)
         << i << "th coefficient; the largest is about 8";
   }
 }
@@ -115,10 +115,10 @@ TEST_F(EnvironmentPass, PrefilteredMipLevelsAgreeWithQuadratureOfTheGgxLobe) {
     for (int i = 0; i < 60; ++i) {
       // Random directions also lie between texels.
       const vec3 normal = random.unit_vector();
-      const vec3 wanted = level == 0 ? sky(normal) : prefiltered(normal, roughness * roughness);
-      const vec3 error = look_up(map, normal) - wanted;
+      const vec3 expected = level == 0 ? sky(normal) : prefilter(normal, roughness * roughness);
+      const vec3 error = look_up(map, normal) - expected;
       squares += dot(error, error);
-      wholes += dot(wanted, wanted);
+      wholes += dot(expected, expected);
       worst = std::max(worst, double(length(error)));
     }
     const double relative = std::sqrt(squares / wholes);
@@ -169,18 +169,12 @@ TEST_F(EnvironmentPass, InvalidInputOfTheEnvironmentPassIsReportedByName) {
   run([&](Graph& graph) {
     const Frame frame{graph, gpu().kernels(), {}, 0};
     const auto light = upload(graph, source);
-    const auto refused = [&](framegraph::Texture given, const EnvironmentSettings& settings,
-                             const char* name) {
-      const auto result = add_environment(frame, given, settings);
-      ASSERT_FALSE(result) << name;
-      EXPECT_THAT(result.error().message, HasSubstr(name));
-    };
-    refused({}, {}, "equirectangular light");
-    refused(light, {.size = 100}, "power of two");
-    refused(light, {.size = 4096}, "power of two");
-    refused(light, {.levels = 1}, "levels");
-    refused(light, {.size = 64, .levels = 6}, "2 to 5");
-    refused(light, {.samples = 0}, "samples");
+    expect_error(add_environment(frame, {}, {}), "equirectangular light");
+    expect_error(add_environment(frame, light, {.size = 100}), "power of two");
+    expect_error(add_environment(frame, light, {.size = 4096}), "power of two");
+    expect_error(add_environment(frame, light, {.levels = 1}), "levels");
+    expect_error(add_environment(frame, light, {.size = 64, .levels = 6}), "2 to 5");
+    expect_error(add_environment(frame, light, {.samples = 0}), "samples");
     read_back(graph, light);
   });
 }

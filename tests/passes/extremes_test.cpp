@@ -126,11 +126,7 @@ TEST_F(Extremes, PlaneBehindTheEyeOfAnOrthographicViewDoesNotOccludeItself) {
                                       << ", a plane at " << distance);
       const TestView view = orthographic_view("", 3.0, 2.0, -16.0, 16.0);
       const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, distance)});
-      const Images images = run_occlusion({.view = view.view,
-                                           .depth_ndc = drawing.depth_ndc,
-                                           .normal_vs = &drawing.normal_vs,
-                                           .reset = true},
-                                          settings);
+      const Images images = render(drawing, settings);
       EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(1.0f - 1.0f / 255.0f)));
     }
   }
@@ -145,12 +141,12 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
                          std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
   const OcclusionSettings settings = everything(Quality::medium, 1.0f);
   const auto visibility_at = [&](double distance) {
-    glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
-    turned = glm::translate(turned, distance * glm::dvec3(-1.0, -0.3, 0.8));
+    glm::dmat4 rotated = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
+    rotated = glm::translate(rotated, distance * glm::dvec3(-1.0, -0.3, 0.8));
     View far = view.view;
     for (int i = 0; i < 16; ++i)
       far.view_from_world.at(static_cast<std::size_t>(i)) =
-          static_cast<float>(turned[i / 4][i % 4]);
+          static_cast<float>(rotated[i / 4][i % 4]);
     HostImage visibility;
     for (std::uint32_t i = 0; i < 8; ++i)
       visibility = run_occlusion({.view = far,
@@ -179,10 +175,10 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
       for (std::uint32_t i = 0; i < 5; ++i) {
         HostImage normals = clean.normal_vs;
         HostImage roughness = smooth;
-        HostImage& holed = in_normals ? normals : roughness;
+        HostImage& invalid = in_normals ? normals : roughness;
         for (const std::uint32_t hole : kHoles) {
-          const auto texel = holed.texels.begin() + std::ptrdiff_t{hole} * holed.channels;
-          std::fill_n(texel, i == 1 ? holed.channels : 0, wrong);
+          const auto texel = invalid.texels.begin() + std::ptrdiff_t{hole} * invalid.channels;
+          std::fill_n(texel, i == 1 ? invalid.channels : 0, wrong);
         }
         images.push_back(run_occlusion({.view = moved_by(view.view, 0.01 * i),
                                         .depth_ndc = clean.depth_ndc,
@@ -230,12 +226,9 @@ TEST_F(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
     OcclusionSettings settings = everything(Quality::low, static_cast<float>(0.3 * distance));
     settings.advanced.estimator = Estimator::connected;
     settings.history_frames = 0;
-    const Images images = run_occlusion(
-        {.view = view.view, .depth_ndc = far.depth_ndc, .normal_vs = &far.normal_vs}, settings);
+    const Images images = render(far, settings);
     expect_sound(images);
-    double sum = 0.0;
-    for (const float texel : images.visibility.texels) sum += texel;
-    means.push_back(sum / (kSide * kSide));
+    means.push_back(mean(images.visibility));
   }
   EXPECT_LT(means[0], 0.997);
   EXPECT_NEAR(means[1], means[0], 1e-4);
@@ -250,9 +243,7 @@ TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
       OcclusionSettings settings = everything(Quality::high, radius);
       settings.advanced.estimator = Estimator::connected;
       settings.history_frames = 0;
-      const Images images = run_occlusion(
-          {.view = view.view, .depth_ndc = drawing.depth_ndc, .normal_vs = &drawing.normal_vs},
-          settings);
+      const Images images = render(drawing, settings);
       expect_sound(images);
       if (radius <= 1e-3f) {
         EXPECT_THAT(images.visibility.texels, testing::Each(1.0f));
@@ -287,11 +278,7 @@ TEST_F(Extremes, PlaneIsUnoccludedAtTheNarrowestAndWidestFieldOfView) {
       settings.slices = 4;
       settings.steps = 16;
       for (std::uint32_t i = 0; i < 4; ++i) {
-        const Images images = run_occlusion({.view = view.view,
-                                             .depth_ndc = drawing.depth_ndc,
-                                             .normal_vs = &drawing.normal_vs,
-                                             .index = i},
-                                            settings);
+        const Images images = render(drawing, settings, i);
         EXPECT_GE(*std::ranges::min_element(images.visibility.texels), least);
       }
     }

@@ -16,9 +16,10 @@ constexpr std::uint32_t kHeight = 39;
 
 class GtaoInvariance : public PassTest {
  protected:
-  HostImage visibility(const TestView& view, const Drawing& drawing,
+  // Returns the visibility of a scene in an image of kWidth x kHeight pixels.
+  HostImage visibility(const TestView& view, const Scene& scene,
                        const OcclusionSettings& settings) {
-    return run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    return render(draw(view, kWidth, kHeight, scene), settings).visibility;
   }
 };
 
@@ -56,15 +57,14 @@ TEST_F(GtaoInvariance, VisibilityIsIndependentOfTheUnitOfLength) {
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView one = perspective_view("one", 1.2, 1.8, 0.1, kInfinity, true);
-      const HostImage expected =
-          visibility(one, draw(one, kWidth, kHeight, scene.scene), unfiltered(estimator, 1.0f));
+      const HostImage expected = visibility(one, scene.scene, unfiltered(estimator, 1.0f));
       for (const double unit : {1e-3, 1e3, 2.5e6}) {
         SCOPED_TRACE(testing::Message() << scene.name << " in units of " << 1.0 / unit);
         const TestView view = perspective_view("scaled", 1.2, 1.8, 0.1 * unit, kInfinity, true);
-        const HostImage found =
-            visibility(view, draw(view, kWidth, kHeight, scaled(scene.scene, unit)),
-                       unfiltered(estimator, static_cast<float>(unit)));
-        const Difference apart = difference(found, expected);
+        const Difference apart =
+            difference(visibility(view, scaled(scene.scene, unit),
+                                  unfiltered(estimator, static_cast<float>(unit))),
+                       expected);
         EXPECT_LT(apart.mean, 5e-4);
         EXPECT_LT(apart.largest, 0.1);
       }
@@ -76,16 +76,14 @@ TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthBuffersGiveTheSameVisibil
   for (const Estimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView reversed = perspective_view("", 1.2, 1.8, 0.5, kInfinity, true);
-      const HostImage expected = visibility(reversed, draw(reversed, kWidth, kHeight, scene.scene),
-                                            unfiltered(estimator, 1.0f));
+      const HostImage expected = visibility(reversed, scene.scene, unfiltered(estimator, 1.0f));
       for (const TestView& view :
            {perspective_view("reversed finite", 1.2, 1.8, 0.5, 50.0, true),
             perspective_view("standard finite", 1.2, 1.8, 0.5, 50.0, false),
             perspective_view("standard infinite", 1.2, 1.8, 0.5, kInfinity, false)}) {
         SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name);
-        const Difference apart = difference(
-            visibility(view, draw(view, kWidth, kHeight, scene.scene), unfiltered(estimator, 1.0f)),
-            expected);
+        const Difference apart =
+            difference(visibility(view, scene.scene, unfiltered(estimator, 1.0f)), expected);
         EXPECT_LT(apart.mean, 1e-3);
         EXPECT_LT(apart.largest, 0.1);
       }
@@ -104,8 +102,7 @@ TEST_F(GtaoInvariance, OrthographicViewGivesTheVisibilityOfANarrowPerspectiveFro
       const Scene moved = shifted(scene.scene, {0.0, 0.0, -away});
       const OcclusionSettings settings = unfiltered(estimator, 1.0f);
       const Difference apart =
-          difference(visibility(flat, draw(flat, kWidth, kHeight, scene.scene), settings),
-                     visibility(narrow, draw(narrow, kWidth, kHeight, moved), settings));
+          difference(visibility(flat, scene.scene, settings), visibility(narrow, moved, settings));
       EXPECT_LT(apart.mean, 0.004);
     }
   }
@@ -115,9 +112,8 @@ TEST_F(GtaoInvariance, OrthographicViewGivesTheVisibilityOfANarrowPerspectiveFro
 // image has several strips of groups, of which the last is not full. Every pixel must be written.
 TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
   const TestView view = test_views()[2];
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{
-      {1, 1}, {3, 5}, {17, 9}, {33, 1}, {5, 400}};
-  for (const auto& [width, height] : sizes) {
+  for (const auto& [width, height] :
+       {std::pair{1u, 1u}, {3u, 5u}, {17u, 9u}, {33u, 1u}, {5u, 400u}}) {
     const Drawing drawing = draw(view, width, height, {tilted_plane(40.0, 4.0)});
     for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
       for (const std::uint32_t history : {0u, 8u}) {
@@ -160,11 +156,7 @@ TEST_F(GtaoInvariance, AllTileSizesGiveTheSameMeanVisibilityInAGroove) {
       OcclusionSettings settings = unfiltered(estimator, 1.0f);
       settings.tile_size = tile_size;
       settings.advanced.filter_radius = 2;
-      const HostImage image = visibility(view, drawing, settings);
-      double mean = 0.0;
-      for (const float texel : image.texels)
-        mean += texel / static_cast<double>(image.texels.size());
-      means.push_back(mean);
+      means.push_back(mean(render(drawing, settings).visibility));
     }
     EXPECT_THAT(means, testing::Each(testing::DoubleNear(means[0], 0.02)));
     EXPECT_LT(means[0], 0.98);
@@ -181,13 +173,13 @@ TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteRes
     const OcclusionFrame frame{view.view, drawing.depth_ndc, &drawing.normal_vs};
     const HostImage clean = run_occlusion(frame, settings).visibility;
     for (const std::uint32_t hole : {0u, 20u * kWidth + 28u}) drawing.depth_ndc.texels[hole] = kNaN;
-    const OcclusionImages holed = run_occlusion(frame, settings);
-    EXPECT_THAT(holed.visibility.texels,
+    const OcclusionImages invalid = run_occlusion(frame, settings);
+    EXPECT_THAT(invalid.visibility.texels,
                 testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
-    for (const float component : holed.bent_normal.texels) ASSERT_TRUE(std::isfinite(component));
+    for (const float component : invalid.bent_normal.texels) ASSERT_TRUE(std::isfinite(component));
     int changed = 0;
     for (std::size_t i = 0; i < clean.texels.size(); ++i)
-      changed += std::abs(clean.texels[i] - holed.visibility.texels[i]) > 0.1f ? 1 : 0;
+      changed += std::abs(clean.texels[i] - invalid.visibility.texels[i]) > 0.1f ? 1 : 0;
     EXPECT_LT(changed, 40) << "of " << clean.texels.size() << " pixels";
   }
 }
@@ -212,19 +204,19 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
       backs.texels[i] = nonsense[(i * 2246822519u >> 9) % nonsense.size()];
     }
     for (const Estimator estimator : kEstimators) {
-      for (const bool given : {false, true}) {
+      for (const bool all_inputs : {false, true}) {
         OcclusionSettings settings = unfiltered(estimator, 0.5f);
         settings.bent_normal = true;
         settings.advanced.filter_radius = 2;
         settings.history_frames = 8;
         settings.advanced.thickness_unit =
-            given ? ThicknessUnit::back_faces : ThicknessUnit::radius;
-        settings.depth_layers = given ? 2 : 1;
+            all_inputs ? ThicknessUnit::back_faces : ThicknessUnit::radius;
+        settings.depth_layers = all_inputs ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
           const OcclusionImages images =
               run_occlusion({.view = view.view,
                              .depth_ndc = drawing.depth_ndc,
-                             .normal_vs = given ? &drawing.normal_vs : nullptr,
+                             .normal_vs = all_inputs ? &drawing.normal_vs : nullptr,
                              .back_depth_ndc = &backs,
                              .second_depth_ndc = &backs},
                             settings);
@@ -265,10 +257,8 @@ TEST_F(GtaoInvariance, SkyIsUnoccludedAndDoesNotOcclude) {
     SCOPED_TRACE(view.name);
     Surface post = plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0});
     post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
-    const Drawing drawing = draw(view, kWidth, kHeight, {post});
     for (const Estimator estimator : kEstimators) {
-      const HostImage image = visibility(view, drawing, unfiltered(estimator, 1.0f));
-      EXPECT_THAT(image.texels,
+      EXPECT_THAT(visibility(view, {post}, unfiltered(estimator, 1.0f)).texels,
                   testing::Each(testing::Ge(estimator == Estimator::connected ? 0.97f : 0.996f)));
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "alcove/passes/setting_names.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 #include "reference_occlusion.h"
@@ -34,9 +35,7 @@ class GtaoTruth : public PassTest {
   Errors errors_of(Estimator estimator, const TestView& view, const Scene& scene) {
     const float radius = 1.2f;
     const Drawing drawing = draw(view, 60, 40, scene);
-    const HostImage visibility =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius))
-            .visibility;
+    const HostImage visibility = render(drawing, exact(estimator, radius)).visibility;
     Errors errors;
     int count = 0;
     for (std::uint32_t y = 1; y < visibility.height; y += 3) {
@@ -59,17 +58,12 @@ class GtaoTruth : public PassTest {
   double visibility_beside(const TestView& view, const Surface& front,
                            const OcclusionSettings& settings) {
     const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
-    const HostImage visibility =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    const HostImage visibility = render(drawing, settings).visibility;
     double sum = 0.0;
     for (std::uint32_t x = 36; x < 44; ++x) sum += visibility.at(x, 20);
     return sum / 8.0;
   }
 };
-
-const char* name_of(Estimator estimator) {
-  return estimator == Estimator::connected ? "connected" : "horizons";
-}
 
 // Returns the mean error of bent normals in degrees, over every 7th pixel of every 4th row.
 double mean_bent_error(const HostImage& bent, const Drawing& drawing, double radius) {
@@ -116,8 +110,7 @@ TEST_F(GtaoTruth, VisibilityOfAFloorInFrontOfAPlatformMatchesTheClosedForm) {
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     SCOPED_TRACE(name_of(estimator));
-    const auto images =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, 8.0f));
+    const auto images = render(drawing, exact(estimator, 8.0f));
     for (std::uint32_t x = 44; x < 62; ++x) {
       const double distance = (64 - x - 0.5) * 8.0 / 128;
       const double expected = 0.5 + 0.5 * distance / std::hypot(distance, height);
@@ -136,20 +129,11 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
     const double expected = (1.0 - std::cos(2.0 * half_angle)) / 2.0;
     for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
       SCOPED_TRACE(testing::Message() << name_of(estimator) << ", half angle " << half_angle);
-      const auto images =
-          run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, 8.0f));
+      const auto images = render(drawing, exact(estimator, 8.0f));
       for (const std::uint32_t x : {61u, 62u, 65u, 66u})
         EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.03);
     }
   }
-}
-
-// Returns the mean visibility of a drawing.
-double mean_of(const HostImage& image) {
-  double sum = 0.0;
-  for (std::uint32_t y = 0; y < image.height; ++y)
-    for (std::uint32_t x = 0; x < image.width; ++x) sum += image.at(x, y);
-  return sum / (image.width * image.height);
 }
 
 TEST_F(GtaoTruth, LargerFalloffFadesOccludersTowardsTheRadiusAndKeepsNearOnes) {
@@ -159,11 +143,9 @@ TEST_F(GtaoTruth, LargerFalloffFadesOccludersTowardsTheRadiusAndKeepsNearOnes) {
   double before = 0.0;
   for (const float falloff : {0.0f, 0.3f, 1.0f}) {
     settings.advanced.falloff = falloff;
-    const auto faded =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
-    const double mean = mean_of(faded);
-    EXPECT_GT(mean, before + 0.01) << falloff;
-    before = mean;
+    const auto faded = render(drawing, settings).visibility;
+    EXPECT_GT(mean(faded), before + 0.01) << falloff;
+    before = mean(faded);
     EXPECT_LT(faded.at(30, 20), 0.85f) << "near occluders must still occlude";
   }
 }
@@ -174,13 +156,9 @@ TEST_F(GtaoTruth, EstimatorBitmaskWithThickOccludersEqualsEstimatorHorizons) {
   OcclusionSettings thick = exact(Estimator::bitmask, 1.2f);
   thick.thickness = 1e4f;
   const OcclusionSettings horizons = exact(Estimator::horizons, 1.2f);
-  const auto by_sectors =
-      run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, thick).visibility;
-  const auto by_horizons =
-      run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, horizons).visibility;
-  for (std::uint32_t y = 0; y < by_sectors.height; ++y)
-    for (std::uint32_t x = 0; x < by_sectors.width; ++x)
-      EXPECT_NEAR(by_sectors.at(x, y), by_horizons.at(x, y), 0.02);
+  const auto by_sectors = render(drawing, thick).visibility;
+  const auto by_horizons = render(drawing, horizons).visibility;
+  EXPECT_THAT(by_sectors.texels, testing::Pointwise(testing::FloatNear(0.02f), by_horizons.texels));
 }
 
 // All occluders have the same distance from the eye.
@@ -192,17 +170,14 @@ TEST_F(GtaoTruth, EqualThicknessGivenInRadiiOrInDistancesGivesTheSameMeanVisibil
     OcclusionSettings settings = exact(estimator, radius);
     settings.hidden_occlusion = 0.0f;
     settings.thickness = 0.05f;
-    const auto of_radius =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+    const auto of_radius = render(drawing, settings).visibility;
     settings.advanced.thickness_unit = ThicknessUnit::distance;
     settings.thickness *= radius / distance;
-    const auto of_distance =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
-    EXPECT_NEAR(mean_of(of_distance), mean_of(of_radius), 1e-4);
+    const auto of_distance = render(drawing, settings).visibility;
+    EXPECT_NEAR(mean(of_distance), mean(of_radius), 1e-4);
     settings.thickness = 10.0f;
-    const auto thicker =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
-    EXPECT_LT(mean_of(thicker), mean_of(of_radius) - 0.002);
+    const auto thicker = render(drawing, settings).visibility;
+    EXPECT_LT(mean(thicker), mean(of_radius) - 0.002);
   }
 }
 
@@ -211,7 +186,7 @@ TEST_F(GtaoTruth, LargerFractionOfTheVolumeBehindAWideOccluderIsSolidThanBehindA
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     SCOPED_TRACE(view.name);
     // Returns the occlusion behind slats that begin at x = 0 and are `apart` from each other.
-    const auto filled = [&](double width, double apart, int slats) {
+    const auto solid_fraction = [&](double width, double apart, int slats) {
       Surface front = plane({0.0, 0.0, -3.6}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) {
         return p.x > 0.0 && p.x < slats * apart && std::fmod(p.x, apart) < width;
@@ -227,14 +202,14 @@ TEST_F(GtaoTruth, LargerFractionOfTheVolumeBehindAWideOccluderIsSolidThanBehindA
       EXPECT_GT(none - all, 0.01);
       return (none - beside(0.35f)) / (none - all);
     };
-    const double slat = filled(0.12, 0.12, 1);
-    const double board = filled(1.0, 1.0, 1);
+    const double slat = solid_fraction(0.12, 0.12, 1);
+    const double board = solid_fraction(1.0, 1.0, 1);
     EXPECT_LT(slat, 0.5 * board);
     // The board reaches the last sample, but begins some way from the shaded point.
     EXPECT_GT(board, 0.55);
     // Compare one slat with three slats of the same total width.
-    const double half = filled(0.3, 0.3, 1);
-    const double slats = filled(0.1, 0.2, 3);
+    const double half = solid_fraction(0.3, 0.3, 1);
+    const double slats = solid_fraction(0.1, 0.2, 3);
     EXPECT_LT(slats, 0.65 * half);
   }
 }
@@ -269,8 +244,7 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
   const float radius = 1.0f;
   for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
     SCOPED_TRACE(name_of(estimator));
-    const auto images =
-        run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, exact(estimator, radius));
+    const auto images = render(drawing, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
       // `across` is the distance along the floor to the platform's edge, and `distance` the
       // distance in space, both to within half a pixel. The estimator `connected` joins the floor
@@ -297,16 +271,16 @@ TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible)
     const Drawing whole = draw(view, kWhole, kHeight, groove(0.8));
     const TestView part_view = columns_of(view, kWhole, 0, kPart);
     const Drawing part = draw(part_view, kPart, kHeight, groove(0.8));
-    const auto seen = [&](const TestView& of, const Drawing& drawing, bool extrapolation) {
+    const auto visibility = [&](const Drawing& drawing, bool extrapolation) {
       OcclusionSettings settings = exact(Estimator::connected, kRadius);
       settings.steps = 12;
       settings.advanced.extrapolation = extrapolation;
-      return run_occlusion({of.view, drawing.depth_ndc, &drawing.normal_vs}, settings).visibility;
+      return render(drawing, settings).visibility;
     };
-    const HostImage truth = seen(view, whole, true);
+    const HostImage truth = visibility(whole, true);
     double off[2] = {0.0, 0.0};
     for (const bool extrapolation : {false, true}) {
-      const HostImage found = seen(part_view, part, extrapolation);
+      const HostImage found = visibility(part, extrapolation);
       int count = 0;
       for (std::uint32_t y = 10; y < kHeight - 10; ++y)
         for (std::uint32_t x = 82; x < 96; ++x, ++count)
@@ -328,8 +302,7 @@ TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForceInEveryScene) {
         const Drawing drawing = draw(view, 60, 40, scene.scene);
         OcclusionSettings settings = exact(estimator, radius);
         settings.bent_normal = true;
-        const auto images =
-            run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings);
+        const auto images = render(drawing, settings);
         EXPECT_LT(mean_bent_error(images.bent_normal, drawing, radius),
                   estimator == Estimator::horizons ? 2.0 : 6.0);
       }

@@ -8,11 +8,11 @@
 #include <cstring>
 #include <limits>
 
+#include "drawing.h"
 #include "maths/gtso.h"
 #include "maths/gtso_table.h"
 #include "maths/make_projection.h"
 #include "maths/slice.h"
-#include "pass_fixture.h"
 #include "random_input.h"
 #include "tables.h"
 #include "views.h"
@@ -157,7 +157,7 @@ TEST_F(GtsoPass, InvalidTexelsInAnyInputGiveSpecularOcclusionInRange) {
 }
 
 // Returns visibility and bent normals of an unoccluded plane, with noise as after the filter.
-Inputs open_inputs(const PlaneScene& plane) {
+Inputs open_inputs(const Drawing& plane) {
   maths_test::RandomInput random;
   Inputs inputs;
   for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
@@ -170,9 +170,9 @@ Inputs open_inputs(const PlaneScene& plane) {
 
 // Returns the smallest value over the pixels of a plane whose view direction is within 85 degrees
 // of the normal.
-float lowest_of(const HostImage& image, const PlaneScene& plane, const View& view) {
-  const maths::Projection projection = projection_of(view);
-  float lowest = 1.0f;
+float lowest(const HostImage& image, const Drawing& plane) {
+  const maths::Projection projection = projection_of(plane.view);
+  float least = 1.0f;
   for (std::uint32_t y = 0; y < kHeight; ++y) {
     for (std::uint32_t x = 0; x < kWidth; ++x) {
       const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
@@ -180,17 +180,17 @@ float lowest_of(const HostImage& image, const PlaneScene& plane, const View& vie
       const vec3 towards =
           maths::view_direction(projection, maths::position_vs(projection, uv, depth));
       if (glm::dot(towards, direction(plane.normal_vs, x, y)) >= std::cos(glm::radians(85.0f)))
-        lowest = std::min(lowest, image.at(x, y));
+        least = std::min(least, image.at(x, y));
     }
   }
-  return lowest;
+  return least;
 }
 
 TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
   const std::array roughness{0.0f, 0.1f, 0.3f, 0.6f, 1.0f};
   for (const TestView& view : test_views()) {
-    for (const float degrees : {0.0f, 30.0f, 60.0f, 84.0f}) {
-      const PlaneScene plane = plane_scene(view, kWidth, kHeight, degrees);
+    for (const double degrees : {0.0, 30.0, 60.0, 84.0}) {
+      const Drawing plane = draw(view, kWidth, kHeight, {tilted_plane(degrees, 4.0)});
       const Inputs open = open_inputs(plane);
       run([&](Graph& graph) {
         const Frame frame{graph, gpu().kernels(), view.view, 0};
@@ -206,7 +206,7 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
             read_back(graph, add(frame, inputs, settings_of(model, r)));
       });
       for (std::size_t image = 0; image < kModels.size() * roughness.size(); ++image) {
-        EXPECT_GE(lowest_of(result(image), plane, view.view), 0.99f)
+        EXPECT_GE(lowest(result(image), plane), 0.99f)
             << view.name << " tilted " << degrees << " degrees, model " << image / roughness.size()
             << ", roughness " << roughness[image % roughness.size()];
       }
@@ -230,8 +230,7 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   };
   View view = test_views().front().view;
   const HostImage in_view_space = with(view, true);
-  const HostImage unturned = with(view, false);
-  EXPECT_EQ(in_view_space.texels, unturned.texels);
+  EXPECT_EQ(in_view_space.texels, with(view, false).texels);
   // The camera is rotated by 180 degrees about the view axis.
   view.view_from_world[0] = view.view_from_world[5] = -1.0f;
   EXPECT_NE(in_view_space.texels, with(view, false).texels);
@@ -282,23 +281,22 @@ TEST_F(GtsoPass, InvalidInputOfTheSpecularOcclusionPassIsReportedByName) {
                           .bent_normal = upload(graph, inputs.bent),
                           .normals = upload(graph, inputs.normals),
                           .depth = upload(graph, inputs.depth)};
-    const auto refused = [&](const GtsoInputs& given, const OcclusionSettings& settings,
-                             const char* name) {
-      const auto result = add_gtso(frame, given, settings);
-      ASSERT_FALSE(result) << name;
-      EXPECT_THAT(result.error().message, testing::HasSubstr(name));
-    };
     GtsoInputs without_bent = good;
     without_bent.bent_normal = {};
-    refused(without_bent, settings_of(Specular::cone), "bent normals");
+    expect_error(add_gtso(frame, without_bent, settings_of(Specular::cone)), "bent normals");
     GtsoInputs unequal = good;
     unequal.depth = upload(graph, small);
-    refused(unequal, settings_of(Specular::table), "2x2");
-    refused(good, settings_of(Specular::table, std::numeric_limits<float>::quiet_NaN()), "0 to 1");
-    refused(good, settings_of(Specular::table, 1.5f), "0 to 1");
-    refused(good, settings_of(Specular::table, 0.5f, 4), "'roughness_channel' is 4");
-    refused(good, settings_of(Specular::slices), "slices; it must be table or cone");
-    refused(good, settings_of(Specular::none), "none; it must be table or cone");
+    expect_error(add_gtso(frame, unequal, settings_of(Specular::table)), "2x2");
+    expect_error(add_gtso(frame, good,
+                          settings_of(Specular::table, std::numeric_limits<float>::quiet_NaN())),
+                 "0 to 1");
+    expect_error(add_gtso(frame, good, settings_of(Specular::table, 1.5f)), "0 to 1");
+    expect_error(add_gtso(frame, good, settings_of(Specular::table, 0.5f, 4)),
+                 "'roughness_channel' is 4");
+    expect_error(add_gtso(frame, good, settings_of(Specular::slices)),
+                 "slices; it must be table or cone");
+    expect_error(add_gtso(frame, good, settings_of(Specular::none)),
+                 "none; it must be table or cone");
     read_back(graph, add(frame, good, settings_of(Specular::cone)));
   });
 }

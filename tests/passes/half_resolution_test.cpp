@@ -70,21 +70,16 @@ TEST_F(HalfResolution, ConstantRawOcclusionGivesConstantVisibilityAtOddImageSize
           SCOPED_TRACE(testing::Message()
                        << scene.name << ", tiles of " << tile_size << ", visibility " << visibility
                        << ", history " << history);
-          const HostImage found = reconstruct({.view = view.view,
-                                               .drawing = drawing,
+          const HostImage found = reconstruct({.drawing = drawing,
                                                .raw_occlusion = raw_occlusion,
                                                .tile_size = tile_size,
                                                .index = 1,
                                                .reset = true},
                                               half_resolution(history));
-          for (std::uint32_t y = 0; y < 23; ++y) {
-            for (std::uint32_t x = 0; x < 33; ++x) {
-              const float ndc = drawing.depth_ndc.at(x, y);
-              const double expected = ndc == 0.0f || ndc == 1.0f ? 1.0 : visibility;  // the sky
-              ASSERT_NEAR(found.at(x, y), expected, visibility == 1.0f ? 1e-6f : kRounding)
-                  << "at " << x << ", " << y;
-            }
-          }
+          expect_pixels(found, visibility == 1.0f ? 1e-6f : kRounding,
+                        [&](std::uint32_t x, std::uint32_t y) {
+                          return drawing.is_sky(x, y) ? 1.0f : visibility;
+                        });
         }
       }
     }
@@ -109,19 +104,14 @@ TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
         raw_occlusion_of(kWidth / 2, kHeight / 2, [&](std::uint32_t x, std::uint32_t y) {
           return expected(2 * x + offset.x, 2 * y + offset.y);
         });
-    const HostImage found = reconstruct({.view = view.view,
-                                         .drawing = drawing,
+    const HostImage found = reconstruct({.drawing = drawing,
                                          .raw_occlusion = raw_occlusion,
                                          .tile_size = 2,
                                          .index = index,
                                          .reset = true},
                                         half_resolution(16));
-    for (std::uint32_t y = 0; y < kHeight; ++y) {
-      for (std::uint32_t x = 0; x < kWidth; ++x) {
-        ASSERT_NEAR(found.at(x, y), expected(x, y), 0.02)
-            << "frame " << index << ", at " << x << ", " << y;
-      }
-    }
+    SCOPED_TRACE(index);
+    expect_pixels(found, 0.02, expected);
   }
 }
 
@@ -131,20 +121,18 @@ TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
 TEST_F(HalfResolution, StaleHistoryTexelsOutsideTheRenderedPartOfAnImageAreNotRead) {
   constexpr VkExtent2D kLargest{kWidth, kHeight};
   const TestView view = test_views()[2];
-  const Drawing large = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  const Drawing large = draw_plane(0.0);
   const Drawing small = draw(view, kWidth / 2, kHeight / 2, {tilted_plane(0.0, 4.0)});
   const HostImage dark = constant_raw_occlusion(kWidth / 2, kHeight / 2, 0.1f);
   const HostImage bright = constant_raw_occlusion(kWidth / 4, kHeight / 4, 0.9f);
-  (void)reconstruct({.view = view.view,
-                     .drawing = large,
+  (void)reconstruct({.drawing = large,
                      .raw_occlusion = dark,
                      .tile_size = 2,
                      .reset = true,
                      .previous_size = kLargest,
                      .largest_size = kLargest},
                     half_resolution(1));
-  const HostImage found = reconstruct({.view = view.view,
-                                       .drawing = small,
+  const HostImage found = reconstruct({.drawing = small,
                                        .raw_occlusion = bright,
                                        .tile_size = 2,
                                        .index = 1,
@@ -166,12 +154,7 @@ TEST_F(HalfResolution, UnoccludedPlaneGetsItsNormalAndSpecularVisibilityOneAtHal
     settings.history_frames = history;
     for (std::uint32_t frame = 0; frame < 3; ++frame) {
       SCOPED_TRACE(testing::Message() << "history " << history << ", frame " << frame);
-      const OcclusionImages found = run_occlusion({.view = view.view,
-                                                   .depth_ndc = drawing.depth_ndc,
-                                                   .normal_vs = &drawing.normal_vs,
-                                                   .index = frame,
-                                                   .reset = frame == 0},
-                                                  settings);
+      const OcclusionImages found = render(drawing, settings, frame);
       for (std::uint32_t y = 0; y < 23; ++y) {
         for (std::uint32_t x = 0; x < 33; ++x) {
           ASSERT_NEAR(found.visibility.at(x, y), 1.0, 1e-5) << "at " << x << ", " << y;
@@ -187,21 +170,19 @@ TEST_F(HalfResolution, UnoccludedPlaneGetsItsNormalAndSpecularVisibilityOneAtHal
 }
 
 TEST_F(HalfResolution, HalfResolutionWithTilesOfOnePixelIsRefused) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
   framegraph::Graph graph;
-  const Frame frame{graph, gpu().kernels(), view.view, 0};
+  const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
   const auto depth = graph.create_texture(
       "depth", {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
   const auto normals = graph.create_texture(
       "normals", {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
   const auto raw = graph.create_texture(
       "raw", {VK_FORMAT_R32G32_UINT, framegraph::Extent::absolute(kWidth, kHeight)});
-  const auto made = add_reconstruct(
-      frame, {.raw_occlusion = {.raw_occlusion = raw}, .depth_ndc = depth, .normals = normals},
-      half_resolution(0));
-  ASSERT_FALSE(made);
-  EXPECT_THAT(made.error().message, testing::HasSubstr("tile_size is 1"));
+  expect_error(
+      add_reconstruct(
+          frame, {.raw_occlusion = {.raw_occlusion = raw}, .depth_ndc = depth, .normals = normals},
+          half_resolution(0)),
+      "tile_size is 1");
 }
 
 }  // namespace

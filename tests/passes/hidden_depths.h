@@ -25,9 +25,9 @@ inline OcclusionSettings without_hidden_occlusion(Estimator estimator, float rad
 class HiddenDepthTest : public PassTest {
  protected:
   // `hidden` is the depth of back faces or of the second layer, whichever the settings read.
-  HostImage visibility(const TestView& view, const Drawing& drawing, const HostImage& hidden,
+  HostImage visibility(const Drawing& drawing, const HostImage& hidden,
                        const OcclusionSettings& settings) {
-    return run_occlusion({.view = view.view,
+    return run_occlusion({.view = drawing.view,
                           .depth_ndc = drawing.depth_ndc,
                           .normal_vs = &drawing.normal_vs,
                           .back_depth_ndc = &hidden,

@@ -19,12 +19,9 @@ class HistoryRestart : public PassTest {
     const Drawing now = draw(view, 32, 24, ball_on_floor());
     std::uint32_t index = 0;
     const auto frame = [&](const Drawing& drawing, const OcclusionSettings& with, bool reset) {
-      return run_occlusion({.view = view.view,
-                            .depth_ndc = drawing.depth_ndc,
-                            .normal_vs = &drawing.normal_vs,
-                            .index = index++,
-                            .reset = reset},
-                           with);
+      return run_occlusion(
+          {view.view, drawing.depth_ndc, &drawing.normal_vs, nullptr, view.view, index++, reset},
+          with);
     };
     for (int i = 0; i < 4; ++i) (void)frame(before, settings, i == 0);
     for (int i = 0; i < 4; ++i) (void)frame(now, meanwhile, false);

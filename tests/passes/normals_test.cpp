@@ -21,9 +21,9 @@ class NormalsFromDepth : public PassTest {
       const Frame frame{graph, gpu().kernels(), view, 0};
       const auto depth = add_linear_depth(frame, upload(graph, depth_ndc));
       ASSERT_TRUE(depth) << depth.error().message;
-      const auto made = add_normals(frame, *depth);
-      ASSERT_TRUE(made) << made.error().message;
-      read_back(graph, *made);
+      const auto normals = add_normals(frame, *depth);
+      ASSERT_TRUE(normals) << normals.error().message;
+      read_back(graph, *normals);
     });
     return result();
   }
@@ -53,10 +53,10 @@ double largest_error(const HostImage& normals, const Drawing& drawing) {
   for (std::uint32_t y = 0; y < normals.height; ++y) {
     for (std::uint32_t x = 0; x < normals.width; ++x) {
       if (drawing.is_sky(x, y)) continue;
-      const glm::dvec3 made = vector_at(normals, x, y);
-      EXPECT_NEAR(glm::length(made), 1.0, 2e-3);
+      const glm::dvec3 normal = vector_at(normals, x, y);
+      EXPECT_NEAR(glm::length(normal), 1.0, 2e-3);
       if (!has_neighbours(drawing, x, y) && drawing.depth_ndc.texels.size() > 20) continue;
-      largest = std::max(largest, angle_between(made, vector_at(drawing.normal_vs, x, y)));
+      largest = std::max(largest, angle_between(normal, vector_at(drawing.normal_vs, x, y)));
     }
   }
   return largest;
@@ -101,12 +101,12 @@ TEST_F(NormalsFromDepth, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbourin
     Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
     post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
     const Drawing drawing = draw(view, 45, 31, {post});
-    const HostImage made = normals(view.view, drawing.depth_ndc);
-    EXPECT_LT(largest_error(made, drawing), 0.5);
+    const HostImage image = normals(view.view, drawing.depth_ndc);
+    EXPECT_LT(largest_error(image, drawing), 0.5);
     for (std::uint32_t y = 0; y < 31; ++y) {
       for (std::uint32_t x = 0; x < 45; ++x)
         if (drawing.is_sky(x, y)) {
-          ASSERT_LT(angle_between(vector_at(made, x, y), drawing.camera.to_eye(x, y)), 0.1);
+          ASSERT_LT(angle_between(vector_at(image, x, y), drawing.camera.to_eye(x, y)), 0.1);
         }
     }
   }
@@ -136,9 +136,9 @@ TEST_F(NormalsFromDepth, PixelWithNaNDepthAffectsNoOtherNormal) {
     Drawing drawing = draw(view, 40, 30, {tilted_plane(50.0, 4.0)});
     for (const std::size_t pixel : {0u, 15u * 40u + 20u, 29u * 40u + 39u, 29u * 40u + 20u})
       drawing.depth_ndc.texels[pixel] = kNaN;
-    const HostImage made = normals(view.view, drawing.depth_ndc);
-    EXPECT_LT(largest_error(made, drawing), 0.5);
-    for (const float component : made.texels) ASSERT_TRUE(std::isfinite(component));
+    const HostImage image = normals(view.view, drawing.depth_ndc);
+    EXPECT_LT(largest_error(image, drawing), 0.5);
+    for (const float component : image.texels) ASSERT_TRUE(std::isfinite(component));
   }
 }
 

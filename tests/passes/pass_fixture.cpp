@@ -4,10 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "alcove/framegraph/verify.h"
+#include "drawing.h"
 
 namespace alcove::passes {
 
@@ -17,36 +20,28 @@ using framegraph::Texture;
 namespace {
 
 struct TexelLayout {
-  std::uint32_t channels = 0;
-  std::uint32_t channel_bytes = 0;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  std::uint32_t channels = 1;
+  std::uint32_t channel_bytes = 4;
 };
 
-TexelLayout layout_of(VkFormat format) {
-  switch (format) {
-    case VK_FORMAT_R8_UNORM:
-      return {1, 1};
-    case VK_FORMAT_R8G8B8A8_SNORM:
-      return {4, 1};
-    case VK_FORMAT_R16_SFLOAT:
-      return {1, 2};
-    case VK_FORMAT_R16G16_SFLOAT:
-      return {2, 2};
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-      return {4, 2};
-    case VK_FORMAT_R32_SFLOAT:
-      return {1, 4};
-    case VK_FORMAT_R32G32_SFLOAT:
-      return {2, 4};
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-      return {4, 4};
-    default:
-      ADD_FAILURE() << "The fixture cannot read format " << format << " back.";
-      return {1, 4};
-  }
+TexelLayout find_layout(VkFormat format) {
+  constexpr TexelLayout kLayouts[] = {{VK_FORMAT_R8_UNORM, 1, 1},
+                                      {VK_FORMAT_R8G8B8A8_SNORM, 4, 1},
+                                      {VK_FORMAT_R16_SFLOAT, 1, 2},
+                                      {VK_FORMAT_R16G16_SFLOAT, 2, 2},
+                                      {VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
+                                      {VK_FORMAT_R32_SFLOAT, 1, 4},
+                                      {VK_FORMAT_R32G32_SFLOAT, 2, 4},
+                                      {VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4}};
+  const auto* const layout = std::ranges::find(kLayouts, format, &TexelLayout::format);
+  if (layout != std::end(kLayouts)) return *layout;
+  ADD_FAILURE() << "The fixture cannot read format " << format << " back.";
+  return {};
 }
 
 void decode(std::span<const std::byte> bytes, VkFormat format, std::vector<float>& texels) {
-  const std::uint32_t size = layout_of(format).channel_bytes;
+  const std::uint32_t size = find_layout(format).channel_bytes;
   for (std::size_t i = 0; i < texels.size(); ++i) {
     const std::byte* from = bytes.data() + i * size;
     if (size == 4) {
@@ -64,15 +59,10 @@ void decode(std::span<const std::byte> bytes, VkFormat format, std::vector<float
   }
 }
 
-VkFormat uploaded_format(std::uint32_t channels) {
-  switch (channels) {
-    case 1:
-      return VK_FORMAT_R32_SFLOAT;
-    case 2:
-      return VK_FORMAT_R32G32_SFLOAT;
-    default:
-      return VK_FORMAT_R32G32B32A32_SFLOAT;
-  }
+VkFormat float_format(std::uint32_t channels) {
+  return channels == 1   ? VK_FORMAT_R32_SFLOAT
+         : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
+                         : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
 }  // namespace
@@ -83,6 +73,11 @@ double rms(const HostImage& a, const HostImage& b) {
   for (std::size_t i = 0; i < a.texels.size(); ++i)
     sum += std::pow(double{a.texels[i]} - b.texels[i], 2.0);
   return std::sqrt(sum / static_cast<double>(a.texels.size()));
+}
+
+double mean(const HostImage& image) {
+  return std::accumulate(image.texels.begin(), image.texels.end(), 0.0) /
+         static_cast<double>(image.texels.size());
 }
 
 namespace {
@@ -112,10 +107,10 @@ void PassTest::SetUp() {
 void PassTest::open_gpu() {
   shared.gpu.reset();
   shared.messages = 0;
-  auto made =
+  auto gpu =
       sample::Gpu::create({.validation = true}, {.verify = framegraph::verify, .check_uses = true});
-  ASSERT_TRUE(made) << made.error();
-  shared.gpu = std::move(*made);
+  ASSERT_TRUE(gpu) << gpu.error();
+  shared.gpu = std::move(*gpu);
 }
 
 void PassTest::TearDown() {
@@ -133,9 +128,9 @@ sample::Gpu& PassTest::gpu() { return *shared.gpu; }
 Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) {
   return fill(
       graph,
-      graph.create_texture(
-          "uploaded", {format == VK_FORMAT_UNDEFINED ? uploaded_format(image.channels) : format,
-                       framegraph::Extent::absolute(image.width, image.height)}),
+      graph.create_texture("uploaded",
+                           {format == VK_FORMAT_UNDEFINED ? float_format(image.channels) : format,
+                            framegraph::Extent::absolute(image.width, image.height)}),
       image);
 }
 
@@ -154,10 +149,10 @@ void PassTest::read_back(Graph& graph, Texture texture, std::uint32_t mip) {
   HostImage image;
   image.width = std::max(extent.width >> mip, 1u);
   image.height = std::max(extent.height >> mip, 1u);
-  image.channels = layout_of(format).channels;
+  image.channels = find_layout(format).channels;
   image.texels.resize(std::size_t{image.width} * image.height * image.channels);
   auto buffer = sample::HostBuffer::create(gpu().device(),
-                                           image.texels.size() * layout_of(format).channel_bytes,
+                                           image.texels.size() * find_layout(format).channel_bytes,
                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   ASSERT_TRUE(buffer) << buffer.error();
   downloads_.push_back({std::move(*buffer), format});
@@ -178,27 +173,37 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
     decode(downloads_[i].buffer->bytes(), downloads_[i].format, results_[i].texels);
 }
 
-PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& given,
+PassTest::OcclusionImages PassTest::render(const Drawing& drawing,
+                                           const OcclusionSettings& settings, std::uint32_t index) {
+  return run_occlusion({.view = drawing.view,
+                        .depth_ndc = drawing.depth_ndc,
+                        .normal_vs = &drawing.normal_vs,
+                        .index = index,
+                        .reset = index == 0},
+                       settings);
+}
+
+PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& input,
                                                   const OcclusionSettings& settings) {
   run([&](Graph& graph) {
-    if (given.reset) graph.reset_histories();
+    if (input.reset) graph.reset_histories();
     const Frame frame{.graph = graph,
                       .kernels = gpu().kernels(),
-                      .view = given.view,
-                      .index = given.index,
-                      .previous_view = given.previous_view,
-                      .largest_size = given.largest_size,
-                      .previous_size = given.previous_size};
+                      .view = input.view,
+                      .index = input.index,
+                      .previous_view = input.previous_view,
+                      .largest_size = input.largest_size,
+                      .previous_size = input.previous_size};
     const auto upload_of = [&](const HostImage* image) {
       return image == nullptr ? Texture{} : upload(graph, *image);
     };
-    const OcclusionInputs inputs{.depth_ndc = upload(graph, given.depth_ndc),
-                                 .normals = upload_of(given.normal_vs),
+    const OcclusionInputs inputs{.depth_ndc = upload(graph, input.depth_ndc),
+                                 .normals = upload_of(input.normal_vs),
                                  .normal_convention = {.in_view_space = true},
-                                 .motion = upload_of(given.motion),
-                                 .roughness = upload_of(given.roughness),
-                                 .back_depth_ndc = upload_of(given.back_depth_ndc),
-                                 .second_depth_ndc = upload_of(given.second_depth_ndc)};
+                                 .motion = upload_of(input.motion),
+                                 .roughness = upload_of(input.roughness),
+                                 .back_depth_ndc = upload_of(input.back_depth_ndc),
+                                 .second_depth_ndc = upload_of(input.second_depth_ndc)};
     const auto outputs = add_occlusion(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     read_back(graph, outputs->visibility);
@@ -220,12 +225,8 @@ void PassTest::poison_memory(std::uint32_t width, std::uint32_t height) {
   run([&](Graph& graph) {
     std::vector<Texture> textures;
     textures.reserve(kTextures);
-    for (int i = 0; i < kTextures; ++i) {
-      textures.push_back(upload(graph, poison));
-    }
-    for (const Texture texture : textures) {
-      read_back(graph, texture);
-    }
+    for (int i = 0; i < kTextures; ++i) textures.push_back(upload(graph, poison));
+    for (const Texture texture : textures) read_back(graph, texture);
   });
 }
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
@@ -30,6 +32,28 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Returns the root mean square of the differences between two images of one size.
 double rms(const HostImage& a, const HostImage& b);
+// Returns the mean of all values of an image.
+double mean(const HostImage& image);
+
+// Fails the test at the first pixel whose value differs from expected(x, y) by more than
+// `tolerance`.
+template <typename Expected>
+void expect_pixels(const HostImage& image, double tolerance, const Expected& expected) {
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x)
+      ASSERT_NEAR(image.at(x, y), expected(x, y), tolerance) << "at " << x << ", " << y;
+}
+
+// Tests that a pass has refused its input with a sentence that contains `message`.
+template <typename Result>
+void expect_error(const Result& result, const std::string& message) {
+  ASSERT_FALSE(result) << message;
+  const std::string& text = result.error().message;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, message, text);
+  EXPECT_TRUE(text.ends_with('.') && std::isupper(static_cast<unsigned char>(text[0]))) << text;
+}
+
+struct Drawing;
 
 // Runs passes on the machine's Vulkan device under the validation layers. Any message of the layers
 // fails the test. The tests of a program share the device and its pipelines, but no resources.
@@ -77,6 +101,9 @@ class PassTest : public testing::Test {
     HostImage specular;
   };
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
+  // Runs frame `index` of a drawing with its normals. Frame 0 resets the history first.
+  OcclusionImages render(const Drawing& drawing, const OcclusionSettings& settings,
+                         std::uint32_t index = 0);
 
   // Fills the device memory that transients of about this size will use with NaN, so that the test
   // notices texels that a pass does not write.

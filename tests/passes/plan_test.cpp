@@ -2,8 +2,8 @@
 // no pass, no memory and no pipeline.
 #include <gmock/gmock.h>
 
+#include "frame_plan.h"
 #include "gtao_scenes.h"
-#include "kept.h"
 #include "pass_fixture.h"
 
 namespace alcove::passes {
@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::Not;
 
 // The inputs of a frame besides depth.
-struct Given {
+struct InputImages {
   bool normals = true;
   bool motion = false;
   bool hidden_depths = false;
@@ -23,20 +23,18 @@ struct Given {
 };
 
 // The outputs of add_occlusion() that the frame reads.
-struct Reads {
+struct OutputChoice {
   bool visibility = true;
   bool bent_normal = false;
   bool linear_depth = false;
   bool specular = false;
 };
 
-HostImage motion_of_nothing() { return {32, 24, std::vector<float>(std::size_t{2} * 32 * 24), 2}; }
-
-HostImage roughness_of_all() {
-  return {32, 24, std::vector<float>(std::size_t{4} * 32 * 24, 0.5f), 4};
+HostImage uniform_image(std::uint32_t channels, float value) {
+  return {32, 24, std::vector<float>(std::size_t{channels} * 32 * 24, value), channels};
 }
 
-void expect_same(const Kept& a, const Kept& b) {
+void expect_same(const FramePlan& a, const FramePlan& b) {
   EXPECT_EQ(a.passes, b.passes);
   EXPECT_EQ(a.transients, b.transients);
   EXPECT_EQ(a.bytes, b.bytes);
@@ -46,28 +44,29 @@ class OcclusionPlan : public PassTest {
  protected:
   void SetUp() override { open_gpu(); }
 
-  Kept kept(const OcclusionSettings& settings, Reads reads = {}, Given given = {}) {
+  FramePlan plan(const OcclusionSettings& settings, OutputChoice choice = {},
+                 InputImages images = {}) {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
-    Kept found;
+    FramePlan found;
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
       OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
                              .normal_convention = {.in_view_space = true}};
-      if (given.normals) inputs.normals = upload(graph, drawing.normal_vs);
-      if (given.motion) inputs.motion = upload(graph, motion_of_nothing());
-      if (given.hidden_depths) {
+      if (images.normals) inputs.normals = upload(graph, drawing.normal_vs);
+      if (images.motion) inputs.motion = upload(graph, uniform_image(2, 0.0f));
+      if (images.hidden_depths) {
         inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
         inputs.second_depth_ndc = upload(graph, drawing.depth_ndc);
       }
-      if (given.roughness) inputs.roughness = upload(graph, roughness_of_all());
+      if (images.roughness) inputs.roughness = upload(graph, uniform_image(4, 0.5f));
       const auto outputs = add_occlusion(frame, inputs, settings);
       ASSERT_TRUE(outputs) << outputs.error().message;
-      if (reads.visibility) read_back(graph, outputs->visibility);
-      if (reads.bent_normal) read_back(graph, outputs->bent_normal);
-      if (reads.linear_depth) read_back(graph, outputs->linear_depth);
+      if (choice.visibility) read_back(graph, outputs->visibility);
+      if (choice.bent_normal) read_back(graph, outputs->bent_normal);
+      if (choice.linear_depth) read_back(graph, outputs->linear_depth);
       EXPECT_EQ(bool(outputs->specular), settings.specular != Specular::none);
-      if (reads.specular) read_back(graph, outputs->specular);
-      found = kept_of(graph);
+      if (choice.specular) read_back(graph, outputs->specular);
+      found = plan_frame(graph);
     });
     return found;
   }
@@ -83,78 +82,78 @@ OcclusionSettings least() {
 }
 
 TEST_F(OcclusionPlan, FrameThatOnlyComputesVisibilityHasTwoPassesAndTwoTextures) {
-  const Kept frame = kept(least());
+  const FramePlan frame = plan(least());
   EXPECT_THAT(frame.passes, ElementsAre("gtao", "reconstruct"));
   EXPECT_THAT(frame.transients, testing::UnorderedElementsAre("raw occlusion", "visibility"));
   EXPECT_THAT(frame.histories, testing::IsEmpty());
   EXPECT_EQ(gpu().kernels().pipeline_count(), 2u);
 }
 
-TEST_F(OcclusionPlan, FrameWithoutGivenNormalsHasNoFurtherPassesAndTextures) {
-  const Kept given = kept(least());
-  const Kept without = kept(least(), {}, {.normals = false});
-  EXPECT_EQ(without.passes, given.passes);
-  EXPECT_EQ(without.transients, given.transients);
+TEST_F(OcclusionPlan, FrameWithoutNormalsHasNoFurtherPassesAndTextures) {
+  const FramePlan from_depth = plan(least(), {}, {.normals = false});
+  const FramePlan with_normals = plan(least());
+  EXPECT_EQ(from_depth.passes, with_normals.passes);
+  EXPECT_EQ(from_depth.transients, with_normals.transients);
 }
 
 TEST_F(OcclusionPlan, BentNormalsAndHistoryAddTexturesOnlyWhenTheyAreOn) {
-  const Kept without = kept(least());
+  const FramePlan without = plan(least());
   OcclusionSettings bent = least();
   bent.bent_normal = true;
-  const Kept with_bent = kept(bent, {.bent_normal = true});
+  const FramePlan with_bent = plan(bent, {.bent_normal = true});
   EXPECT_THAT(with_bent.transients, Contains("bent normal"));
   EXPECT_GT(with_bent.bytes, without.bytes);
 
   OcclusionSettings history = least();
   history.history_frames = 8;
-  EXPECT_THAT(kept(history).histories, testing::SizeIs(2));
+  EXPECT_THAT(plan(history).histories, testing::SizeIs(2));
   history.bent_normal = true;
-  EXPECT_THAT(kept(history, {.bent_normal = true}).histories, testing::SizeIs(4));
+  EXPECT_THAT(plan(history, {.bent_normal = true}).histories, testing::SizeIs(4));
 }
 
 // Motion vectors are only needed to reproject the history.
 TEST_F(OcclusionPlan, MotionVectorsAreNotReadIfHistoryIsOff) {
-  const Given moving{.motion = true};
+  const InputImages moving{.motion = true};
   OcclusionSettings history = least();
   history.history_frames = 8;
-  (void)kept(least());
+  (void)plan(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
-  EXPECT_EQ(kept(least(), {}, moving).uploads, 2u) << "depth and normals";
+  EXPECT_EQ(plan(least(), {}, moving).uploads, 2u) << "depth and normals";
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
-  EXPECT_EQ(kept(history, {}, moving).uploads, 3u);
+  EXPECT_EQ(plan(history, {}, moving).uploads, 3u);
 }
 
-TEST_F(OcclusionPlan, BackFaceDepthIsReadOnlyIfTheSettingsTakeThicknessFromBackFaces) {
-  const Kept horizons = kept(least());
-  OcclusionSettings settings = least();
-  settings.advanced.thickness_unit = ThicknessUnit::back_faces;
-  const Kept unread = kept(settings);
-  EXPECT_EQ(unread.passes, horizons.passes) << "horizons have no thickness";
-  EXPECT_EQ(unread.bytes, horizons.bytes);
-  settings.advanced.thickness_unit = ThicknessUnit::distance;
-  (void)kept(settings);
-  EXPECT_EQ(gpu().kernels().pipeline_count(), 2u) << "no pipeline beyond those of the first frame";
+// Estimator horizons assumes infinitely thick occluders, which already cover hidden surfaces.
+TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsReadThem) {
+  constexpr void (*kReads[])(OcclusionSettings&) = {
+      [](OcclusionSettings& s) { s.advanced.thickness_unit = ThicknessUnit::back_faces; },
+      [](OcclusionSettings& s) { s.depth_layers = 2; }};
+  for (const auto read : kReads) {
+    const FramePlan horizons = plan(least());
+    const std::size_t first_pipelines = gpu().kernels().pipeline_count();
+    OcclusionSettings settings = least();
+    read(settings);
+    expect_same(plan(settings), horizons);
+    settings.advanced.thickness_unit = ThicknessUnit::distance;
+    expect_same(plan(settings), horizons);
+    EXPECT_EQ(gpu().kernels().pipeline_count(), first_pipelines);
 
-  settings.advanced.estimator = Estimator::connected;
-  settings.advanced.thickness_unit = ThicknessUnit::radius;
-  const Kept constant = kept(settings);
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
-  const Kept unasked = kept(settings, {}, {.hidden_depths = true});
-  expect_same(unasked, constant);
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
-
-  settings.advanced.thickness_unit = ThicknessUnit::back_faces;
-  const Kept read = kept(settings, {}, {.hidden_depths = true});
-  EXPECT_EQ(read.passes, constant.passes);
-  EXPECT_EQ(read.bytes, constant.bytes);
-  // The shader variant that reads back faces has its own pipeline.
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
+    settings = least();
+    settings.advanced.estimator = Estimator::connected;
+    const FramePlan connected = plan(settings);
+    const std::size_t pipelines = gpu().kernels().pipeline_count();
+    expect_same(plan(settings, {}, {.hidden_depths = true}), connected);
+    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+    read(settings);
+    expect_same(plan(settings, {}, {.hidden_depths = true}), connected);
+    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1) << "the variant that reads them";
+  }
 }
 
 TEST_F(OcclusionPlan, TurningOffSnappingOrExtrapolationAddsOnlyAPipelineAndNoPass) {
-  const Kept as_it_is = kept(least());
+  const FramePlan as_it_is = plan(least());
   std::size_t pipelines = gpu().kernels().pipeline_count();
-  (void)kept(least());
+  (void)plan(least());
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
   const AdvancedSettings base = least().advanced;
   std::array<AdvancedSettings, 3> parts{base, base, base};
@@ -162,53 +161,28 @@ TEST_F(OcclusionPlan, TurningOffSnappingOrExtrapolationAddsOnlyAPipelineAndNoPas
   parts[1].extrapolation = false;
   parts[2].unobserved = false;
   for (const AdvancedSettings& each : parts) {
-    OcclusionSettings changed = least();
-    changed.advanced = each;
-    const Kept found = kept(changed);
-    expect_same(found, as_it_is);
+    OcclusionSettings settings = least();
+    settings.advanced = each;
+    expect_same(plan(settings), as_it_is);
     EXPECT_EQ(gpu().kernels().pipeline_count(), ++pipelines);
   }
 }
 
-TEST_F(OcclusionPlan, SecondDepthLayerCostsNothingUnlessTheSettingsSearchIt) {
-  const Kept horizons = kept(least());
-  OcclusionSettings settings = least();
-  settings.depth_layers = 2;
-  const Kept unread = kept(settings);
-  EXPECT_EQ(unread.passes, horizons.passes)
-      << "infinitely thick occluders already cover hidden surfaces";
-  EXPECT_EQ(unread.bytes, horizons.bytes);
-
-  settings.advanced.estimator = Estimator::connected;
-  settings.depth_layers = 1;
-  const Kept one = kept(settings);
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
-  const Kept unasked = kept(settings, {}, {.hidden_depths = true});
-  expect_same(unasked, one);
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
-
-  settings.depth_layers = 2;
-  const Kept two = kept(settings, {}, {.hidden_depths = true});
-  EXPECT_EQ(two.passes, one.passes);
-  EXPECT_EQ(two.bytes, one.bytes);
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
-}
-
 TEST_F(OcclusionPlan, SpecularOcclusionAddsMemoryAndPassesOnlyWhenItIsOnAndRead) {
-  const Kept without = kept(least());
+  const FramePlan without = plan(least());
   OcclusionSettings settings = least();
   settings.roughness = 0.2f;  // no pass reads it
-  EXPECT_EQ(kept(settings).bytes, without.bytes);
+  EXPECT_EQ(plan(settings).bytes, without.bytes);
 
   settings.specular = Specular::slices;
-  const Kept by_slices = kept(settings, {.specular = true});
+  const FramePlan by_slices = plan(settings, {.specular = true});
   EXPECT_EQ(by_slices.passes, without.passes);
   EXPECT_THAT(by_slices.transients, Contains("specular occlusion"));
   EXPECT_THAT(by_slices.transients, Not(Contains("bent normal")));
 
   settings.specular = Specular::table;
-  EXPECT_THAT(kept(settings, {.specular = true}).transients, Contains("bent normal"));
-  const Kept unread = kept(settings);
+  EXPECT_THAT(plan(settings, {.specular = true}).transients, Contains("bent normal"));
+  const FramePlan unread = plan(settings);
   EXPECT_THAT(unread.passes, Not(Contains("specular occlusion")));
 }
 
@@ -217,13 +191,13 @@ TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsR
     OcclusionSettings settings = least();
     settings.specular = specular;
     const bool read = specular != Specular::none;
-    (void)kept(settings, {.specular = read});
-    (void)kept(settings, {.specular = read}, {.roughness = true});
+    (void)plan(settings, {.specular = read});
+    (void)plan(settings, {.specular = read}, {.roughness = true});
     const std::size_t pipelines = gpu().kernels().pipeline_count();
     settings.roughness_channel = 2;
-    (void)kept(settings, {.specular = read});
+    (void)plan(settings, {.specular = read});
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
-    (void)kept(settings, {.specular = read}, {.roughness = true});
+    (void)plan(settings, {.specular = read}, {.roughness = true});
     // With specular occlusion from slices, the passes gtao and reconstruct both read the roughness.
     // Each gets another pipeline for another channel.
     const std::size_t readers = !read ? 0 : specular == Specular::slices ? 2 : 1;
@@ -232,30 +206,30 @@ TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsR
 }
 
 TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyIfItsResultIsRead) {
-  const Kept without = kept(least());
+  const FramePlan without = plan(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings asked = least();
   asked.linear_depth = true;
-  EXPECT_EQ(kept(asked).passes, without.passes) << "if nobody reads linear depth, no pass is added";
-  EXPECT_THAT(kept(asked, {.linear_depth = true}).passes, Contains("linear depth"));
+  EXPECT_EQ(plan(asked).passes, without.passes) << "if nobody reads linear depth, no pass is added";
+  EXPECT_THAT(plan(asked, {.linear_depth = true}).passes, Contains("linear depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
   OcclusionSettings by_model = least();
   by_model.specular = Specular::cone;
-  EXPECT_THAT(kept(by_model, {.specular = true}).passes, Contains("linear depth"));
+  EXPECT_THAT(plan(by_model, {.specular = true}).passes, Contains("linear depth"));
 }
 
 TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
   OcclusionSettings half = least();
   half.tile_size = 2;
-  EXPECT_LT(kept(half).bytes, kept(least()).bytes);
+  EXPECT_LT(plan(half).bytes, plan(least()).bytes);
 }
 
 TEST_F(OcclusionPlan, OutputsThatNobodyReadsAreCulledWithTheirPasses) {
-  const Kept depth_only =
-      kept(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
+  const FramePlan depth_only =
+      plan(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
   EXPECT_THAT(depth_only.passes, ElementsAre("linear depth"));
   EXPECT_THAT(depth_only.transients, ElementsAre("linear depth"));
-  EXPECT_THAT(kept(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
+  EXPECT_THAT(plan(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
 }
 
 // The frame is prepared in a separate graph that is never recorded.
@@ -271,7 +245,7 @@ TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistor
                                        {.depth_ndc = upload(frame.graph, drawing.depth_ndc),
                                         .normals = upload(frame.graph, drawing.normal_vs),
                                         .normal_convention = {.in_view_space = true},
-                                        .motion = upload(frame.graph, motion_of_nothing())},
+                                        .motion = upload(frame.graph, uniform_image(2, 0.0f))},
                                        settings);
     ASSERT_TRUE(outputs) << outputs.error().message;
     frame.graph.output(outputs->visibility);
@@ -300,12 +274,12 @@ TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistor
 }
 
 TEST_F(OcclusionPlan, ChangedRadiusOrFilterToleranceCreatesNoNewPipeline) {
-  (void)kept(least());
+  (void)plan(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings other = least();
   other.radius = 3.0f;
   other.advanced.filter_tolerance_px = 4.0f;
-  (void)kept(other);
+  (void)plan(other);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 }
 

@@ -78,9 +78,9 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
         .normals = upload(graph, input.drawing.normal_vs),
         .normal_convention = {.in_view_space = true}};
     if (input.motion != nullptr) inputs.motion = upload(graph, *input.motion);
-    const auto made = add_reconstruct(frame, inputs, settings);
-    ASSERT_TRUE(made) << made.error().message;
-    read_back(graph, made->visibility);
+    const auto outputs = add_reconstruct(frame, inputs, settings);
+    ASSERT_TRUE(outputs) << outputs.error().message;
+    read_back(graph, outputs->visibility);
   });
   return result();
 }
@@ -107,9 +107,9 @@ HostImage constant_raw_occlusion(std::uint32_t width, std::uint32_t height, floa
   return raw_occlusion_of(width, height, [=](std::uint32_t, std::uint32_t) { return visibility; });
 }
 
-Drawing with_turned_normals(const Drawing& drawing, double degrees, std::uint32_t first) {
-  Drawing turned = drawing;
-  HostImage& normals = turned.normal_vs;
+Drawing rotate_normals(const Drawing& drawing, double degrees, std::uint32_t first) {
+  Drawing rotated = drawing;
+  HostImage& normals = rotated.normal_vs;
   const float cosine = std::cos(glm::radians(static_cast<float>(degrees)));
   const float sine = std::sin(glm::radians(static_cast<float>(degrees)));
   for (std::size_t i = 0; i < normals.texels.size(); i += 4) {
@@ -120,18 +120,14 @@ Drawing with_turned_normals(const Drawing& drawing, double degrees, std::uint32_
       normals.texels[i + 2] = cosine * z - sine * x;
     }
   }
-  return turned;
+  return rotated;
 }
 
 double variance(const HostImage& image) {
+  const double centre = mean(image);
   double sum = 0.0;
-  double squares = 0.0;
-  for (const float texel : image.texels) {
-    sum += texel;
-    squares += double{texel} * texel;
-  }
-  const double count = static_cast<double>(image.texels.size());
-  return squares / count - sum / count * (sum / count);
+  for (const float texel : image.texels) sum += (texel - centre) * (texel - centre);
+  return sum / static_cast<double>(image.texels.size());
 }
 
 }  // namespace alcove::passes

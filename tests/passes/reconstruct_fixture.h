@@ -16,23 +16,30 @@ class Reconstruct : public PassTest {
   static constexpr std::uint32_t kHeight = 24;
 
   struct Input {
-    View view;
     const Drawing& drawing;
     const HostImage& raw_occlusion;  // two channels, one texel per tile
+    View view = drawing.view;
     std::uint32_t tile_size = 1;
     std::uint32_t slices = 1;
     const HostImage* motion = nullptr;
     View previous_view = view;
     std::uint32_t index = 0;
-    bool reset = false;
+    bool reset = index == 0;
     std::uint32_t static_frames = 0;
     bool coarse_depth = false;   // the depth buffer has 16 bits instead of floats
     VkExtent2D previous_size{};  // Frame::previous_size
     VkExtent2D largest_size{};   // Frame::largest_size
   };
 
-  // Visibility.
+  // Returns visibility.
   HostImage reconstruct(const Input& input, const OcclusionSettings& settings);
+  // Draws in the same view as most tests.
+  static Drawing draw_scene(const Scene& scene) {
+    return draw(test_views()[2], kWidth, kHeight, scene);
+  }
+  static Drawing draw_plane(double tilt_degrees, double distance = 4.0) {
+    return draw_scene({tilted_plane(tilt_degrees, distance)});
+  }
   static HostImage noise_raw_occlusion(std::mt19937& random);
   static HostImage no_motion();
 };
@@ -64,8 +71,7 @@ HostImage raw_occlusion_of(std::uint32_t width, std::uint32_t height,
 
 // Returns the drawing with the same depth, in which the normals from column `first` on are rotated
 // about the vertical axis.
-[[nodiscard]] Drawing with_turned_normals(const Drawing& drawing, double degrees,
-                                          std::uint32_t first);
+[[nodiscard]] Drawing rotate_normals(const Drawing& drawing, double degrees, std::uint32_t first);
 
 [[nodiscard]] double variance(const HostImage& image);
 

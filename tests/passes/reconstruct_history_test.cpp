@@ -10,15 +10,9 @@
 namespace alcove::passes {
 namespace {
 
-double mean_of(const HostImage& image) {
-  double mean = 0.0;
-  for (const float texel : image.texels) mean += texel / static_cast<double>(image.texels.size());
-  return mean;
-}
-
 TEST_F(Reconstruct, NoiseOfAStaticViewDecreasesOverFrames) {
   const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing drawing = draw_plane(30.0);
   const std::uint32_t seed = 17;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
@@ -26,31 +20,27 @@ TEST_F(Reconstruct, NoiseOfAStaticViewDecreasesOverFrames) {
   HostImage last;
   for (std::uint32_t frame = 0; frame < 40; ++frame) {
     const HostImage raw_occlusion = noise_raw_occlusion(random);
-    last = reconstruct(
-        {.view = view.view, .drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
-        precise(1, 32));
+    last = reconstruct({.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
+                       precise(1, 32));
     variances.push_back(variance(last));
   }
   EXPECT_LT(variances[7], 0.5 * variances[0]);
   EXPECT_LT(variances[39], 0.1 * variances[0]);
-  EXPECT_NEAR(mean_of(last), 0.5, 0.01);
+  EXPECT_NEAR(mean(last), 0.5, 0.01);
 }
 
 // A view that has been static for 16 frames averages up to 127 of them, independent of
 // history_frames.
 TEST_F(Reconstruct, StaticViewAveragesMoreFramesThanTheHistoryFramesSetting) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing drawing = draw_plane(30.0);
   const auto variance_after = [&](bool still) {
     std::mt19937 random(5);
     HostImage last;
     for (std::uint32_t frame = 0; frame < 80; ++frame) {
       const HostImage raw_occlusion = noise_raw_occlusion(random);
-      last = reconstruct({.view = view.view,
-                          .drawing = drawing,
+      last = reconstruct({.drawing = drawing,
                           .raw_occlusion = raw_occlusion,
                           .index = frame,
-                          .reset = frame == 0,
                           .static_frames = still ? frame : 0},
                          precise(1, 8));
     }
@@ -60,19 +50,15 @@ TEST_F(Reconstruct, StaticViewAveragesMoreFramesThanTheHistoryFramesSetting) {
 }
 
 TEST_F(Reconstruct, MotionVectorsOfAStaticViewAreNotRead) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing drawing = draw_plane(30.0);
   std::mt19937 random(3);
   const HostImage first = noise_raw_occlusion(random);
   const HostImage second = noise_raw_occlusion(random);
-  HostImage wrong{kWidth, kHeight, {}, 2};
-  wrong.texels.assign(std::size_t{kWidth} * kHeight * 2, 0.25f);
+  HostImage wrong = no_motion();
+  std::ranges::fill(wrong.texels, 0.25f);
   const auto second_frame = [&](const HostImage* motion) {
-    (void)reconstruct(
-        {.view = view.view, .drawing = drawing, .raw_occlusion = first, .reset = true},
-        precise(1, 8));
-    return reconstruct({.view = view.view,
-                        .drawing = drawing,
+    (void)reconstruct({.drawing = drawing, .raw_occlusion = first}, precise(1, 8));
+    return reconstruct({.drawing = drawing,
                         .raw_occlusion = second,
                         .motion = motion,
                         .index = 1,
@@ -86,66 +72,50 @@ TEST_F(Reconstruct, MotionVectorsOfAStaticViewAreNotRead) {
 // 2^-10 with dithering, so that single pixels may differ by a few steps. The mean over all pixels
 // must not drift, and it must still follow a change.
 TEST_F(Reconstruct, AccumulatedVisibilityDoesNotDriftOverHundredsOfEqualFrames) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, 9, 7, {tilted_plane(30.0, 4.0)});
+  const Drawing drawing = draw(test_views()[2], 9, 7, {tilted_plane(30.0, 4.0)});
   for (const float visibility : {0.013f, 0.37f, 0.985f, 1.0f}) {
     SCOPED_TRACE(visibility);
     const HostImage raw_occlusion = constant_raw_occlusion(9, 7, visibility);
     HostImage found;
     for (std::uint32_t frame = 0; frame < 250; ++frame) {
-      found = reconstruct({.view = view.view,
-                           .drawing = drawing,
-                           .raw_occlusion = raw_occlusion,
-                           .index = frame,
-                           .reset = frame == 0},
+      found = reconstruct({.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
                           precise(1, 127));
     }
-    const auto expect_kept = [&] {
+    const auto expect_visibility = [&] {
       EXPECT_THAT(found.texels,
                   testing::Each(testing::FloatNear(visibility, visibility == 1.0f ? 0.0f : 5e-3f)));
-      EXPECT_NEAR(mean_of(found), visibility, 1e-3);
+      EXPECT_NEAR(mean(found), visibility, 1e-3);
     };
-    expect_kept();
+    expect_visibility();
     // A history with wrong contents returns to the right value within its quantisation step.
     const HostImage wrong = constant_raw_occlusion(9, 7, 1.0f - visibility);
     for (std::uint32_t frame = 0; frame < 130; ++frame) {
-      found = reconstruct({.view = view.view,
-                           .drawing = drawing,
-                           .raw_occlusion = frame == 0 ? wrong : raw_occlusion,
-                           .index = frame,
-                           .reset = frame == 0},
-                          precise(1, 8));
+      found = reconstruct(
+          {.drawing = drawing, .raw_occlusion = frame == 0 ? wrong : raw_occlusion, .index = frame},
+          precise(1, 8));
     }
-    expect_kept();
+    expect_visibility();
   }
 }
 
 TEST_F(Reconstruct, ResetOrChangedImageSizeDiscardsTheHistory) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, 4.0)});
-  const Drawing smaller = draw(view, kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});
+  const Drawing drawing = draw_plane(30.0);
+  const Drawing smaller = draw(test_views()[2], kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});
   const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
-  const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
-  const HostImage bright_smaller = constant_raw_occlusion(kWidth - 3, kHeight, 0.9f);
   const OcclusionSettings settings = precise(1, 32);
-  const auto gather_dark = [&] {
+  // Returns a bright frame after six dark ones.
+  const auto seventh_frame = [&](const Drawing& last, bool reset) {
     for (std::uint32_t frame = 0; frame < 6; ++frame)
-      (void)reconstruct(
-          {.view = view.view, .drawing = drawing, .raw_occlusion = dark, .index = frame}, settings);
+      (void)reconstruct({.drawing = drawing, .raw_occlusion = dark, .index = frame}, settings);
+    const HostImage bright = constant_raw_occlusion(last.depth_ndc.width, kHeight, 0.9f);
+    return reconstruct({.drawing = last, .raw_occlusion = bright, .index = 6, .reset = reset},
+                       settings)
+        .texels;
   };
-
-  gather_dark();
-  const HostImage kept =
-      reconstruct({.view = view.view, .drawing = drawing, .raw_occlusion = bright}, settings);
-  EXPECT_THAT(kept.texels, testing::Each(testing::Lt(0.5f)));
-  gather_dark();
-  const HostImage reset = reconstruct(
-      {.view = view.view, .drawing = drawing, .raw_occlusion = bright, .reset = true}, settings);
-  EXPECT_THAT(reset.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
-  gather_dark();
-  const HostImage resized = reconstruct(
-      {.view = view.view, .drawing = smaller, .raw_occlusion = bright_smaller}, settings);
-  EXPECT_THAT(resized.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
+  const auto is_bright = testing::Each(testing::FloatNear(0.9f, 2e-3f));
+  EXPECT_THAT(seventh_frame(drawing, false), testing::Each(testing::Lt(0.5f)));
+  EXPECT_THAT(seventh_frame(drawing, true), is_bright);
+  EXPECT_THAT(seventh_frame(smaller, false), is_bright);
 }
 
 }  // namespace

@@ -87,23 +87,18 @@ TEST_F(Reconstruct, PixelWithoutHistoryIsTheWeightedMeanOfTheTracedPixelsAroundI
           SCOPED_TRACE(testing::Message()
                        << "by " << tile_size << ", filter radius " << filter_radius << ", frame "
                        << index << ", history " << history);
-          const HostImage found = reconstruct({.view = view.view,
-                                               .drawing = drawing,
+          const HostImage found = reconstruct({.drawing = drawing,
                                                .raw_occlusion = raw_occlusion,
                                                .tile_size = tile_size,
                                                .index = index,
                                                .reset = true},
                                               precise(filter_radius, history));
           const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
-          for (std::uint32_t y = 0; y < kOddHeight; ++y) {
-            for (std::uint32_t x = 0; x < kOddWidth; ++x) {
-              ASSERT_NEAR(found.at(x, y),
-                          mean_around(raw_occlusion, x, y, kOddWidth, kOddHeight, tile_size,
-                                      interleave_offset, static_cast<int>(filter_radius)),
-                          6e-4)  // weights are unoccluded parts, stored with an error of 1/120
-                  << "at " << x << ", " << y;
-            }
-          }
+          // Weights are unoccluded parts, stored with an error of 1/120.
+          expect_pixels(found, 6e-4, [&](std::uint32_t x, std::uint32_t y) {
+            return mean_around(raw_occlusion, x, y, kOddWidth, kOddHeight, tile_size,
+                               interleave_offset, static_cast<int>(filter_radius));
+          });
         }
       }
     }
@@ -127,22 +122,16 @@ TEST_F(Reconstruct, ConstantRawOcclusionGivesConstantVisibilityInAnySceneAtAnyTi
           SCOPED_TRACE(testing::Message() << scene.name << " by " << tile_size << ", filter radius "
                                           << filter_radius << ", history " << history);
           for (std::uint32_t frame = 0; frame < (history == 0 ? 1u : 4u); ++frame) {
-            const HostImage found = reconstruct({.view = view.view,
-                                                 .drawing = drawing,
+            const HostImage found = reconstruct({.drawing = drawing,
                                                  .raw_occlusion = raw_occlusion,
                                                  .tile_size = tile_size,
-                                                 .index = frame,
-                                                 .reset = frame == 0},
+                                                 .index = frame},
                                                 precise(filter_radius, history));
-            for (std::uint32_t y = 0; y < 23; ++y) {
-              for (std::uint32_t x = 0; x < 33; ++x) {
-                const float expected = drawing.is_sky(x, y) ? 1.0f : 0.37f;
-                // With a history the tolerance is larger, because the history stores its sums in 16
-                // bits, and these sums are small if no traced pixel is near.
-                ASSERT_NEAR(found.at(x, y), expected, history == 0 ? 1e-4 : 0.02)
-                    << "at " << x << ", " << y;
-              }
-            }
+            // With a history the tolerance is larger, because the history stores its sums in 16
+            // bits, and these sums are small if no traced pixel is near.
+            expect_pixels(found, history == 0 ? 1e-4 : 0.02, [&](std::uint32_t x, std::uint32_t y) {
+              return drawing.is_sky(x, y) ? 1.0f : 0.37f;
+            });
           }
         }
       }
@@ -151,14 +140,13 @@ TEST_F(Reconstruct, ConstantRawOcclusionGivesConstantVisibilityInAnySceneAtAnyTi
 }
 
 TEST_F(Reconstruct, SpatialFilterReducesNoiseOnATiltedPlane) {
-  const TestView view = test_views()[2];
   const std::uint32_t seed = 5;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   const HostImage raw_occlusion = noise_raw_occlusion(random);
   for (const double tilt : {0.0, 30.0, 50.0}) {
-    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(tilt, 4.0)});
-    const Input input{view.view, drawing, raw_occlusion};
+    const Drawing drawing = draw_plane(tilt);
+    const Input input{drawing, raw_occlusion};
     const double before = variance(reconstruct(input, precise(0, 0)));
     EXPECT_LT(variance(reconstruct(input, precise(2, 0))), 0.2 * before) << tilt << " degrees";
   }
@@ -166,19 +154,17 @@ TEST_F(Reconstruct, SpatialFilterReducesNoiseOnATiltedPlane) {
 
 // With more slices the filter is narrower, so that stripes of four pixels keep more contrast.
 TEST_F(Reconstruct, SpatialFilterBlursLessWithMoreSlicesPerPixel) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, 4.0)});
+  const Drawing drawing = draw_plane(0.0);
   const HostImage raw_occlusion = raw_occlusion_of(
       kWidth, kHeight, [](std::uint32_t x, std::uint32_t) { return x % 8 < 4 ? 0.3f : 0.7f; });
-  double kept = 0.0;
+  double contrast = 0.0;
   for (const std::uint32_t slices : {1u, 2u, 4u}) {
     const HostImage found = reconstruct(
-        {.view = view.view, .drawing = drawing, .raw_occlusion = raw_occlusion, .slices = slices},
-        precise(2, 0));
-    EXPECT_GT(variance(found), 1.1 * kept) << slices << " slices";
-    kept = variance(found);
+        {.drawing = drawing, .raw_occlusion = raw_occlusion, .slices = slices}, precise(2, 0));
+    EXPECT_GT(variance(found), 1.1 * contrast) << slices << " slices";
+    contrast = variance(found);
   }
-  EXPECT_LT(kept, 0.04) << "no more than the variance of the unfiltered stripes";
+  EXPECT_LT(contrast, 0.04) << "no more than the variance of the unfiltered stripes";
 }
 
 // A pixel without history is also averaged with neighbours on the other side of a crease, which are
@@ -203,13 +189,9 @@ TEST_F(Reconstruct, LeakOfVisibilityAcrossACreaseDecreasesWithMoreSlicesAndFrame
   const auto after = [&](std::uint32_t slices, std::uint32_t frames) {
     HostImage found;
     for (std::uint32_t frame = 0; frame < frames; ++frame) {
-      found = reconstruct({.view = view.view,
-                           .drawing = drawing,
-                           .raw_occlusion = raw_occlusion,
-                           .slices = slices,
-                           .index = frame,
-                           .reset = frame == 0},
-                          precise(2, 64));
+      found = reconstruct(
+          {.drawing = drawing, .raw_occlusion = raw_occlusion, .slices = slices, .index = frame},
+          precise(2, 64));
     }
     return leak(found);
   };
@@ -223,14 +205,12 @@ TEST_F(Reconstruct, LeakOfVisibilityAcrossACreaseDecreasesWithMoreSlicesAndFrame
 
 // Tests neighbours that lie on the pixel's tangent plane but have another normal.
 TEST_F(Reconstruct, NeighboursWithOtherNormalsGetSmallerFilterWeights) {
-  const TestView view = test_views()[2];
-  const Drawing flat = draw(view, kWidth, kHeight, {tilted_plane(0.0, 5.0)});
+  const Drawing flat = draw_plane(0.0, 5.0);
   const std::uint32_t half = kWidth / 2;
   const HostImage raw_occlusion = raw_occlusion_of(
       kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) { return x < half ? 0.9f : 0.2f; });
   const auto leak = [&](double degrees) {
-    const HostImage found = reconstruct({.view = view.view,
-                                         .drawing = with_turned_normals(flat, degrees, half),
+    const HostImage found = reconstruct({.drawing = rotate_normals(flat, degrees, half),
                                          .raw_occlusion = raw_occlusion,
                                          .slices = 4,
                                          .reset = true},
@@ -251,7 +231,7 @@ TEST_F(Reconstruct, NormalsOfAPlaneAreReadOnlyIfTheDepthBufferIsTooCoarseForItsT
     view.view.clip_from_view[0] *= zoom;
     view.view.clip_from_view[5] *= zoom;
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(20.0, 4.0)});
-    const Drawing turned = with_turned_normals(drawing, 60.0, 0);
+    const Drawing rotated = rotate_normals(drawing, 60.0, 0);
     const HostImage raw_occlusion =
         raw_occlusion_of(kWidth / 4, kHeight / 4, [](std::uint32_t x, std::uint32_t y) {
           return 0.3f + 0.1f * static_cast<float>((3 * x + y) % 5);
@@ -261,20 +241,18 @@ TEST_F(Reconstruct, NormalsOfAPlaneAreReadOnlyIfTheDepthBufferIsTooCoarseForItsT
     const auto last_frame = [&](const Drawing& last, bool coarse) {
       HostImage found;
       for (std::uint32_t frame = 0; frame < 8; ++frame)
-        found = reconstruct({.view = view.view,
-                             .drawing = frame == 7 ? last : drawing,
+        found = reconstruct({.drawing = frame == 7 ? last : drawing,
                              .raw_occlusion = raw_occlusion,
                              .tile_size = 4,
                              .previous_view = before,
                              .index = frame,
-                             .reset = frame == 0,
                              .coarse_depth = coarse},
                             precise(2, 16));
       return found;
     };
     for (const bool coarse : {false, true}) {
       const HostImage plain = last_frame(drawing, coarse);
-      const HostImage other = last_frame(turned, coarse);
+      const HostImage other = last_frame(rotated, coarse);
       double largest = 0.0;
       for (std::uint32_t y = 1; y + 1 < kHeight; ++y)
         for (std::uint32_t x = 1; x + 1 < kWidth; ++x)
@@ -300,12 +278,9 @@ TEST_F(Reconstruct, VisibilityDoesNotLeakAcrossADepthEdge) {
     for (const std::uint32_t history : {0u, 16u}) {
       SCOPED_TRACE(testing::Message() << view.name << ", history " << history);
       for (std::uint32_t frame = 0; frame < 4; ++frame) {
-        const HostImage found = reconstruct({.view = view.view,
-                                             .drawing = drawing,
-                                             .raw_occlusion = raw_occlusion,
-                                             .index = frame,
-                                             .reset = frame == 0},
-                                            precise(2, history));
+        const HostImage found =
+            reconstruct({.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
+                        precise(2, history));
         for (std::uint32_t y = 0; y < kHeight; ++y) {
           for (std::uint32_t x = 0; x < kWidth; ++x) {
             const auto hit = cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5));

@@ -78,13 +78,14 @@ glm::dmat4 random_pose(RandomInput& random, float far) {
 }
 
 void expect_accepted(const glm::mat4& view_from_world, const glm::dmat4& exact) {
-  const Matrix given = to_matrix(view_from_world);
-  ASSERT_TRUE(is_rigid(given));
-  const maths::dmat4 made = to_rigid(given);
-  for (int column = 0; column < 4; ++column) ASSERT_EQ(made[column][3], column == 3 ? 1.0 : 0.0);
+  const Matrix input = to_matrix(view_from_world);
+  ASSERT_TRUE(is_rigid(input));
+  const maths::dmat4 rigid = to_rigid(input);
+  for (int column = 0; column < 4; ++column) ASSERT_EQ(rigid[column][3], column == 3 ? 1.0 : 0.0);
   for (int a = 0; a < 3; ++a) {
-    for (int b = 0; b < 3; ++b) ASSERT_NEAR(glm::dot(made[a], made[b]), a == b ? 1.0 : 0.0, 1e-14);
-    ASSERT_LT(glm::distance(made[a], exact[a]), 5e-6);
+    for (int b = 0; b < 3; ++b)
+      ASSERT_NEAR(glm::dot(rigid[a], rigid[b]), a == b ? 1.0 : 0.0, 1e-14);
+    ASSERT_LT(glm::distance(rigid[a], exact[a]), 5e-6);
   }
 }
 

@@ -37,7 +37,7 @@ TEST_F(SecondDepthLayer, VisibilityBesideAStepHiddenUnderAPlateMatchesTheClosedF
   const Drawing drawing = draw(view, 128, 128, scene);
   const HostImage second = draw_second_layer(view, 128, 128, scene);
   const auto mean_error = [&](const OcclusionSettings& settings) {
-    const HostImage image = visibility(view, drawing, second, settings);
+    const HostImage image = visibility(drawing, second, settings);
     double sum = 0.0;
     for (std::uint32_t x = 52; x < 66; ++x) {
       const double away = step - (x + 0.5 - 64) * 8.0 / 128;
@@ -72,14 +72,14 @@ TEST_F(SecondDepthLayer, SecondLayerWithoutHiddenSurfacesDoesNotChangeVisibility
       settings.thickness = 0.2f;
       settings.hidden_occlusion = 0.4f;
       HostImage second = drawing.depth_ndc;
-      const HostImage expected = visibility(view, drawing, second, settings);
+      const HostImage expected = visibility(drawing, second, settings);
       settings.depth_layers = 2;
       // Two pipelines may round differently, by one step of 16 bits.
       const auto same = testing::Pointwise(testing::FloatNear(1.6e-5f), expected.texels);
-      EXPECT_THAT(visibility(view, drawing, second, settings).texels, same);
+      EXPECT_THAT(visibility(drawing, second, settings).texels, same);
       for (const float none : {drawing.camera.sky(), std::numeric_limits<float>::quiet_NaN()}) {
         std::ranges::fill(second.texels, none);
-        EXPECT_THAT(visibility(view, drawing, second, settings).texels, same) << none;
+        EXPECT_THAT(visibility(drawing, second, settings).texels, same) << none;
       }
     }
   }
@@ -95,8 +95,8 @@ TEST_F(SecondDepthLayer, SearchingASecondDepthLayerNeverRaisesVisibility) {
     const HostImage second = draw_second_layer(view, 60, 40, scene);
     for (const Estimator estimator : kThickEstimators) {
       const OcclusionSettings settings = exact(estimator, 1.2f);
-      const HostImage one = visibility(view, drawing, second, settings);
-      const HostImage two = visibility(view, drawing, second, of_layers(settings, 2));
+      const HostImage one = visibility(drawing, second, settings);
+      const HostImage two = visibility(drawing, second, of_layers(settings, 2));
       double darker = 0.0;
       for (std::size_t i = 0; i < one.texels.size(); ++i) {
         EXPECT_LE(two.texels[i], one.texels[i] + 1e-4f);
@@ -113,8 +113,8 @@ TEST_F(SecondDepthLayer, EstimatorHorizonsIgnoresTheSecondDepthLayer) {
   const Drawing drawing = draw(view, 60, 40, scene);
   const OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
   const HostImage second = draw_second_layer(view, 60, 40, scene);
-  EXPECT_EQ(visibility(view, drawing, second, of_layers(settings, 2)).texels,
-            visibility(view, drawing, second, settings).texels);
+  EXPECT_EQ(visibility(drawing, second, of_layers(settings, 2)).texels,
+            visibility(drawing, second, settings).texels);
 }
 
 }  // namespace

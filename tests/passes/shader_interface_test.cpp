@@ -103,22 +103,22 @@ class DispatchByName : public testing::Test {
 };
 
 TEST_F(DispatchByName, SpecialisationConstantWithoutAValueIsReportedByName) {
-  const auto added =
+  const auto result =
       add_gtso({{"kRoughnessTexture", 0}, {"kRoughnesChannel", 0}, {"kNormalEncoding", 0}});
-  ASSERT_FALSE(added);
-  EXPECT_THAT(added.error().message,
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message,
               HasSubstr("The shader 'gtso' has a specialisation constant 'kRoughnessChannel', for "
                         "which its pass gives no value"));
 }
 
 TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithThoseOfOtherShaders) {
-  const auto added = add_gtso({{"kTileSize", 9},
-                               {"kVisibilityChannel", 1},
-                               {"kAreas", 0},
-                               {"kNormalEncoding", 3},
-                               {"kRoughnessTexture", 1},
-                               {"kRoughnessChannel", 2}});
-  ASSERT_TRUE(added) << added.error().message;
+  const auto result = add_gtso({{"kTileSize", 9},
+                                {"kVisibilityChannel", 1},
+                                {"kAreas", 0},
+                                {"kNormalEncoding", 3},
+                                {"kRoughnessTexture", 1},
+                                {"kRoughnessChannel", 2}});
+  ASSERT_TRUE(result) << result.error().message;
   std::vector<std::uint32_t> values;
   for (const AlcoveWorkConstant& constant :
        std::span(work_->dispatches[0].constants).first(work_->dispatches[0].constant_count))
@@ -127,31 +127,31 @@ TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithTh
 }
 
 TEST_F(DispatchByName, SpecialisationConstantThatNoShaderDeclaresIsReportedByName) {
-  const auto added = add_gtso({{"kRoughnessTexture", 1},
-                               {"kRoughnessChannel", 2},
-                               {"kNormalEncoding", 3},
-                               {"kVisibilityChannel", 1},
-                               {"kAreas", 0},
-                               {"kTilesize", 9}});
-  ASSERT_FALSE(added);
-  EXPECT_THAT(added.error().message,
+  const auto result = add_gtso({{"kRoughnessTexture", 1},
+                                {"kRoughnessChannel", 2},
+                                {"kNormalEncoding", 3},
+                                {"kVisibilityChannel", 1},
+                                {"kAreas", 0},
+                                {"kTilesize", 9}});
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message,
               HasSubstr("The pass of the shader 'gtso' gives a value for a specialisation constant "
                         "'kTilesize', which no shader declares"));
 }
 
 TEST_F(DispatchByName, ShaderBindingWithoutAnImageIsReportedByName) {
-  const auto added = add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_image"});
-  ASSERT_FALSE(added);
-  EXPECT_THAT(added.error().message,
+  const auto result = add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_image"});
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message,
               HasSubstr("The shader 'linear_depth' has a binding 'linear_depth_image', for which "
                         "its pass gives no image"));
 }
 
 TEST_F(DispatchByName, ImageForABindingThatNoShaderDeclaresIsReportedByName) {
-  const auto added =
+  const auto result =
       add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_depth_image", "linear_image"});
-  ASSERT_FALSE(added);
-  EXPECT_THAT(added.error().message,
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message,
               HasSubstr("is given an image 'linear_image', a name that no shader declares"));
 }
 
@@ -161,9 +161,10 @@ TEST_F(DispatchByName, ListThatIsFullIsAnError) {
   }
   EXPECT_EQ(work_->resource_count, std::uint32_t{ALCOVE_MAX_WORK_RESOURCES});
   const View perspective{.clip_from_view = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0}};
-  const auto made = describe_linear_depth(list, {.view = perspective}, {0});
-  ASSERT_FALSE(made);
-  EXPECT_THAT(made.error().message, HasSubstr("'linear_depth_image', for which its pass gives no"));
+  const auto depth = describe_linear_depth(list, {.view = perspective}, {0});
+  ASSERT_FALSE(depth);
+  EXPECT_THAT(depth.error().message,
+              HasSubstr("'linear_depth_image', for which its pass gives no"));
 }
 
 TEST(ShaderInterface, AccessesAreThoseOfTheImageQualifiers) {

@@ -80,8 +80,7 @@ TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTh
           OcclusionSettings settings = settings_of(Quality::reference, radius, roughness);
           settings.advanced.estimator = estimator;
           settings.hidden_occlusion = 1.0f;
-          const auto images =
-              run_occlusion({view.view, drawing.depth_ndc, &drawing.normal_vs}, settings);
+          const auto images = render(drawing, settings);
           EXPECT_LT(mean_error(images.specular, drawing, radius, roughness), 0.02);
         }
       }
@@ -91,19 +90,14 @@ TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTh
 
 TEST_F(SpecularOcclusionFromSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
   for (const TestView& view : test_views()) {
-    for (const float degrees : {0.0f, 60.0f, 85.0f}) {
-      const PlaneScene plane = plane_scene(view, 64, 48, degrees);
+    for (const double degrees : {0.0, 60.0, 85.0}) {
+      const Drawing plane = draw(view, 64, 48, {tilted_plane(degrees, 4.0)});
       for (const float roughness : {0.0f, 0.3f, 1.0f}) {
         for (const Quality quality : {Quality::low, Quality::medium}) {
           for (std::uint32_t index = 0; index < 2; ++index) {
             SCOPED_TRACE(testing::Message() << view.name << " tilted " << degrees << ", roughness "
                                             << roughness << ", frame " << index);
-            const auto images = run_occlusion({.view = view.view,
-                                               .depth_ndc = plane.depth_ndc,
-                                               .normal_vs = &plane.normal_vs,
-                                               .index = index,
-                                               .reset = index == 0},
-                                              settings_of(quality, 0.5f, roughness));
+            const auto images = render(plane, settings_of(quality, 0.5f, roughness), index);
             EXPECT_THAT(images.specular.texels, testing::Each(testing::Ge(0.99f)));
             EXPECT_THAT(images.specular.texels, testing::Each(testing::Le(1.0f)));
           }
@@ -120,12 +114,7 @@ TEST_F(SpecularOcclusionFromSlices, ErrorOfNarrowSpecularLobesDecreasesOverAccum
   const Drawing drawing = draw(view, 60, 40, groove(0.8));
   double first = 0.0, last = 0.0;
   for (std::uint32_t index = 0; index < 32; ++index) {
-    const auto images = run_occlusion({.view = view.view,
-                                       .depth_ndc = drawing.depth_ndc,
-                                       .normal_vs = &drawing.normal_vs,
-                                       .index = index,
-                                       .reset = index == 0},
-                                      settings_of(Quality::medium, radius, roughness));
+    const auto images = render(drawing, settings_of(Quality::medium, radius, roughness), index);
     last = mean_error(images.specular, drawing, radius, roughness);
     first = index == 0 ? last : first;
   }

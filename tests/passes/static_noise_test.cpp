@@ -10,17 +10,11 @@ namespace {
 class StaticNoise : public PassTest {
  protected:
   OcclusionImages images(std::uint32_t index, const OcclusionSettings& settings) {
-    return run_occlusion({.view = view_.view,
-                          .depth_ndc = drawing_.depth_ndc,
-                          .normal_vs = &drawing_.normal_vs,
-                          .index = index,
-                          .reset = index == 0},
-                         settings);
+    return render(drawing_, settings, index);
   }
 
  private:
-  TestView view_ = test_views()[2];
-  Drawing drawing_ = draw(view_, 70, 45, ball_on_floor());
+  Drawing drawing_ = draw(test_views()[2], 70, 45, ball_on_floor());
 };
 
 OcclusionSettings all_outputs(Quality quality) {

@@ -69,40 +69,6 @@ std::vector<TestView> test_views() {
           {"orthographic", view_of(orthographic(3.0, 2.0, 0.1, 20.0)), true}};
 }
 
-PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t height,
-                       float tilt_degrees) {
-  glm::mat4 single;
-  std::memcpy(&single[0][0], view.view.clip_from_view.data(), sizeof(single));
-  const glm::dmat4 clip_from_view(single);
-  const glm::dmat4 view_from_clip = glm::inverse(clip_from_view);
-  const double tilt = tilt_degrees * std::numbers::pi / 180.0;
-  const double across = std::sin(tilt) * std::numbers::sqrt2 / 2.0;
-  const glm::dvec3 normal(across, across, std::cos(tilt));
-  const glm::dvec3 through(0.0, 0.0, -4.0);
-
-  PlaneScene scene{{width, height, {}, 1}, {width, height, {}, 4}};
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
-      const double u = 2.0 * (x + 0.5) / width - 1.0;
-      const double v = 2.0 * (y + 0.5) / height - 1.0;
-      const glm::dvec4 a = view_from_clip * glm::dvec4(u, v, 0.25, 1.0);
-      const glm::dvec4 b = view_from_clip * glm::dvec4(u, v, 0.75, 1.0);
-      const glm::dvec3 from = glm::dvec3(a) / a.w;
-      const glm::dvec3 along = glm::dvec3(b) / b.w - from;
-      const double t = glm::dot(through - from, normal) / glm::dot(along, normal);
-      const glm::dvec4 clip = clip_from_view * glm::dvec4(from + t * along, 1.0);
-      const double depth = clip.z / clip.w;
-      const bool seen = clip.w > 0.0 && depth > 0.0 && depth < 1.0;
-      const bool reversed =
-          clip_from_view[2][2] * clip_from_view[3][3] > clip_from_view[3][2] * clip_from_view[2][3];
-      scene.depth_ndc.texels.push_back(seen ? static_cast<float>(depth) : (reversed ? 0.0f : 1.0f));
-      for (const double component : {normal.x, normal.y, normal.z, 0.0})
-        scene.normal_vs.texels.push_back(static_cast<float>(component));
-    }
-  }
-  return scene;
-}
-
 TestView columns_of(TestView view, std::uint32_t width, std::uint32_t first, std::uint32_t count) {
   auto& m = view.view.clip_from_view;
   const float scale = static_cast<float>(width) / static_cast<float>(count);

@@ -1,5 +1,4 @@
-// Views of every kind of projection, and depth buffers of planes in these views, computed in double
-// precision.
+// Views of every kind of projection.
 #pragma once
 
 #include <string>
@@ -24,14 +23,6 @@ TestView perspective_view(std::string name, double scale_x, double scale_y, doub
                           bool reversed);
 TestView orthographic_view(std::string name, double half_width, double half_height, double near,
                            double far);
-
-// A plane through the point 4 units in front of the eye, tilted about the image's diagonal.
-struct PlaneScene {
-  HostImage depth_ndc;
-  HostImage normal_vs;  // four channels
-};
-PlaneScene plane_scene(const TestView& view, std::uint32_t width, std::uint32_t height,
-                       float tilt_degrees);
 
 // Returns a view of a part of `view`'s image: of its `width` columns, the `count` columns from
 // column `first` on.

@@ -9,8 +9,8 @@
 
 namespace alcove::passes {
 
-// Names of the kept passes and resources, without uploads and read-backs.
-struct Kept {
+// Names of the passes and resources, without uploads and read-backs.
+struct FramePlan {
   std::vector<std::string> passes;
   std::vector<std::string> transients;
   std::vector<std::string> histories;
@@ -19,6 +19,6 @@ struct Kept {
 };
 
 // Compiles the graph. Fails the test if its declaration is invalid.
-Kept kept_of(const framegraph::Graph& graph);
+FramePlan plan_frame(const framegraph::Graph& graph);
 
 }  // namespace alcove::passes

@@ -21,37 +21,28 @@ OcclusionSettings all_outputs(Quality quality, Specular specular = Specular::sli
   return settings;
 }
 
-// Returns `image` with the normal of every `stride`th pixel replaced.
-HostImage replaced(HostImage image, std::array<float, 3> with, std::size_t stride) {
-  for (std::size_t i = 0; i < image.texels.size() / image.channels; i += stride)
-    std::ranges::copy(with, image.texels.begin() + static_cast<std::ptrdiff_t>(i * image.channels));
-  return image;
+// Returns the drawing with all components of the normal of every `stride`th pixel replaced.
+Drawing replace_normals(Drawing drawing, float component, std::size_t stride) {
+  HostImage& normals = drawing.normal_vs;
+  for (std::size_t i = 0; i < normals.texels.size(); i += stride * normals.channels)
+    std::fill_n(&normals.texels[i], 3, component);
+  return drawing;
 }
 
-HostImage inverted(HostImage image) {
-  for (float& component : image.texels) component = -component;
-  return image;
+Drawing invert_normals(Drawing drawing) {
+  for (float& component : drawing.normal_vs.texels) component = -component;
+  return drawing;
 }
 
-class GivenNormals : public PassTest {
+class NormalsOfAGBuffer : public PassTest {
  protected:
-  // Returns the images of the third frame.
-  OcclusionImages images_of(const TestView& view, const Drawing& drawing, const HostImage& normals,
-                            const OcclusionSettings& settings) {
-    OcclusionImages images;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      images = run_occlusion({.view = view.view,
-                              .depth_ndc = drawing.depth_ndc,
-                              .normal_vs = &normals,
-                              .index = i,
-                              .reset = i == 0},
-                             settings);
-    }
-    return images;
+  OcclusionImages third_frame(const Drawing& drawing, const OcclusionSettings& settings) {
+    for (std::uint32_t i = 0; i < 2; ++i) (void)render(drawing, settings, i);
+    return render(drawing, settings, 2);
   }
 };
 
-TEST_F(GivenNormals, UnoccludedPlaneStaysUnoccludedIfItsNormalsFaceAwayFromTheEye) {
+TEST_F(NormalsOfAGBuffer, UnoccludedPlaneStaysUnoccludedIfItsNormalsFaceAwayFromTheEye) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(60.0, 4.0)});
     for (const Quality quality : {Quality::medium, Quality::reference}) {
@@ -59,54 +50,51 @@ TEST_F(GivenNormals, UnoccludedPlaneStaysUnoccludedIfItsNormalsFaceAwayFromTheEy
       settings.slices = std::min(settings.slices, 4u);
       settings.steps = std::min(settings.steps, 16u);
       SCOPED_TRACE(testing::Message() << view.name << ", quality " << int(quality));
-      const OcclusionImages images =
-          images_of(view, drawing, inverted(drawing.normal_vs), settings);
+      const OcclusionImages images = third_frame(invert_normals(drawing), settings);
       EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.996f)));
       EXPECT_THAT(images.specular.texels, testing::Each(testing::Ge(0.98f)));
     }
   }
 }
 
-TEST_F(GivenNormals, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacingOnes) {
+TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacingOnes) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   for (const Specular specular : {Specular::slices, Specular::table}) {
     const OcclusionSettings settings = all_outputs(Quality::medium, specular);
-    const OcclusionImages found = images_of(view, drawing, inverted(drawing.normal_vs), settings);
-    const OcclusionImages expected = images_of(view, drawing, drawing.normal_vs, settings);
+    const OcclusionImages found = third_frame(invert_normals(drawing), settings);
+    const OcclusionImages expected = third_frame(drawing, settings);
     EXPECT_LT(rms(found.visibility, expected.visibility), 2e-3);
     EXPECT_LT(rms(found.bent_normal, expected.bent_normal), 0.02);
     EXPECT_LT(rms(found.specular, expected.specular), 5e-3);
   }
 }
 
-TEST_F(GivenNormals, ZeroAndNonFiniteNormalsAreReplacedByNormalsFromDepth) {
+TEST_F(NormalsOfAGBuffer, ZeroAndNonFiniteNormalsAreReplacedByNormalsFromDepth) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(40.0, 4.0)});
     const OcclusionSettings settings = all_outputs(Quality::medium);
     for (const float missing : {0.0f, kNaN, kInfinity}) {
       for (const std::size_t stride : {std::size_t{1}, std::size_t{3}}) {
         SCOPED_TRACE(testing::Message() << view.name << ": " << missing << " every " << stride);
-        const HostImage normals = replaced(drawing.normal_vs, {missing, missing, missing}, stride);
-        const OcclusionImages images = images_of(view, drawing, normals, settings);
+        const OcclusionImages images =
+            third_frame(replace_normals(drawing, missing, stride), settings);
         EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.99f)));
         EXPECT_THAT(images.specular.texels, testing::Each(testing::Ge(0.97f)));
-        EXPECT_LT(rms(images.bent_normal,
-                      images_of(view, drawing, drawing.normal_vs, settings).bent_normal),
-                  5e-3);
+        EXPECT_LT(rms(images.bent_normal, third_frame(drawing, settings).bent_normal), 5e-3);
       }
     }
   }
 }
 
-TEST_F(GivenNormals, NaNNormalsNextToTheSkyOrInTinyImagesGiveValidResults) {
+TEST_F(NormalsOfAGBuffer, NaNNormalsNextToTheSkyOrInTinyImagesGiveValidResults) {
   const TestView view = test_views()[2];
   Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
   post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
   for (const auto& [width, height] : {std::pair{kWidth, kHeight}, {1u, 1u}, {1u, 7u}, {7u, 1u}}) {
     const Drawing drawing = draw(view, width, height, {post});
-    const HostImage normals = replaced(drawing.normal_vs, {kNaN, kNaN, kNaN}, 1);
-    const OcclusionImages images = images_of(view, drawing, normals, all_outputs(Quality::medium));
+    const OcclusionImages images =
+        third_frame(replace_normals(drawing, kNaN, 1), all_outputs(Quality::medium));
     EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.97f)));
     for (const HostImage* image : {&images.bent_normal, &images.specular})
       EXPECT_TRUE(std::ranges::all_of(image->texels, [](float t) { return std::isfinite(t); }));
