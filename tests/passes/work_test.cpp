@@ -37,6 +37,7 @@ AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const Alcove
           .visibility_channel = view.visibility_channel,
           .half_size_outputs = view.half_size_outputs,
           .depth = image(view.depth),
+          .depth_format = static_cast<std::uint32_t>(view.depth_format),
           .normals = image(view.normals),
           .motion = image(view.motion),
           .roughness = image(view.roughness),
@@ -156,57 +157,57 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Settings, WorkExecution,
-                         testing::Values(Case{"Console", Quality::console, all_outputs},
-                                         Case{"Low", Quality::low, all_outputs},
-                                         Case{"Medium", Quality::medium, all_outputs},
-                                         Case{"High", Quality::high, all_outputs},
-                                         Case{"Ultra", Quality::ultra, all_outputs},
-                                         Case{"Reference", Quality::reference, all_outputs},
-                                         Case{"VisibilityAlone", Quality::medium},
-                                         Case{"ConsoleVisibilityAlone", Quality::console},
-                                         Case{"BentNormalAlone", Quality::medium,
-                                              [](GivenView& given) {
-                                                given.settings.visibility = false;
-                                                given.settings.bent_normal = true;
-                                              }},
-                                         Case{"MultiBounceAlone", Quality::low,
-                                              [](GivenView& given) {
-                                                given.settings.visibility = false;
-                                                given.multi_bounce = true;
-                                              }},
-                                         Case{"SpecularByTableWithoutNormals", Quality::medium,
-                                              [](GivenView& given) {
-                                                given.settings.specular = Specular::table;
-                                                given.normals = {};
-                                              }},
-                                         Case{"SpecularByConeAtHalfResolution", Quality::low,
-                                              [](GivenView& given) {
-                                                given.settings.specular = Specular::cone;
-                                                given.settings.half_resolution = true;
-                                              }},
-                                         Case{"TwoDepthLayers", Quality::high,
-                                              [](GivenView& given) {
-                                                all_outputs(given);
-                                                given.settings.depth_layers = 2;
-                                                given.motion = {};
-                                              }},
-                                         Case{"OutputsOfHalfSize", Quality::console,
-                                              [](GivenView& given) {
-                                                given.settings.bent_normal = true;
-                                                given.settings.specular = Specular::slices;
-                                                given.half_size_outputs = true;
-                                              }},
-                                         Case{"AreaAndMask", Quality::medium, all_outputs, true},
-                                         Case{"HalfResolutionAreaAndMask", Quality::console,
-                                              all_outputs, true},
-                                         Case{"HalfResolutionWithoutHistory", Quality::low,
-                                              [](GivenView& given) {
-                                                all_outputs(given);
-                                                given.settings.half_resolution = true;
-                                                given.settings.history_frames = 0;
-                                              }}),
-                         [](const auto& of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Settings, WorkExecution,
+    testing::Values(
+        Case{"Console", Quality::console, all_outputs}, Case{"Low", Quality::low, all_outputs},
+        Case{"Medium", Quality::medium, all_outputs}, Case{"High", Quality::high, all_outputs},
+        Case{"Ultra", Quality::ultra, all_outputs},
+        Case{"Reference", Quality::reference, all_outputs},
+        Case{"VisibilityAlone", Quality::medium}, Case{"ConsoleVisibilityAlone", Quality::console},
+        Case{"DepthCopiedFrom16Bits", Quality::medium,
+             [](GivenView& given) { given.depth_format = VK_FORMAT_D16_UNORM; }},
+        Case{"BentNormalAlone", Quality::medium,
+             [](GivenView& given) {
+               given.settings.visibility = false;
+               given.settings.bent_normal = true;
+             }},
+        Case{"MultiBounceAlone", Quality::low,
+             [](GivenView& given) {
+               given.settings.visibility = false;
+               given.multi_bounce = true;
+             }},
+        Case{"SpecularByTableWithoutNormals", Quality::medium,
+             [](GivenView& given) {
+               given.settings.specular = Specular::table;
+               given.normals = {};
+             }},
+        Case{"SpecularByConeAtHalfResolution", Quality::low,
+             [](GivenView& given) {
+               given.settings.specular = Specular::cone;
+               given.settings.half_resolution = true;
+             }},
+        Case{"TwoDepthLayers", Quality::high,
+             [](GivenView& given) {
+               all_outputs(given);
+               given.settings.depth_layers = 2;
+               given.motion = {};
+             }},
+        Case{"OutputsOfHalfSize", Quality::console,
+             [](GivenView& given) {
+               given.settings.bent_normal = true;
+               given.settings.specular = Specular::slices;
+               given.half_size_outputs = true;
+             }},
+        Case{"AreaAndMask", Quality::medium, all_outputs, true},
+        Case{"HalfResolutionAreaAndMask", Quality::console, all_outputs, true},
+        Case{"HalfResolutionWithoutHistory", Quality::low,
+             [](GivenView& given) {
+               all_outputs(given);
+               given.settings.half_resolution = true;
+               given.settings.history_frames = 0;
+             }}),
+    [](const auto& of) { return std::string(of.param.name); });
 
 // The list of a frame of 64x48 pixels with a depth image and visibility.
 struct Described {

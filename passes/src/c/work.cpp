@@ -44,6 +44,7 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
                   .output_x = info.output_x,
                   .output_y = info.output_y,
                   .depth = to_image(info.depth, 1),
+                  .depth_format = static_cast<VkFormat>(info.depth_format),
                   .normals = to_image(info.normals, 2),
                   .motion = to_image(info.motion, 3),
                   .roughness = to_image(info.roughness, 4),
