@@ -75,6 +75,11 @@ void Engine::destroy_image(const AlcoveImage& image) {
   std::erase_if(images_, [&](const auto& made) { return made->image() == image.image; });
 }
 
+void Engine::forget_images(AlcoveContext& context) const {
+  for (const auto& made : images_)
+    EXPECT_EQ(alcoveForgetImage(&context, made->image()), ALCOVE_SUCCESS);
+}
+
 void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
   const Slot& used = slots_.at(slot);
   EXPECT_EQ(vkWaitForFences(device_.device(), 1, &used.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
