@@ -63,8 +63,7 @@ void Base::open(const VkPhysicalDeviceFeatures2& features, bool async) {
     const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                        .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                        .queueFamilyIndex = queue.queueFamilyIndex};
-    require(vkCreateCommandPool(device, &pool, nullptr, &pools_[queue.queueFamilyIndex]),
-            "a command pool cannot be created");
+    pools_[queue.queueFamilyIndex] = create(vkCreateCommandPool, pool);
   }
 }
 
@@ -107,8 +106,7 @@ Image Base::create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usa
       .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
       .queueFamilyIndexCount = shared ? 2u : 0u,
       .pQueueFamilyIndices = families.data()};
-  Image made{.format = format, .usage = usage};
-  require(vkCreateImage(device, &info, nullptr, &made.image), "an image cannot be created");
+  Image made{.image = create(vkCreateImage, info), .format = format, .usage = usage};
   VkMemoryRequirements requirements;
   vkGetImageMemoryRequirements(device, made.image, &requirements);
   made.memory = allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
@@ -122,7 +120,7 @@ Image Base::create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usa
                                    .viewType = VK_IMAGE_VIEW_TYPE_2D,
                                    .format = format,
                                    .subresourceRange = {aspect, 0, 1, 0, 1}};
-  require(vkCreateImageView(device, &view, nullptr, &made.view), "a view cannot be created");
+  made.view = create(vkCreateImageView, view);
   return made;
 }
 
@@ -136,8 +134,7 @@ void Base::destroy(Image& image) const {
 Buffer Base::create_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) const {
   const VkBufferCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
-  Buffer made;
-  require(vkCreateBuffer(device, &info, nullptr, &made.buffer), "a buffer cannot be created");
+  Buffer made{.buffer = create(vkCreateBuffer, info)};
   VkMemoryRequirements requirements;
   vkGetBufferMemoryRequirements(device, made.buffer, &requirements);
   made.memory = allocate(
@@ -165,28 +162,22 @@ VkCommandBuffer Base::allocate_commands(std::uint32_t family) const {
   return commands;
 }
 
-VkShaderModule Base::create_module(const ShaderCode& code) const {
-  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                      .codeSize = code.bytes,
-                                      .pCode = code.words};
-  VkShaderModule made = VK_NULL_HANDLE;
-  require(vkCreateShaderModule(device, &info, nullptr, &made), "a shader cannot be created");
-  return made;
-}
-
 VkPipeline Base::create_pipeline(const PipelineDescription& description) const {
   const VkSpecializationMapEntry entry{0, 0, sizeof description.packed};
   const VkSpecializationInfo constants{1, &entry, sizeof description.packed, &description.packed};
-  const std::array<VkPipelineShaderStageCreateInfo, 2> stages{
-      {{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_VERTEX_BIT,
-        .module = create_module(description.vertex),
-        .pName = "main"},
-       {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-        .module = create_module(description.fragment),
-        .pName = "main",
-        .pSpecializationInfo = &constants}}};
+  const auto create_stage = [&](VkShaderStageFlagBits stage, std::span<const std::uint32_t> code) {
+    const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = code.size_bytes(),
+                                        .pCode = code.data()};
+    return VkPipelineShaderStageCreateInfo{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+        .stage = stage,
+        .module = create(vkCreateShaderModule, info),
+        .pName = "main"};
+  };
+  std::array stages{create_stage(VK_SHADER_STAGE_VERTEX_BIT, description.vertex),
+                    create_stage(VK_SHADER_STAGE_FRAGMENT_BIT, description.fragment)};
+  stages[1].pSpecializationInfo = &constants;
   const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
   const std::array<VkVertexInputAttributeDescription, 2> attributes{
       {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
