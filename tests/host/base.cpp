@@ -106,22 +106,22 @@ Image Base::create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usa
       .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
       .queueFamilyIndexCount = shared ? 2u : 0u,
       .pQueueFamilyIndices = families.data()};
-  Image made{.image = create(vkCreateImage, info), .format = format, .usage = usage};
+  Image image{.image = create(vkCreateImage, info), .format = format, .usage = usage};
   VkMemoryRequirements requirements;
-  vkGetImageMemoryRequirements(device, made.image, &requirements);
-  made.memory = allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-  require(vkBindImageMemory(device, made.image, made.memory, 0), "an image cannot be bound");
+  vkGetImageMemoryRequirements(device, image.image, &requirements);
+  image.memory = allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  require(vkBindImageMemory(device, image.image, image.memory, 0), "an image cannot be bound");
   const VkImageAspectFlags aspect =
       format == VK_FORMAT_D32_SFLOAT_S8_UINT
           ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT}
           : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT};
   const VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                   .image = made.image,
+                                   .image = image.image,
                                    .viewType = VK_IMAGE_VIEW_TYPE_2D,
                                    .format = format,
                                    .subresourceRange = {aspect, 0, 1, 0, 1}};
-  made.view = create(vkCreateImageView, view);
-  return made;
+  image.view = create(vkCreateImageView, view);
+  return image;
 }
 
 void Base::destroy(Image& image) const {
@@ -134,16 +134,16 @@ void Base::destroy(Image& image) const {
 Buffer Base::create_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) const {
   const VkBufferCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
-  Buffer made{.buffer = create(vkCreateBuffer, info)};
+  Buffer buffer{.buffer = create(vkCreateBuffer, info)};
   VkMemoryRequirements requirements;
-  vkGetBufferMemoryRequirements(device, made.buffer, &requirements);
-  made.memory = allocate(
+  vkGetBufferMemoryRequirements(device, buffer.buffer, &requirements);
+  buffer.memory = allocate(
       requirements, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-  require(vkBindBufferMemory(device, made.buffer, made.memory, 0), "a buffer cannot be bound");
+  require(vkBindBufferMemory(device, buffer.buffer, buffer.memory, 0), "a buffer cannot be bound");
   void* mapped = nullptr;
-  require(vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped), "cannot map a buffer");
-  made.mapped = static_cast<std::byte*>(mapped);
-  return made;
+  require(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &mapped), "cannot map a buffer");
+  buffer.mapped = static_cast<std::byte*>(mapped);
+  return buffer;
 }
 
 void Base::destroy(Buffer& buffer) const {
@@ -234,12 +234,12 @@ VkPipeline Base::create_pipeline(const PipelineDescription& description) const {
                                           .pDynamicState = &dynamics,
                                           .layout = description.layout,
                                           .renderPass = description.render_pass};
-  VkPipeline made = VK_NULL_HANDLE;
-  require(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &made),
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  require(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
           "a pipeline cannot be created");
   for (const VkPipelineShaderStageCreateInfo& stage : stages)
     vkDestroyShaderModule(device, stage.module, nullptr);
-  return made;
+  return pipeline;
 }
 
 }  // namespace host

@@ -57,9 +57,9 @@ class Base {
   template <typename Info, typename Object>
   Object create(VkResult (*function)(VkDevice, const Info*, const VkAllocationCallbacks*, Object*),
                 const Info& info) const {
-    Object made = VK_NULL_HANDLE;
-    require(function(device, &info, nullptr, &made), "an object of Vulkan cannot be created");
-    return made;
+    Object object = VK_NULL_HANDLE;
+    require(function(device, &info, nullptr, &object), "an object of Vulkan cannot be created");
+    return object;
   }
   VkCommandBuffer allocate_commands(std::uint32_t family) const;
 

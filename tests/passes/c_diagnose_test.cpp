@@ -29,8 +29,7 @@ AlcoveCamera camera_at(float x, float jitter) {
 std::string diagnose(const std::function<void(AlcoveFrame&, AlcoveView&)>& change,
                      float speed = 0.1f) {
   MistakeFinder finder;
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto at = [&](std::uint32_t frame) {
       return camera_at(speed * static_cast<float>(frame), 0.001f * static_cast<float>(frame % 7));
@@ -58,9 +57,8 @@ TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
 }
 
 TEST(CDiagnose, IndexMayStandStillIfNoiseIsStatic) {
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
-  const auto said = [&](std::uint32_t history_frames, std::uint32_t static_noise) {
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
+  const auto diagnose_noise = [&](std::uint32_t history_frames, std::uint32_t static_noise) {
     settings.history_frames = history_frames;
     settings.static_noise = static_noise;
     return diagnose([&](AlcoveFrame& frame, AlcoveView& view) {
@@ -68,8 +66,8 @@ TEST(CDiagnose, IndexMayStandStillIfNoiseIsStatic) {
       view.settings = &settings;
     });
   };
-  EXPECT_EQ(said(0, 1), "");
-  for (const std::string& other : {said(0, 0), said(32, 1)}) {
+  EXPECT_EQ(diagnose_noise(0, 1), "");
+  for (const std::string& other : {diagnose_noise(0, 0), diagnose_noise(32, 1)}) {
     EXPECT_THAT(other, HasSubstr("AlcoveFrame::index stays the same"));
     EXPECT_THAT(other, HasSubstr("AlcoveFrame::index goes back"));
   }
@@ -86,8 +84,7 @@ TEST(CDiagnose, MistakeIsForgottenAfterItHasBeenMended) {
 }
 
 TEST(CDiagnose, ViewsThatAreDroppedOrHaveNoHistoryMayBeManyMore) {
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
   enum class Way { leak, drop, no_history };
   for (const Way way : {Way::leak, Way::drop, Way::no_history}) {
     settings.history_frames = way == Way::no_history ? 0 : 32;

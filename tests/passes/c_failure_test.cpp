@@ -69,9 +69,9 @@ class CFailure : public CInterface {
 
   std::string error_of_context(const AlcoveContextInfo& info, AlcoveResult expected) {
     char message[ALCOVE_MAX_MESSAGE];
-    AlcoveContext* made = nullptr;
-    EXPECT_EQ(alcoveCreateContext(&info, &made, message), expected) << message;
-    alcoveDestroyContext(made);
+    AlcoveContext* handle = nullptr;
+    EXPECT_EQ(alcoveCreateContext(&info, &handle, message), expected) << message;
+    alcoveDestroyContext(handle);
     return message;
   }
 };
@@ -138,15 +138,15 @@ TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorAndLeaksNothing) {
     SCOPED_TRACE(call);
     framegraph::failing::fail_at(call);
     char message[ALCOVE_MAX_MESSAGE];
-    AlcoveContext* made = nullptr;
-    AlcoveResult result = alcoveCreateContext(&info, &made, message);
-    Context context(made);
-    if (result == ALCOVE_SUCCESS) result = alcovePrepareFrame(made, &frame);
-    for (int i = 0; i < 2 && result == ALCOVE_SUCCESS; ++i) result = record(*made, frame);
+    AlcoveContext* handle = nullptr;
+    AlcoveResult result = alcoveCreateContext(&info, &handle, message);
+    Context context(handle);
+    if (result == ALCOVE_SUCCESS) result = alcovePrepareFrame(handle, &frame);
+    for (int i = 0; i < 2 && result == ALCOVE_SUCCESS; ++i) result = record(*handle, frame);
     engine().wait();
     failed = framegraph::failing::calls() >= call;
     EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY : ALCOVE_SUCCESS);
-    EXPECT_EQ(std::string(context ? alcoveGetMessage(made) : message).empty(), !failed);
+    EXPECT_EQ(std::string(context ? alcoveGetMessage(handle) : message).empty(), !failed);
     context.reset();
     EXPECT_EQ(framegraph::failing::alive(), 0);
     ASSERT_LT(call, 500);
@@ -188,11 +188,11 @@ void fail_each_allocation(const std::function<AlcoveResult(std::size_t number)>&
 
 TEST_F(CFailure, OutOfHostMemoryWhileCreatingAContextIsAnErrorAndLeaksNothing) {
   const AlcoveContextInfo info = failing_info(engine());
-  AlcoveContext* made = nullptr;
-  fail_each_allocation([&](std::size_t) { return alcoveCreateContext(&info, &made, nullptr); },
+  AlcoveContext* handle = nullptr;
+  fail_each_allocation([&](std::size_t) { return alcoveCreateContext(&info, &handle, nullptr); },
                        [&](AlcoveResult, bool failed) {
-                         EXPECT_EQ(made == nullptr, failed);
-                         alcoveDestroyContext(made);
+                         EXPECT_EQ(handle == nullptr, failed);
+                         alcoveDestroyContext(handle);
                          EXPECT_EQ(framegraph::failing::alive(), 0);
                        });
 }

@@ -26,9 +26,8 @@ using testing::StartsWith;
 
 // VkAllocationCallbacks that call malloc and count allocations and frees.
 struct HostMemory {
-  std::size_t allocated = 0;
-  std::size_t freed = 0;
-  std::map<void*, std::size_t> sizes;
+  std::size_t allocations = 0;
+  std::map<void*, std::size_t> alive;  // and their sizes
 
   VkAllocationCallbacks callbacks() {
     return {
@@ -40,27 +39,24 @@ struct HostMemory {
         .pfnReallocation = [](void* user, void* original, std::size_t size, std::size_t alignment,
                               VkSystemAllocationScope) -> void* {
           auto& self = *static_cast<HostMemory*>(user);
-          void* const made = size == 0 ? nullptr : self.allocate(size, alignment);
-          if (made != nullptr && original != nullptr)
-            std::memcpy(made, original, std::min(size, self.sizes.at(original)));
+          void* const copy = size == 0 ? nullptr : self.allocate(size, alignment);
+          if (copy != nullptr && original != nullptr)
+            std::memcpy(copy, original, std::min(size, self.alive.at(original)));
           self.free(original);
-          return made;
+          return copy;
         },
         .pfnFree = [](void* user, void* memory) { static_cast<HostMemory*>(user)->free(memory); }};
   }
   void* allocate(std::size_t size, std::size_t alignment) {
-    ++allocated;
+    ++allocations;
     const std::size_t unit = std::max(alignment, sizeof(void*));
-    void* const made = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
-    sizes[made] = size;
-    return made;
+    void* const memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+    alive[memory] = size;
+    return memory;
   }
   void free(void* memory) {
-    if (memory != nullptr) {
-      ++freed;
-      EXPECT_EQ(sizes.erase(memory), 1u) << "freed what was not allocated";
-      std::free(memory);
-    }
+    EXPECT_EQ(alive.erase(memory), memory == nullptr ? 0u : 1u) << "freed what was not allocated";
+    std::free(memory);
   }
 };
 
@@ -128,26 +124,22 @@ struct SentenceLog {
 };
 
 // A device memory object that an engine allocates and gives as AlcoveMemoryBlock.
-class Block {
- public:
-  Block(const sample::VulkanDevice& device, VkDeviceSize size) : device_(device) {
-    block_ = {.offset = 1000,  // a multiple of no alignment
-              .size = size,
-              .memory_type = device.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
+struct Block {
+  Block(const sample::VulkanDevice& of, VkDeviceSize size) : device(of.device()) {
+    block = {.offset = 1000,  // a multiple of no alignment
+             .size = size,
+             .memory_type = of.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
     const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                    .allocationSize = block_.offset + size,
-                                    .memoryTypeIndex = block_.memory_type};
-    EXPECT_EQ(vkAllocateMemory(device.device(), &info, nullptr, &block_.memory), VK_SUCCESS);
+                                    .allocationSize = block.offset + size,
+                                    .memoryTypeIndex = block.memory_type};
+    EXPECT_EQ(vkAllocateMemory(device, &info, nullptr, &block.memory), VK_SUCCESS);
   }
-  ~Block() { vkFreeMemory(device_.device(), block_.memory, nullptr); }
+  ~Block() { vkFreeMemory(device, block.memory, nullptr); }
   Block(const Block&) = delete;
   Block& operator=(const Block&) = delete;
 
-  const AlcoveMemoryBlock& block() const { return block_; }
-
- private:
-  const sample::VulkanDevice& device_;
-  AlcoveMemoryBlock block_{};
+  VkDevice device;
+  AlcoveMemoryBlock block{};
 };
 
 class CAllocators : public CInterface {
@@ -177,8 +169,8 @@ TEST_F(CAllocators, EverythingAllocatedThroughTheEnginesAllocatorsIsFreed) {
     for (std::uint32_t i = 0; i < 3; ++i) expect_same_both_ways(*context, {&from, 1}, i);
     EXPECT_EQ(alcoveDropView(context.get(), 0), ALCOVE_SUCCESS);
   }
-  EXPECT_GT(host.allocated, 20u);
-  EXPECT_EQ(host.allocated, host.freed);
+  EXPECT_GT(host.allocations, 20u);
+  EXPECT_THAT(host.alive, IsEmpty());
   EXPECT_GT(memory.calls, 5);
   EXPECT_THAT(memory.alive, IsEmpty());
   EXPECT_GT(memory.device_local[ALCOVE_MEMORY_LIFETIME_FRAME], 0) << "intermediate images";
@@ -191,7 +183,7 @@ TEST_F(CAllocators, AllImagesArePlacedInTheEnginesMemoryBlockWhileSizesChange) {
   DeviceMemory memory{gpu().device()};
   {
     AlcoveContextInfo info = engine().context_info();
-    info.memory_block = block.block();
+    info.memory_block = block.block;
     info.memory_functions = memory.functions();
     const Context context = create_context(info);
     std::uint32_t index = 0;
@@ -208,10 +200,10 @@ TEST_F(CAllocators, AllImagesArePlacedInTheEnginesMemoryBlockWhileSizesChange) {
 
 TEST_F(CAllocators, FrameTooLargeForTheEnginesMemoryBlockIsReportedAndASmallerFrameStillWorks) {
   const Block block(gpu().device(), 200000);
-  SentenceLog said;
+  SentenceLog log;
   AlcoveContextInfo info = engine().context_info();
-  info.memory_block = block.block();
-  info.log = said.log();
+  info.memory_block = block.block;
+  info.log = log.log();
   const Context context = create_context(info);
   const AlcoveView small_view = create_view(draw_outputs(24, 16));
   AlcoveView large_view = create_view(draw_outputs(256, 128));
@@ -223,7 +215,7 @@ TEST_F(CAllocators, FrameTooLargeForTheEnginesMemoryBlockIsReportedAndASmallerFr
                 AllOf(HasSubstr("the caller's block of 200000 bytes"),
                       HasSubstr("give a larger one"), HasSubstr("the device is out of memory.")));
   }
-  EXPECT_THAT(said.sentences,
+  EXPECT_THAT(log.sentences,
               Contains(Pair(ALCOVE_SEVERITY_ERROR, std::string(alcoveGetMessage(context.get())))));
   EXPECT_EQ(record_alone(*context, small_view, 3), ALCOVE_SUCCESS)
       << alcoveGetMessage(context.get());
@@ -238,8 +230,8 @@ TEST_F(CAllocators, AllocationThatTheEngineRefusesIsAnErrorAndTheNextFrameWorks)
   info.memory_functions = memory.functions();
   memory.fails_at = 1;
   char message[ALCOVE_MAX_MESSAGE];
-  AlcoveContext* made = nullptr;
-  EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY);
+  AlcoveContext* handle = nullptr;
+  EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY);
   EXPECT_THAT(message, HasSubstr("The device is out of memory."));
   {
     const Context context = create_context(info);
@@ -265,27 +257,27 @@ TEST_F(CAllocators, AllocationThatTheEngineRefusesIsAnErrorAndTheNextFrameWorks)
 }
 
 TEST_F(CAllocators, LogCallbackGetsErrorsWarningsAndInformation) {
-  SentenceLog said;
+  SentenceLog log;
   AlcoveContextInfo info = engine().context_info();
-  info.log = said.log();
+  info.log = log.log();
   info.frames_in_flight = 0;
-  AlcoveContext* made = nullptr;
-  EXPECT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_THAT(said.sentences,
+  AlcoveContext* handle = nullptr;
+  EXPECT_EQ(alcoveCreateContext(&info, &handle, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(log.sentences,
               testing::ElementsAre(Pair(ALCOVE_SEVERITY_ERROR, HasSubstr("frames_in_flight"))));
-  said.sentences.clear();
+  log.sentences.clear();
   info.frames_in_flight = Engine::kSlots;
   const Context context = create_context(info);
   const AlcoveView view = create_view(draw_outputs(16, 12));
   EXPECT_EQ(record_alone(*context, view, 0), ALCOVE_SUCCESS);
-  EXPECT_THAT(said.sentences,
+  EXPECT_THAT(log.sentences,
               AllOf(Contains(Pair(ALCOVE_SEVERITY_WARNING, HasSubstr("alcovePrepareFrame"))),
                     Contains(Pair(ALCOVE_SEVERITY_INFO, StartsWith("The render graph has "))),
                     Contains(Pair(ALCOVE_SEVERITY_INFO, HasSubstr("pipeline")))));
   EXPECT_EQ(record_alone(*context, view, 1), ALCOVE_SUCCESS);
-  said.sentences.clear();
+  log.sentences.clear();
   for (std::uint32_t i = 2; i < 6; ++i) EXPECT_EQ(record_alone(*context, view, i), ALCOVE_SUCCESS);
-  EXPECT_THAT(said.sentences, IsEmpty()) << "a steady frame";
+  EXPECT_THAT(log.sentences, IsEmpty()) << "a steady frame";
   engine().wait();
 }
 

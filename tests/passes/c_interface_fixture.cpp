@@ -160,18 +160,24 @@ AlcoveContext& CInterface::context() {
 }
 
 Context CInterface::create_context(const AlcoveContextInfo& info) {
-  AlcoveContext* made = nullptr;
+  AlcoveContext* handle = nullptr;
   char message[ALCOVE_MAX_MESSAGE];
-  EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_SUCCESS) << message;
+  EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_SUCCESS) << message;
   EXPECT_STREQ(message, "");
-  return Context(made);
+  return Context(handle);
+}
+
+Context CInterface::create_context() {
+  AlcoveContextInfo info = engine_->context_info();
+  info.debug_utils = VK_TRUE;
+  return create_context(info);
 }
 
 AlcoveImage CInterface::input(const HostImage& contents) {
   if (contents.texels.empty()) return {};
-  const auto known = std::ranges::find_if(inputs_, [&](const auto& made) {
-    return made.first.width == contents.width && made.first.height == contents.height &&
-           made.first.texels == contents.texels;
+  const auto known = std::ranges::find_if(inputs_, [&](const auto& input) {
+    return input.first.width == contents.width && input.first.height == contents.height &&
+           input.first.texels == contents.texels;
   });
   if (shares_inputs_ && known != inputs_.end()) return known->second;
   const AlcoveImage image = engine_->make_image(float_format(contents.channels), contents.width,
@@ -338,10 +344,10 @@ Results CInterface::run_by_cpp(const HostView& from, std::uint32_t index) {
     if (from.settings.bent_normal) read_back(graph, outputs->bent_normal);
     if (from.settings.specular != Specular::none) read_back(graph, outputs->specular);
     if (from.multi_bounce) {
-      const auto made = add_multi_bounce(frame, {outputs->visibility, upload_of(from.albedo)},
-                                         Precision::float32);
-      ASSERT_TRUE(made) << made.error().message;
-      read_back(graph, *made);
+      const auto light = add_multi_bounce(frame, {outputs->visibility, upload_of(from.albedo)},
+                                          Precision::float32);
+      ASSERT_TRUE(light) << light.error().message;
+      read_back(graph, *light);
     }
   });
   std::size_t next = 0;

@@ -110,7 +110,7 @@ class CInterface : public PassTest {
   // test its views are dropped and its images forgotten.
   AlcoveContext& context();
   static Context create_context(const AlcoveContextInfo& info);
-  Context create_context() { return create_context(engine().context_info()); }
+  Context create_context();
 
   // Creates an image that holds `contents`, or returns one with the same contents.
   AlcoveImage input(const HostImage& contents);

@@ -274,15 +274,15 @@ TEST_F(CInterface, ProgramCompiledAsCRecordsTheSameFrameAsTheCppInterface) {
   from.normals = {};
   from.roughness = {};
   const AlcoveView view = create_view(from);
-  AlcoveContext* made = nullptr;
+  AlcoveContext* handle = nullptr;
   char text[ALCOVE_MAX_MESSAGE] = "";
   engine().submit(0, [&](VkCommandBuffer commands) {
-    EXPECT_EQ(run_c_program(&info, &view.camera, &view.depth, &view.visibility, commands, &made,
+    EXPECT_EQ(run_c_program(&info, &view.camera, &view.depth, &view.visibility, commands, &handle,
                             text, sizeof text),
               ALCOVE_SUCCESS)
         << text;
   });
-  const Context context(made);
+  const Context context(handle);
   EXPECT_NE(std::strstr(text, "bytes of transients"), nullptr) << text;
   engine().wait();
   expect_equal(read_results(view), run_by_cpp(from, 0));

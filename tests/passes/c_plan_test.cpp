@@ -202,8 +202,7 @@ TEST_F(CPlan, EstimatedMemoryIsWithinFivePercentOfThatOfRecordedFrames) {
 }
 
 TEST(CMemory, InvalidArgumentsOfTheMemoryEstimateAreErrors) {
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
   AlcoveMemory memory{.struct_size = sizeof memory};
   const auto estimate = [&](std::uint32_t width, std::uint32_t height, std::uint32_t outputs,
                             std::uint32_t inputs) {
@@ -254,9 +253,7 @@ std::string print_settings(const AlcoveSettings& settings) {
 
 TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
   for (int quality = ALCOVE_QUALITY_CONSOLE; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
-    AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
-    ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
-              ALCOVE_SUCCESS);
+    const AlcoveSettings settings = get_settings(static_cast<AlcoveQuality>(quality), 2.5f);
     const std::string text = print_settings(settings);
     EXPECT_THAT(text, HasSubstr("radius = 2.5\n"));
     EXPECT_THAT(text, HasSubstr("specular = slices\n"));
@@ -271,8 +268,7 @@ TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
 // Each printed value reads back as the same number.
 TEST(CSettings, SettingValuesArePrintedShortAndExactInEveryLocale) {
   const CommaLocale comma;
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.15f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.15f);
   settings.thickness = 0.12345678f;
   settings.hidden_occlusion = 1e-7f;
   AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
@@ -299,11 +295,10 @@ TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesN
   AlcoveContextInfo info = engine.context_info();
   info.frames_in_flight = GetParam();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
-  AlcoveContext* made = nullptr;
-  ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
-  const Context context(made);
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings), ALCOVE_SUCCESS);
+  AlcoveContext* handle = nullptr;
+  ASSERT_EQ(alcoveCreateContext(&info, &handle, nullptr), ALCOVE_SUCCESS);
+  const Context context(handle);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
   settings.specular = ALCOVE_SPECULAR_TABLE;
   const auto make = [&](VkFormat format) {
     return engine.make_image(format, 24, 16,

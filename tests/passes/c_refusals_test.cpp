@@ -407,14 +407,14 @@ TEST_F(CRefusals, InvalidCreationInfoOfAContextIsReported) {
   for (const Case& bad : cases) {
     AlcoveContextInfo info = engine().context_info();
     bad.change(info);
-    AlcoveContext* made = &context();
-    EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_ERROR_INVALID_INPUT);
-    EXPECT_EQ(made, nullptr);
+    AlcoveContext* handle = &context();
+    EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(handle, nullptr);
     EXPECT_THAT(message, HasSubstr(bad.message));
     EXPECT_PRED1(is_a_sentence, message);
   }
-  AlcoveContext* made = nullptr;
-  EXPECT_EQ(alcoveCreateContext(nullptr, &made, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  AlcoveContext* handle = nullptr;
+  EXPECT_EQ(alcoveCreateContext(nullptr, &handle, nullptr), ALCOVE_ERROR_INVALID_INPUT);
   const AlcoveContextInfo info = engine().context_info();
   EXPECT_EQ(alcoveCreateContext(&info, nullptr, message), ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_PRED1(is_a_sentence, message);
@@ -453,8 +453,7 @@ TEST_F(CRefusals, FramesWithRandomSettingsAndCamerasAreRecordedOrRefusedWithAMes
   constexpr std::size_t kAdvancedCount = (sizeof(AlcoveAdvancedSettings) - kFirstAdvanced) / 4;
   int refused = 0;
   for (int i = 0; i < 40; ++i) {
-    AlcoveSettings settings{.struct_size = sizeof settings};
-    ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 0.5f, &settings), ALCOVE_SUCCESS);
+    AlcoveSettings settings = get_settings(ALCOVE_QUALITY_LOW, 0.5f);
     AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
     ASSERT_EQ(alcoveGetAdvancedSettings(ALCOVE_QUALITY_LOW, &advanced), ALCOVE_SUCCESS);
     settings.advanced = &advanced;

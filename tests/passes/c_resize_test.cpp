@@ -28,8 +28,8 @@ constexpr std::uint32_t kRound = 200;  // frames between two calls of CResize::r
 constexpr std::chrono::seconds kProgress(30);
 
 std::chrono::seconds wanted_time() {
-  const char* given = std::getenv("ALCOVE_RESIZE_SECONDS");
-  return std::chrono::seconds(given != nullptr ? std::strtol(given, nullptr, 10) : 3);
+  const char* text = std::getenv("ALCOVE_RESIZE_SECONDS");
+  return std::chrono::seconds(text != nullptr ? std::strtol(text, nullptr, 10) : 3);
 }
 
 // Settings and optional images of a view. The test makes only a few kinds, because each needs

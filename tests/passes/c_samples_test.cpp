@@ -13,8 +13,8 @@ namespace alcove::passes {
 namespace {
 
 constexpr VkExtent2D kSize{37, 26};
-constexpr AlcoveState kDrawn{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_GENERAL};
+constexpr AlcoveState kGeneral{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                               VK_IMAGE_LAYOUT_GENERAL};
 
 // The push constants of depth_samples.frag.
 struct Depths {
@@ -30,7 +30,7 @@ class CSamples : public CInterface {
         VK_FORMAT_D32_SFLOAT, kSize.width, kSize.height,
         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 1, samples);
     image.samples = samples;
-    image.initial_state = image.final_state = kDrawn;
+    image.initial_state = image.final_state = kGeneral;
     VkDevice device = gpu().device().device();
     const VkImageSubresourceRange range{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
     const VkImageViewCreateInfo view_info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -53,7 +53,7 @@ class CSamples : public CInterface {
                                           .srcStageMask = kResting.stages,
                                           .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                           .dstAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                          .newLayout = kDrawn.layout,
+                                          .newLayout = kGeneral.layout,
                                           .image = image.image,
                                           .subresourceRange = range};
       const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
@@ -63,7 +63,7 @@ class CSamples : public CInterface {
       const VkRenderingAttachmentInfo attachment{
           .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
           .imageView = view,
-          .imageLayout = kDrawn.layout,
+          .imageLayout = kGeneral.layout,
           .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
           .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
       const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
@@ -92,12 +92,12 @@ class CSamples : public CInterface {
       const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                           .codeSize = code.size_bytes(),
                                           .pCode = code.data()};
-      VkPipelineShaderStageCreateInfo made{
+      VkPipelineShaderStageCreateInfo shader{
           .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
           .stage = stage,
           .pName = "main"};
-      EXPECT_EQ(vkCreateShaderModule(device, &info, nullptr, &made.module), VK_SUCCESS);
-      return made;
+      EXPECT_EQ(vkCreateShaderModule(device, &info, nullptr, &shader.module), VK_SUCCESS);
+      return shader;
     };
     const std::array stages{create_stage(VK_SHADER_STAGE_VERTEX_BIT, kDepthSamplesVertex),
                             create_stage(VK_SHADER_STAGE_FRAGMENT_BIT, kDepthSamplesFragment)};
@@ -140,12 +140,12 @@ class CSamples : public CInterface {
         .pMultisampleState = &multisampling,
         .pDepthStencilState = &depth,
         .layout = layout};
-    VkPipeline made = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &made),
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
               VK_SUCCESS);
     for (const VkPipelineShaderStageCreateInfo& stage : stages)
       vkDestroyShaderModule(device, stage.module, nullptr);
-    return made;
+    return pipeline;
   }
 };
 

@@ -52,6 +52,8 @@ class Engine {
   std::vector<std::unique_ptr<sample::GpuImage>> images_;
 };
 
+AlcoveSettings get_settings(AlcoveQuality quality, float radius);
+
 // Resets a command buffer and begins it again, so that nothing that was recorded is submitted.
 void throw_away(VkCommandBuffer commands);
 

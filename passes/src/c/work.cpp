@@ -89,7 +89,7 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
   work->camera = info.camera;
   work->width = size.width;
   work->height = size.height;
-  const auto settled = passes::settle(
+  const auto setup = passes::set_up(
       view, {[](void* user, const passes::ImageRole& role, const AlcoveImage& image,
                 const AlcoveView& of) -> tl::expected<framegraph::Texture, passes::Failure> {
                if (image.image == VK_NULL_HANDLE) return framegraph::Texture{};
@@ -101,9 +101,8 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
                });
              },
              &list});
-  if (!settled) return tl::unexpected(settled.error());
-  if (const auto made = passes::describe_view(list, frame, settled->inputs, settled->settings);
-      !made)
+  if (!setup) return tl::unexpected(setup.error());
+  if (const auto made = passes::describe_view(list, frame, setup->inputs, setup->settings); !made)
     return tl::unexpected(passes::failure_of(made.error(), "The view"));
   return {};
 }
