@@ -136,7 +136,7 @@ AlcoveMemory get_memory(AlcoveContext& context) {
   return memory;
 }
 
-Context CInterface::context_;
+Context CInterface::shared_context;
 
 void CInterface::SetUp() {
   PassTest::SetUp();
@@ -145,18 +145,18 @@ void CInterface::SetUp() {
 
 void CInterface::TearDown() {
   if (engine_) engine_->wait();
-  if (context_) {
-    engine_->forget_images(*context_);
+  if (shared_context) {
+    engine_->forget_images(*shared_context);
     for (const std::uint32_t id : ids_)
-      EXPECT_EQ(alcoveDropView(context_.get(), id), ALCOVE_SUCCESS);
+      EXPECT_EQ(alcoveDropView(shared_context.get(), id), ALCOVE_SUCCESS);
   }
   engine_.reset();
   PassTest::TearDown();
 }
 
 AlcoveContext& CInterface::context() {
-  if (!context_) context_ = create_context();
-  return *context_;
+  if (!shared_context) shared_context = create_context();
+  return *shared_context;
 }
 
 Context CInterface::create_context(const AlcoveContextInfo& info) {
@@ -302,12 +302,14 @@ Results CInterface::run_view(const AlcoveView& view, std::uint32_t index) {
 
 std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<const HostView> from,
                                           std::uint32_t index) {
-  std::vector<AlcoveView> views;
-  for (const HostView& each : from) views.push_back(create_view(each));
+  std::vector<AlcoveView> views(from.size());
+  std::ranges::transform(from, views.begin(),
+                         [&](const HostView& each) { return create_view(each); });
   run_frame(context, views, index);
   engine_->wait();
-  std::vector<Results> results;
-  for (const AlcoveView& view : views) results.push_back(read_results(view));
+  std::vector<Results> results(from.size());
+  std::ranges::transform(views, results.begin(),
+                         [&](const AlcoveView& view) { return read_results(view); });
   return results;
 }
 

@@ -104,7 +104,7 @@ class CInterface : public PassTest {
  protected:
   void SetUp() override;
   void TearDown() override;
-  static void TearDownTestSuite() { context_.reset(); }
+  static void TearDownTestSuite() { shared_context.reset(); }
 
   // The context that the tests of a suite share, so that pipelines are created once. After each
   // test its views are dropped and its images forgotten.
@@ -153,7 +153,7 @@ class CInterface : public PassTest {
     AlcoveSettings settings;
     AlcoveAdvancedSettings advanced;
   };
-  static Context context_;
+  static Context shared_context;
   std::unique_ptr<Engine> engine_;
   std::deque<Settings> settings_;  // of the views
   std::vector<std::pair<HostImage, AlcoveImage>> inputs_;

@@ -64,8 +64,8 @@ typedef struct AlcoveMemoryBlock {
 } AlcoveMemoryBlock;
 
 // The bytes of device memory of the last recorded frame. All are zero before the first frame, and
-// after a frame that failed or was discarded. `transients` counts the memory of the largest frame
-// so far, because this memory grows and does not shrink.
+// after a frame that failed or was discarded. `transients` is the memory that this frame uses. The
+// context holds as much as the largest frame so far has used, which `allocated` counts.
 typedef struct AlcoveMemory {
   uint32_t struct_size;
   uint64_t transients;           // intermediate images, which share memory
