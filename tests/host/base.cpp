@@ -63,8 +63,7 @@ void Base::open(const VkPhysicalDeviceFeatures2& features, bool async) {
     const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                        .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                        .queueFamilyIndex = queue.queueFamilyIndex};
-    require(vkCreateCommandPool(device, &pool, nullptr, &pools_[queue.queueFamilyIndex]),
-            "a command pool cannot be created");
+    pools_[queue.queueFamilyIndex] = create(vkCreateCommandPool, pool);
   }
 }
 
@@ -107,23 +106,22 @@ Image Base::create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usa
       .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
       .queueFamilyIndexCount = shared ? 2u : 0u,
       .pQueueFamilyIndices = families.data()};
-  Image made{.format = format, .usage = usage};
-  require(vkCreateImage(device, &info, nullptr, &made.image), "an image cannot be created");
+  Image image{.image = create(vkCreateImage, info), .format = format, .usage = usage};
   VkMemoryRequirements requirements;
-  vkGetImageMemoryRequirements(device, made.image, &requirements);
-  made.memory = allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-  require(vkBindImageMemory(device, made.image, made.memory, 0), "an image cannot be bound");
+  vkGetImageMemoryRequirements(device, image.image, &requirements);
+  image.memory = allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  require(vkBindImageMemory(device, image.image, image.memory, 0), "an image cannot be bound");
   const VkImageAspectFlags aspect =
       format == VK_FORMAT_D32_SFLOAT_S8_UINT
           ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT}
           : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT};
   const VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                   .image = made.image,
+                                   .image = image.image,
                                    .viewType = VK_IMAGE_VIEW_TYPE_2D,
                                    .format = format,
                                    .subresourceRange = {aspect, 0, 1, 0, 1}};
-  require(vkCreateImageView(device, &view, nullptr, &made.view), "a view cannot be created");
-  return made;
+  image.view = create(vkCreateImageView, view);
+  return image;
 }
 
 void Base::destroy(Image& image) const {
@@ -136,17 +134,16 @@ void Base::destroy(Image& image) const {
 Buffer Base::create_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) const {
   const VkBufferCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
-  Buffer made;
-  require(vkCreateBuffer(device, &info, nullptr, &made.buffer), "a buffer cannot be created");
+  Buffer buffer{.buffer = create(vkCreateBuffer, info)};
   VkMemoryRequirements requirements;
-  vkGetBufferMemoryRequirements(device, made.buffer, &requirements);
-  made.memory = allocate(
+  vkGetBufferMemoryRequirements(device, buffer.buffer, &requirements);
+  buffer.memory = allocate(
       requirements, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-  require(vkBindBufferMemory(device, made.buffer, made.memory, 0), "a buffer cannot be bound");
+  require(vkBindBufferMemory(device, buffer.buffer, buffer.memory, 0), "a buffer cannot be bound");
   void* mapped = nullptr;
-  require(vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped), "cannot map a buffer");
-  made.mapped = static_cast<std::byte*>(mapped);
-  return made;
+  require(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &mapped), "cannot map a buffer");
+  buffer.mapped = static_cast<std::byte*>(mapped);
+  return buffer;
 }
 
 void Base::destroy(Buffer& buffer) const {
@@ -165,28 +162,22 @@ VkCommandBuffer Base::allocate_commands(std::uint32_t family) const {
   return commands;
 }
 
-VkShaderModule Base::create_module(const ShaderCode& code) const {
-  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                      .codeSize = code.bytes,
-                                      .pCode = code.words};
-  VkShaderModule made = VK_NULL_HANDLE;
-  require(vkCreateShaderModule(device, &info, nullptr, &made), "a shader cannot be created");
-  return made;
-}
-
 VkPipeline Base::create_pipeline(const PipelineDescription& description) const {
   const VkSpecializationMapEntry entry{0, 0, sizeof description.packed};
   const VkSpecializationInfo constants{1, &entry, sizeof description.packed, &description.packed};
-  const std::array<VkPipelineShaderStageCreateInfo, 2> stages{
-      {{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_VERTEX_BIT,
-        .module = create_module(description.vertex),
-        .pName = "main"},
-       {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-        .module = create_module(description.fragment),
-        .pName = "main",
-        .pSpecializationInfo = &constants}}};
+  const auto create_stage = [&](VkShaderStageFlagBits stage, std::span<const std::uint32_t> code) {
+    const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = code.size_bytes(),
+                                        .pCode = code.data()};
+    return VkPipelineShaderStageCreateInfo{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+        .stage = stage,
+        .module = create(vkCreateShaderModule, info),
+        .pName = "main"};
+  };
+  std::array stages{create_stage(VK_SHADER_STAGE_VERTEX_BIT, description.vertex),
+                    create_stage(VK_SHADER_STAGE_FRAGMENT_BIT, description.fragment)};
+  stages[1].pSpecializationInfo = &constants;
   const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
   const std::array<VkVertexInputAttributeDescription, 2> attributes{
       {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
@@ -243,12 +234,12 @@ VkPipeline Base::create_pipeline(const PipelineDescription& description) const {
                                           .pDynamicState = &dynamics,
                                           .layout = description.layout,
                                           .renderPass = description.render_pass};
-  VkPipeline made = VK_NULL_HANDLE;
-  require(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &made),
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  require(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
           "a pipeline cannot be created");
   for (const VkPipelineShaderStageCreateInfo& stage : stages)
     vkDestroyShaderModule(device, stage.module, nullptr);
-  return made;
+  return pipeline;
 }
 
 }  // namespace host

@@ -31,14 +31,9 @@ struct Buffer {
   std::byte* mapped = nullptr;
 };
 
-struct ShaderCode {
-  const std::uint32_t* words;
-  std::size_t bytes;
-};
-
 struct PipelineDescription {
-  ShaderCode vertex;
-  ShaderCode fragment;
+  std::span<const std::uint32_t> vertex;  // SPIR-V
+  std::span<const std::uint32_t> fragment;
   VkPipelineLayout layout;
   VkRenderPass render_pass;
   bool has_vertices;  // position and normal, and a depth test; else a triangle without a buffer
@@ -58,6 +53,14 @@ class Base {
   Buffer create_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) const;
   void destroy(Buffer& buffer) const;
   VkPipeline create_pipeline(const PipelineDescription& description) const;
+  // Creates an object with a function such as vkCreateSampler.
+  template <typename Info, typename Object>
+  Object create(VkResult (*function)(VkDevice, const Info*, const VkAllocationCallbacks*, Object*),
+                const Info& info) const {
+    Object object = VK_NULL_HANDLE;
+    require(function(device, &info, nullptr, &object), "an object of Vulkan cannot be created");
+    return object;
+  }
   VkCommandBuffer allocate_commands(std::uint32_t family) const;
 
   VkInstance instance = VK_NULL_HANDLE;
@@ -69,7 +72,6 @@ class Base {
   VkQueue compute_queue = VK_NULL_HANDLE;
 
  private:
-  VkShaderModule create_module(const ShaderCode& code) const;
   VkDeviceMemory allocate(const VkMemoryRequirements& requirements,
                           VkMemoryPropertyFlags properties) const;
   std::vector<VkCommandPool> pools_;  // by queue family

@@ -23,13 +23,14 @@ constexpr const char* kValidation =
     "VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT:"
     "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT ";
 
-struct Ended {
+// The result of a program.
+struct ProcessResult {
   int status = -1;
   std::string output;  // standard output and error
 };
 
-Ended run(const std::string& command) {
-  Ended result;
+ProcessResult run(const std::string& command) {
+  ProcessResult result;
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return result;
   std::array<char, 256> part{};
@@ -103,12 +104,12 @@ std::vector<int> draw_by_alcove(const TemporaryFolder& folder, const Shot& shot,
 std::vector<int> draw_by_host(const TemporaryFolder& folder, const Shot& shot,
                               const std::string& arguments) {
   const std::string file = (folder.path / "host.pgm").string();
-  const Ended ended = run(
+  const ProcessResult process = run(
       kValidation + std::string(ALCOVE_HOST " ") + file + " --size " + std::to_string(shot.width) +
       "x" + std::to_string(shot.height) + " --eye " + std::to_string(shot.eye.x) + "," +
       std::to_string(shot.eye.y) + "," + std::to_string(shot.eye.z) + " " + arguments);
-  EXPECT_EQ(ended.status, 0);
-  EXPECT_EQ(ended.output, "");
+  EXPECT_EQ(process.status, 0);
+  EXPECT_EQ(process.output, "");
   const std::string contents = read_file(file);
   const std::size_t pixels = std::size_t{shot.width} * shot.height;
   std::vector<int> steps;

@@ -39,9 +39,7 @@ void Renderer::resize(VkExtent2D size) {
                                        .width = size.width,
                                        .height = size.height,
                                        .layers = 1};
-    VkFramebuffer made = VK_NULL_HANDLE;
-    require(vkCreateFramebuffer(base_.device, &info, nullptr, &made), "no framebuffer");
-    return made;
+    return base_.create(vkCreateFramebuffer, info);
   };
   geometry_target_ = create(geometry_pass_, std::array{normals_.view, depth_.view});
   lighting_target_ = create(lighting_pass_, std::array{colour_.view});

@@ -72,9 +72,7 @@ void Renderer::create_render_passes() {
         .pSubpasses = &subpass,
         .dependencyCount = static_cast<std::uint32_t>(dependencies.size()),
         .pDependencies = dependencies.data()};
-    VkRenderPass made = VK_NULL_HANDLE;
-    require(vkCreateRenderPass(base_.device, &info, nullptr, &made), "no render pass");
-    return made;
+    return base_.create(vkCreateRenderPass, info);
   };
   VkAttachmentDescription normals{.format = normal_format(options_),
                                   .samples = VK_SAMPLE_COUNT_1_BIT,
@@ -111,7 +109,7 @@ void Renderer::create_render_passes() {
 
 void Renderer::create_pipelines() {
   const VkSamplerCreateInfo sampler{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-  require(vkCreateSampler(base_.device, &sampler, nullptr, &sampler_), "no sampler");
+  sampler_ = base_.create(vkCreateSampler, sampler);
   std::array<VkDescriptorSetLayoutBinding, 2> bindings{};
   for (std::uint32_t i = 0; i < bindings.size(); ++i) {
     bindings[i] = {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
@@ -121,13 +119,13 @@ void Renderer::create_pipelines() {
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
       .bindingCount = 2,
       .pBindings = bindings.data()};
-  require(vkCreateDescriptorSetLayout(base_.device, &set_info, nullptr, &set_layout_), "no layout");
+  set_layout_ = base_.create(vkCreateDescriptorSetLayout, set_info);
   const VkDescriptorPoolSize textures{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets = 1,
                                              .poolSizeCount = 1,
                                              .pPoolSizes = &textures};
-  require(vkCreateDescriptorPool(base_.device, &pool_info, nullptr, &pool_), "no pool");
+  pool_ = base_.create(vkCreateDescriptorPool, pool_info);
   const VkDescriptorSetAllocateInfo allocation{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
       .descriptorPool = pool_,
@@ -138,23 +136,16 @@ void Renderer::create_pipelines() {
   VkPipelineLayoutCreateInfo layout{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                     .pushConstantRangeCount = 1,
                                     .pPushConstantRanges = &push};
-  require(vkCreatePipelineLayout(base_.device, &layout, nullptr, &geometry_layout_), "no layout");
+  geometry_layout_ = base_.create(vkCreatePipelineLayout, layout);
   layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
             .setLayoutCount = 1,
             .pSetLayouts = &set_layout_};
-  require(vkCreatePipelineLayout(base_.device, &layout, nullptr, &lighting_layout_), "no layout");
-  geometry_pipeline_ = base_.create_pipeline({{kHostGbufferVertex, sizeof kHostGbufferVertex},
-                                              {kHostGbufferFragment, sizeof kHostGbufferFragment},
-                                              geometry_layout_,
-                                              geometry_pass_,
-                                              true,
-                                              options_.float_normals ? VK_FALSE : VK_TRUE});
-  lighting_pipeline_ = base_.create_pipeline({{kHostLightingVertex, sizeof kHostLightingVertex},
-                                              {kHostLightingFragment, sizeof kHostLightingFragment},
-                                              lighting_layout_,
-                                              lighting_pass_,
-                                              false,
-                                              options_.float_normals ? VK_FALSE : VK_TRUE});
+  lighting_layout_ = base_.create(vkCreatePipelineLayout, layout);
+  const VkBool32 packed = options_.float_normals ? VK_FALSE : VK_TRUE;
+  geometry_pipeline_ = base_.create_pipeline(
+      {kHostGbufferVertex, kHostGbufferFragment, geometry_layout_, geometry_pass_, true, packed});
+  lighting_pipeline_ = base_.create_pipeline({kHostLightingVertex, kHostLightingFragment,
+                                              lighting_layout_, lighting_pass_, false, packed});
 }
 
 void Renderer::create_slots() {
@@ -165,9 +156,9 @@ void Renderer::create_slots() {
     slot.geometry = base_.allocate_commands(base_.graphics_family);
     slot.compute = base_.allocate_commands(base_.compute_family);
     slot.lighting = base_.allocate_commands(base_.graphics_family);
-    require(vkCreateSemaphore(base_.device, &semaphore, nullptr, &slot.drawn), "no semaphore");
-    require(vkCreateSemaphore(base_.device, &semaphore, nullptr, &slot.computed), "no semaphore");
-    require(vkCreateFence(base_.device, &fence, nullptr, &slot.finished), "no fence");
+    slot.drawn = base_.create(vkCreateSemaphore, semaphore);
+    slot.computed = base_.create(vkCreateSemaphore, semaphore);
+    slot.finished = base_.create(vkCreateFence, fence);
   }
 }
 

@@ -18,8 +18,6 @@ constexpr float kFar = 50.0f;
 constexpr float kFovY = 0.9f;
 constexpr float kAspect = 1.5f;
 
-glm::mat4 matrix_of(const float* values) { return glm::make_mat4(values); }
-
 // The camera of all tests. In the library's convention its view matrix is that of glm::lookAtRH,
 // and its projection has depth 0 to 1 and y pointing down.
 const glm::vec3 kEye(1.0f, 2.0f, 3.0f);
@@ -39,39 +37,29 @@ void expect_near(const glm::mat4& found, const glm::mat4& expected) {
       EXPECT_NEAR(found[column][row], expected[column][row], 1e-5f) << column << ", " << row;
 }
 
-void expect_converted(const glm::mat4& clip, const glm::mat4& view, std::uint32_t conventions) {
-  AlcoveCamera camera{};
-  ASSERT_EQ(alcoveConvertCamera(&clip[0][0], &view[0][0], conventions, &camera), ALCOVE_SUCCESS);
-  expect_near(matrix_of(camera.clip_from_view), expected_clip());
-  expect_near(matrix_of(camera.view_from_world), expected_view());
-}
-
-TEST(CCamera, CameraMatricesInTheLibrarysConventionAreNotChanged) {
-  expect_converted(expected_clip(), expected_view(), 0);
-}
-
-TEST(CCamera, GlmCameraMatricesForANegativeViewportHeightAreConverted) {
-  expect_converted(glm::perspectiveRH_ZO(kFovY, kAspect, kNear, kFar), expected_view(),
-                   ALCOVE_CAMERA_CONVENTION_GLM);
-}
-
-TEST(CCamera, OpenGlCameraMatricesAreConverted) {
-  expect_converted(glm::perspectiveRH_NO(kFovY, kAspect, kNear, kFar), expected_view(),
-                   ALCOVE_CAMERA_CONVENTION_OPENGL);
-}
-
 // In Direct3D's view space the camera looks along +Z, x points to the right and y up. World space
-// is the same as in the other tests.
-TEST(CCamera, Direct3dCameraMatricesAreConverted) {
-  glm::mat4 view = expected_view();
-  for (int column = 0; column < 4; ++column) view[column][2] = -view[column][2];
-  expect_converted(glm::perspectiveLH_ZO(kFovY, kAspect, kNear, kFar), view,
-                   ALCOVE_CAMERA_CONVENTION_DIRECT3D);
-}
-
-TEST(CCamera, RowMajorCameraMatricesAreTransposed) {
-  expect_converted(glm::transpose(expected_clip()), glm::transpose(expected_view()),
-                   ALCOVE_CAMERA_CONVENTION_ROW_MAJOR);
+// is the same in all conventions.
+TEST(CCamera, CameraMatricesOfEveryConventionAreConverted) {
+  const glm::mat4 clip = expected_clip(), view = expected_view();
+  const glm::mat4 forward = glm::scale(glm::mat4(1.0f), glm::vec3(1.0f, 1.0f, -1.0f)) * view;
+  struct Case {
+    std::uint32_t conventions;
+    glm::mat4 clip, view;
+  };
+  for (const Case& each :
+       {Case{0, clip, view},
+        {ALCOVE_CAMERA_CONVENTION_GLM, glm::perspectiveRH_ZO(kFovY, kAspect, kNear, kFar), view},
+        {ALCOVE_CAMERA_CONVENTION_OPENGL, glm::perspectiveRH_NO(kFovY, kAspect, kNear, kFar), view},
+        {ALCOVE_CAMERA_CONVENTION_DIRECT3D, glm::perspectiveLH_ZO(kFovY, kAspect, kNear, kFar),
+         forward},
+        {ALCOVE_CAMERA_CONVENTION_ROW_MAJOR, glm::transpose(clip), glm::transpose(view)}}) {
+    SCOPED_TRACE(each.conventions);
+    AlcoveCamera camera{};
+    ASSERT_EQ(alcoveConvertCamera(&each.clip[0][0], &each.view[0][0], each.conventions, &camera),
+              ALCOVE_SUCCESS);
+    expect_near(glm::make_mat4(camera.clip_from_view), clip);
+    expect_near(glm::make_mat4(camera.view_from_world), view);
+  }
 }
 
 TEST(CCamera, NullPointersAndUnknownConventionsAreErrors) {
@@ -92,23 +80,20 @@ AlcovePerspective perspective() {
           .height = 200};
 }
 
-TEST(CCamera, PerspectiveMadeFromAngleAndPlanesEqualsThatOfGlm) {
-  const AlcovePerspective given = perspective();
-  float clip[16];
-  ASSERT_EQ(alcoveMakePerspective(&given, clip), ALCOVE_SUCCESS);
-  expect_near(matrix_of(clip), expected_clip());
-}
-
-TEST(CCamera, NearAndFarPlanesProjectToDepthsZeroAndOneOrTheReverse) {
+TEST(CCamera, PerspectiveMadeFromAngleAndPlanesEqualsThatOfGlmAndProjectsItsPlanesToZeroAndOne) {
+  const AlcovePerspective plain = perspective();
+  float clip_from_view[16];
+  ASSERT_EQ(alcoveMakePerspective(&plain, clip_from_view), ALCOVE_SUCCESS);
+  expect_near(glm::make_mat4(clip_from_view), expected_clip());
   for (const bool reversed : {false, true}) {
     for (const float far : {kFar, 0.0f, std::numeric_limits<float>::infinity()}) {
-      AlcovePerspective given = perspective();
-      given.reversed = reversed ? VK_TRUE : VK_FALSE;
-      given.far_plane = far;
+      AlcovePerspective changed = perspective();
+      changed.reversed = reversed ? VK_TRUE : VK_FALSE;
+      changed.far_plane = far;
       float clip[16];
-      ASSERT_EQ(alcoveMakePerspective(&given, clip), ALCOVE_SUCCESS);
+      ASSERT_EQ(alcoveMakePerspective(&changed, clip), ALCOVE_SUCCESS);
       const auto depth_at = [&](float distance) {
-        const glm::vec4 p = matrix_of(clip) * glm::vec4(0.0f, 0.0f, -distance, 1.0f);
+        const glm::vec4 p = glm::make_mat4(clip) * glm::vec4(0.0f, 0.0f, -distance, 1.0f);
         return p.z / p.w;
       };
       EXPECT_NEAR(depth_at(kNear), reversed ? 1.0f : 0.0f, 1e-6f);
@@ -118,14 +103,14 @@ TEST(CCamera, NearAndFarPlanesProjectToDepthsZeroAndOneOrTheReverse) {
 }
 
 TEST(CCamera, JitterGivenInPixelsShiftsTheImageByThatManyPixels) {
-  AlcovePerspective given = perspective();
+  AlcovePerspective changed = perspective();
   float still[16], moved[16];
-  ASSERT_EQ(alcoveMakePerspective(&given, still), ALCOVE_SUCCESS);
-  given.jitter_px[0] = 0.25f;
-  given.jitter_px[1] = -0.5f;
-  ASSERT_EQ(alcoveMakePerspective(&given, moved), ALCOVE_SUCCESS);
+  ASSERT_EQ(alcoveMakePerspective(&changed, still), ALCOVE_SUCCESS);
+  changed.jitter_px[0] = 0.25f;
+  changed.jitter_px[1] = -0.5f;
+  ASSERT_EQ(alcoveMakePerspective(&changed, moved), ALCOVE_SUCCESS);
   const auto pixel_of = [](const float* clip, const glm::vec3& p) {
-    const glm::vec4 at = matrix_of(clip) * glm::vec4(p, 1.0f);
+    const glm::vec4 at = glm::make_mat4(clip) * glm::vec4(p, 1.0f);
     return (glm::vec2(at) / at.w * 0.5f + 0.5f) * glm::vec2(300.0f, 200.0f);
   };
   const glm::vec3 p(0.7f, -0.4f, -3.0f);
@@ -135,22 +120,17 @@ TEST(CCamera, JitterGivenInPixelsShiftsTheImageByThatManyPixels) {
 }
 
 TEST(CCamera, PerspectiveParametersOutOfRangeAreErrors) {
-  const auto result = [](void (*spoil)(AlcovePerspective&)) {
-    AlcovePerspective given = perspective();
-    spoil(given);
+  using P = AlcovePerspective;
+  for (const auto change : {+[](P& p) { p.struct_size = 0; }, +[](P& p) { p.fov_y = 0.0f; },
+                            +[](P& p) { p.fov_y = 4.0f; }, +[](P& p) { p.near_plane = 0.0f; },
+                            +[](P& p) { p.near_plane = NAN; }, +[](P& p) { p.far_plane = 0.05f; },
+                            +[](P& p) { p.far_plane = -1.0f; }, +[](P& p) { p.width = 0; },
+                            +[](P& p) { p.jitter_px[1] = NAN; }}) {
+    AlcovePerspective changed = perspective();
+    change(changed);
     float clip[16];
-    return alcoveMakePerspective(&given, clip);
-  };
-  for (const auto spoil : {+[](AlcovePerspective& p) { p.struct_size = 0; },
-                           +[](AlcovePerspective& p) { p.fov_y = 0.0f; },
-                           +[](AlcovePerspective& p) { p.fov_y = 4.0f; },
-                           +[](AlcovePerspective& p) { p.near_plane = 0.0f; },
-                           +[](AlcovePerspective& p) { p.near_plane = NAN; },
-                           +[](AlcovePerspective& p) { p.far_plane = 0.05f; },
-                           +[](AlcovePerspective& p) { p.far_plane = -1.0f; },
-                           +[](AlcovePerspective& p) { p.width = 0; },
-                           +[](AlcovePerspective& p) { p.jitter_px[1] = NAN; }})
-    EXPECT_EQ(result(spoil), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(alcoveMakePerspective(&changed, clip), ALCOVE_ERROR_INVALID_INPUT);
+  }
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 
 #include "c_interface_fixture.h"
 #include "diagnose/mistake_finder.h"
-#include "gtao_scenes.h"
 
 namespace alcove::passes {
 namespace {
@@ -27,11 +26,10 @@ AlcoveCamera camera_at(float x, float jitter) {
 
 // Returns the report on 40 frames with a moving camera. `change` changes every frame before it is
 // observed. `speed` is the distance that the camera moves from frame to frame.
-std::string said_of(const std::function<void(AlcoveFrame&, AlcoveView&)>& change,
-                    float speed = 0.1f) {
+std::string diagnose(const std::function<void(AlcoveFrame&, AlcoveView&)>& change,
+                     float speed = 0.1f) {
   MistakeFinder finder;
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto at = [&](std::uint32_t frame) {
       return camera_at(speed * static_cast<float>(frame), 0.001f * static_cast<float>(frame % 7));
@@ -48,10 +46,10 @@ std::string said_of(const std::function<void(AlcoveFrame&, AlcoveView&)>& change
 
 TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
   for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f})
-    EXPECT_EQ(said_of([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
+    EXPECT_EQ(diagnose([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
   // The following calls are correct as well: a reset of the history in every fifth frame, pairs of
   // frames with the same index, as for the two eyes of a stereo view, and a game that starts anew.
-  EXPECT_EQ(said_of([](AlcoveFrame& frame, AlcoveView& view) {
+  EXPECT_EQ(diagnose([](AlcoveFrame& frame, AlcoveView& view) {
               view.reset_history = frame.index % 5 == 0 ? VK_TRUE : VK_FALSE;
               frame.index = frame.index % 25 / 2;
             }),
@@ -59,18 +57,17 @@ TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
 }
 
 TEST(CDiagnose, IndexMayStandStillIfNoiseIsStatic) {
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
-  const auto said = [&](std::uint32_t history_frames, std::uint32_t static_noise) {
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
+  const auto diagnose_noise = [&](std::uint32_t history_frames, std::uint32_t static_noise) {
     settings.history_frames = history_frames;
     settings.static_noise = static_noise;
-    return said_of([&](AlcoveFrame& frame, AlcoveView& view) {
+    return diagnose([&](AlcoveFrame& frame, AlcoveView& view) {
       frame.index = frame.index / 8 % 2;
       view.settings = &settings;
     });
   };
-  EXPECT_EQ(said(0, 1), "");
-  for (const std::string& other : {said(0, 0), said(32, 1)}) {
+  EXPECT_EQ(diagnose_noise(0, 1), "");
+  for (const std::string& other : {diagnose_noise(0, 0), diagnose_noise(32, 1)}) {
     EXPECT_THAT(other, HasSubstr("AlcoveFrame::index stays the same"));
     EXPECT_THAT(other, HasSubstr("AlcoveFrame::index goes back"));
   }
@@ -82,13 +79,12 @@ TEST(CDiagnose, MistakeIsForgottenAfterItHasBeenMended) {
       view.previous_camera = frame.index < end ? view.camera : view.previous_camera;
     };
   };
-  EXPECT_THAT(said_of(until(40)), HasSubstr("View 3: previous_camera is this frame's camera"));
-  EXPECT_EQ(said_of(until(30)), "");
+  EXPECT_THAT(diagnose(until(40)), HasSubstr("View 3: previous_camera is this frame's camera"));
+  EXPECT_EQ(diagnose(until(30)), "");
 }
 
 TEST(CDiagnose, ViewsThatAreDroppedOrHaveNoHistoryMayBeManyMore) {
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
   enum class Way { leak, drop, no_history };
   for (const Way way : {Way::leak, Way::drop, Way::no_history}) {
     settings.history_frames = way == Way::no_history ? 0 : 32;
@@ -110,72 +106,61 @@ TEST(CDiagnose, ViewsThatAreDroppedOrHaveNoHistoryMayBeManyMore) {
 
 class CDiagnoseFrames : public CInterface {
  protected:
-  // Records ten equal frames of a view and returns the text of alcoveDiagnose. If `discards` is
-  // true, the frames are discarded.
-  std::string said_of(const GivenView& given, bool discards = false) {
-    const Context context = create_context();
-    AlcoveSettings settings;
-    AlcoveView view = view_of(given, settings);
+  // Records ten equal frames of a view and returns the text of alcoveDiagnose.
+  std::string diagnose(const HostView& from, bool discards = false) {
+    AlcoveView view = create_view(from);
+    view.id = next_id_++;
     view.previous_camera = view.camera;
     for (std::uint32_t i = 0; i < 10; ++i) {
-      const AlcoveFrame frame{.struct_size = sizeof frame,
-                              .index = i,
-                              .slot = i % Engine::kSlots,
-                              .view_count = 1,
-                              .views = &view,
-                              .diagnose_pixels = VK_TRUE};
-      engine().submit(frame.slot, [&](VkCommandBuffer commands) {
-        EXPECT_EQ(alcoveRecordFrame(context.get(), commands, &frame), ALCOVE_SUCCESS)
-            << alcoveGetMessage(context.get());
-        if (discards) {
-          throw_away(commands);
-        }
-      });
+      AlcoveFrame frame = make_frame({&view, 1}, i);
+      frame.diagnose_pixels = VK_TRUE;
+      EXPECT_EQ(record(context(), frame, discards), ALCOVE_SUCCESS) << alcoveGetMessage(&context());
       if (discards) {
-        EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
+        EXPECT_EQ(alcoveDiscardFrame(&context()), ALCOVE_SUCCESS);
       }
     }
     engine().wait();
-    std::string text(alcoveDiagnose(context.get(), nullptr, 0) + 1, '\0');
-    alcoveDiagnose(context.get(), text.data(), text.size());
-    text.pop_back();
-    return text;
+    EXPECT_EQ(alcoveDropView(&context(), view.id), ALCOVE_SUCCESS);
+    return print_diagnosis(context());
   }
+  static std::string print_diagnosis(AlcoveContext& context) {
+    return print(
+        [&](char* text, std::size_t size) { return alcoveDiagnose(&context, text, size); });
+  }
+
+ private:
+  std::uint32_t next_id_ = 0;
 };
 
 TEST_F(CDiagnoseFrames, CorrectPixelsAreNotReportedAsMistakes) {
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(view.name + ", " + scene.name);
-      GivenView given = given_view(view, 96, 64, scene.scene);
+      HostView from = draw_view(96, 64, scene.scene, view);
       // A rotation that maps no axis of world space to an axis of view space.
-      given.view.view_from_world = {0.36f, 0.48f, -0.8f, 0.0f, -0.8f, 0.6f,  0.0f, 0.0f,
-                                    0.48f, 0.64f, 0.6f,  0.0f, 0.3f,  -1.0f, 2.0f, 1.0f};
-      given.settings.steps = 2;
-      given.motion = given.back_depth_ndc = given.second_depth_ndc = {};
-      EXPECT_EQ(said_of(given), "");
+      from.view.view_from_world = {0.36f, 0.48f, -0.8f, 0.0f, -0.8f, 0.6f,  0.0f, 0.0f,
+                                   0.48f, 0.64f, 0.6f,  0.0f, 0.3f,  -1.0f, 2.0f, 1.0f};
+      from.settings.steps = 2;
+      from.motion = from.back_depth_ndc = from.second_depth_ndc = {};
+      EXPECT_EQ(diagnose(from), "");
     }
   }
 }
 
 TEST_F(CDiagnoseFrames, DiscardedFramesAreNotReportedAsMistakes) {
-  EXPECT_EQ(said_of(given_view(test_views()[2], 96, 64, groove(0.8)), true), "");
+  EXPECT_EQ(diagnose(draw_view(96, 64, groove(0.8)), true), "");
 }
 
 TEST_F(CDiagnoseFrames, DiagnosisTextIsTruncatedToTheBufferOfTheCaller) {
   const Context context = create_context();
-  EXPECT_EQ(alcoveDiagnose(context.get(), nullptr, 0), 0u);
-  EXPECT_EQ(alcoveDiagnose(nullptr, nullptr, 0), 0u);
-  GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
-  AlcoveSettings settings{};
-  const AlcoveView view = view_of(given, settings);
+  EXPECT_EQ(print_diagnosis(*context), "");
+  const AlcoveView view = create_view(draw_view(16, 12));
   for (std::uint32_t i = 0; i < 8; ++i) run_frame(*context, {&view, 1}, 4);
   engine().wait();
-  std::string text(alcoveDiagnose(context.get(), nullptr, 0) + 1, '\0');
-  EXPECT_EQ(alcoveDiagnose(context.get(), text.data(), text.size()), text.size() - 1);
+  const std::string text = print_diagnosis(*context);
   EXPECT_THAT(text, HasSubstr("View 0: AlcoveFrame::index stays the same"));
   char small[7];
-  EXPECT_EQ(alcoveDiagnose(context.get(), small, sizeof small), text.size() - 1);
+  EXPECT_EQ(alcoveDiagnose(context.get(), small, sizeof small), text.size());
   EXPECT_STREQ(small, "View 0");
 }
 

@@ -4,13 +4,13 @@
 
 #include <array>
 #include <climits>
+#include <functional>
 #include <string>
 #include <utility>
 
 #include "c_interface_fixture.h"
 #include "framegraph/allocation_counter.h"
 #include "framegraph/failing_device.h"
-#include "gtao_scenes.h"
 
 namespace alcove::passes {
 namespace {
@@ -69,9 +69,9 @@ class CFailure : public CInterface {
 
   std::string error_of_context(const AlcoveContextInfo& info, AlcoveResult expected) {
     char message[ALCOVE_MAX_MESSAGE];
-    AlcoveContext* made = nullptr;
-    EXPECT_EQ(alcoveCreateContext(&info, &made, message), expected) << message;
-    const Context context(made);
+    AlcoveContext* handle = nullptr;
+    EXPECT_EQ(alcoveCreateContext(&info, &handle, message), expected) << message;
+    alcoveDestroyContext(handle);
     return message;
   }
 };
@@ -119,53 +119,36 @@ TEST_F(CFailure, VulkanFeatureThatTheEngineDidNotEnableIsReported) {
               HasSubstr("shaderStorageImageWriteWithoutFormat"));
 }
 
-// The result and the message of the first call that failed while a context was created, a frame
-// prepared and two frames recorded.
-struct Outcome {
-  AlcoveResult result = ALCOVE_SUCCESS;
-  std::string message;
-};
-Outcome run_frames(const AlcoveContextInfo& info, const AlcoveView& view, Engine& engine) {
-  Outcome outcome;
-  char message[ALCOVE_MAX_MESSAGE];
-  AlcoveContext* made = nullptr;
-  outcome.result = alcoveCreateContext(&info, &made, message);
-  const Context context(made);
-  std::string said = message;
-  const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
-  if (outcome.result == ALCOVE_SUCCESS) {
-    outcome.result = alcovePrepareFrame(context.get(), &frame);
-    said = alcoveGetMessage(context.get());
-  }
-  for (int i = 0; i < 2 && outcome.result == ALCOVE_SUCCESS; ++i) {
-    engine.submit(0, [&](VkCommandBuffer commands) {
-      outcome.result = alcoveRecordFrame(context.get(), commands, &frame);
-      if (outcome.result != ALCOVE_SUCCESS) throw_away(commands);
-    });
-    said = alcoveGetMessage(context.get());
-  }
-  engine.wait();
-  outcome.message = said;
-  return outcome;
+// A context whose device is wrapped by failing_device.h.
+AlcoveContextInfo failing_info(const Engine& engine) {
+  AlcoveContextInfo info = engine.context_info();
+  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
+  return info;
 }
 
+// Creates a context, prepares a frame and records two while a call that creates an object fails.
 TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorAndLeaksNothing) {
-  GivenView given = given_view(test_views()[2], 8, 6, groove(0.8));
-  given.settings.advanced.estimator = Estimator::horizons;
-  AlcoveSettings settings;
-  const AlcoveView view = view_of(given, settings);
-  AlcoveContextInfo info = engine().context_info();
-  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
+  HostView from = draw_view(8, 6, groove(0.8));
+  from.settings.advanced.estimator = Estimator::horizons;
+  const AlcoveView view = create_view(from);
+  const AlcoveFrame frame = make_frame({&view, 1}, 0);
+  const AlcoveContextInfo info = failing_info(engine());
   bool failed = true;
   for (int call = 1; failed; ++call) {
     SCOPED_TRACE(call);
     framegraph::failing::fail_at(call);
-    const Outcome outcome = run_frames(info, view, engine());
-    EXPECT_EQ(framegraph::failing::alive(), 0);
+    char message[ALCOVE_MAX_MESSAGE];
+    AlcoveContext* handle = nullptr;
+    AlcoveResult result = alcoveCreateContext(&info, &handle, message);
+    Context context(handle);
+    if (result == ALCOVE_SUCCESS) result = alcovePrepareFrame(handle, &frame);
+    for (int i = 0; i < 2 && result == ALCOVE_SUCCESS; ++i) result = record(*handle, frame);
+    engine().wait();
     failed = framegraph::failing::calls() >= call;
-    EXPECT_EQ(outcome.result, failed ? ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY : ALCOVE_SUCCESS)
-        << outcome.message;
-    EXPECT_EQ(outcome.message.empty(), !failed);
+    EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY : ALCOVE_SUCCESS);
+    EXPECT_EQ(std::string(context ? alcoveGetMessage(handle) : message).empty(), !failed);
+    context.reset();
+    EXPECT_EQ(framegraph::failing::alive(), 0);
     ASSERT_LT(call, 500);
   }
 }
@@ -184,96 +167,71 @@ TEST(CResult, ResultNamesMatchTheEnumerators) {
     EXPECT_STREQ(alcoveGetResultName(static_cast<AlcoveResult>(none)), "unknown AlcoveResult");
 }
 
-// Calls a function of the library while the allocation number `which`, counted from the beginning
-// of the call, fails. Returns whether the call made that many allocations.
-template <typename Call>
-bool call_without_memory(std::size_t which, const Call& call) {
-  framegraph::fail_allocation(which);
-  call();
-  const bool failed = framegraph::allocation_failed();
-  framegraph::fail_allocation(0);
-  return failed;
+// Makes a call while its first allocation fails, again while its second one fails, and so on until
+// it makes no more of them. `check` is given the result and whether an allocation has failed.
+void fail_each_allocation(const std::function<AlcoveResult(std::size_t number)>& call,
+                          const std::function<void(AlcoveResult, bool failed)>& check) {
+  bool failed = true;
+  std::size_t number = 1;
+  for (; failed; ++number) {
+    SCOPED_TRACE(number);
+    framegraph::fail_allocation(number);
+    const AlcoveResult result = call(number);
+    failed = framegraph::allocation_failed();
+    framegraph::fail_allocation(0);
+    EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS);
+    check(result, failed);
+    ASSERT_LT(number, 2000u);
+  }
+  EXPECT_GT(number, 20u) << "hardly any of them failed";
 }
 
 TEST_F(CFailure, OutOfHostMemoryWhileCreatingAContextIsAnErrorAndLeaksNothing) {
-  AlcoveContextInfo info = engine().context_info();
-  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
-  bool failed = true;
-  std::size_t which = 1;
-  for (; failed; ++which) {
-    SCOPED_TRACE(which);
-    char message[ALCOVE_MAX_MESSAGE];
-    AlcoveContext* made = nullptr;
-    AlcoveResult result = ALCOVE_SUCCESS;
-    failed =
-        call_without_memory(which, [&] { result = alcoveCreateContext(&info, &made, message); });
-    EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS) << message;
-    EXPECT_EQ(made == nullptr, failed);
-    alcoveDestroyContext(made);
-    EXPECT_EQ(framegraph::failing::alive(), 0);
-    ASSERT_LT(which, 2000u);
-  }
-  EXPECT_GT(which, 20u) << "hardly any of them failed";
+  const AlcoveContextInfo info = failing_info(engine());
+  AlcoveContext* handle = nullptr;
+  fail_each_allocation([&](std::size_t) { return alcoveCreateContext(&info, &handle, nullptr); },
+                       [&](AlcoveResult, bool failed) {
+                         EXPECT_EQ(handle == nullptr, failed);
+                         alcoveDestroyContext(handle);
+                         EXPECT_EQ(framegraph::failing::alive(), 0);
+                       });
 }
 
 TEST_F(CFailure, PrepareFrameSucceedsAfterItFailedForLackOfHostMemory) {
-  GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
-  AlcoveSettings settings;
-  const AlcoveView view = view_of(given, settings);
+  const AlcoveView view = create_view(draw_view(16, 12, groove(0.8)));
+  const AlcoveFrame frame = make_frame({&view, 1}, 0);
   const Context context = create_context();
-  const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
-  bool failed = true;
-  std::size_t which = 1;
-  for (; failed; ++which) {
-    SCOPED_TRACE(which);
-    AlcoveResult result = ALCOVE_SUCCESS;
-    failed =
-        call_without_memory(which, [&] { result = alcovePrepareFrame(context.get(), &frame); });
-    EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS)
-        << alcoveGetMessage(context.get());
-    EXPECT_EQ(alcovePrepareFrame(context.get(), &frame), ALCOVE_SUCCESS);
-    ASSERT_LT(which, 2000u);
-  }
-  EXPECT_GT(which, 20u) << "hardly any of them failed";
+  const auto prepare = [&] { return alcovePrepareFrame(context.get(), &frame); };
+  fail_each_allocation([&](std::size_t) { return prepare(); },
+                       [&](AlcoveResult, bool) { EXPECT_EQ(prepare(), ALCOVE_SUCCESS); });
 }
 
 // Each frame has another size than the one before, so that its plan is compiled and its memory is
 // allocated again.
 TEST_F(CFailure, RecordFrameSucceedsAfterItFailedForLackOfHostMemory) {
-  GivenView given = given_view(test_views()[2], 64, 48, groove(0.8));
-  given.settings.bent_normal = true;
-  AlcoveSettings settings;
-  AlcoveView view = view_of(given, settings);
-  AlcoveContextInfo info = engine().context_info();
-  info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
-  AlcoveContext* made = nullptr;
-  ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
-  Context context(made);
-  const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
-  bool failed = true;
-  std::size_t which = 1;
-  for (; failed; ++which) {
-    SCOPED_TRACE(which);
-    for (AlcoveImage* image :
-         {&view.depth, &view.normals, &view.motion, &view.roughness, &view.back_depth,
-          &view.second_depth, &view.albedo, &view.visibility, &view.bent_normal}) {
-      image->width = 8 + static_cast<std::uint32_t>(which % 56);
-      image->height = 8 + static_cast<std::uint32_t>(which / 56);
-    }
-    for (const std::size_t fails : {which, std::size_t{0}}) {
-      engine().submit(0, [&](VkCommandBuffer commands) {
-        AlcoveResult result = ALCOVE_SUCCESS;
-        const bool now = call_without_memory(
-            fails, [&] { result = alcoveRecordFrame(context.get(), commands, &frame); });
-        EXPECT_EQ(result, now ? ALCOVE_ERROR_OUT_OF_HOST_MEMORY : ALCOVE_SUCCESS)
-            << alcoveGetMessage(context.get());
-        if (fails != 0) failed = now;
-        if (now) throw_away(commands);
-      });
-    }
-    ASSERT_LT(which, 2000u);
-  }
-  EXPECT_GT(which, 20u) << "hardly any of them failed";
+  HostView from = draw_view(64, 48, groove(0.8));
+  from.settings.bent_normal = true;
+  AlcoveView view = create_view(from);
+  Context context = create_context(failing_info(engine()));
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  const AlcoveFrame frame = make_frame({&view, 1}, 0);
+  const auto record_frame = [&] { return alcoveRecordFrame(context.get(), commands, &frame); };
+  engine().submit(0, [&](VkCommandBuffer recording) {
+    commands = recording;
+    fail_each_allocation(
+        [&](std::size_t number) {
+          for_each_image(view, [&](AlcoveImage& image) {
+            image.width = 8 + static_cast<std::uint32_t>(number % 56);
+            image.height = 8 + static_cast<std::uint32_t>(number / 56);
+          });
+          return record_frame();
+        },
+        [&](AlcoveResult, bool) {
+          throw_away(commands);
+          EXPECT_EQ(record_frame(), ALCOVE_SUCCESS);
+          throw_away(commands);
+        });
+  });
   engine().wait();
   context.reset();
   EXPECT_EQ(framegraph::failing::alive(), 0);

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "c_interface_fixture.h"
-#include "gtao_scenes.h"
 
 namespace alcove::passes {
 namespace {
@@ -27,9 +26,8 @@ using testing::StartsWith;
 
 // VkAllocationCallbacks that call malloc and count allocations and frees.
 struct HostMemory {
-  std::size_t allocated = 0;
-  std::size_t freed = 0;
-  std::map<void*, std::size_t> sizes;
+  std::size_t allocations = 0;
+  std::map<void*, std::size_t> alive;  // and their sizes
 
   VkAllocationCallbacks callbacks() {
     return {
@@ -41,27 +39,24 @@ struct HostMemory {
         .pfnReallocation = [](void* user, void* original, std::size_t size, std::size_t alignment,
                               VkSystemAllocationScope) -> void* {
           auto& self = *static_cast<HostMemory*>(user);
-          void* const made = size == 0 ? nullptr : self.allocate(size, alignment);
-          if (made != nullptr && original != nullptr)
-            std::memcpy(made, original, std::min(size, self.sizes.at(original)));
+          void* const copy = size == 0 ? nullptr : self.allocate(size, alignment);
+          if (copy != nullptr && original != nullptr)
+            std::memcpy(copy, original, std::min(size, self.alive.at(original)));
           self.free(original);
-          return made;
+          return copy;
         },
         .pfnFree = [](void* user, void* memory) { static_cast<HostMemory*>(user)->free(memory); }};
   }
   void* allocate(std::size_t size, std::size_t alignment) {
-    ++allocated;
+    ++allocations;
     const std::size_t unit = std::max(alignment, sizeof(void*));
-    void* const made = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
-    sizes[made] = size;
-    return made;
+    void* const memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+    alive[memory] = size;
+    return memory;
   }
   void free(void* memory) {
-    if (memory != nullptr) {
-      ++freed;
-      EXPECT_EQ(sizes.erase(memory), 1u) << "freed what was not allocated";
-      std::free(memory);
-    }
+    EXPECT_EQ(alive.erase(memory), memory == nullptr ? 0u : 1u) << "freed what was not allocated";
+    std::free(memory);
   }
 };
 
@@ -116,67 +111,48 @@ struct DeviceMemory {
   }
 };
 
-struct Said {
+// AlcoveLog that collects the sentences.
+struct SentenceLog {
   std::vector<std::pair<AlcoveSeverity, std::string>> sentences;
 
   AlcoveLog log() {
     return {[](void* user, AlcoveSeverity severity, const char* sentence) {
-              static_cast<Said*>(user)->sentences.emplace_back(severity, sentence);
+              static_cast<SentenceLog*>(user)->sentences.emplace_back(severity, sentence);
             },
             this};
   }
 };
 
 // A device memory object that an engine allocates and gives as AlcoveMemoryBlock.
-class Block {
- public:
-  Block(const sample::VulkanDevice& device, VkDeviceSize size) : device_(device) {
-    block_ = {.offset = 1000,  // a multiple of no alignment
-              .size = size,
-              .memory_type = device.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
+struct Block {
+  Block(const sample::VulkanDevice& of, VkDeviceSize size) : device(of.device()) {
+    block = {.offset = 1000,  // a multiple of no alignment
+             .size = size,
+             .memory_type = of.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
     const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                    .allocationSize = block_.offset + size,
-                                    .memoryTypeIndex = block_.memory_type};
-    EXPECT_EQ(vkAllocateMemory(device.device(), &info, nullptr, &block_.memory), VK_SUCCESS);
+                                    .allocationSize = block.offset + size,
+                                    .memoryTypeIndex = block.memory_type};
+    EXPECT_EQ(vkAllocateMemory(device, &info, nullptr, &block.memory), VK_SUCCESS);
   }
-  ~Block() { vkFreeMemory(device_.device(), block_.memory, nullptr); }
+  ~Block() { vkFreeMemory(device, block.memory, nullptr); }
   Block(const Block&) = delete;
   Block& operator=(const Block&) = delete;
 
-  const AlcoveMemoryBlock& block() const { return block_; }
-
- private:
-  const sample::VulkanDevice& device_;
-  AlcoveMemoryBlock block_{};
+  VkDevice device;
+  AlcoveMemoryBlock block{};
 };
 
 class CAllocators : public CInterface {
  protected:
-  static Context create(const AlcoveContextInfo& info) {
-    AlcoveContext* made = nullptr;
-    char message[ALCOVE_MAX_MESSAGE];
-    EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_SUCCESS) << message;
-    return Context(made);
-  }
   // A view with outputs that need every kind of memory: histories, transients and a table.
-  static GivenView given_of(std::uint32_t width, std::uint32_t height) {
-    GivenView given = given_view(test_views()[2], width, height, ball_on_floor());
-    given.settings.bent_normal = true;
-    given.settings.specular = Specular::table;
-    return given;
+  static HostView draw_outputs(std::uint32_t width, std::uint32_t height) {
+    HostView view = draw_view(width, height);
+    view.settings.bent_normal = true;
+    view.settings.specular = Specular::table;
+    return view;
   }
   AlcoveResult record_alone(AlcoveContext& context, const AlcoveView& view, std::uint32_t index) {
-    const AlcoveFrame frame{.struct_size = sizeof frame,
-                            .index = index,
-                            .slot = index % Engine::kSlots,
-                            .view_count = 1,
-                            .views = &view};
-    AlcoveResult result = ALCOVE_SUCCESS;
-    engine().submit(frame.slot, [&](VkCommandBuffer commands) {
-      result = alcoveRecordFrame(&context, commands, &frame);
-      if (result != ALCOVE_SUCCESS) throw_away(commands);
-    });
-    return result;
+    return record(context, make_frame({&view, 1}, index));
   }
 };
 
@@ -188,13 +164,13 @@ TEST_F(CAllocators, EverythingAllocatedThroughTheEnginesAllocatorsIsFreed) {
     AlcoveContextInfo info = engine().context_info();
     info.allocation_callbacks = &callbacks;
     info.memory_functions = memory.functions();
-    const Context context = create(info);
-    const GivenView given = given_of(33, 17);
-    for (std::uint32_t i = 0; i < 3; ++i) expect_same_both_ways(*context, {&given, 1}, i);
+    const Context context = create_context(info);
+    const HostView from = draw_outputs(33, 17);
+    for (std::uint32_t i = 0; i < 3; ++i) expect_same_both_ways(*context, {&from, 1}, i);
     EXPECT_EQ(alcoveDropView(context.get(), 0), ALCOVE_SUCCESS);
   }
-  EXPECT_GT(host.allocated, 20u);
-  EXPECT_EQ(host.allocated, host.freed);
+  EXPECT_GT(host.allocations, 20u);
+  EXPECT_THAT(host.alive, IsEmpty());
   EXPECT_GT(memory.calls, 5);
   EXPECT_THAT(memory.alive, IsEmpty());
   EXPECT_GT(memory.device_local[ALCOVE_MEMORY_LIFETIME_FRAME], 0) << "intermediate images";
@@ -207,13 +183,13 @@ TEST_F(CAllocators, AllImagesArePlacedInTheEnginesMemoryBlockWhileSizesChange) {
   DeviceMemory memory{gpu().device()};
   {
     AlcoveContextInfo info = engine().context_info();
-    info.memory_block = block.block();
+    info.memory_block = block.block;
     info.memory_functions = memory.functions();
-    const Context context = create(info);
+    const Context context = create_context(info);
     std::uint32_t index = 0;
     for (const std::uint32_t width : {40u, 72u, 24u, 96u, 48u, 88u}) {
-      const GivenView given = given_of(width, 32);
-      for (int i = 0; i < 3; ++i) expect_same_both_ways(*context, {&given, 1}, index++);
+      const HostView from = draw_outputs(width, 32);
+      for (int i = 0; i < 3; ++i) expect_same_both_ways(*context, {&from, 1}, index++);
     }
     // The block is not host-visible, so only host-visible memory was asked of the functions.
     for (const VkMemoryPropertyFlags required : memory.required)
@@ -224,17 +200,14 @@ TEST_F(CAllocators, AllImagesArePlacedInTheEnginesMemoryBlockWhileSizesChange) {
 
 TEST_F(CAllocators, FrameTooLargeForTheEnginesMemoryBlockIsReportedAndASmallerFrameStillWorks) {
   const Block block(gpu().device(), 200000);
-  Said said;
+  SentenceLog log;
   AlcoveContextInfo info = engine().context_info();
-  info.memory_block = block.block();
-  info.log = said.log();
-  const Context context = create(info);
-  AlcoveSettings small_settings, large_settings;
-  const GivenView small = given_of(24, 16);
-  const AlcoveView small_view = view_of(small, small_settings);
-  GivenView large = given_of(256, 128);
-  large.id = 1;
-  const AlcoveView large_view = view_of(large, large_settings);
+  info.memory_block = block.block;
+  info.log = log.log();
+  const Context context = create_context(info);
+  const AlcoveView small_view = create_view(draw_outputs(24, 16));
+  AlcoveView large_view = create_view(draw_outputs(256, 128));
+  large_view.id = 1;
   EXPECT_EQ(record_alone(*context, small_view, 0), ALCOVE_SUCCESS);
   for (std::uint32_t i = 1; i < 3; ++i) {
     EXPECT_EQ(record_alone(*context, large_view, i), ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY);
@@ -242,90 +215,70 @@ TEST_F(CAllocators, FrameTooLargeForTheEnginesMemoryBlockIsReportedAndASmallerFr
                 AllOf(HasSubstr("the caller's block of 200000 bytes"),
                       HasSubstr("give a larger one"), HasSubstr("the device is out of memory.")));
   }
-  EXPECT_THAT(said.sentences,
+  EXPECT_THAT(log.sentences,
               Contains(Pair(ALCOVE_SEVERITY_ERROR, std::string(alcoveGetMessage(context.get())))));
   EXPECT_EQ(record_alone(*context, small_view, 3), ALCOVE_SUCCESS)
       << alcoveGetMessage(context.get());
   engine().wait();
 }
 
+// One allocation of the first, then of the second frame is refused, and so on.
 TEST_F(CAllocators, AllocationThatTheEngineRefusesIsAnErrorAndTheNextFrameWorks) {
-  AlcoveSettings settings;
-  const AlcoveView view = view_of(given_of(16, 12), settings);
+  const AlcoveView view = create_view(draw_outputs(16, 12));
   DeviceMemory memory{gpu().device()};
   AlcoveContextInfo info = engine().context_info();
   info.memory_functions = memory.functions();
-  bool failed = true;
-  for (int call = 1; failed; ++call) {
-    SCOPED_TRACE(call);
-    memory.fails_at = call;
-    memory.calls = 0;
-    AlcoveContext* made = nullptr;
-    char message[ALCOVE_MAX_MESSAGE];
-    const AlcoveResult created = alcoveCreateContext(&info, &made, message);
-    const Context context(made);
-    if (created == ALCOVE_SUCCESS) {
+  memory.fails_at = 1;
+  char message[ALCOVE_MAX_MESSAGE];
+  AlcoveContext* handle = nullptr;
+  EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY);
+  EXPECT_THAT(message, HasSubstr("The device is out of memory."));
+  {
+    const Context context = create_context(info);
+    bool failed = true;
+    for (int call = 1; failed; ++call) {
+      SCOPED_TRACE(call);
+      EXPECT_EQ(alcoveDropView(context.get(), view.id), ALCOVE_SUCCESS);
+      memory.fails_at = call;
+      memory.calls = 0;
       const AlcoveResult result = record_alone(*context, view, 0);
       failed = memory.calls >= call;
       EXPECT_EQ(result, failed ? ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY : ALCOVE_SUCCESS);
-      EXPECT_EQ(std::strlen(alcoveGetMessage(context.get())) != 0, failed);
+      if (failed) {
+        EXPECT_STRNE(alcoveGetMessage(context.get()), "");
+      }
+      memory.fails_at = 0;
       EXPECT_EQ(record_alone(*context, view, 0), ALCOVE_SUCCESS) << alcoveGetMessage(context.get());
-      engine().wait();
-    } else {
-      EXPECT_EQ(created, ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY);
-      EXPECT_THAT(message, HasSubstr("The device is out of memory."));
+      ASSERT_LT(call, 100);
     }
-    ASSERT_LT(call, 100);
+    engine().wait();
   }
   EXPECT_THAT(memory.alive, IsEmpty());
 }
 
 TEST_F(CAllocators, LogCallbackGetsErrorsWarningsAndInformation) {
-  Said said;
+  SentenceLog log;
   AlcoveContextInfo info = engine().context_info();
-  info.log = said.log();
+  info.log = log.log();
   info.frames_in_flight = 0;
-  AlcoveContext* made = nullptr;
-  EXPECT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_THAT(said.sentences,
+  AlcoveContext* handle = nullptr;
+  EXPECT_EQ(alcoveCreateContext(&info, &handle, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(log.sentences,
               testing::ElementsAre(Pair(ALCOVE_SEVERITY_ERROR, HasSubstr("frames_in_flight"))));
-  said.sentences.clear();
+  log.sentences.clear();
   info.frames_in_flight = Engine::kSlots;
-  const Context context = create(info);
-  AlcoveSettings settings;
-  const AlcoveView view = view_of(given_of(16, 12), settings);
+  const Context context = create_context(info);
+  const AlcoveView view = create_view(draw_outputs(16, 12));
   EXPECT_EQ(record_alone(*context, view, 0), ALCOVE_SUCCESS);
-  EXPECT_THAT(said.sentences,
+  EXPECT_THAT(log.sentences,
               AllOf(Contains(Pair(ALCOVE_SEVERITY_WARNING, HasSubstr("alcovePrepareFrame"))),
                     Contains(Pair(ALCOVE_SEVERITY_INFO, StartsWith("The render graph has "))),
                     Contains(Pair(ALCOVE_SEVERITY_INFO, HasSubstr("pipeline")))));
   EXPECT_EQ(record_alone(*context, view, 1), ALCOVE_SUCCESS);
-  said.sentences.clear();
+  log.sentences.clear();
   for (std::uint32_t i = 2; i < 6; ++i) EXPECT_EQ(record_alone(*context, view, i), ALCOVE_SUCCESS);
-  EXPECT_THAT(said.sentences, IsEmpty()) << "a steady frame";
+  EXPECT_THAT(log.sentences, IsEmpty()) << "a steady frame";
   engine().wait();
-}
-
-TEST_F(CAllocators, IncompleteMemoryFunctionsAndInvalidMemoryBlockAreReported) {
-  const auto message_of = [&](const AlcoveContextInfo& info) {
-    AlcoveContext* made = nullptr;
-    char message[ALCOVE_MAX_MESSAGE];
-    EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_ERROR_INVALID_INPUT);
-    return std::string(message);
-  };
-  DeviceMemory memory{gpu().device()};
-  AlcoveContextInfo info = engine().context_info();
-  info.memory_functions = memory.functions();
-  info.memory_functions.free = nullptr;
-  EXPECT_THAT(message_of(info), HasSubstr("only one of allocate and free"));
-  const Block block(gpu().device(), 4096);
-  info.memory_functions = {};
-  info.memory_block = block.block();
-  info.memory_block.memory_type = 32;
-  EXPECT_THAT(message_of(info), HasSubstr("memory type 32"));
-  info.memory_block = block.block();
-  info.memory_block.size = 0;
-  EXPECT_THAT(message_of(info), HasSubstr("0 bytes"));
 }
 
 }  // namespace

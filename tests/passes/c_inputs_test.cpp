@@ -1,12 +1,14 @@
-// Tests normals and motion vectors in the conventions of different engines, and the output settings
-// `power` and `intensity`.
-#include <gmock/gmock.h>
+// Tests the images that an engine gives: normals and motion vectors in the conventions of different
+// engines, layers of an array, depth in a depth format, one image for several inputs, and images
+// that the engine destroys; and the output settings `power` and `intensity`.
+#include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <functional>
 
 #include "c_interface_fixture.h"
-#include "gtao_scenes.h"
 #include "maths/octahedral.h"
 
 namespace alcove::passes {
@@ -41,116 +43,116 @@ HostImage octahedral(const HostImage& image) {
   });
 }
 
+HostImage mirrored(const HostImage& image) {
+  return mapped(image, image.channels, [&](const float* from, float* to) {
+    std::copy_n(from, image.channels, to);
+    to[2] = -to[2];
+  });
+}
+
+void expect_near(const Results& found, const Results& expected, double limit) {
+  for (const Output& each : kOutputs) {
+    if ((expected.*each.texels).texels.empty()) continue;
+    EXPECT_LT(rms(found.*each.texels, expected.*each.texels), limit);
+  }
+}
+
 class CInputs : public CInterface {
  protected:
-  static GivenView given() {
-    GivenView view = given_view(test_views()[2], kWidth, kHeight, ball_on_floor());
+  static HostView draw_inputs() {
+    HostView view = draw_view(kWidth, kHeight);
     view.settings.bent_normal = true;
     view.settings.specular = Specular::table;
     view.motion = {};
     return view;
   }
 
-  // Records `frames` frames of a view and returns the results of the last. `change` sets the fields
-  // of AlcoveView that describe the convention of the inputs.
-  Results results(const GivenView& given, std::uint32_t frames,
-                  const std::function<void(AlcoveView&)>& change) {
-    const Context context = create_context();
-    AlcoveSettings settings{};
-    AlcoveView view = view_of(given, settings);
+  // Records frames of a new view and returns the results of the last. `change` sets the fields of
+  // AlcoveView that describe the convention of the inputs.
+  Results run_frames(
+      const HostView& from, std::uint32_t frames,
+      const std::function<void(AlcoveView&)>& change = [](AlcoveView&) {}) {
+    AlcoveView view = create_view(from);
+    view.id = next_id_++;
     change(view);
-    for (std::uint32_t i = 0; i < frames; ++i) run_frame(*context, {&view, 1}, i);
+    for (std::uint32_t i = 0; i < frames; ++i) run_frame(context(), {&view, 1}, i);
     engine().wait();
-    return results_of(view);
+    return read_results(view);
   }
+
+ private:
+  std::uint32_t next_id_ = 0;
 };
 
 TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
-  const GivenView plain = given();
-  const Results expected = results(plain, 2, [](AlcoveView&) {});
-  struct Case {
-    AlcoveNormalEncoding encoding;
-    HostImage normals;
-  };
-  const HostImage two = octahedral(plain.normals);
-  for (const Case& encoded : {Case{ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, packed(plain.normals)},
-                              Case{ALCOVE_NORMAL_ENCODING_OCTAHEDRAL, two},
-                              Case{ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL, packed(two)}}) {
-    SCOPED_TRACE(static_cast<int>(encoded.encoding));
-    GivenView changed = plain;
-    changed.normals = encoded.normals;
-    const Results found =
-        results(changed, 2, [&](AlcoveView& view) { view.normal_encoding = encoded.encoding; });
-    EXPECT_LT(rms(found.visibility, expected.visibility), 2e-3);
-    EXPECT_LT(rms(found.bent_normal, expected.bent_normal), 2e-3);
-    EXPECT_LT(rms(found.specular, expected.specular), 2e-3);
+  HostView view = draw_inputs();
+  const Results expected = run_frames(view, 2);
+  const HostImage plain = view.normals, two = octahedral(plain);
+  for (const auto& [encoding, normals] :
+       {std::pair{ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, packed(plain)},
+        {ALCOVE_NORMAL_ENCODING_OCTAHEDRAL, two},
+        {ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL, packed(two)}}) {
+    SCOPED_TRACE(static_cast<int>(encoding));
+    view.normals = normals;
+    const AlcoveNormalEncoding wanted = encoding;
+    expect_near(run_frames(view, 2, [&](AlcoveView& v) { v.normal_encoding = wanted; }), expected,
+                2e-3);
   }
 }
 
 TEST_F(CInputs, NormalsOfACameraAlongPlusZAreMirroredOnInputAndBentNormalsOnOutput) {
-  const GivenView plain = given();
-  const Results expected = results(plain, 2, [](AlcoveView&) {});
-  const auto mirrored = [](const HostImage& image) {
-    return mapped(image, image.channels, [&](const float* from, float* to) {
-      std::copy_n(from, image.channels, to);
-      to[2] = -to[2];
-    });
-  };
-  GivenView changed = plain;
-  changed.normals = mirrored(plain.normals);
-  const Results found =
-      results(changed, 2, [](AlcoveView& view) { view.normals_forward_z = VK_TRUE; });
-  EXPECT_LT(rms(found.visibility, expected.visibility), 1e-5);
-  EXPECT_LT(rms(mirrored(found.bent_normal), expected.bent_normal), 1e-5);
-  EXPECT_LT(rms(found.specular, expected.specular), 1e-5);
+  HostView view = draw_inputs();
+  const Results expected = run_frames(view, 2);
+  view.normals = mirrored(view.normals);
+  Results found = run_frames(view, 2, [](AlcoveView& v) { v.normals_forward_z = VK_TRUE; });
+  found.bent_normal = mirrored(found.bent_normal);
+  expect_near(found, expected, 1e-5);
 }
 
+// All planes face the eye, so that the history has the same depth everywhere. If motion vectors
+// were misread, history from the wrong place would therefore be used, and the images would differ.
 TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
-  // All planes face the eye, so that the history has the same depth everywhere. If motion vectors
-  // were misread, history from the wrong place would therefore be used, and the images would
-  // differ.
-  GivenView moving = given_view(test_views()[2], kWidth, kHeight, step(0.31, 0.6));
+  HostView moving = draw_view(kWidth, kHeight, step(0.31, 0.6));
   moving.settings.bent_normal = true;
   moving.settings.advanced.estimator = Estimator::horizons;
   moving.settings.radius = 1.5f;
-  moving.motion = {kWidth, kHeight, {}, 2};
-  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i)
-    moving.motion.texels.insert(moving.motion.texels.end(), {0.05f, -0.025f});
-  const Results expected = results(moving, 3, [](AlcoveView&) {});
-  const auto with = [&](float scale_x, float scale_y, float x, float y) {
-    GivenView changed = moving;
-    changed.motion = mapped(moving.motion, 2, [&](const float* from, float* to) {
-      to[0] = (from[0] - x) / scale_x;
-      to[1] = (from[1] - y) / scale_y;
-    });
-    return results(changed, 3, [&](AlcoveView& view) {
-      view.motion_scale[0] = scale_x;
-      view.motion_scale[1] = scale_y;
-      view.motion_offset[0] = x;
-      view.motion_offset[1] = y;
-    });
+  for (std::size_t i = 0; i < moving.motion.texels.size(); ++i)
+    moving.motion.texels[i] = i % 2 == 0 ? 0.05f : -0.025f;
+  const Results expected = run_frames(moving, 3);
+  // The conventions are: motion in pixels; motion from this frame to the last one instead of the
+  // reverse; motion without the jitter of the camera; and motion in normalised device coordinates
+  // with y up.
+  struct Convention {
+    float scale[2];
+    float offset[2];
   };
-  // The four conventions are: motion in pixels; motion from this frame to the last one instead of
-  // the reverse; motion without the jitter of the camera; and motion in normalised device
-  // coordinates with y up.
-  for (const Results& found :
-       {with(1.0f / kWidth, 1.0f / kHeight, 0.0f, 0.0f), with(-1.0f, -1.0f, 0.0f, 0.0f),
-        with(1.0f, 1.0f, 0.004f, -0.006f), with(0.5f, -0.5f, 0.0f, 0.0f)}) {
-    EXPECT_LT(rms(found.visibility, expected.visibility), 1e-5);
-    EXPECT_LT(rms(found.bent_normal, expected.bent_normal), 1e-5);
+  for (const Convention& c : {Convention{{1.0f / kWidth, 1.0f / kHeight}, {0.0f, 0.0f}},
+                              {{-1.0f, -1.0f}, {0.0f, 0.0f}},
+                              {{1.0f, 1.0f}, {0.004f, -0.006f}},
+                              {{0.5f, -0.5f}, {0.0f, 0.0f}}}) {
+    HostView changed = moving;
+    changed.motion = mapped(moving.motion, 2, [&](const float* from, float* to) {
+      for (int i = 0; i < 2; ++i) to[i] = (from[i] - c.offset[i]) / c.scale[i];
+    });
+    expect_near(run_frames(changed, 3,
+                           [&](AlcoveView& v) {
+                             std::ranges::copy(c.scale, v.motion_scale);
+                             std::ranges::copy(c.offset, v.motion_offset);
+                           }),
+                expected, 1e-5);
   }
-  const Results wrong = results(
-      moving, 3, [](AlcoveView& view) { view.motion_scale[0] = view.motion_scale[1] = -1.0f; });
+  const Results wrong =
+      run_frames(moving, 3, [](AlcoveView& v) { v.motion_scale[0] = v.motion_scale[1] = -1.0f; });
   EXPECT_GT(rms(wrong.visibility, expected.visibility), 1e-3) << "the sign makes no difference";
 }
 
 TEST_F(CInputs, PowerAndIntensityChangeOnlyTheWrittenVisibility) {
-  GivenView plain = given();
-  plain.settings.specular = Specular::slices;
-  const Results open = results(plain, 3, [](AlcoveView&) {});
-  plain.settings.power = 2.0f;
-  plain.settings.intensity = 0.75f;
-  const Results shaped = results(plain, 3, [](AlcoveView&) {});
+  HostView view = draw_inputs();
+  view.settings.specular = Specular::slices;
+  const Results open = run_frames(view, 3);
+  view.settings.power = 2.0f;
+  view.settings.intensity = 0.75f;
+  const Results shaped = run_frames(view, 3);
   for (std::size_t i = 0; i < open.visibility.texels.size(); ++i) {
     const double v = open.visibility.texels[i];
     ASSERT_NEAR(shaped.visibility.texels[i], 1.0 - 0.75 * (1.0 - v * v), 1e-5);
@@ -159,25 +161,82 @@ TEST_F(CInputs, PowerAndIntensityChangeOnlyTheWrittenVisibility) {
   EXPECT_EQ(shaped.specular.texels, open.specular.texels);
 }
 
-TEST_F(CInputs, UnknownNormalEncodingAndZeroScaleOfMotionVectorsAreReported) {
-  GivenView plain = given();
-  plain.motion = {kWidth, kHeight, std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
-  const Context context = create_context();
-  AlcoveSettings settings{};
-  const auto error_of = [&](const std::function<void(AlcoveView&)>& spoil) {
-    AlcoveView view = view_of(plain, settings);
-    spoil(view);
-    const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
-    EXPECT_EQ(alcovePrepareFrame(context.get(), &frame), ALCOVE_ERROR_INVALID_INPUT);
-    return std::string(alcoveGetMessage(context.get()));
-  };
-  EXPECT_THAT(error_of([](AlcoveView& view) {
-                const std::uint32_t number = 4;
-                std::memcpy(&view.normal_encoding, &number, sizeof number);
-              }),
-              testing::HasSubstr("normal_encoding is 4"));
-  EXPECT_THAT(error_of([](AlcoveView& view) { view.motion_scale[0] = 1.0f; }),
-              testing::HasSubstr("scale of motion vectors is 0"));
+// The two eyes of a stereo view are two layers of one array image. The library makes an image view
+// for each.
+TEST_F(CInputs, LayersOfAnArrayImageCanBeOutputsOfDifferentViews) {
+  AlcoveImage both = engine().make_image(
+      VK_FORMAT_R32_SFLOAT, 16, 12,
+      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, 2);
+  both.final_state = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+  std::array<HostView, 2> from{draw_view(16, 12), draw_view(16, 12, groove(0.8), test_views()[0])};
+  std::array<AlcoveView, 2> views;
+  for (std::uint32_t eye = 0; eye < 2; ++eye) {
+    from.at(eye).id = eye;
+    views.at(eye) = create_view(from.at(eye));
+    views.at(eye).visibility = both;
+    views.at(eye).visibility.layer = eye;
+  }
+  run_frame(context(), views, 0);
+  constexpr std::size_t kTexels = 16UL * 12;
+  const auto buffer = sample::HostBuffer::create(gpu().device(), 2 * kTexels * sizeof(float),
+                                                 VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  ASSERT_TRUE(buffer) << buffer.error();
+  engine().submit(1, [&](VkCommandBuffer commands) {
+    const VkBufferImageCopy layers{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 2},
+                                   .imageExtent = {16, 12, 1}};
+    vkCmdCopyImageToBuffer(commands, both.image, both.final_state.layout, (*buffer)->buffer(), 1,
+                           &layers);
+  });
+  engine().wait();
+  for (std::uint32_t eye = 0; eye < 2; ++eye) {
+    std::vector<float> found(kTexels);
+    std::memcpy(found.data(), &(*buffer)->bytes()[eye * kTexels * sizeof(float)],
+                kTexels * sizeof(float));
+    EXPECT_EQ(found, run_by_cpp(from.at(eye), 0).visibility.texels);
+  }
+}
+
+TEST_F(CInputs, DepthImageInDepthFormatAndAttachmentLayoutIsAccepted) {
+  const HostView from = draw_view(16, 12);
+  AlcoveView view = create_view(from);
+  view.depth =
+      engine().make_image(VK_FORMAT_D32_SFLOAT, 16, 12,
+                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                              VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  const AlcoveState attached{VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                             VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+  fill_image(view.depth, from.depth_ndc, attached);
+  view.depth.initial_state = attached;
+  view.depth.final_state = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
+                            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                            VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
+  view.visibility.final_state.layout = VK_IMAGE_LAYOUT_GENERAL;
+  expect_equal(run_view(view, 0), run_by_cpp(from, 0));
+}
+
+TEST_F(CInputs, OneImageMayBeGivenAsBothAlbedoAndRoughness) {
+  HostView from = draw_view(16, 12);
+  from.roughness = from.albedo;  // packed: roughness is its green
+  from.settings.specular = Specular::slices;
+  from.multi_bounce = true;
+  const AlcoveView view = create_view(from);
+  ASSERT_EQ(view.roughness.image, view.albedo.image);
+  expect_equal(run_view(view, 0), run_by_cpp(from, 0));
+}
+
+TEST_F(CInputs, ImageMayBeDestroyedAfterTheEngineCalledForgetImage) {
+  HostView from = draw_view(16, 12);
+  from.reset = true;
+  AlcoveView view = create_view(from);
+  const Results expected = run_by_cpp(from, 0);
+  for (std::uint32_t round = 0; round < 4; ++round) {
+    expect_equal(run_view(view, 0), expected);
+    EXPECT_EQ(alcoveForgetImage(&context(), view.visibility.image), ALCOVE_SUCCESS);
+    engine().destroy_image(view.visibility);
+    view.visibility = output(view.visibility.format, 16, 12);
+  }
 }
 
 }  // namespace

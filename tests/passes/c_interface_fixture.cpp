@@ -18,7 +18,7 @@ constexpr VkImageUsageFlags kInputUsage =
 constexpr VkImageUsageFlags kOutputUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 
-VkFormat format_of(std::uint32_t channels) {
+VkFormat float_format(std::uint32_t channels) {
   return channels == 1   ? VK_FORMAT_R32_SFLOAT
          : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
                          : VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -28,13 +28,18 @@ framegraph::State to_state(const AlcoveState& state) {
   return {state.stages, state.access, state.layout};
 }
 
-framegraph::ImportedTexture import_of(const AlcoveImage& image) {
-  return {.image = image.image,
-          .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
-          .usage = image.usage,
-          .first_layer = image.layer,
-          .initial_state = to_state(image.final_state),
-          .final_state = to_state(image.final_state)};
+// Imports an image that is in its final state.
+Texture import_image(Graph& graph, const AlcoveImage& image, const AlcoveState& final_state) {
+  return graph.import_texture(
+      "image", {.image = image.image,
+                .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
+                .usage = image.usage,
+                .first_layer = image.layer,
+                .initial_state = to_state(image.final_state),
+                .final_state = to_state(final_state)});
+}
+Texture import_image(Graph& graph, const AlcoveImage& image) {
+  return import_image(graph, image, image.final_state);
 }
 
 HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> texel) {
@@ -51,46 +56,87 @@ AlcoveCamera to_camera(const View& view) {
   return camera;
 }
 
+VkBool32 to_bool32(bool value) { return value ? VK_TRUE : VK_FALSE; }
+
 }  // namespace
 
-GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t height,
-                     const Scene& scene) {
+void for_each_image(AlcoveView& view, const std::function<void(AlcoveImage&)>& change) {
+  for (const Input& each : kInputs) change(view.*each.image);
+  change(view.mask);
+  for (const Output& each : kOutputs) change(view.*each.image);
+}
+
+HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene,
+                   const TestView& view) {
   const Drawing drawing = draw(view, width, height, scene);
-  GivenView given{.view = view.view,
-                  .depth_ndc = drawing.depth_ndc,
-                  .normals = drawing.normal_vs,
-                  .motion = uniform(width, height, {0.01f, -0.02f}),
-                  .roughness = uniform(width, height, {0.3f, 0.6f}),
-                  .back_depth_ndc = draw_back_faces(view, width, height, scene),
-                  .second_depth_ndc = draw_second_layer(view, width, height, scene),
-                  .albedo = uniform(width, height, {0.8f, 0.4f, 0.1f, 1.0f})};
-  given.previous_view = given.view;
-  given.settings = quality_settings(Quality::medium, 0.5f);
-  given.settings.roughness_channel = 1;
-  given.settings.precision = Precision::float32;
-  return given;
+  HostView drawn{.view = view.view,
+                 .depth_ndc = drawing.depth_ndc,
+                 .normals = drawing.normal_vs,
+                 .motion = uniform(width, height, {0.01f, -0.02f}),
+                 .roughness = uniform(width, height, {0.3f, 0.6f}),
+                 .back_depth_ndc = draw_back_faces(view, width, height, scene),
+                 .second_depth_ndc = draw_second_layer(view, width, height, scene),
+                 .albedo = uniform(width, height, {0.8f, 0.4f, 0.1f, 1.0f})};
+  drawn.previous_view = drawn.view;
+  drawn.settings = quality_settings(Quality::medium, 0.5f);
+  drawn.settings.roughness_channel = 1;
+  drawn.settings.precision = Precision::float32;
+  return drawn;
+}
+
+void request_all_outputs(HostView& view) {
+  view.settings.visibility = view.settings.bent_normal = true;
+  view.settings.specular = Specular::slices;
+  view.multi_bounce = !view.half_size_outputs;
+}
+
+void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::uint32_t y) {
+  const std::size_t row = std::size_t{contents.width} * contents.channels;
+  for (std::size_t i = 0; i < contents.height; ++i)
+    std::copy_n(&contents.texels[i * row], row,
+                &image.texels[((y + i) * image.width + x) * contents.channels]);
 }
 
 HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t x,
                     std::uint32_t y) {
   HostImage around{larger.width, larger.height, {}, contents.channels};
   around.texels.resize(std::size_t{larger.width} * larger.height * contents.channels);
-  for (std::size_t i = 0; i < around.texels.size(); ++i) {
-    around.texels[i] =
-        i / contents.channels % 3 == 0 ? std::numeric_limits<float>::quiet_NaN() : 0.3f;
-  }
+  for (std::size_t i = 0; i < around.texels.size(); ++i)
+    around.texels[i] = i / contents.channels % 3 == 0 ? kNaN : 0.3f;
   place(around, contents, x, y);
   return around;
 }
 
-void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::uint32_t y) {
-  const std::size_t row = std::size_t{contents.width} * contents.channels;
-  for (std::size_t i = 0; i < contents.height; ++i) {
-    std::copy_n(contents.texels.begin() + static_cast<std::ptrdiff_t>(i * row), row,
-                image.texels.begin() +
-                    static_cast<std::ptrdiff_t>(((y + i) * image.width + x) * contents.channels));
-  }
+AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index) {
+  return {.struct_size = sizeof(AlcoveFrame),
+          .index = index,
+          .slot = index % Engine::kSlots,
+          .view_count = static_cast<std::uint32_t>(views.size()),
+          .views = views.data()};
 }
+
+void expect_equal(const Results& found, const Results& expected) {
+  for (const Output& each : kOutputs)
+    EXPECT_EQ((found.*each.texels).texels, (expected.*each.texels).texels);
+}
+
+std::string print(const std::function<std::size_t(char*, std::size_t)>& write) {
+  std::string text(write(nullptr, 0) + 1, '\0');
+  text.resize(write(text.data(), text.size()));
+  return text;
+}
+
+std::string print_plan(AlcoveContext& context) {
+  return print([&](char* text, std::size_t size) { return alcovePrintPlan(&context, text, size); });
+}
+
+AlcoveMemory get_memory(AlcoveContext& context) {
+  AlcoveMemory memory{.struct_size = sizeof(AlcoveMemory)};
+  EXPECT_EQ(alcoveGetMemory(&context, &memory), ALCOVE_SUCCESS) << alcoveGetMessage(&context);
+  return memory;
+}
+
+Context CInterface::shared_context;
 
 void CInterface::SetUp() {
   PassTest::SetUp();
@@ -98,35 +144,47 @@ void CInterface::SetUp() {
 }
 
 void CInterface::TearDown() {
+  if (engine_) engine_->wait();
+  if (shared_context) {
+    engine_->forget_images(*shared_context);
+    for (const std::uint32_t id : ids_)
+      EXPECT_EQ(alcoveDropView(shared_context.get(), id), ALCOVE_SUCCESS);
+  }
   engine_.reset();
   PassTest::TearDown();
+}
+
+AlcoveContext& CInterface::context() {
+  if (!shared_context) shared_context = create_context();
+  return *shared_context;
+}
+
+Context CInterface::create_context(const AlcoveContextInfo& info) {
+  AlcoveContext* handle = nullptr;
+  char message[ALCOVE_MAX_MESSAGE];
+  EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_SUCCESS) << message;
+  EXPECT_STREQ(message, "");
+  return Context(handle);
 }
 
 Context CInterface::create_context() {
   AlcoveContextInfo info = engine_->context_info();
   info.debug_utils = VK_TRUE;
-  AlcoveContext* made = nullptr;
-  char message[ALCOVE_MAX_MESSAGE];
-  EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_SUCCESS) << message;
-  EXPECT_STREQ(message, "");
-  return Context(made);
+  return create_context(info);
 }
 
 AlcoveImage CInterface::input(const HostImage& contents) {
   if (contents.texels.empty()) return {};
-  const AlcoveImage image = engine_->make_image(format_of(contents.channels), contents.width,
-                                                contents.height, kInputUsage);
-  fill_image(image, contents, image.final_state);
-  return image;
-}
-
-void CInterface::fill_image(const AlcoveImage& image, const HostImage& contents,
-                            AlcoveState final_state) {
-  run([&](Graph& graph) {
-    framegraph::ImportedTexture import = import_of(image);
-    import.final_state = to_state(final_state);
-    fill(graph, graph.import_texture("image", import), contents);
+  const auto known = std::ranges::find_if(inputs_, [&](const auto& input) {
+    return input.first.width == contents.width && input.first.height == contents.height &&
+           input.first.texels == contents.texels;
   });
+  if (shares_inputs_ && known != inputs_.end()) return known->second;
+  const AlcoveImage image = engine_->make_image(float_format(contents.channels), contents.width,
+                                                contents.height, kInputUsage);
+  fill_image(image, contents);
+  inputs_.emplace_back(contents, image);
+  return image;
 }
 
 AlcoveImage CInterface::output(VkFormat format, std::uint32_t width, std::uint32_t height) {
@@ -135,173 +193,183 @@ AlcoveImage CInterface::output(VkFormat format, std::uint32_t width, std::uint32
   return image;
 }
 
+void CInterface::fill_image(const AlcoveImage& image, const HostImage& contents,
+                            const AlcoveState& final_state) {
+  run([&](Graph& graph) { fill(graph, import_image(graph, image, final_state), contents); });
+}
+
+void CInterface::write_bytes(const AlcoveImage& image, const Bytes& bytes) {
+  const auto buffer =
+      sample::HostBuffer::create(gpu().device(), bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  ASSERT_TRUE(buffer) << buffer.error();
+  std::memcpy((*buffer)->bytes().data(), bytes.data(), bytes.size());
+  run([&](Graph& graph) { sample::add_copy(graph, **buffer, import_image(graph, image)); });
+}
+
+Bytes CInterface::read_bytes(const AlcoveImage& image, std::size_t texel_bytes) {
+  Bytes bytes(std::size_t{image.width} * image.height * texel_bytes);
+  const auto buffer =
+      sample::HostBuffer::create(gpu().device(), bytes.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  EXPECT_TRUE(buffer) << buffer.error();
+  run([&](Graph& graph) { sample::add_read_back(graph, import_image(graph, image), **buffer); });
+  std::memcpy(bytes.data(), (*buffer)->bytes().data(), bytes.size());
+  return bytes;
+}
+
 HostImage CInterface::read(const AlcoveImage& image) {
-  if (image.image == VK_NULL_HANDLE) return {};
-  run([&](Graph& graph) { read_back(graph, graph.import_texture("image", import_of(image))); });
+  run([&](Graph& graph) { read_back(graph, import_image(graph, image)); });
   return result();
 }
 
-AlcoveView CInterface::view_of(const GivenView& given, AlcoveSettings& settings) {
-  settings = from_settings(given.settings, advanced_.emplace_back());
+Results CInterface::read_results(const AlcoveView& view) {
+  const auto is_given = [&](const Output& each) {
+    return (view.*each.image).image != VK_NULL_HANDLE;
+  };
+  run([&](Graph& graph) {
+    for (const Output& each : kOutputs)
+      if (is_given(each)) read_back(graph, import_image(graph, view.*each.image));
+  });
+  Results results;
+  std::size_t next = 0;
+  for (const Output& each : kOutputs)
+    if (is_given(each)) results.*each.texels = result(next++);
+  return results;
+}
+
+AlcoveView CInterface::create_view(const HostView& from) {
+  Settings& settings = settings_.emplace_back();
+  settings.settings = from_settings(from.settings, settings.advanced);
   AlcoveView view{.struct_size = sizeof(AlcoveView),
-                  .id = given.id,
-                  .reset_history = given.reset ? VK_TRUE : VK_FALSE,
-                  .normals_in_view_space = given.normals_in_view_space ? VK_TRUE : VK_FALSE,
-                  .static_frames = given.static_frames,
-                  .settings = &settings,
-                  .camera = to_camera(given.view),
-                  .previous_camera = to_camera(given.previous_view),
-                  .largest_width = given.largest_size.width,
-                  .largest_height = given.largest_size.height,
-                  .previous_width = given.previous_size.width,
-                  .previous_height = given.previous_size.height,
-                  .depth = input(given.depth_ndc),
-                  .depth_format = given.depth_format,
-                  .normals = input(given.normals),
-                  .motion = input(given.motion),
-                  .roughness = input(given.roughness),
-                  .back_depth = input(given.back_depth_ndc),
-                  .second_depth = input(given.second_depth_ndc),
-                  .albedo = input(given.albedo)};
-  const bool bytes = given.settings.precision == Precision::unorm8;
+                  .id = from.id,
+                  .reset_history = to_bool32(from.reset),
+                  .normals_in_view_space = to_bool32(from.normals_in_view_space),
+                  .static_frames = from.static_frames,
+                  .settings = &settings.settings,
+                  .camera = to_camera(from.view),
+                  .previous_camera = to_camera(from.previous_view),
+                  .largest_width = from.largest_size.width,
+                  .largest_height = from.largest_size.height,
+                  .previous_width = from.previous_size.width,
+                  .previous_height = from.previous_size.height,
+                  .depth_format = from.depth_format,
+                  .half_size_outputs = to_bool32(from.half_size_outputs)};
+  for (const Input& each : kInputs) view.*each.image = input(from.*each.texels);
+  const bool bytes = from.settings.precision == Precision::unorm8;
   const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
   const VkFormat direction = bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
-  view.half_size_outputs = given.half_size_outputs ? VK_TRUE : VK_FALSE;
-  const auto output_size = [&](std::uint32_t pixels) {
-    return given.half_size_outputs ? (pixels + 1) / 2 : pixels;
-  };
+  const std::uint32_t shrink = from.half_size_outputs ? 2 : 1;
   const auto wanted = [&](bool is_wanted, VkFormat format) {
-    return is_wanted ? output(format, output_size(given.depth_ndc.width),
-                              output_size(given.depth_ndc.height))
+    return is_wanted ? output(format, (from.depth_ndc.width + shrink - 1) / shrink,
+                              (from.depth_ndc.height + shrink - 1) / shrink)
                      : AlcoveImage{};
   };
-  view.visibility = wanted(given.settings.visibility, scalar);
-  view.bent_normal = wanted(given.settings.bent_normal, direction);
-  view.specular = wanted(given.settings.specular != Specular::none, scalar);
-  view.multi_bounce = wanted(given.multi_bounce, VK_FORMAT_R32G32B32A32_SFLOAT);
+  view.visibility = wanted(from.settings.visibility, scalar);
+  view.bent_normal = wanted(from.settings.bent_normal, direction);
+  view.specular = wanted(from.settings.specular != Specular::none, scalar);
+  view.multi_bounce = wanted(from.multi_bounce, VK_FORMAT_R32G32B32A32_SFLOAT);
   return view;
+}
+
+AlcoveResult CInterface::record(AlcoveContext& context, const AlcoveFrame& frame, bool discards) {
+  AlcoveResult result = ALCOVE_SUCCESS;
+  engine_->submit(frame.slot % Engine::kSlots, [&](VkCommandBuffer commands) {
+    result = alcoveRecordFrame(&context, commands, &frame);
+    if (discards || result != ALCOVE_SUCCESS) throw_away(commands);
+  });
+  if (result == ALCOVE_SUCCESS)
+    for (const AlcoveView& view : std::span(frame.views, frame.view_count)) ids_.insert(view.id);
+  return result;
 }
 
 void CInterface::run_frame(AlcoveContext& context, std::span<const AlcoveView> views,
                            std::uint32_t index) {
-  const AlcoveFrame frame{.struct_size = sizeof(AlcoveFrame),
-                          .index = index,
-                          .slot = index % Engine::kSlots,
-                          .view_count = static_cast<std::uint32_t>(views.size()),
-                          .views = views.data()};
-  engine_->submit(frame.slot, [&](VkCommandBuffer commands) {
-    EXPECT_EQ(alcoveRecordFrame(&context, commands, &frame), ALCOVE_SUCCESS)
-        << alcoveGetMessage(&context);
-  });
+  EXPECT_EQ(record(context, make_frame(views, index)), ALCOVE_SUCCESS)
+      << alcoveGetMessage(&context);
 }
 
-void CInterface::record_and_throw_away(AlcoveContext& context, const AlcoveView& view,
-                                       std::uint32_t index) {
-  const AlcoveFrame frame{
-      .struct_size = sizeof(AlcoveFrame), .index = index, .view_count = 1, .views = &view};
-  engine_->submit(0, [&](VkCommandBuffer commands) {
-    EXPECT_EQ(alcoveRecordFrame(&context, commands, &frame), ALCOVE_SUCCESS)
-        << alcoveGetMessage(&context);
-    throw_away(commands);
-  });
+void CInterface::discard_frame(AlcoveContext& context, std::span<const AlcoveView> views,
+                               std::uint32_t index) {
+  EXPECT_EQ(record(context, make_frame(views, index), true), ALCOVE_SUCCESS)
+      << alcoveGetMessage(&context);
+  EXPECT_EQ(alcoveDiscardFrame(&context), ALCOVE_SUCCESS);
 }
 
-Results CInterface::results_of(const AlcoveView& view) {
-  return {read(view.visibility), read(view.bent_normal), read(view.specular),
-          read(view.multi_bounce)};
-}
-
-std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<const GivenView> given,
-                                          std::uint32_t index) {
-  std::vector<AlcoveSettings> settings(given.size());
-  std::vector<AlcoveView> views;
-  views.reserve(given.size());
-  for (std::size_t i = 0; i < given.size(); ++i) views.push_back(view_of(given[i], settings[i]));
-  run_frame(context, views, index);
-  std::vector<Results> results;
-  results.reserve(views.size());
-  for (const AlcoveView& view : views) results.push_back(results_of(view));
+Results CInterface::run_view(const AlcoveView& view, std::uint32_t index) {
+  run_frame(context(), {&view, 1}, index);
   engine_->wait();
+  return read_results(view);
+}
+
+std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<const HostView> from,
+                                          std::uint32_t index) {
+  std::vector<AlcoveView> views(from.size());
+  std::ranges::transform(from, views.begin(),
+                         [&](const HostView& each) { return create_view(each); });
+  run_frame(context, views, index);
+  engine_->wait();
+  std::vector<Results> results(from.size());
+  std::ranges::transform(views, results.begin(),
+                         [&](const AlcoveView& view) { return read_results(view); });
   return results;
 }
 
-Results CInterface::run_by_cpp(const GivenView& given, std::uint32_t index) {
-  const std::string name = "by C++ " + std::to_string(given.id);
+Results CInterface::run_by_cpp(const HostView& from, std::uint32_t index) {
+  const std::string name = "by C++ " + std::to_string(from.id);
   run([&](Graph& graph) {
-    if (given.reset) graph.reset_history(name);
+    if (from.reset) graph.reset_history(name);
     const auto upload_of = [&](const HostImage& image) {
       return image.texels.empty() ? Texture{} : upload(graph, image);
     };
     const Frame frame{.graph = graph,
                       .kernels = gpu().kernels(),
-                      .view = given.view,
+                      .view = from.view,
                       .index = index,
-                      .previous_view = given.previous_view,
-                      .static_frames = given.reset ? 0 : given.static_frames,
-                      .largest_size = given.largest_size,
-                      .previous_size = given.reset ? VkExtent2D{} : given.previous_size};
-    OcclusionSettings settings = given.settings;
-    settings.visibility = settings.visibility || given.multi_bounce;
+                      .previous_view = from.previous_view,
+                      .static_frames = from.reset ? 0 : from.static_frames,
+                      .largest_size = from.largest_size,
+                      .previous_size = from.reset ? VkExtent2D{} : from.previous_size};
+    OcclusionSettings settings = from.settings;
+    settings.visibility = settings.visibility || from.multi_bounce;
     const auto outputs =
         add_occlusion(frame,
-                      {.depth_ndc = upload_of(given.depth_ndc),
-                       .depth_format = given.depth_format,
-                       .normals = upload_of(given.normals),
-                       .normal_convention = {.in_view_space = given.normals_in_view_space},
-                       .motion = upload_of(given.motion),
-                       .roughness = upload_of(given.roughness),
-                       .back_depth_ndc = upload_of(given.back_depth_ndc),
-                       .second_depth_ndc = upload_of(given.second_depth_ndc),
-                       .half_size_outputs = given.half_size_outputs},
+                      {.depth_ndc = upload_of(from.depth_ndc),
+                       .depth_format = from.depth_format,
+                       .normals = upload_of(from.normals),
+                       .normal_convention = {.in_view_space = from.normals_in_view_space},
+                       .motion = upload_of(from.motion),
+                       .roughness = upload_of(from.roughness),
+                       .back_depth_ndc = upload_of(from.back_depth_ndc),
+                       .second_depth_ndc = upload_of(from.second_depth_ndc),
+                       .half_size_outputs = from.half_size_outputs},
                       settings, name);
     ASSERT_TRUE(outputs) << outputs.error().message;
-    if (given.settings.visibility) read_back(graph, outputs->visibility);
-    if (given.settings.bent_normal) read_back(graph, outputs->bent_normal);
-    if (given.settings.specular != Specular::none) read_back(graph, outputs->specular);
-    if (given.multi_bounce) {
-      const auto made = add_multi_bounce(frame, {outputs->visibility, upload_of(given.albedo)},
-                                         Precision::float32);
-      ASSERT_TRUE(made) << made.error().message;
-      read_back(graph, *made);
+    if (from.settings.visibility) read_back(graph, outputs->visibility);
+    if (from.settings.bent_normal) read_back(graph, outputs->bent_normal);
+    if (from.settings.specular != Specular::none) read_back(graph, outputs->specular);
+    if (from.multi_bounce) {
+      const auto light = add_multi_bounce(frame, {outputs->visibility, upload_of(from.albedo)},
+                                          Precision::float32);
+      ASSERT_TRUE(light) << light.error().message;
+      read_back(graph, *light);
     }
   });
   std::size_t next = 0;
   const auto take = [&](bool wanted) { return wanted ? result(next++) : HostImage{}; };
   Results results;
-  results.visibility = take(given.settings.visibility);
-  results.bent_normal = take(given.settings.bent_normal);
-  results.specular = take(given.settings.specular != Specular::none);
-  results.multi_bounce = take(given.multi_bounce);
+  results.visibility = take(from.settings.visibility);
+  results.bent_normal = take(from.settings.bent_normal);
+  results.specular = take(from.settings.specular != Specular::none);
+  results.multi_bounce = take(from.multi_bounce);
   return results;
 }
 
-void CInterface::expect_same_both_ways(AlcoveContext& context, std::span<const GivenView> views,
+void CInterface::expect_same_both_ways(AlcoveContext& context, std::span<const HostView> views,
                                        std::uint32_t index) {
   const std::vector<Results> found = run_by_c(context, views, index);
   for (std::size_t i = 0; i < views.size(); ++i) {
     SCOPED_TRACE("view " + std::to_string(views[i].id));
     expect_equal(found[i], run_by_cpp(views[i], index));
   }
-}
-
-std::string CInterface::plan_of(AlcoveContext& context) {
-  std::string text(alcovePrintPlan(&context, nullptr, 0) + 1, '\0');
-  alcovePrintPlan(&context, text.data(), text.size());
-  text.pop_back();
-  return text;
-}
-
-AlcoveMemory CInterface::memory_of(AlcoveContext& context) {
-  AlcoveMemory memory{.struct_size = sizeof(AlcoveMemory)};
-  EXPECT_EQ(alcoveGetMemory(&context, &memory), ALCOVE_SUCCESS) << alcoveGetMessage(&context);
-  return memory;
-}
-
-void expect_equal(const Results& found, const Results& expected) {
-  EXPECT_EQ(found.visibility.texels, expected.visibility.texels);
-  EXPECT_EQ(found.bent_normal.texels, expected.bent_normal.texels);
-  EXPECT_EQ(found.specular.texels, expected.specular.texels);
-  EXPECT_EQ(found.multi_bounce.texels, expected.multi_bounce.texels);
 }
 
 }  // namespace alcove::passes

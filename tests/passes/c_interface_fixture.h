@@ -1,23 +1,28 @@
 // A fixture that runs the same frame by the C interface and by the C++ functions.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <map>
+#include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "drawing.h"
 #include "engine.h"
+#include "gtao_scenes.h"
 #include "pass_fixture.h"
 
 namespace alcove::passes {
 
-// The inputs of a view for both interfaces. An image without texels stands for one that is not
-// given.
-struct GivenView {
+using Bytes = std::vector<std::byte>;
+
+// The inputs of a view in host memory, for both interfaces. An image without texels is not given.
+struct HostView {
   std::uint32_t id = 0;
   View view;
   View previous_view = view;
@@ -39,6 +44,7 @@ struct GivenView {
   bool half_size_outputs = false;
 };
 
+// The results of a view. An output that is not requested has no texels.
 struct Results {
   HostImage visibility;
   HostImage bent_normal;
@@ -46,59 +52,112 @@ struct Results {
   HostImage multi_bounce;
 };
 
-// Returns a view of a scene with every input. Tests change its settings and its camera.
-GivenView given_view(const TestView& view, std::uint32_t width, std::uint32_t height,
-                     const Scene& scene);
+// An image in host memory and the same image of an AlcoveView.
+struct Input {
+  HostImage HostView::*texels;
+  AlcoveImage AlcoveView::*image;
+};
+struct Output {
+  HostImage Results::*texels;
+  AlcoveImage AlcoveView::*image;
+};
+inline constexpr std::array kInputs{Input{&HostView::depth_ndc, &AlcoveView::depth},
+                                    Input{&HostView::normals, &AlcoveView::normals},
+                                    Input{&HostView::motion, &AlcoveView::motion},
+                                    Input{&HostView::roughness, &AlcoveView::roughness},
+                                    Input{&HostView::back_depth_ndc, &AlcoveView::back_depth},
+                                    Input{&HostView::second_depth_ndc, &AlcoveView::second_depth},
+                                    Input{&HostView::albedo, &AlcoveView::albedo}};
+inline constexpr std::array kOutputs{Output{&Results::visibility, &AlcoveView::visibility},
+                                     Output{&Results::bent_normal, &AlcoveView::bent_normal},
+                                     Output{&Results::specular, &AlcoveView::specular},
+                                     Output{&Results::multi_bounce, &AlcoveView::multi_bounce}};
 
+// Calls `change` with each image of a view.
+void for_each_image(AlcoveView& view, const std::function<void(AlcoveImage&)>& change);
+
+// Draws a view of a scene with every input. Tests change its settings and its camera.
+HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene = ball_on_floor(),
+                   const TestView& view = test_views()[2]);
+// Requests every output: specular occlusion by slices, and multi-bounce unless outputs have half
+// size.
+void request_all_outputs(HostView& view);
+
+// Copies `contents` into `image`, from the pixel (x, y) on.
+void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::uint32_t y);
 // Returns an image of `larger` pixels with `contents` from the pixel (x, y) on. The other pixels
 // are NaN or 0.3, so that a pass which reads them is noticed.
 HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t x = 0,
                     std::uint32_t y = 0);
-// Copies `contents` into `image`, from the pixel (x, y) on.
-void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::uint32_t y);
+
+// Returns frame `index` of these views.
+AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index);
+
+void expect_equal(const Results& found, const Results& expected);
+
+// Returns the text of a function such as alcovePrintPlan, which writes like snprintf.
+std::string print(const std::function<std::size_t(char*, std::size_t)>& write);
+std::string print_plan(AlcoveContext& context);
+AlcoveMemory get_memory(AlcoveContext& context);
 
 class CInterface : public PassTest {
  protected:
   void SetUp() override;
   void TearDown() override;
+  static void TearDownTestSuite() { shared_context.reset(); }
 
+  // The context that the tests of a suite share, so that pipelines are created once. After each
+  // test its views are dropped and its images forgotten.
+  AlcoveContext& context();
+  static Context create_context(const AlcoveContextInfo& info);
   Context create_context();
 
-  // Creates an image that holds `contents`.
+  // Creates an image that holds `contents`, or returns one with the same contents.
   AlcoveImage input(const HostImage& contents);
-  // Fills an image, which is in the state kResting, and leaves it in `final_state`.
-  void fill_image(const AlcoveImage& image, const HostImage& contents, AlcoveState final_state);
   AlcoveImage output(VkFormat format, std::uint32_t width, std::uint32_t height);
+  // Fills an image, which is in the state kResting, and leaves it in `final_state`.
+  void fill_image(const AlcoveImage& image, const HostImage& contents,
+                  const AlcoveState& final_state = kResting);
+  void write_bytes(const AlcoveImage& image, const Bytes& bytes);
+  Bytes read_bytes(const AlcoveImage& image, std::size_t texel_bytes);
   HostImage read(const AlcoveImage& image);
+  Results read_results(const AlcoveView& view);
 
-  // Creates the images of a view and returns it. The view points to `settings`, which receives
-  // those of `given` and must live as long as the view is used.
-  AlcoveView view_of(const GivenView& given, AlcoveSettings& settings);
-  // Records a frame of these views, which must succeed, and submits it. Does not wait.
+  // Creates the images of a view and returns it. Its settings belong to the fixture.
+  AlcoveView create_view(const HostView& view);
+
+  // Records and submits a frame. A frame that fails or `discards` is not submitted.
+  AlcoveResult record(AlcoveContext& context, const AlcoveFrame& frame, bool discards = false);
+  // Records a frame of these views, which must succeed. Does not wait for it.
   void run_frame(AlcoveContext& context, std::span<const AlcoveView> views, std::uint32_t index);
-  // Records a frame of one view, which must succeed, and does not submit it.
-  void record_and_throw_away(AlcoveContext& context, const AlcoveView& view, std::uint32_t index);
-  Results results_of(const AlcoveView& view);
+  void discard_frame(AlcoveContext& context, std::span<const AlcoveView> views,
+                     std::uint32_t index);
+  // Runs a frame of one view with the shared context, and returns its results.
+  Results run_view(const AlcoveView& view, std::uint32_t index);
 
-  std::vector<Results> run_by_c(AlcoveContext& context, std::span<const GivenView> views,
+  std::vector<Results> run_by_c(AlcoveContext& context, std::span<const HostView> views,
                                 std::uint32_t index);
-  // Runs the frame by the C++ functions and waits for it. The history belongs to the fixture and to
+  // Runs the frame by the C++ functions and waits for it. The history belongs to the test and to
   // the id of the view.
-  Results run_by_cpp(const GivenView& given, std::uint32_t index);
+  Results run_by_cpp(const HostView& view, std::uint32_t index);
   // Runs the frame by both interfaces and expects equal results for each view.
-  void expect_same_both_ways(AlcoveContext& context, std::span<const GivenView> views,
+  void expect_same_both_ways(AlcoveContext& context, std::span<const HostView> views,
                              std::uint32_t index);
-
-  std::string plan_of(AlcoveContext& context);
-  AlcoveMemory memory_of(AlcoveContext& context);
 
   Engine& engine() { return *engine_; }
 
- private:
-  std::unique_ptr<Engine> engine_;
-  std::deque<AlcoveAdvancedSettings> advanced_;  // that the settings of view_of() point to
-};
+  bool shares_inputs_ = true;  // images with the same contents are one image
 
-void expect_equal(const Results& found, const Results& expected);
+ private:
+  struct Settings {
+    AlcoveSettings settings;
+    AlcoveAdvancedSettings advanced;
+  };
+  static Context shared_context;
+  std::unique_ptr<Engine> engine_;
+  std::deque<Settings> settings_;  // of the views
+  std::vector<std::pair<HostImage, AlcoveImage>> inputs_;
+  std::set<std::uint32_t> ids_;  // of the recorded views
+};
 
 }  // namespace alcove::passes

@@ -6,202 +6,173 @@
 
 #include "c_interface_fixture.h"
 #include "c_program.h"
-#include "gtao_scenes.h"
 
 namespace alcove::passes {
 namespace {
 
-TestView moved(TestView view, std::uint32_t frame) {
+// Returns the view of frame `frame` of a moving camera. The history is reset in frame `cut`.
+HostView moving_view(std::uint32_t frame, std::uint32_t width, std::uint32_t height,
+                     std::uint32_t cut = ~0u) {
+  HostView view = draw_view(width, height);
   view.view.view_from_world[12] = 0.03f * static_cast<float>(frame);
+  view.previous_view.view_from_world[12] = 0.03f * static_cast<float>(frame == 0 ? 0 : frame - 1);
+  view.reset = frame == cut;
+  view.motion = {};
   return view;
-}
-
-// Returns the inputs of frame number `frame` of a moving camera. The history is reset in frame
-// `cut`.
-GivenView frame_of(std::uint32_t frame, std::uint32_t width, std::uint32_t height,
-                   std::uint32_t cut = ~0u) {
-  GivenView given = given_view(moved(test_views()[2], frame), width, height, ball_on_floor());
-  given.previous_view = moved(test_views()[2], frame == 0 ? 0 : frame - 1).view;
-  given.reset = frame == cut;
-  given.motion = {};
-  return given;
-}
-
-TEST_F(CInterface, FramesWithHistoryEqualThoseRecordedByTheCppInterface) {
-  const Context context = create_context();
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    GivenView given = frame_of(i, 33, 17, 3);
-    given.settings.bent_normal = true;
-    given.settings.specular = Specular::slices;
-    given.multi_bounce = true;
-    expect_same_both_ways(*context, {&given, 1}, i);
-  }
-}
-
-TEST_F(CInterface, FramesOfAStaticViewEqualThoseRecordedByTheCppInterface) {
-  const Context context = create_context();
-  for (std::uint32_t i = 0; i < 20; ++i) {
-    GivenView given = frame_of(0, 33, 17);
-    given.settings = quality_settings(Quality::low, 0.4f);
-    given.static_frames = i;
-    given.reset = i == 18;
-    expect_same_both_ways(*context, {&given, 1}, i);
-  }
 }
 
 TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
   struct Case {
     const char* name;
-    void (*change)(GivenView&);
+    void (*change)(HostView& view, OcclusionSettings& settings);
     std::uint32_t frames = 1;
   };
+  using V = HostView;
+  using S = OcclusionSettings;
   const Case cases[] = {
-      {"quality low", [](GivenView& g) { g.settings = quality_settings(Quality::low, 0.4f); }},
-      {"quality high", [](GivenView& g) { g.settings = quality_settings(Quality::high, 0.4f); }},
-      {"bytes", [](GivenView& g) { g.settings.precision = Precision::unorm8; }},
+      {"all outputs", [](V& v, S&) { request_all_outputs(v); }, 3},
+      {"one pixel", [](V& v, S&) { v = moving_view(0, 1, 1, 0); }},
+      {"quality low", [](V&, S& s) { s = quality_settings(Quality::low, 0.4f); }},
+      {"quality high", [](V&, S& s) { s = quality_settings(Quality::high, 0.4f); }},
+      {"quality reference",
+       [](V& v, S&) {
+         v = moving_view(0, 6, 4, 0);
+         v.settings = quality_settings(Quality::reference, 0.5f);
+       }},
+      {"static",
+       [](V& v, S& s) {
+         v.view = v.previous_view = draw_view(1, 1).view;
+         s = quality_settings(Quality::low, 0.4f);
+       },
+       20},
+      {"bent normals alone",
+       [](V&, S& s) {
+         s.visibility = false;
+         s.bent_normal = true;
+       },
+       2},
+      {"specular occlusion alone",
+       [](V&, S& s) {
+         s.visibility = false;
+         s.specular = Specular::slices;
+       },
+       2},
+      {"multi-bounce alone",
+       [](V& v, S& s) {
+         s.visibility = false;
+         v.multi_bounce = true;
+       },
+       2},
+      {"bytes", [](V&, S& s) { s.precision = Precision::unorm8; }},
       {"horizons with falloff",
-       [](GivenView& g) {
-         g.settings.advanced.estimator = Estimator::horizons;
-         g.settings.advanced.falloff = 0.5f;
+       [](V&, S& s) {
+         s.advanced.estimator = Estimator::horizons;
+         s.advanced.falloff = 0.5f;
        }},
       {"bitmask",
-       [](GivenView& g) {
-         g.settings.advanced.estimator = Estimator::bitmask;
-         g.settings.thickness = 0.05f;
-         g.settings.hidden_occlusion = 0.9f;
+       [](V&, S& s) {
+         s.advanced.estimator = Estimator::bitmask;
+         s.thickness = 0.05f;
+         s.hidden_occlusion = 0.9f;
        }},
       {"thickness by distance",
-       [](GivenView& g) { g.settings.advanced.thickness_unit = ThicknessUnit::distance; }},
+       [](V&, S& s) { s.advanced.thickness_unit = ThicknessUnit::distance; }},
       {"thickness by back faces",
-       [](GivenView& g) { g.settings.advanced.thickness_unit = ThicknessUnit::back_faces; }},
-      {"depth copied from 16 bits", [](GivenView& g) { g.depth_format = VK_FORMAT_D16_UNORM; }},
-      {"two layers", [](GivenView& g) { g.settings.depth_layers = 2; }},
+       [](V&, S& s) { s.advanced.thickness_unit = ThicknessUnit::back_faces; }},
+      {"depth copied from 16 bits", [](V& v, S&) { v.depth_format = VK_FORMAT_D16_UNORM; }},
+      {"two layers", [](V&, S& s) { s.depth_layers = 2; }},
       {"slices and steps",
-       [](GivenView& g) {
-         g.settings.slices = 3;
-         g.settings.steps = 5;
+       [](V&, S& s) {
+         s.slices = 3;
+         s.steps = 5;
        }},
       {"filter",
-       [](GivenView& g) {
-         g.settings.advanced.filter_radius = 1;
-         g.settings.advanced.filter_tolerance_px = 0.5f;
-         g.settings.history_frames = 0;
+       [](V&, S& s) {
+         s.advanced.filter_radius = 1;
+         s.advanced.filter_tolerance_px = 0.5f;
+         s.history_frames = 0;
        }},
       {"static noise",
-       [](GivenView& g) {
-         g.settings.history_frames = 0;
-         g.settings.static_noise = true;
+       [](V&, S& s) {
+         s.history_frames = 0;
+         s.static_noise = true;
        },
        2},
       {"history",
-       [](GivenView& g) {
-         g.settings.history_frames = 2;
-         g.settings.advanced.clamp_width = 1.0f;
+       [](V&, S& s) {
+         s.history_frames = 2;
+         s.advanced.clamp_width = 1.0f;
        },
        2},
-      {"motion", [](GivenView& g) { g.motion = given_view(test_views()[2], 16, 12, {}).motion; },
-       2},
-      {"normals from depth", [](GivenView& g) { g.normals = {}; }},
-      {"normals in world space", [](GivenView& g) { g.normals_in_view_space = false; }},
+      {"motion", [](V& v, S&) { v.motion = draw_view(16, 12).motion; }, 2},
+      {"normals from depth", [](V& v, S&) { v.normals = {}; }},
+      {"normals in world space", [](V& v, S&) { v.normals_in_view_space = false; }},
       {"table",
-       [](GivenView& g) {
-         g.settings.specular = Specular::table;
-         g.settings.bent_normal = true;
+       [](V&, S& s) {
+         s.specular = Specular::table;
+         s.bent_normal = true;
        }},
       {"cone, one roughness",
-       [](GivenView& g) {
-         g.settings.specular = Specular::cone;
-         g.settings.roughness = 0.2f;
-         g.roughness = {};
+       [](V& v, S& s) {
+         s.specular = Specular::cone;
+         s.roughness = 0.2f;
+         v.roughness = {};
        }},
       {"parts of the search",
-       [](GivenView& g) {
-         g.settings.advanced.snap_to_texels = false;
-         g.settings.advanced.extrapolation = false;
-         g.settings.advanced.unobserved = false;
+       [](V&, S& s) {
+         s.advanced.snap_to_texels = false;
+         s.advanced.extrapolation = false;
+         s.advanced.unobserved = false;
        }},
       {"power and intensity",
-       [](GivenView& g) {
-         g.settings.power = 2.0f;
-         g.settings.intensity = 0.5f;
+       [](V&, S& s) {
+         s.power = 2.0f;
+         s.intensity = 0.5f;
        }},
       {"roughness of another channel",
-       [](GivenView& g) {
-         g.settings.specular = Specular::slices;
-         g.settings.roughness_channel = 0;
+       [](V&, S& s) {
+         s.specular = Specular::slices;
+         s.roughness_channel = 0;
        }},
   };
-  const Context context = create_context();
   std::uint32_t index = 0;
   for (const Case& each : cases) {
     SCOPED_TRACE(each.name);
     for (std::uint32_t frame = 0; frame < each.frames; ++frame, ++index) {
-      GivenView given = frame_of(frame, 16, 12, 0);
-      each.change(given);
-      expect_same_both_ways(*context, {&given, 1}, index);
-    }
-  }
-}
-
-TEST_F(CInterface, EachOutputRequestedAloneEqualsThatRecordedByTheCppInterface) {
-  const std::array<void (*)(GivenView&), 4> only{
-      [](GivenView& g) { g.settings.visibility = true; },
-      [](GivenView& g) { g.settings.bent_normal = true; },
-      [](GivenView& g) { g.settings.specular = Specular::slices; },
-      [](GivenView& g) { g.multi_bounce = true; }};
-  const Context context = create_context();
-  for (std::uint32_t i = 0; i < only.size(); ++i) {
-    SCOPED_TRACE(i);
-    for (std::uint32_t frame = 0; frame < 2; ++frame) {
-      GivenView given = frame_of(frame, 16, 12);
-      given.id = i;
-      given.settings.visibility = false;
-      only.at(i)(given);
-      expect_same_both_ways(*context, {&given, 1}, frame);
-    }
-  }
-}
-
-TEST_F(CInterface, ImagesOfAnySizeEqualThoseRecordedByTheCppInterface) {
-  const Context context = create_context();
-  const std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1}, {1, 7}, {5, 1}, {3, 2}, {31, 9}};
-  std::uint32_t index = 0;
-  for (const auto& [width, height] : sizes) {
-    for (std::uint32_t frame = 0; frame < 2; ++frame, ++index) {
-      GivenView given = frame_of(frame, width, height);
-      given.settings.bent_normal = true;
-      expect_same_both_ways(*context, {&given, 1}, index);
+      HostView view = moving_view(frame, 16, 12, 0);
+      view.static_frames = each.frames > 3 ? frame : 0;
+      view.reset = view.reset || frame == 18;
+      each.change(view, view.settings);
+      expect_same_both_ways(context(), {&view, 1}, index);
     }
   }
 }
 
 TEST_F(CInterface, ViewsRecordedInOneFrameEqualViewsRecordedInSeparateFrames) {
-  const Context context = create_context();
   for (std::uint32_t i = 0; i < 4; ++i) {
-    std::vector<GivenView> views(3, frame_of(i, 16, 12));
+    std::vector<HostView> views(3, moving_view(i, 16, 12));
     views[0].id = 4000000000u;
-    views[1] = given_view(test_views()[0], 9, 20, groove(0.8));
+    views[1] = draw_view(9, 20, groove(0.8), test_views()[0]);
     views[1].id = 7;
     views[1].settings.bent_normal = true;
     views[2].id = 0;
     views[2].settings.history_frames = 0;
     views[2].reset = i == 2;
     if (i == 2) views.erase(views.begin());  // a view that is not recorded keeps its history
-    expect_same_both_ways(*context, views, i);
+    expect_same_both_ways(context(), views, i);
   }
 }
 
 // The world of a left-handed engine is the mirror image of a right-handed one. If positions,
 // normals and the view matrix are all mirrored, the image must be the same.
 TEST_F(CInterface, MirroringTheWorldAndItsCameraGivesTheSameImage) {
-  const Context context = create_context();
   const auto mirror = [](HostImage& image) {
     for (std::size_t i = 2; i < image.texels.size(); i += image.channels)
       image.texels[i] = -image.texels[i];
   };
   for (std::uint32_t i = 0; i < 3; ++i) {
-    std::vector<GivenView> views(2, frame_of(i, 16, 12));
-    for (GivenView& view : views) {
+    std::vector<HostView> views(2, moving_view(i, 16, 12));
+    for (HostView& view : views) {
       view.normals_in_view_space = false;
       view.settings.bent_normal = true;
     }
@@ -209,165 +180,105 @@ TEST_F(CInterface, MirroringTheWorldAndItsCameraGivesTheSameImage) {
     views[1].view.view_from_world[10] = -1.0f;
     views[1].previous_view.view_from_world[10] = -1.0f;
     mirror(views[1].normals);
-    std::vector<Results> found = run_by_c(*context, views, i);
+    std::vector<Results> found = run_by_c(context(), views, i);
     mirror(found[1].bent_normal);
     expect_equal(found[1], found[0]);
   }
 }
 
-TEST_F(CInterface, EightViewsWithAllOutputsCanBeRecordedInOneFrame) {
-  const Context context = create_context();
-  std::vector<GivenView> views;
-  for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
-    views.push_back(frame_of(id, 8, 6));
-    views.back().id = id;
-    views.back().motion = given_view(test_views()[2], 8, 6, {}).motion;
-    if (id % 2 == 1) views.back().normals = {};  // a pass more, an image less
-    views.back().settings.advanced.thickness_unit = ThicknessUnit::back_faces;
-    views.back().settings.depth_layers = 2;
-    views.back().settings.bent_normal = true;
-    views.back().settings.specular = Specular::table;
-    views.back().multi_bounce = true;
-  }
-  expect_same_both_ways(*context, views, 0);
-}
-
 TEST_F(CInterface, EightViewsWithAllInputsAndOutputsCanBeRecordedInOneFrame) {
-  const Context context = create_context();
-  std::vector<GivenView> views;
+  shares_inputs_ = false;
+  std::vector<HostView> views;
   for (std::uint32_t id = 0; id < ALCOVE_MAX_VIEWS; ++id) {
-    views.push_back(given_view(test_views()[2], 8, 6, groove(0.8)));
-    views.back().id = id;
-    views.back().settings.bent_normal = true;
-    views.back().settings.specular = Specular::slices;
-    views.back().multi_bounce = true;
-  }
-  expect_same_both_ways(*context, views, 0);
-}
-
-// Visibility is an output that the library itself reads to make other outputs, and that the engine
-// reads after the frame. The next frame writes the same image while the previous one is still in
-// flight; synchronisation validation reports an error if it does not wait.
-TEST_F(CInterface, FramesInFlightMayWriteTheSameImagesWithoutAHazard) {
-  const Context context = create_context();
-  GivenView given = frame_of(0, 33, 17);
-  given.settings.bent_normal = true;
-  given.settings.specular = Specular::table;
-  given.multi_bounce = true;
-  AlcoveSettings settings;
-  const AlcoveView view = view_of(given, settings);
-  for (std::uint32_t i = 0; i < 6; ++i) run_frame(*context, {&view, 1}, i);
-  engine().wait();
-}
-
-// An engine discards a frame that it recorded and does not submit, for example because the window
-// was closed.
-TEST_F(CInterface, FrameDiscardedBeforeSubmissionDoesNotAffectLaterFrames) {
-  const Context context = create_context();
-  EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "before there is one";
-  std::uint32_t index = 0;
-  for (const bool discarded : {true, false, false, true, true, false}) {
-    GivenView given = frame_of(index, 33, 17);
-    given.settings.bent_normal = discarded;  // another plan
-    if (discarded) {
-      AlcoveSettings settings;
-      const AlcoveView view = view_of(given, settings);
-      record_and_throw_away(*context, view, index);
-      EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
-      std::uint32_t count = 99;
-      EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
-      EXPECT_EQ(count, 0u);
-      continue;
+    HostView& view = views.emplace_back(draw_view(8, 6, groove(0.8)));
+    view.id = id;
+    request_all_outputs(view);
+    view.settings.advanced.thickness_unit = ThicknessUnit::back_faces;
+    view.settings.depth_layers = 2;
+    if (id % 2 == 1) {
+      view.normals = {};  // a pass more, an image less
+      view.settings.specular = Specular::table;
     }
-    expect_same_both_ways(*context, {&given, 1}, index);
-    EXPECT_EQ(alcoveRecordFrame(context.get(), VK_NULL_HANDLE, nullptr),
-              ALCOVE_ERROR_INVALID_INPUT);
-    EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "of the frame that was refused";
-    ++index;
   }
+  expect_same_both_ways(context(), views, 0);
 }
 
-// In the middle of a sequence, one frame is recorded with other settings, outputs or sizes, and
-// then discarded, or refused as invalid. The next frame must equal that of the C++ functions, which
-// were never given the frame in between.
+// In the middle of a sequence, frames with other settings, outputs or sizes are discarded, because
+// an engine does not submit them, or refused as invalid. The next frame must equal that of the C++
+// functions, which were never given the frames in between.
 TEST_F(CInterface, DiscardedOrRefusedFrameWithOtherSettingsDoesNotChangeTheHistory) {
   struct Case {
     const char* name;
-    void (*change)(GivenView&);
+    void (*change)(HostView&);
   };
   const Case cases[] = {
-      {"size", [](GivenView& g) { g = frame_of(0, 21, 40); }},
+      {"size", [](HostView& view) { view = moving_view(0, 21, 40); }},
       {"largest size",
-       [](GivenView& g) {
-         g.largest_size = {64, 64};
+       [](HostView& view) {
+         view.largest_size = {64, 64};
        }},
-      {"no bent normals", [](GivenView& g) { g.settings.bent_normal = false; }},
-      {"a lobe", [](GivenView& g) { g.settings.specular = Specular::slices; }},
-      {"no history", [](GivenView& g) { g.settings.history_frames = 0; }},
-      {"a cut", [](GivenView& g) { g.reset = true; }},
+      {"no bent normals", [](HostView& view) { view.settings.bent_normal = false; }},
+      {"a lobe", [](HostView& view) { view.settings.specular = Specular::slices; }},
+      {"no history", [](HostView& view) { view.settings.history_frames = 0; }},
+      {"a cut", [](HostView& view) { view.reset = true; }},
   };
   const Context context = create_context();
+  EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "before there is one";
   std::uint32_t index = 0;
-  const auto good_frame = [&](std::uint32_t id) {
-    GivenView given = frame_of(index, 33, 17);
-    given.id = id;
-    given.settings.bent_normal = true;
-    expect_same_both_ways(*context, {&given, 1}, index++);
+  const auto next_view = [&](std::uint32_t id) {
+    HostView view = moving_view(index, 33, 17);
+    view.id = id;
+    view.settings.bent_normal = true;
+    return view;
+  };
+  const auto run_good_frame = [&](std::uint32_t id) {
+    const HostView view = next_view(id);
+    expect_same_both_ways(*context, {&view, 1}, index++);
   };
   for (std::uint32_t id = 0; id < std::size(cases); ++id) {
     SCOPED_TRACE(cases[id].name);
-    good_frame(id);
-    good_frame(id);
-    GivenView given = frame_of(index, 33, 17);
-    given.settings.bent_normal = true;
-    cases[id].change(given);
-    given.id = id;
-    AlcoveSettings settings;
-    const AlcoveView view = view_of(given, settings);
-    record_and_throw_away(*context, view, index);
-    EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
-    good_frame(id);
+    run_good_frame(id);
+    run_good_frame(id);
+    HostView changed = next_view(id);
+    cases[id].change(changed);
+    changed.id = id;
+    std::array<AlcoveView, 2> views{create_view(changed)};
+    for (int i = 0; i < 2; ++i) discard_frame(*context, std::span(views).first(1), index);
+    std::uint32_t count = 99;
+    EXPECT_EQ(alcoveGetTimings(context.get(), index % Engine::kSlots, &count, nullptr),
+              ALCOVE_SUCCESS);
+    EXPECT_EQ(count, 0u);
+    run_good_frame(id);
     // A frame whose first view is valid and whose second view is not is refused as a whole.
-    std::array<AlcoveView, 2> views{view, view};
+    views[1] = views[0];
     views[1].id = 99;
     views[1].depth = {};
-    const AlcoveFrame frame{
-        .struct_size = sizeof frame, .index = index, .view_count = 2, .views = views.data()};
-    engine().submit(0, [&](VkCommandBuffer commands) {
-      EXPECT_EQ(alcoveRecordFrame(context.get(), commands, &frame), ALCOVE_ERROR_INVALID_INPUT);
-    });
-    good_frame(id);
+    EXPECT_EQ(record(*context, make_frame(views, index)), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS) << "of the frame that was refused";
+    run_good_frame(id);
   }
-}
-
-TEST_F(CInterface, ImageOfReferenceQualityEqualsThatRecordedByTheCppInterface) {
-  const Context context = create_context();
-  GivenView given = frame_of(0, 6, 4);
-  given.settings = quality_settings(Quality::reference, 0.5f);
-  expect_same_both_ways(*context, {&given, 1}, 0);
 }
 
 TEST_F(CInterface, ProgramCompiledAsCRecordsTheSameFrameAsTheCppInterface) {
   const AlcoveContextInfo info = engine().context_info();
-  GivenView given = frame_of(0, 16, 12);
-  given.settings = quality_settings(Quality::high, 0.5f);
-  given.settings.advanced.estimator = Estimator::horizons;
-  given.normals = {};
-  given.roughness = {};
-  AlcoveSettings unused;
-  AlcoveView view = view_of(given, unused);
-  AlcoveContext* made = nullptr;
+  HostView from = moving_view(0, 16, 12);
+  from.settings = quality_settings(Quality::high, 0.5f);
+  from.settings.advanced.estimator = Estimator::horizons;
+  from.normals = {};
+  from.roughness = {};
+  const AlcoveView view = create_view(from);
+  AlcoveContext* handle = nullptr;
   char text[ALCOVE_MAX_MESSAGE] = "";
   engine().submit(0, [&](VkCommandBuffer commands) {
-    EXPECT_EQ(run_c_program(&info, &view.camera, &view.depth, &view.visibility, commands, &made,
+    EXPECT_EQ(run_c_program(&info, &view.camera, &view.depth, &view.visibility, commands, &handle,
                             text, sizeof text),
               ALCOVE_SUCCESS)
         << text;
   });
-  const Context context(made);
+  const Context context(handle);
   EXPECT_NE(std::strstr(text, "bytes of transients"), nullptr) << text;
-  expect_equal(results_of(view), run_by_cpp(given, 0));
   engine().wait();
+  expect_equal(read_results(view), run_by_cpp(from, 0));
 }
 
 }  // namespace

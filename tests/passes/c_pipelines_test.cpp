@@ -1,12 +1,15 @@
 // Counts the pipelines that are created by preparing and recording frames, and checks from which
-// pipeline cache they come.
+// pipeline cache they come. Tests frames in secondary command buffers, and frames for a queue
+// family without graphics.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstring>
 #include <set>
 
+#include "alcove/framegraph/verify.h"
+#include "c/context.h"
 #include "c_interface_fixture.h"
-#include "gtao_scenes.h"
 
 namespace alcove::passes {
 namespace {
@@ -15,6 +18,7 @@ namespace {
 // with.
 std::uint32_t pipelines = 0;
 std::set<VkPipelineCache> caches;
+bool compiles = true;  // else pipelines are only counted, and are null
 
 VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache cache,
                                                 std::uint32_t count,
@@ -23,6 +27,8 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
                                                 VkPipeline* made) {
   pipelines += count;
   caches.insert(cache);
+  std::fill_n(made, count, VkPipeline{VK_NULL_HANDLE});
+  if (!compiles) return VK_SUCCESS;
   return vkCreateComputePipelines(device, cache, count, infos, callbacks, made);
 }
 
@@ -45,6 +51,7 @@ class CPipelines : public CInterface {
     CInterface::SetUp();
     pipelines = 0;
     caches.clear();
+    compiles = true;
   }
 
   // Creates a context whose calls of vkCreateComputePipelines are counted.
@@ -52,20 +59,18 @@ class CPipelines : public CInterface {
     AlcoveContextInfo info = engine().context_info();
     info.get_instance_proc_addr = get_instance_proc_addr;
     info.pipeline_cache = cache;
-    AlcoveContext* made = nullptr;
-    char message[ALCOVE_MAX_MESSAGE];
-    EXPECT_EQ(alcoveCreateContext(&info, &made, message), ALCOVE_SUCCESS) << message;
-    return Context(made);
+    return create_context(info);
   }
 
-  void prepare(AlcoveContext& context, const AlcoveView& view) {
-    const AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
+  static void prepare(AlcoveContext& context, const AlcoveView& view) {
+    const AlcoveFrame frame = make_frame({&view, 1}, 0);
     EXPECT_EQ(alcovePrepareFrame(&context, &frame), ALCOVE_SUCCESS) << alcoveGetMessage(&context);
   }
 
   // Records frames of every kind that a view has: its first frame, frames in motion, static frames,
   // a cut, motion again, a static camera with static_frames 0, a smaller size within largest_width
-  // and largest_height, and a change of the largest size.
+  // and largest_height, and a change of the largest size. Several frames are in flight, which
+  // write the same images.
   void run_life(AlcoveContext& context, AlcoveView view) {
     std::uint32_t index = 0;
     const auto run_at = [&](float x) {
@@ -84,10 +89,7 @@ class CPipelines : public CInterface {
     run_at(0.6f);
     view.previous_width = view.depth.width;
     view.previous_height = view.depth.height;
-    for (AlcoveImage* image : {&view.depth, &view.normals, &view.motion, &view.roughness,
-                               &view.back_depth, &view.second_depth, &view.albedo, &view.visibility,
-                               &view.bent_normal, &view.specular, &view.multi_bounce})
-      image->height -= 2;
+    for_each_image(view, [](AlcoveImage& image) { image.height -= 2; });
     run_at(0.6f);
     view.largest_height = view.previous_height = view.depth.height;
     run_at(0.7f);
@@ -96,8 +98,8 @@ class CPipelines : public CInterface {
 };
 
 TEST_F(CPipelines, PipelinesAreCreatedWithTheEnginesPipelineCacheWhichIsNotDestroyed) {
-  GivenView given = given_view(test_views()[2], 16, 12, groove(0.8));
-  (void)run_by_c(*create_counted(), {&given, 1}, 0);
+  const HostView from = draw_view(16, 12);
+  (void)run_by_c(*create_counted(), {&from, 1}, 0);
   EXPECT_THAT(caches, testing::ElementsAre(VkPipelineCache{VK_NULL_HANDLE})) << "by default";
 
   const VkDevice device = gpu().device().device();
@@ -105,7 +107,7 @@ TEST_F(CPipelines, PipelinesAreCreatedWithTheEnginesPipelineCacheWhichIsNotDestr
   VkPipelineCache cache = VK_NULL_HANDLE;
   ASSERT_EQ(vkCreatePipelineCache(device, &info, nullptr, &cache), VK_SUCCESS);
   caches.clear();
-  (void)run_by_c(*create_counted(cache), {&given, 1}, 0);
+  (void)run_by_c(*create_counted(cache), {&from, 1}, 0);
   EXPECT_THAT(caches, testing::ElementsAre(cache));
   std::size_t size = 0;
   EXPECT_EQ(vkGetPipelineCacheData(device, cache, &size, nullptr), VK_SUCCESS);
@@ -117,71 +119,127 @@ TEST_F(CPipelines, PipelinesAreCreatedWithTheEnginesPipelineCacheWhichIsNotDestr
 TEST_F(CPipelines, PreparingAFrameCreatesAllPipelinesThatItsViewsEverNeed) {
   struct Case {
     const char* name;
-    void (*change)(GivenView&);
+    void (*change)(HostView&);
   };
   const Case cases[] = {
-      {"normals and motion", [](GivenView&) {}},
-      {"depth alone", [](GivenView& g) { g.normals = g.motion = {}; }},
+      {"depth alone", [](HostView& v) { v.normals = v.motion = {}; }},
       {"low, every output by slices",
-       [](GivenView& g) {
-         g.settings = quality_settings(Quality::low, 0.4f);
-         g.settings.bent_normal = true;
-         g.settings.specular = Specular::slices;
-         g.multi_bounce = true;
+       [](HostView& v) {
+         v.settings = quality_settings(Quality::low, 0.4f);
+         request_all_outputs(v);
        }},
-      {"hidden depths and the table",
-       [](GivenView& g) {
-         g.settings.advanced.thickness_unit = ThicknessUnit::back_faces;
-         g.settings.depth_layers = 2;
-         g.settings.specular = Specular::table;
+      {"hidden depths, every output by the table",
+       [](HostView& v) {
+         v.settings.advanced.thickness_unit = ThicknessUnit::back_faces;
+         v.settings.depth_layers = 2;
+         request_all_outputs(v);
+         v.settings.specular = Specular::table;
        }},
       {"orthographic and clamped",
-       [](GivenView& g) {
-         g.view = g.previous_view = orthographic_view("", 3.0, 2.0, 0.1, 20.0).view;
-         g.settings.advanced.clamp_width = 1.0f;
-         g.motion = {};
+       [](HostView& v) {
+         v.view = v.previous_view = orthographic_view("", 3.0, 2.0, 0.1, 20.0).view;
+         v.settings.advanced.clamp_width = 1.0f;
+         v.motion = {};
        }},
-      {"without a history", [](GivenView& g) { g.settings.history_frames = 0; }},
+      {"without a history", [](HostView& v) { v.settings.history_frames = 0; }},
   };
   for (const Case& each : cases) {
     SCOPED_TRACE(each.name);
-    GivenView given = given_view(test_views()[2], 16, 12, ball_on_floor());
-    given.largest_size = {16, 12};
-    each.change(given);
-    AlcoveSettings settings;
-    AlcoveView view = view_of(given, settings);
+    HostView from = draw_view(16, 12);
+    from.largest_size = {16, 12};
+    each.change(from);
+    AlcoveView view = create_view(from);
     pipelines = 0;
     run_life(*create_counted(), view);
     const std::uint32_t needed = pipelines;
-    // A moving and a static frame prepare the same pipelines.
-    for (const std::uint32_t static_frames : {0u, 20u}) {
-      const Context context = create_counted();
-      view.static_frames = static_frames;
-      pipelines = 0;
-      prepare(*context, view);
-      EXPECT_EQ(pipelines, needed);
-      run_life(*context, view);
-      EXPECT_EQ(pipelines, needed);
-    }
+    pipelines = 0;
+    const Context context = create_counted();
+    prepare(*context, view);
+    EXPECT_EQ(pipelines, needed);
+    run_life(*context, view);
+    EXPECT_EQ(pipelines, needed);
+    // A static frame prepares the same pipelines as a moving one.
+    pipelines = 0;
+    compiles = false;
+    view.static_frames = 20;
+    prepare(*create_counted(), view);
+    compiles = true;
+    EXPECT_EQ(pipelines, needed);
   }
 }
 
 TEST_F(CPipelines, PreparingAFrameDoesNotAffectRecordedFrames) {
-  const Context context = create_counted();
+  HostView other = draw_view(16, 12);
+  other.settings.bent_normal = true;
+  AlcoveView prepared = create_view(other);
   for (std::uint32_t i = 0; i < 4; ++i) {
-    GivenView given = given_view(test_views()[2], 33, 17, ball_on_floor());
-    given.settings.bent_normal = true;
-    given.static_frames = i;
-    GivenView other = given_view(test_views()[2], 16, 12, ball_on_floor());
-    other.reset = i % 2 == 0;
-    AlcoveSettings settings;
-    prepare(*context, view_of(other, settings));
-    expect_same_both_ways(*context, {&given, 1}, i);
-    const std::string plan = plan_of(*context);
-    const VkDeviceSize transients = memory_of(*context).transients;
-    prepare(*context, view_of(other, settings));
-    EXPECT_EQ(plan_of(*context), plan);
-    EXPECT_EQ(memory_of(*context).transients, transients);
+    HostView from = draw_view(33, 17);
+    from.settings.bent_normal = true;
+    from.static_frames = i;
+    prepared.reset_history = i % 2 == 0 ? VK_TRUE : VK_FALSE;
+    prepare(context(), prepared);
+    expect_same_both_ways(context(), {&from, 1}, i);
+    const std::string plan = print_plan(context());
+    const VkDeviceSize transients = get_memory(context()).transients;
+    prepare(context(), prepared);
+    EXPECT_EQ(print_plan(context()), plan);
+    EXPECT_EQ(get_memory(context()).transients, transients);
+  }
+}
+
+TEST_F(CPipelines, FrameRecordedIntoASecondaryCommandBufferGivesTheSameImages) {
+  const VkDevice device = gpu().device().device();
+  const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                          .queueFamilyIndex = gpu().device().queue_family()};
+  VkCommandPool pool = VK_NULL_HANDLE;
+  ASSERT_EQ(vkCreateCommandPool(device, &pool_info, nullptr, &pool), VK_SUCCESS);
+  const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                         .commandPool = pool,
+                                         .level = VK_COMMAND_BUFFER_LEVEL_SECONDARY,
+                                         .commandBufferCount = 1};
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  ASSERT_EQ(vkAllocateCommandBuffers(device, &info, &commands), VK_SUCCESS);
+  const VkCommandBufferInheritanceInfo inheritance{
+      .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO};
+  const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+                                       .pInheritanceInfo = &inheritance};
+  ASSERT_EQ(vkBeginCommandBuffer(commands, &begin), VK_SUCCESS);
+  const HostView from = draw_view(32, 24);
+  const AlcoveView view = create_view(from);
+  AlcoveFrame frame = make_frame({&view, 1}, 0);
+  frame.diagnose_pixels = VK_TRUE;
+  EXPECT_EQ(alcoveRecordFrame(&context(), commands, &frame), ALCOVE_SUCCESS);
+  ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
+  engine().submit(0, [&](VkCommandBuffer primary) { vkCmdExecuteCommands(primary, 1, &commands); });
+  engine().wait();
+  expect_equal(read_results(view), run_by_cpp(from, 0));
+  vkDestroyCommandPool(device, pool, nullptr);
+}
+
+// A queue family without graphics supports only the pipeline stages of compute and transfer, so the
+// plan must name no others. The states of the images are those that INTEGRATION.md gives for images
+// that other queues use before and after, ordered by semaphores. The plan is checked by the
+// verifier, and the contents are those of a frame on a queue with graphics.
+TEST_F(CPipelines, FrameForAComputeOnlyQueueUsesNoGraphicsPipelineStage) {
+  HostView from = draw_view(32, 24);
+  request_all_outputs(from);
+  AlcoveView view = create_view(from);
+  for_each_image(view, [](AlcoveImage& image) {
+    image.initial_state.stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    image.final_state.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    image.initial_state.access = image.final_state.access = VK_ACCESS_2_NONE;
+  });
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    const Results found = run_view(view, i);
+    const std::string plan = print_plan(context());
+    EXPECT_THAT(plan, testing::HasSubstr("compute"));
+    for (const char* stage : {"graphics", "vertex", "fragment", "attachment", "draw", "blit"})
+      EXPECT_THAT(plan, testing::Not(testing::HasSubstr(stage)));
+    const auto right = framegraph::verify(context().graph.description(),
+                                          context().executor.limits(), *context().report.plan);
+    EXPECT_TRUE(right) << right.error().front().message;
+    expect_equal(found, run_by_cpp(from, i));
   }
 }
 

@@ -1,6 +1,6 @@
-// Tests the passes and the memory of frames by the C interface. Outputs that are not requested must
-// cost nothing, a frame like the one before must allocate nothing, and dropped views must have no
-// memory.
+// Tests the passes, the memory and the timings of frames by the C interface. Outputs that are not
+// requested must cost nothing, a frame like the one before must allocate nothing, and dropped views
+// must have no memory.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -14,7 +14,6 @@
 #include "comma_locale.h"
 #include "framegraph/allocation_counter.h"
 #include "framegraph/failing_device.h"
-#include "gtao_scenes.h"
 
 namespace alcove::passes {
 namespace {
@@ -22,20 +21,22 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+// Returns a view with the least work.
+HostView draw_least() {
+  HostView view = draw_view(32, 24, groove(0.8));
+  view.settings.advanced.estimator = Estimator::horizons;
+  view.settings.steps = 4;
+  view.settings.history_frames = 0;
+  view.motion = {};
+  return view;
+}
+
 class CPlan : public CInterface {
  protected:
-  GivenView least() {
-    GivenView given = given_view(test_views()[2], 32, 24, groove(0.8));
-    given.settings.advanced.estimator = Estimator::horizons;
-    given.settings.steps = 4;
-    given.settings.history_frames = 0;
-    given.settings.visibility = false;
-    given.motion = {};
-    return given;
-  }
-  AlcoveMemory memory_of_frame(const Context& context, const GivenView& given) {
-    (void)run_by_c(*context, {&given, 1}, index_++);
-    return memory_of(*context);
+  // Runs a frame and returns its memory.
+  AlcoveMemory run_memory(AlcoveContext& context, const HostView& view) {
+    (void)run_by_c(context, {&view, 1}, index_++);
+    return get_memory(context);
   }
 
  private:
@@ -44,185 +45,216 @@ class CPlan : public CInterface {
 
 TEST_F(CPlan, SingleRequestedOutputNeedsNoPassOrMemoryOfOtherOutputs) {
   const Context context = create_context();
-  GivenView visibility = least();
-  visibility.settings.visibility = true;
-  const VkDeviceSize bytes = memory_of_frame(context, visibility).transients_unshared;
-  std::string plan = plan_of(*context);
-  EXPECT_THAT(plan, HasSubstr("visibility of view 0"));
+  const HostView visibility = draw_least();
+  const VkDeviceSize bytes = run_memory(*context, visibility).transients_unshared;
+  EXPECT_THAT(print_plan(*context), HasSubstr("visibility of view 0"));
   for (const char* absent : {"bent", "specular", "multi-bounce", "normals from depth"})
-    EXPECT_THAT(plan, Not(HasSubstr(absent)));
+    EXPECT_THAT(print_plan(*context), Not(HasSubstr(absent)));
 
-  GivenView bent = least();
+  HostView bent = draw_least();
+  bent.settings.visibility = false;
   bent.settings.bent_normal = true;
-  EXPECT_GT(memory_of_frame(context, bent).transients_unshared, bytes) << "of the search";
-  plan = plan_of(*context);
-  EXPECT_THAT(plan, HasSubstr("bent normals of view 0"));
-  EXPECT_THAT(plan, Not(HasSubstr("visibility")));
-  EXPECT_THAT(plan, Not(HasSubstr("specular")));
-
-  GivenView specular = least();
-  specular.settings.specular = Specular::slices;
-  EXPECT_GT(memory_of_frame(context, specular).transients_unshared, bytes) << "of the search";
-  plan = plan_of(*context);
-  EXPECT_THAT(plan, HasSubstr("specular occlusion of view 0"));
-  EXPECT_THAT(plan, Not(HasSubstr("visibility")));
-  EXPECT_THAT(plan, Not(HasSubstr("bent")));
+  EXPECT_GT(run_memory(*context, bent).transients_unshared, bytes) << "of the search";
+  EXPECT_THAT(print_plan(*context), HasSubstr("bent normals of view 0"));
+  for (const char* absent : {"visibility", "specular"})
+    EXPECT_THAT(print_plan(*context), Not(HasSubstr(absent)));
 
   // Multi-bounce is made from visibility. Because the engine gives no image for visibility, the
   // library makes a transient, which takes memory.
-  GivenView multi_bounce = least();
+  HostView multi_bounce = draw_least();
+  multi_bounce.settings.visibility = false;
   multi_bounce.multi_bounce = true;
-  EXPECT_GT(memory_of_frame(context, multi_bounce).transients_unshared, bytes);
-  EXPECT_THAT(plan_of(*context), Not(HasSubstr("visibility of view 0")));
+  EXPECT_GT(run_memory(*context, multi_bounce).transients_unshared, bytes);
+  EXPECT_THAT(print_plan(*context), Not(HasSubstr("visibility of view 0")));
   multi_bounce.settings.visibility = true;
-  EXPECT_EQ(memory_of_frame(context, multi_bounce).transients_unshared, bytes);
+  EXPECT_EQ(run_memory(*context, multi_bounce).transients_unshared, bytes);
 }
 
 // If only a part of an output image is written, the library must not begin with a transition from
 // VK_IMAGE_LAYOUT_UNDEFINED, because the driver may then discard the other pixels.
 TEST_F(CPlan, OutputImageWithContentsIsNotDiscardedByItsFirstLayoutTransition) {
-  const Context context = create_context();
   for (const Specular specular : {Specular::slices, Specular::table}) {
-    GivenView given = least();
-    given.settings.visibility = given.settings.bent_normal = given.multi_bounce = true;
-    given.settings.specular = specular;
-    AlcoveSettings settings;
-    AlcoveView view = view_of(given, settings);
+    HostView from = draw_least();
+    request_all_outputs(from);
+    from.settings.specular = specular;
+    AlcoveView view = create_view(from);
     for (const bool has_contents : {false, true}) {
-      for (AlcoveImage* image :
-           {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce}) {
-        image->initial_state = kResting;
-        image->initial_state.layout = has_contents ? kResting.layout : VK_IMAGE_LAYOUT_UNDEFINED;
+      for (const Output& each : kOutputs) {
+        (view.*each.image).initial_state = kResting;
+        if (!has_contents) (view.*each.image).initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
       }
-      run_frame(*context, {&view, 1}, 0);
-      engine().wait();
-      const std::string plan = plan_of(*context);
+      run_frame(context(), {&view, 1}, 0);
+      const std::string plan = print_plan(context());
       for (const std::string name :
            {"visibility", "bent normals", "specular occlusion", "multi-bounce"}) {
-        const auto discarded = HasSubstr(name + " of view 0 undefined ->");
-        if (has_contents) {
-          EXPECT_THAT(plan, Not(discarded));
-          EXPECT_THAT(plan, HasSubstr(name + " of view 0 shader read -> general"));
-        } else {
-          EXPECT_THAT(plan, discarded);
-        }
+        const std::string discarded = name + " of view 0 undefined ->";
+        const std::string kept = name + " of view 0 shader read -> general";
+        EXPECT_THAT(plan, HasSubstr(has_contents ? kept : discarded));
+        EXPECT_THAT(plan, Not(HasSubstr(has_contents ? discarded : kept)));
       }
     }
   }
 }
 
-TEST_F(CPlan, HistoryTakesMemoryOnlyForViewsInWhichHistoryIsOn) {
+TEST_F(CPlan, HistoryTakesMemoryOnlyForViewsThatHaveOne) {
   const Context context = create_context();
-  GivenView given = least();
-  given.settings.bent_normal = true;
-  EXPECT_EQ(memory_of_frame(context, given).history, 0u);
-  given.settings.history_frames = 8;
-  const VkDeviceSize with_bent = memory_of_frame(context, given).history;
-  EXPECT_GT(with_bent, 0u);
-  given.id = 1;
-  EXPECT_EQ(memory_of_frame(context, given).history, 2 * with_bent);
-
-  given.settings.visibility = true;
-  given.settings.bent_normal = false;
-  (void)memory_of_frame(context, given);
-  EXPECT_LT(memory_of_frame(context, given).history, 2 * with_bent) << "an output less";
-  given.settings.history_frames = 0;
-  (void)memory_of_frame(context, given);
-  EXPECT_EQ(memory_of_frame(context, given).history, with_bent) << "of the other view";
+  HostView view = draw_least();
+  EXPECT_EQ(run_memory(*context, view).history, 0u);
+  view.settings.history_frames = 8;
+  const VkDeviceSize history = run_memory(*context, view).history;
+  EXPECT_GT(history, 0u);
+  view.id = 1;
+  EXPECT_EQ(run_memory(*context, view).history, 2 * history);
+  view.settings.history_frames = 0;
+  (void)run_memory(*context, view);
+  EXPECT_EQ(run_memory(*context, view).history, history) << "of the other view";
   EXPECT_EQ(alcoveDropView(context.get(), 0), ALCOVE_SUCCESS);
   EXPECT_EQ(alcoveDropView(context.get(), 99), ALCOVE_SUCCESS) << "never recorded";
-  const AlcoveMemory dropped = memory_of_frame(context, given);
-  EXPECT_EQ(dropped.history, 0u);
-  // A view with the dropped id, or with a new one, begins a new history.
-  for (const std::uint32_t id : {0u, 5u}) {
-    given.id = id;
-    given.settings.history_frames = 8;
-    EXPECT_GT(memory_of_frame(context, given).history, 0u);
-  }
+  EXPECT_EQ(run_memory(*context, view).history, 0u);
+  view.settings.history_frames = 8;
+  EXPECT_EQ(run_memory(*context, view).history, history);
+
+  // A view that is recorded again after it was dropped begins a new history.
+  EXPECT_EQ(alcoveDropView(context.get(), view.id), ALCOVE_SUCCESS);
+  const Results again = run_by_c(*context, {&view, 1}, 7)[0];
+  view.id = 77;
+  expect_equal(again, run_by_c(*context, {&view, 1}, 7)[0]);
 }
 
 TEST_F(CPlan, FrameThatFailedToRecordHasNoMemoryReportAndNoPlan) {
-  const Context context = create_context();
-  GivenView given = least();
-  given.settings.visibility = true;
-  for (const bool is_null : {true, false}) {
-    EXPECT_GT(memory_of_frame(context, given).allocated, 0u);
-    AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 0};
-    engine().submit(0, [&](VkCommandBuffer commands) {
-      EXPECT_EQ(alcoveRecordFrame(context.get(), commands, is_null ? nullptr : &frame),
-                ALCOVE_ERROR_INVALID_INPUT);
-    });
-    EXPECT_EQ(memory_of(*context).allocated, 0u);
-    EXPECT_EQ(plan_of(*context), "");
+  EXPECT_GT(run_memory(context(), draw_least()).allocated, 0u);
+  EXPECT_NE(print_plan(context()), "");
+  EXPECT_EQ(record(context(), make_frame({}, 0)), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(get_memory(context()).allocated, 0u);
+  EXPECT_EQ(print_plan(context()), "");
+}
+
+TEST_F(CPlan, EstimatedMemoryIsWithinFivePercentOfThatOfRecordedFrames) {
+  constexpr std::uint32_t kWidth = 256, kHeight = 128;
+  struct Case {
+    const char* name;
+    std::uint32_t outputs;
+    Specular specular;
+    std::uint32_t inputs;
+    Quality quality;
+    bool half_resolution = false;
+    bool history = true;
+  };
+  constexpr std::uint32_t kVisibility = ALCOVE_OUTPUT_VISIBILITY;
+  constexpr std::uint32_t kBent = kVisibility | ALCOVE_OUTPUT_BENT_NORMAL;
+  constexpr std::uint32_t kAll = kBent | ALCOVE_OUTPUT_SPECULAR;
+  constexpr std::uint32_t kNormals = ALCOVE_INPUT_NORMALS;
+  constexpr std::uint32_t kMask = ALCOVE_INPUT_MASK, kSamples = ALCOVE_INPUT_SAMPLES;
+  constexpr Specular kNone = Specular::none, kSlices = Specular::slices;
+  for (const Case& wanted :
+       {Case{"visibility", kVisibility, kNone, kNormals, Quality::medium},
+        Case{"from depth", kVisibility, kNone, 0, Quality::low},
+        Case{"bent", kBent, kNone, kNormals, Quality::medium},
+        Case{"all", kAll, kSlices, kNormals, Quality::low},
+        Case{"by cone", ALCOVE_OUTPUT_SPECULAR, Specular::cone, kNormals, Quality::low},
+        Case{"half resolution", kAll, kSlices, kNormals, Quality::medium, true},
+        Case{"console", kVisibility, kNone, kNormals, Quality::console, true},
+        Case{"no history", kVisibility, kNone, kNormals, Quality::reference, false, false},
+        Case{"half, no history", kAll, kSlices, kNormals, Quality::medium, true, false},
+        Case{"mask", kVisibility, kNone, kNormals | kMask, Quality::low},
+        Case{"samples", kVisibility, kNone, kSamples, Quality::low},
+        Case{"mask, samples, cone", ALCOVE_OUTPUT_SPECULAR, Specular::cone, kMask | kSamples,
+             Quality::low}}) {
+    SCOPED_TRACE(wanted.name);
+    HostView from = draw_view(kWidth, kHeight, {tilted_plane(20.0, 4.0)});
+    from.settings = quality_settings(wanted.quality, 0.5f);
+    from.settings.half_resolution = wanted.half_resolution;
+    from.settings.history_frames = wanted.history ? from.settings.history_frames : 0;
+    from.settings.slices = 1;
+    from.settings.steps = 4;
+    from.settings.visibility = (wanted.outputs & kVisibility) != 0;
+    from.settings.bent_normal = (wanted.outputs & ALCOVE_OUTPUT_BENT_NORMAL) != 0;
+    from.settings.specular = wanted.specular;
+    from.motion = from.back_depth_ndc = from.second_depth_ndc = {};
+    if ((wanted.inputs & kNormals) == 0) from.normals = {};
+    AlcoveView view = create_view(from);
+    if ((wanted.inputs & kMask) != 0) {
+      view.mask =
+          engine().make_image(VK_FORMAT_R8_UINT, kWidth, kHeight, VK_IMAGE_USAGE_SAMPLED_BIT);
+      view.not_occluding = 1;
+    }
+    if ((wanted.inputs & kSamples) != 0) {
+      view.depth = engine().make_image(
+          VK_FORMAT_D32_SFLOAT, kWidth, kHeight,
+          VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 1,
+          VK_SAMPLE_COUNT_4_BIT);
+      view.depth.samples = 4;
+    }
+    run_frame(context(), {&view, 1}, 0);
+    engine().wait();
+    const AlcoveMemory found = get_memory(context());
+    EXPECT_EQ(alcoveDropView(&context(), view.id), ALCOVE_SUCCESS);
+    AlcoveMemory estimate{.struct_size = sizeof estimate};
+    ASSERT_EQ(alcoveEstimateMemory(view.settings, kWidth, kHeight, wanted.outputs, wanted.inputs,
+                                   &estimate),
+              ALCOVE_SUCCESS);
+    const auto about = [](std::uint64_t bytes) { return static_cast<double>(bytes); };
+    EXPECT_NEAR(about(found.history), about(estimate.history), 0.05 * about(estimate.history));
+    EXPECT_NEAR(about(found.transients_unshared), about(estimate.transients_unshared),
+                0.05 * about(estimate.transients_unshared));
+    EXPECT_LE(found.transients, estimate.transients + estimate.transients / 20);
   }
-  engine().wait();
 }
 
-TEST_F(CPlan, ViewRecordedAgainAfterItWasDroppedBeginsANewHistory) {
-  const Context context = create_context();
-  GivenView given = least();
-  given.settings.visibility = true;
-  given.settings.history_frames = 8;
-  for (std::uint32_t i = 0; i < 3; ++i) (void)run_by_c(*context, {&given, 1}, i);
-  EXPECT_EQ(alcoveDropView(context.get(), given.id), ALCOVE_SUCCESS);
-  const Results again = run_by_c(*context, {&given, 1}, 3)[0];
-  given.id = 77;
-  expect_equal(again, run_by_c(*context, {&given, 1}, 3)[0]);
+TEST(CMemory, InvalidArgumentsOfTheMemoryEstimateAreErrors) {
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
+  AlcoveMemory memory{.struct_size = sizeof memory};
+  const auto estimate = [&](std::uint32_t width, std::uint32_t height, std::uint32_t outputs,
+                            std::uint32_t inputs) {
+    return alcoveEstimateMemory(&settings, width, height, outputs, inputs, &memory);
+  };
+  EXPECT_EQ(estimate(16, 16, 1, 1), ALCOVE_SUCCESS);
+  EXPECT_EQ(estimate(0, 16, 1, 1), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(estimate(16, 70000, 1, 1), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(estimate(16, 16, 0, 1), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(estimate(16, 16, 16, 1), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(estimate(16, 16, 1, 8), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveEstimateMemory(nullptr, 16, 16, 1, 1, &memory), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveEstimateMemory(&settings, 16, 16, 1, 1, nullptr), ALCOVE_ERROR_INVALID_INPUT);
 }
 
-TEST_F(CPlan, TimingsListThePassesOfAFinishedFrame) {
+TEST_F(CPlan, TimingsListThePassesOfEachViewOfAFinishedFrame) {
   const Context context = create_context();
   std::uint32_t count = 99;
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
   EXPECT_EQ(count, 0u) << "before there is a frame";
-  GivenView given = least();
-  given.settings.visibility = true;
-  (void)run_by_c(*context, {&given, 1}, 0);
+  std::array<HostView, 3> views{draw_least(), draw_least(), draw_least()};
+  views[0].id = 4000000000u;
+  views[1].id = 7;
+  views[1].normals = {};  // needs no further pass
+  (void)run_by_c(*context, views, 0);
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
-  ASSERT_EQ(count, 2u);
-  std::array<AlcoveTiming, 5> timings{};
+  EXPECT_EQ(count, 6u);
+  std::array<AlcoveTiming, 16> timings{};
   count = timings.size();
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
-  ASSERT_EQ(count, 2u);
-  EXPECT_STREQ(timings[0].pass, "gtao");
-  EXPECT_STREQ(timings[1].pass, "reconstruct");
-  for (const AlcoveTiming& timing : timings) EXPECT_GE(timing.milliseconds, 0.0);
+  ASSERT_EQ(count, 6u);
+  std::map<std::uint32_t, std::multiset<std::string>> passes;
+  for (const AlcoveTiming& timing : std::span(timings).first(count)) {
+    passes[timing.view].insert(timing.pass);
+    EXPECT_GE(timing.milliseconds, 0.0);
+  }
+  for (const HostView& view : views)
+    EXPECT_EQ(passes[view.id], (std::multiset<std::string>{"gtao", "reconstruct"}));
   count = 1;
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
   EXPECT_EQ(count, 1u);
 }
 
-TEST_F(CPlan, TimingsNameTheViewOfEachPass) {
-  const Context context = create_context();
-  std::array<GivenView, 3> given;
-  for (GivenView& view : given) {
-    view = least();
-    view.settings.visibility = true;
-  }
-  given[0].id = 4000000000u;
-  given[1].id = 7;
-  given[1].normals = {};  // needs no further pass
-  given[2].id = 0;
-  (void)run_by_c(*context, given, 0);
-  std::array<AlcoveTiming, 16> timings{};
-  std::uint32_t count = timings.size();
-  EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
-  std::map<std::uint32_t, std::multiset<std::string>> passes;
-  for (std::uint32_t i = 0; i < count; ++i) passes[timings.at(i).view].insert(timings.at(i).pass);
-  const std::multiset<std::string> plain{"gtao", "reconstruct"};
-  EXPECT_EQ(passes.size(), given.size());
-  EXPECT_EQ(passes[given[0].id], plain);
-  EXPECT_EQ(passes[given[1].id], plain);
-  EXPECT_EQ(passes[given[2].id], plain);
+std::string print_settings(const AlcoveSettings& settings) {
+  return print(
+      [&](char* text, std::size_t size) { return alcovePrintSettings(&settings, text, size); });
 }
 
 TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
   for (int quality = ALCOVE_QUALITY_CONSOLE; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
-    AlcoveSettings settings{.struct_size = sizeof(AlcoveSettings)};
-    ASSERT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(quality), 2.5f, &settings),
-              ALCOVE_SUCCESS);
-    std::string text(alcovePrintSettings(&settings, nullptr, 0), '\0');
-    EXPECT_EQ(alcovePrintSettings(&settings, text.data(), text.size() + 1), text.size());
+    const AlcoveSettings settings = get_settings(static_cast<AlcoveQuality>(quality), 2.5f);
+    const std::string text = print_settings(settings);
     EXPECT_THAT(text, HasSubstr("radius = 2.5\n"));
     EXPECT_THAT(text, HasSubstr("specular = slices\n"));
     EXPECT_EQ(std::ranges::count(text, '\n'), 25);
@@ -236,20 +268,18 @@ TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
 // Each printed value reads back as the same number.
 TEST(CSettings, SettingValuesArePrintedShortAndExactInEveryLocale) {
   const CommaLocale comma;
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.15f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.15f);
   settings.thickness = 0.12345678f;
   settings.hidden_occlusion = 1e-7f;
   AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
   ASSERT_EQ(alcoveGetAdvancedSettings(ALCOVE_QUALITY_MEDIUM, &advanced), ALCOVE_SUCCESS);
   advanced.filter_tolerance_px = 1234567.0f;
   settings.advanced = &advanced;
-  std::string text(alcovePrintSettings(&settings, nullptr, 0), '\0');
-  alcovePrintSettings(&settings, text.data(), text.size() + 1);
+  const std::string text = print_settings(settings);
   EXPECT_THAT(text, testing::StartsWith("radius = 0.15\ntile_size = 4\n"));
-  EXPECT_THAT(text, HasSubstr("\nthickness = 0.12345678\n"));
-  EXPECT_THAT(text, HasSubstr("\nhidden_occlusion = 1e-07\n"));
-  EXPECT_THAT(text, HasSubstr("\nfilter_tolerance_px = 1234567\n"));
+  for (const char* line : {"\nthickness = 0.12345678\n", "\nhidden_occlusion = 1e-07\n",
+                           "\nfilter_tolerance_px = 1234567\n"})
+    EXPECT_THAT(text, HasSubstr(line));
 }
 
 // The parameter is the number of frames in flight. With an odd number, each frame slot uses both
@@ -265,11 +295,10 @@ TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesN
   AlcoveContextInfo info = engine.context_info();
   info.frames_in_flight = GetParam();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
-  AlcoveContext* made = nullptr;
-  ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
-  const Context context(made);
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings), ALCOVE_SUCCESS);
+  AlcoveContext* handle = nullptr;
+  ASSERT_EQ(alcoveCreateContext(&info, &handle, nullptr), ALCOVE_SUCCESS);
+  const Context context(handle);
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
   settings.specular = ALCOVE_SPECULAR_TABLE;
   const auto make = [&](VkFormat format) {
     return engine.make_image(format, 24, 16,
@@ -292,7 +321,7 @@ TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesN
     std::ranges::copy(test_views()[2].view.clip_from_view, view.camera.clip_from_view);
     std::ranges::copy(kIdentity, view.camera.view_from_world);
   }
-  AlcoveFrame frame{.struct_size = sizeof frame, .view_count = views.size(), .views = views.data()};
+  AlcoveFrame frame = make_frame(views, 0);
   std::size_t steady = 0;
   int updates = 0;
   for (frame.index = 0; frame.index < 30; ++frame.index) {

@@ -28,7 +28,7 @@ struct Settings {
     text.resize(alcovePrintSettings(&settings, text.data(), text.size()));
     return text;
   }
-  std::string said() const { return message.data(); }
+  std::string sentence() const { return message.data(); }
 
   AlcoveSettings settings{.struct_size = sizeof settings};
   AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
@@ -77,8 +77,8 @@ OcclusionSettings unusual_settings() {
 TEST(CReadSettings, EverySettingOfARecommendationIsRead) {
   const OcclusionSettings wanted = unusual_settings();
   Settings found;
-  ASSERT_EQ(found.read(file_of(wanted)), ALCOVE_SUCCESS) << found.said();
-  EXPECT_EQ(found.said(), "");
+  ASSERT_EQ(found.read(file_of(wanted)), ALCOVE_SUCCESS) << found.sentence();
+  EXPECT_EQ(found.sentence(), "");
   EXPECT_EQ(found.settings.advanced, &found.advanced);
   Settings expected;
   expected.settings = from_settings(wanted, expected.advanced);
@@ -92,10 +92,10 @@ TEST(CReadSettings, OnlyNamedSettingsChange) {
        {"{\"settings\":{}}",
         " { \"other\" : [ { \"a\" : \"}\\\"\" } , 1.5e3 , null ] , \"settings\" : { } } ",
         "{\"settings\":{\"specular\":\"none\",\"bent_normal\":true}}"}) {
-    EXPECT_EQ(found.read(text), ALCOVE_SUCCESS) << text << ": " << found.said();
+    EXPECT_EQ(found.read(text), ALCOVE_SUCCESS) << text << ": " << found.sentence();
     EXPECT_EQ(found.printed(), before) << text;
   }
-  EXPECT_EQ(found.read("{\"settings\":{\"steps\":9}}"), ALCOVE_SUCCESS) << found.said();
+  EXPECT_EQ(found.read("{\"settings\":{\"steps\":9}}"), ALCOVE_SUCCESS) << found.sentence();
   EXPECT_EQ(found.settings.steps, 9u);
   EXPECT_EQ(found.settings.radius, 0.7f);
 }
@@ -104,7 +104,7 @@ TEST(CReadSettings, TextThatCannotBeUsedIsReportedInASentenceAndChangesNothing) 
   const std::string deep = "{\"a\":" + std::string(30000, '[') + std::string(30000, ']') + "}";
   const struct {
     std::string text;
-    const char* said;
+    const char* part;
   } cases[] = {
       {"", "no settings"},
       {"{}", "no settings"},
@@ -133,12 +133,12 @@ TEST(CReadSettings, TextThatCannotBeUsedIsReportedInASentenceAndChangesNothing) 
       {"{\"settings\":{\"half_resolution\":1}}", "false or true"},
       {"{\"settings\":{\"tile_size\":1,\"half_resolution\":true}}", "tile_size of 1"},
   };
-  for (const auto& [text, said] : cases) {
+  for (const auto& [text, part] : cases) {
     Settings found;
     const std::string before = found.printed();
     EXPECT_EQ(found.read(text), ALCOVE_ERROR_INVALID_INPUT) << text.substr(0, 80);
-    EXPECT_THAT(found.said(), HasSubstr(said)) << text.substr(0, 80);
-    EXPECT_THAT(found.said(), EndsWith(".")) << text.substr(0, 80);
+    EXPECT_THAT(found.sentence(), HasSubstr(part)) << text.substr(0, 80);
+    EXPECT_THAT(found.sentence(), EndsWith(".")) << text.substr(0, 80);
     EXPECT_EQ(found.printed(), before);
     EXPECT_EQ(found.settings.advanced, nullptr);
   }
@@ -161,7 +161,7 @@ TEST(CReadSettings, DamagedTextNeverChangesSettingsIfItIsRefused) {
     const std::string before = found.printed();
     if (found.read(text) != ALCOVE_SUCCESS) {
       EXPECT_EQ(found.printed(), before);
-      EXPECT_THAT(found.said(), EndsWith("."));
+      EXPECT_THAT(found.sentence(), EndsWith("."));
     }
   }
 }
@@ -170,14 +170,14 @@ TEST(CReadSettings, ArgumentsThatAreMissingAreReported) {
   Settings found;
   EXPECT_EQ(alcoveReadSettings(nullptr, 0, &found.settings, &found.advanced, found.message.data()),
             ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_THAT(found.said(), HasSubstr("no text"));
+  EXPECT_THAT(found.sentence(), HasSubstr("no text"));
   EXPECT_EQ(alcoveReadSettings("{}", 2, nullptr, &found.advanced, nullptr),
             ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_EQ(alcoveReadSettings("{}", 2, &found.settings, nullptr, nullptr),
             ALCOVE_ERROR_INVALID_INPUT);
   found.advanced.struct_size = 4;
   EXPECT_EQ(found.read("{\"settings\":{}}"), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_THAT(found.said(), HasSubstr("AlcoveAdvancedSettings::struct_size is 4"));
+  EXPECT_THAT(found.sentence(), HasSubstr("AlcoveAdvancedSettings::struct_size is 4"));
 }
 
 // Returns another value of a setting than `value`, the `number`th that is tried.

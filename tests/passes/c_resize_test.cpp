@@ -28,24 +28,25 @@ constexpr std::uint32_t kRound = 200;  // frames between two calls of CResize::r
 constexpr std::chrono::seconds kProgress(30);
 
 std::chrono::seconds wanted_time() {
-  const char* given = std::getenv("ALCOVE_RESIZE_SECONDS");
-  return std::chrono::seconds(given != nullptr ? std::strtol(given, nullptr, 10) : 4);
+  const char* text = std::getenv("ALCOVE_RESIZE_SECONDS");
+  return std::chrono::seconds(text != nullptr ? std::strtol(text, nullptr, 10) : 3);
 }
 
 // Settings and optional images of a view. The test makes only a few kinds, because each needs
 // pipelines of its own, and a software device takes longer to create pipelines than to run frames.
 struct Kind {
   OcclusionSettings settings;
-  // The images that are not given: bit i stands for element i of inputs_of() or outputs_of().
+  // The images that are not given: bit i stands for element i of kInputs or kOutputs.
   std::uint32_t without_inputs = 0;
   std::uint32_t without_outputs = 0;
 };
+constexpr std::uint32_t kOptionalInputs = 0b0001110;  // normals, motion, roughness
 
 // A view that frames may show, with its images.
-struct Shown {
+struct ViewState {
   std::uint32_t id = 0;
   bool is_shown = false;
-  TestView seen;
+  TestView camera;
   Scene scene;
   AlcoveView view{};  // with every image
   AlcoveSettings settings{};
@@ -54,26 +55,14 @@ struct Shown {
   Kind kind;
 };
 
-std::array<AlcoveImage*, 7> inputs_of(AlcoveView& view) {
-  return {&view.depth,      &view.normals,      &view.motion, &view.roughness,
-          &view.back_depth, &view.second_depth, &view.albedo};
-}
-constexpr std::uint32_t kOptionalInputs = 0b0001110;  // normals, motion, roughness
-
-std::array<AlcoveImage*, 4> outputs_of(AlcoveView& view) {
-  return {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce};
-}
-
-// Returns the AlcoveView to record: `shown.view` without the images that its kind leaves out.
-AlcoveView recorded_view(Shown& shown) {
-  AlcoveView view = shown.view;
-  view.settings = &shown.settings;
-  const auto leave_out = [](const auto& images, std::uint32_t which) {
-    for (std::size_t i = 0; i < images.size(); ++i)
-      if ((which >> i & 1) != 0) *images[i] = {};
-  };
-  leave_out(inputs_of(view), shown.kind.without_inputs);
-  leave_out(outputs_of(view), shown.kind.without_outputs);
+// Returns the AlcoveView to record: `state.view` without the images that its kind leaves out.
+AlcoveView recorded_view(const ViewState& state) {
+  AlcoveView view = state.view;
+  view.settings = &state.settings;
+  for (std::size_t i = 0; i < kInputs.size(); ++i)
+    if ((state.kind.without_inputs >> i & 1) != 0) view.*kInputs.at(i).image = {};
+  for (std::size_t i = 0; i < kOutputs.size(); ++i)
+    if ((state.kind.without_outputs >> i & 1) != 0) view.*kOutputs.at(i).image = {};
   return view;
 }
 
@@ -89,24 +78,24 @@ class CResize : public CInterface {
   bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
 
   Kind any_kind();
-  void make_images(Shown& shown, VkExtent2D size);
-  void destroy_images(Shown& shown);
-  void use_part(Shown& shown, VkExtent2D size);
-  void change_kind(Shown& shown);
-  void change_numbers(Shown& shown);
-  void show(Shown& shown);
-  void drop(Shown& shown);
-  void change(Shown& shown);
-  void draw_frame(std::span<Shown> all, bool discards);
+  void make_images(ViewState& state, VkExtent2D size);
+  void destroy_images(ViewState& state);
+  void use_part(ViewState& state, VkExtent2D size);
+  void change_kind(ViewState& state);
+  void change_numbers(ViewState& state);
+  void show(ViewState& state);
+  void drop(ViewState& state);
+  void change(ViewState& state);
+  void draw_frame(std::span<ViewState> all, bool discards);
   void run_round(Clock::time_point end);
   AlcoveMemory rest();
-  void expect_right(Shown& shown);
+  void expect_right(ViewState& state);
 
   maths_test::RandomInput random_;
   Context context_;
   std::array<Kind, 8> kinds_;
-  std::array<Shown, kMostViews> views_;
-  std::array<Shown, 1> resting_;
+  std::array<ViewState, kMostViews> views_;
+  std::array<ViewState, 1> resting_;
   std::uint32_t frame_ = 0;
   std::uint64_t most_transients_ = 0;
 };
@@ -115,12 +104,11 @@ void CResize::SetUp() {
   CInterface::SetUp();
   framegraph::failing::fail_at(0);
   framegraph::failing::lose(false);
+  shares_inputs_ = false;
   AlcoveContextInfo info = engine().context_info();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
   info.debug_utils = VK_TRUE;
-  AlcoveContext* made = nullptr;
-  ASSERT_EQ(alcoveCreateContext(&info, &made, nullptr), ALCOVE_SUCCESS);
-  context_ = Context(made);
+  context_ = create_context(info);
   std::ranges::generate(kinds_, [&] { return any_kind(); });
   for (std::uint32_t i = 0; i < kMostViews; ++i) views_.at(i).id = i;
   resting_[0].id = kMostViews;
@@ -151,139 +139,119 @@ Kind CResize::any_kind() {
 }
 
 // Makes new images of `size` pixels that are used completely, with another random camera and scene.
-void CResize::make_images(Shown& shown, VkExtent2D size) {
+void CResize::make_images(ViewState& state, VkExtent2D size) {
   const std::vector<TestView> views = test_views();
-  shown.seen = views[below(static_cast<std::uint32_t>(views.size()))];
-  shown.scene = chance(2) ? ball_on_floor() : groove(0.8);
-  GivenView given = given_view(shown.seen, size.width, size.height, shown.scene);
-  given.id = shown.id;
-  given.settings.bent_normal = given.multi_bounce = true;
-  given.settings.specular = Specular::slices;
-  given.settings.precision = chance(3) ? Precision::unorm8 : Precision::float32;
-  shown.view = view_of(given, shown.settings);
-  shown.largest = size;
+  state.camera = views[below(static_cast<std::uint32_t>(views.size()))];
+  state.scene = chance(2) ? ball_on_floor() : groove(0.8);
+  HostView from = draw_view(size.width, size.height, state.scene, state.camera);
+  from.id = state.id;
+  request_all_outputs(from);
+  from.settings.precision = chance(3) ? Precision::unorm8 : Precision::float32;
+  state.view = create_view(from);
+  state.largest = size;
   // Half of the views use dynamic resolution. In the others, a change of the used part of the
   // images begins a new history.
   if (chance(2)) {
-    shown.view.largest_width = size.width;
-    shown.view.largest_height = size.height;
+    state.view.largest_width = size.width;
+    state.view.largest_height = size.height;
   }
 }
 
-void CResize::destroy_images(Shown& shown) {
+void CResize::destroy_images(ViewState& state) {
   engine().wait();
-  const auto destroy = [&](const AlcoveImage* image) {
-    if (image->image != VK_NULL_HANDLE) {
-      EXPECT_EQ(alcoveForgetImage(context_.get(), image->image), ALCOVE_SUCCESS);
-      engine().destroy_image(*image);
-    }
-  };
-  std::ranges::for_each(inputs_of(shown.view), destroy);
-  std::ranges::for_each(outputs_of(shown.view), destroy);
+  for_each_image(state.view, [&](const AlcoveImage& image) {
+    if (image.image == VK_NULL_HANDLE) return;
+    EXPECT_EQ(alcoveForgetImage(context_.get(), image.image), ALCOVE_SUCCESS);
+    engine().destroy_image(image);
+  });
 }
 
-void CResize::use_part(Shown& shown, VkExtent2D size) {
-  const GivenView part = given_view(shown.seen, size.width, size.height, shown.scene);
-  const std::array<const HostImage*, 7> contents{
-      &part.depth_ndc,      &part.normals,          &part.motion, &part.roughness,
-      &part.back_depth_ndc, &part.second_depth_ndc, &part.albedo};
-  const auto inputs = inputs_of(shown.view);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    AlcoveImage whole = *inputs[i];
-    whole.width = shown.largest.width;
-    whole.height = shown.largest.height;
-    fill_image(whole, placed_in(shown.largest, *contents[i]), kResting);
+void CResize::use_part(ViewState& state, VkExtent2D size) {
+  const HostView part = draw_view(size.width, size.height, state.scene, state.camera);
+  for (const Input& each : kInputs) {
+    AlcoveImage whole = state.view.*each.image;
+    whole.width = state.largest.width;
+    whole.height = state.largest.height;
+    fill_image(whole, placed_in(state.largest, part.*each.texels));
   }
-  const auto use = [size](AlcoveImage* image) {
-    image->width = size.width;
-    image->height = size.height;
-  };
-  std::ranges::for_each(inputs, use);
-  std::ranges::for_each(outputs_of(shown.view), use);
-  shown.view.read_area = {0, 0, size.width, size.height};
+  for_each_image(state.view, [size](AlcoveImage& image) {
+    image.width = size.width;
+    image.height = size.height;
+  });
+  state.view.read_area = {0, 0, size.width, size.height};
 }
 
-void CResize::change_kind(Shown& shown) {
-  shown.kind = kinds_.at(below(kinds_.size()));
-  change_numbers(shown);
+void CResize::change_kind(ViewState& state) {
+  state.kind = kinds_.at(below(kinds_.size()));
+  change_numbers(state);
 }
 
-void CResize::change_numbers(Shown& shown) {
-  OcclusionSettings settings = shown.kind.settings;
+void CResize::change_numbers(ViewState& state) {
+  OcclusionSettings settings = state.kind.settings;
   settings.radius = random_.log_uniform(0.05f, 5.0f);
   settings.thickness = random_.uniform(0.0f, 1.0f);
   settings.hidden_occlusion = random_.uniform(0.0f, 1.0f);
   settings.history_frames = chance(4) ? 0 : 1 + below(127);
   settings.roughness = random_.uniform(0.0f, 1.0f);
   settings.precision = static_cast<Precision>(below(3));
-  shown.settings = from_settings(settings, shown.advanced);
+  state.settings = from_settings(settings, state.advanced);
 }
 
-void CResize::show(Shown& shown) {
-  destroy_images(shown);
-  make_images(shown, {1 + below(kMostSide), 1 + below(kMostSide)});
-  change_kind(shown);
-  shown.is_shown = true;
+void CResize::show(ViewState& state) {
+  destroy_images(state);
+  make_images(state, {1 + below(kMostSide), 1 + below(kMostSide)});
+  change_kind(state);
+  state.is_shown = true;
 }
 
-void CResize::drop(Shown& shown) {
-  shown.is_shown = false;
-  EXPECT_EQ(alcoveDropView(context_.get(), shown.id), ALCOVE_SUCCESS);
-  shown.view.previous_width = shown.view.previous_height = shown.view.static_frames = 0;
+void CResize::drop(ViewState& state) {
+  state.is_shown = false;
+  EXPECT_EQ(alcoveDropView(context_.get(), state.id), ALCOVE_SUCCESS);
+  state.view.previous_width = state.view.previous_height = state.view.static_frames = 0;
 }
 
 // Changes a view at random in five of twelve cases. A view that changes has static_frames 0.
-void CResize::change(Shown& shown) {
+void CResize::change(ViewState& state) {
   const std::uint32_t what = below(12);
   if (what > 4) return;
-  shown.view.static_frames = 0;
-  if (what == 0 && shown.is_shown && chance(2))
-    drop(shown);
+  state.view.static_frames = 0;
+  if (what == 0 && state.is_shown && chance(2))
+    drop(state);
   else if (what == 0)
-    show(shown);
-  else if (what == 1 && shown.is_shown)
-    use_part(shown, {1 + below(shown.largest.width), 1 + below(shown.largest.height)});
+    show(state);
+  else if (what == 1 && state.is_shown)
+    use_part(state, {1 + below(state.largest.width), 1 + below(state.largest.height)});
   else if (what == 2)
-    change_kind(shown);
+    change_kind(state);
   else if (what == 3)
-    change_numbers(shown);
+    change_numbers(state);
   else
-    shown.view.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
+    state.view.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
 }
 
 // Stores the camera and the size of this frame as the previous ones of the next frame.
-void remember(Shown& shown) {
-  shown.view.previous_camera = shown.view.camera;
-  if (shown.view.largest_width != 0) {
-    shown.view.previous_width = shown.view.depth.width;
-    shown.view.previous_height = shown.view.depth.height;
+void remember(ViewState& state) {
+  state.view.previous_camera = state.view.camera;
+  if (state.view.largest_width != 0) {
+    state.view.previous_width = state.view.depth.width;
+    state.view.previous_height = state.view.depth.height;
   }
-  ++shown.view.static_frames;
+  ++state.view.static_frames;
 }
 
-void CResize::draw_frame(std::span<Shown> all, bool discards) {
+void CResize::draw_frame(std::span<ViewState> all, bool discards) {
   std::vector<AlcoveView> views;
-  for (Shown& shown : all)
-    if (shown.is_shown) views.push_back(recorded_view(shown));
+  for (ViewState& state : all)
+    if (state.is_shown) views.push_back(recorded_view(state));
   if (views.empty()) return;
   if (discards) {
-    const AlcoveFrame frame{.struct_size = sizeof(AlcoveFrame),
-                            .index = frame_,
-                            .slot = frame_ % Engine::kSlots,
-                            .view_count = static_cast<std::uint32_t>(views.size()),
-                            .views = views.data()};
-    engine().submit(frame.slot, [&](VkCommandBuffer commands) {
-      EXPECT_EQ(alcoveRecordFrame(context_.get(), commands, &frame), ALCOVE_SUCCESS)
-          << alcoveGetMessage(context_.get());
-      throw_away(commands);
-    });
-    EXPECT_EQ(alcoveDiscardFrame(context_.get()), ALCOVE_SUCCESS);
+    discard_frame(*context_, views, frame_);
     return;
   }
   run_frame(*context_, views, frame_++);
-  most_transients_ = std::max(most_transients_, memory_of(*context_).transients);
-  for (Shown& shown : all)
-    if (shown.is_shown) remember(shown);
+  most_transients_ = std::max(most_transients_, get_memory(*context_).transients);
+  for (ViewState& state : all)
+    if (state.is_shown) remember(state);
 }
 
 // Expects every value of the image to be finite and within [low, 1].
@@ -297,9 +265,9 @@ void expect_within(const HostImage& image, float low, const char* what) {
   }
 }
 
-void CResize::expect_right(Shown& shown) {
-  if (!shown.is_shown) return;
-  const Results found = results_of(recorded_view(shown));
+void CResize::expect_right(ViewState& state) {
+  if (!state.is_shown) return;
+  const Results found = read_results(recorded_view(state));
   expect_within(found.visibility, 0.0f, "visibility");
   expect_within(found.bent_normal, -1.0f, "a bent normal");
   expect_within(found.specular, 0.0f, "specular occlusion");
@@ -309,13 +277,13 @@ void CResize::expect_right(Shown& shown) {
 void CResize::run_round(Clock::time_point end) {
   for (std::uint32_t i = 0; i < kRound && Clock::now() < end && !HasFailure(); ++i) {
     SCOPED_TRACE("frame " + std::to_string(frame_));
-    std::ranges::for_each(views_, [&](Shown& shown) { change(shown); });
+    std::ranges::for_each(views_, [&](ViewState& state) { change(state); });
     const bool discards = chance(20);
     draw_frame(views_, discards);
     // Reading results waits for the device. It is done in a quarter of the frames only, so that the
     // others are in flight together.
     if (!discards && chance(4))
-      std::ranges::for_each(views_, [&](Shown& shown) { expect_right(shown); });
+      std::ranges::for_each(views_, [&](ViewState& state) { expect_right(state); });
     EXPECT_EQ(gpu().device().validation_messages(), std::vector<std::string>{});
   }
 }
@@ -323,7 +291,7 @@ void CResize::run_round(Clock::time_point end) {
 // Drops all views, records some frames of one small view that is always the same, and returns the
 // memory of the context. If anything leaks, that memory grows from call to call.
 AlcoveMemory CResize::rest() {
-  for (Shown& shown : views_) drop(shown);
+  for (ViewState& state : views_) drop(state);
   resting_[0].is_shown = true;
   AlcoveMemory memory{};
   // Frames with two specular models are recorded, so that the tables of their shaders are loaded
@@ -333,7 +301,7 @@ AlcoveMemory CResize::rest() {
     settings.specular = specular;
     resting_[0].settings = from_settings(settings, resting_[0].advanced);
     for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) draw_frame(resting_, false);
-    memory = memory_of(*context_);
+    memory = get_memory(*context_);
   }
   drop(resting_[0]);
   return memory;

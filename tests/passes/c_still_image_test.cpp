@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include "c_interface_fixture.h"
-#include "gtao_scenes.h"
 
 namespace alcove::passes {
 namespace {
@@ -10,127 +9,124 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+constexpr AlcoveArea kWhole{0, 0, 24, 16};
+constexpr AlcoveArea kPart{4, 4, 12, 8};
+
 class CStillImage : public CInterface {
  protected:
-  static GivenView given_still(std::uint32_t history_frames) {
-    GivenView given = given_view(test_views()[2], 24, 16, ball_on_floor());
-    given.settings = quality_settings(Quality::low, 0.4f);
-    given.settings.history_frames = history_frames;
-    given.settings.precision = Precision::float32;
-    given.motion = {};
-    return given;
+  static HostView draw_still(std::uint32_t history_frames) {
+    HostView view = draw_view(24, 16);
+    view.settings = quality_settings(Quality::low, 0.4f);
+    view.settings.history_frames = history_frames;
+    view.settings.precision = Precision::float32;
+    view.motion = {};
+    return view;
+  }
+  // Returns a view that has converged after its first frame.
+  static HostView draw_without_history() {
+    HostView view = draw_still(0);
+    view.settings.static_noise = true;
+    return view;
   }
 
-  // The view of view_of() with an output that keeps its contents from frame to frame, and that
+  // Creates a view with an output that keeps its contents from frame to frame, and that
   // fill_image() can fill.
-  AlcoveView skipping_view_of(const GivenView& given, AlcoveSettings& settings) {
-    AlcoveView view = view_of(given, settings);
+  AlcoveView create_skipping_view(const HostView& from) {
+    AlcoveView view = create_view(from);
     view.skip_converged = VK_TRUE;
     view.visibility = engine().make_image(view.visibility.format, 24, 16,
                                           view.visibility.usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     return view;
   }
 
-  AlcoveViewState state_of(AlcoveContext& context, std::uint32_t id) {
+  AlcoveViewState get_state(const AlcoveView& view) {
     AlcoveViewState state{.struct_size = sizeof state};
-    EXPECT_EQ(alcoveGetViewState(&context, id, &state), ALCOVE_SUCCESS);
+    EXPECT_EQ(alcoveGetViewState(&context(), view.id, &state), ALCOVE_SUCCESS);
     return state;
   }
 
-  // Runs the frames `first` to `last` of a still image.
-  void run_still(AlcoveContext& context, AlcoveView& view, std::uint32_t first,
-                 std::uint32_t last) {
+  // Runs the frames `first` to `last` of still images.
+  void run_still(std::span<AlcoveView> views, std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t number = first; number <= last; ++number) {
-      ASSERT_EQ(alcoveSetStillFrame(number, &view), ALCOVE_SUCCESS);
-      run_frame(context, {&view, 1}, number);
+      for (AlcoveView& view : views) ASSERT_EQ(alcoveSetStillFrame(number, &view), ALCOVE_SUCCESS);
+      run_frame(context(), views, number);
     }
     engine().wait();
   }
 };
 
 TEST_F(CStillImage, EqualsTheConvergedFramesOfTheCppInterface) {
-  const Context context = create_context();
-  GivenView given = given_still(32);
-  given.settings.bent_normal = true;
-  AlcoveSettings settings{};
-  AlcoveView view = view_of(given, settings);
-  const std::uint32_t frames = alcoveGetConvergedFrames(&settings);
+  HostView from = draw_still(32);
+  from.settings.bent_normal = true;
+  AlcoveView view = create_view(from);
+  const std::uint32_t frames = alcoveGetConvergedFrames(view.settings);
   ASSERT_EQ(frames, 128u);
-  run_still(*context, view, 0, frames - 1);
+  run_still({&view, 1}, 0, frames - 1);
   Results expected;
   for (std::uint32_t i = 0; i < frames; ++i) {
-    given.static_frames = i;
-    given.reset = i == 0;
-    expected = run_by_cpp(given, i);
+    from.static_frames = i;
+    from.reset = i == 0;
+    expected = run_by_cpp(from, i);
   }
-  expect_equal(results_of(view), expected);
+  expect_equal(read_results(view), expected);
 }
 
 TEST_F(CStillImage, ConvergedViewIsSkippedUntilItChanges) {
-  const Context context = create_context();
-  const Context other = create_context();  // is not given the frames that do nothing
-  AlcoveSettings settings{};
-  const GivenView given = given_still(8);
-  AlcoveView view = skipping_view_of(given, settings);
-  AlcoveSettings other_settings{};
-  AlcoveView same = view_of(given, other_settings);
+  const HostView from = draw_still(8);
+  // The second view is never skipped, and is not given the frames that do nothing.
+  std::array<AlcoveView, 2> views{create_skipping_view(from), create_view(from)};
+  AlcoveView& view = views[0];
+  views[1].id = 1;
   for (std::uint32_t number = 0; number < 128; ++number) {
-    run_still(*context, view, number, number);
-    const AlcoveViewState state = state_of(*context, view.id);
+    run_still(views, number, number);
+    const AlcoveViewState state = get_state(view);
     ASSERT_EQ(state.frames, number + 1);
     ASSERT_EQ(state.converged_frames, 128u);
     ASSERT_EQ(state.skipped, VK_FALSE) << number;
   }
-  EXPECT_THAT(plan_of(*context), HasSubstr("gtao"));
-  run_still(*other, same, 0, 127);
-  const Results converged = results_of(view);
-  expect_equal(results_of(same), converged);
+  EXPECT_THAT(print_plan(context()), HasSubstr("gtao"));
+  expect_equal(read_results(views[1]), read_results(view));
 
   // Other contents show that nothing is written.
   const HostImage mark{24, 16, std::vector<float>(std::size_t{24} * 16, 0.25f)};
-  fill_image(view.visibility, mark, kResting);
-  run_still(*context, view, 128, 131);
-  EXPECT_EQ(state_of(*context, view.id).skipped, VK_TRUE);
-  EXPECT_THAT(plan_of(*context), Not(HasSubstr("gtao")));
-  EXPECT_EQ(results_of(view).visibility.texels, mark.texels);
+  fill_image(view.visibility, mark);
+  run_still({&view, 1}, 128, 131);
+  EXPECT_EQ(get_state(view).skipped, VK_TRUE);
+  EXPECT_THAT(print_plan(context()), Not(HasSubstr("gtao")));
+  EXPECT_EQ(read_results(view).visibility.texels, mark.texels);
 
   // An image without contents is written, and the history has lost nothing.
   view.visibility.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  run_still(*context, view, 132, 132);
-  EXPECT_EQ(state_of(*context, view.id).skipped, VK_FALSE);
-  run_still(*other, same, 132, 132);
-  expect_equal(results_of(view), results_of(same));
+  run_still(views, 132, 132);
+  EXPECT_EQ(get_state(view).skipped, VK_FALSE);
+  expect_equal(read_results(view), read_results(views[1]));
   view.visibility.initial_state = kResting;
 
   // So does a camera that moves again.
-  for (const auto& [with, moved] : {std::pair(context.get(), &view), {other.get(), &same}}) {
-    moved->static_frames = 0;
-    moved->camera.view_from_world[12] += 0.05f;
-    run_frame(*with, {moved, 1}, 133);
+  for (AlcoveView& moved : views) {
+    moved.static_frames = 0;
+    moved.camera.view_from_world[12] += 0.05f;
   }
+  run_frame(context(), views, 133);
   engine().wait();
-  EXPECT_EQ(state_of(*context, view.id).frames, 1u);
-  expect_equal(results_of(view), results_of(same));
+  EXPECT_EQ(get_state(view).frames, 1u);
+  expect_equal(read_results(view), read_results(views[1]));
 }
 
-TEST_F(CStillImage, WhatEndsAConvergedImageIsRecordedAgain) {
-  AlcoveSettings settings{};
-  GivenView given = given_still(0);
-  given.settings.static_noise = true;
-  AlcoveView view = skipping_view_of(given, settings);
-  ASSERT_EQ(alcoveGetConvergedFrames(&settings), 1u);
-  const Context context = create_context();
+TEST_F(CStillImage, ChangeOfAConvergedViewIsRecordedAgain) {
+  AlcoveView view = create_skipping_view(draw_without_history());
+  ASSERT_EQ(alcoveGetConvergedFrames(view.settings), 1u);
   std::uint32_t index = 0;
   const auto is_skipped = [&](const AlcoveView& next) {
-    run_frame(*context, {&next, 1}, index++);
-    return state_of(*context, view.id).skipped == VK_TRUE;
+    run_frame(context(), {&next, 1}, index++);
+    return get_state(view).skipped == VK_TRUE;
   };
   EXPECT_FALSE(is_skipped(view));
   view.static_frames = 5;
   EXPECT_TRUE(is_skipped(view));
 
   // Each change is recorded once, and so is the change back.
-  AlcoveSettings larger = settings;
+  AlcoveSettings larger = *view.settings;
   larger.radius *= 2.0f;
   const std::function<void(AlcoveView&)> changes[] = {
       [](AlcoveView& v) { v.static_frames = 0; },
@@ -139,13 +135,8 @@ TEST_F(CStillImage, WhatEndsAConvergedImageIsRecordedAgain) {
       [](AlcoveView& v) { v.camera.view_from_world[12] += 0.1f; },
       [](AlcoveView& v) { v.camera.clip_from_view[0] *= 1.01f; },
       [](AlcoveView& v) { v.normals = {}; },
-      [](AlcoveView& v) {
-        v.read_area = {0, 0, 24, 16};
-      },
-      [](AlcoveView& v) {
-        v.read_area = {0, 0, 24, 16};
-        v.written_area = {4, 4, 12, 8};
-      },
+      [](AlcoveView& v) { v.read_area = kWhole; },
+      [](AlcoveView& v) { v.read_area = v.written_area = kPart; },
       [&](AlcoveView& v) { v.settings = &larger; },
       [&](AlcoveView& v) {
         v.visibility = output(VK_FORMAT_R32_SFLOAT, 24, 16);
@@ -160,64 +151,38 @@ TEST_F(CStillImage, WhatEndsAConvergedImageIsRecordedAgain) {
     (void)is_skipped(view);
     EXPECT_TRUE(is_skipped(view));
   }
-  record_and_throw_away(*context, view, index++);
-  EXPECT_EQ(alcoveDiscardFrame(context.get()), ALCOVE_SUCCESS);
-  EXPECT_EQ(state_of(*context, view.id).frames, 0u);
+  discard_frame(context(), {&view, 1}, index++);
+  EXPECT_EQ(get_state(view).frames, 0u);
   EXPECT_FALSE(is_skipped(view));
   EXPECT_TRUE(is_skipped(view));
-  EXPECT_EQ(alcoveDropView(context.get(), view.id), ALCOVE_SUCCESS);
+  EXPECT_EQ(alcoveDropView(&context(), view.id), ALCOVE_SUCCESS);
+  EXPECT_EQ(get_state(view).frames, 0u);
   EXPECT_FALSE(is_skipped(view));
-  engine().wait();
 }
 
 TEST_F(CStillImage, SkippedViewsDoNotDisturbOtherViewsOfTheFrame) {
-  const Context context = create_context();
-  GivenView still = given_still(0);
-  still.settings.static_noise = true;
-  still.id = 1;
-  GivenView moving = given_still(32);
-  moving.id = 2;
-  AlcoveSettings settings[2];
-  std::array<AlcoveView, 2> views{skipping_view_of(still, settings[0]),
-                                  skipping_view_of(moving, settings[1])};
+  HostView moving = draw_still(32);
+  moving.id = 1;
+  std::array<AlcoveView, 2> views{create_skipping_view(draw_without_history()),
+                                  create_skipping_view(moving)};
   Results first;
   for (std::uint32_t i = 0; i < 4; ++i) {
     views[0].static_frames = i;
-    run_frame(*context, views, i);
+    run_frame(context(), views, i);
     engine().wait();
-    first = i == 0 ? results_of(views[0]) : first;
-    EXPECT_EQ(state_of(*context, 1).skipped, i > 0 ? VK_TRUE : VK_FALSE);
-    EXPECT_EQ(state_of(*context, 2).skipped, VK_FALSE);
-    expect_equal(results_of(views[1]), run_by_cpp(moving, i));
-    expect_equal(results_of(views[0]), first);
+    if (i == 0) first = read_results(views[0]);
+    EXPECT_EQ(get_state(views[0]).skipped, i > 0 ? VK_TRUE : VK_FALSE);
+    EXPECT_EQ(get_state(views[1]).skipped, VK_FALSE);
+    expect_equal(read_results(views[1]), run_by_cpp(moving, i));
+    expect_equal(read_results(views[0]), first);
   }
 }
 
 TEST_F(CStillImage, ImageWhoseNoiseChangesNeverConverges) {
-  const Context context = create_context();
-  AlcoveSettings settings{};
-  AlcoveView view = skipping_view_of(given_still(0), settings);
-  EXPECT_EQ(alcoveGetConvergedFrames(&settings), 0u);
-  run_still(*context, view, 0, 3);
-  EXPECT_EQ(state_of(*context, view.id).skipped, VK_FALSE);
-}
-
-TEST_F(CStillImage, ArgumentsThatCannotBeUsedAreRefused) {
-  const Context context = create_context();
-  AlcoveSettings settings{.struct_size = 1};
-  EXPECT_EQ(alcoveGetConvergedFrames(nullptr), 0u);
-  EXPECT_EQ(alcoveGetConvergedFrames(&settings), 0u);
-  AlcoveView view{};
-  EXPECT_EQ(alcoveSetStillFrame(0, nullptr), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(alcoveSetStillFrame(0, &view), ALCOVE_ERROR_INVALID_INPUT);
-  AlcoveViewState state{};
-  EXPECT_EQ(alcoveGetViewState(nullptr, 0, &state), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(alcoveGetViewState(context.get(), 0, nullptr), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(alcoveGetViewState(context.get(), 0, &state), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_THAT(alcoveGetMessage(context.get()), HasSubstr("AlcoveViewState::struct_size is 0"));
-  state.struct_size = sizeof state;
-  EXPECT_EQ(alcoveGetViewState(context.get(), 77, &state), ALCOVE_SUCCESS);
-  EXPECT_EQ(state.frames, 0u);
+  AlcoveView view = create_skipping_view(draw_still(0));
+  EXPECT_EQ(alcoveGetConvergedFrames(view.settings), 0u);
+  run_still({&view, 1}, 0, 3);
+  EXPECT_EQ(get_state(view).skipped, VK_FALSE);
 }
 
 }  // namespace

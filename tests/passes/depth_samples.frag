@@ -6,6 +6,10 @@ layout(push_constant) uniform Depths {
   float right;
   float per_pixel;
   float edge;  // pixels
+  int samples;  // that are written, as bits
 };
 
-void main() { gl_FragDepth = (gl_FragCoord.x < edge ? left : right) + per_pixel * gl_FragCoord.y; }
+void main() {
+  gl_FragDepth = (gl_FragCoord.x < edge ? left : right) + per_pixel * gl_FragCoord.y;
+  gl_SampleMask[0] = samples;
+}

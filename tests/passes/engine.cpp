@@ -42,12 +42,12 @@ AlcoveContextInfo Engine::context_info() const {
 AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                                VkImageUsageFlags usage, std::uint32_t layers,
                                VkSampleCountFlagBits samples) {
-  auto made = sample::GpuImage::create(
+  auto created = sample::GpuImage::create(
       device_, {format, framegraph::Extent::absolute(width, height), 1, layers, samples}, usage);
-  EXPECT_TRUE(made) << made.error();
-  if (!made) return {};
-  const VkImage image = (*made)->image();
-  images_.push_back(std::move(*made));
+  EXPECT_TRUE(created) << created.error();
+  if (!created) return {};
+  const VkImage image = (*created)->image();
+  images_.push_back(std::move(*created));
   submit(0, [&](VkCommandBuffer commands) {
     const VkImageMemoryBarrier2 barrier{
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
@@ -72,7 +72,12 @@ AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32
 }
 
 void Engine::destroy_image(const AlcoveImage& image) {
-  std::erase_if(images_, [&](const auto& made) { return made->image() == image.image; });
+  std::erase_if(images_, [&](const auto& each) { return each->image() == image.image; });
+}
+
+void Engine::forget_images(AlcoveContext& context) const {
+  for (const auto& image : images_)
+    EXPECT_EQ(alcoveForgetImage(&context, image->image()), ALCOVE_SUCCESS);
 }
 
 void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
@@ -88,6 +93,12 @@ void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer
                                 .commandBufferCount = 1,
                                 .pCommandBuffers = &used.commands};
   EXPECT_EQ(vkQueueSubmit(device_.queue(), 1, &submission, used.fence), VK_SUCCESS);
+}
+
+AlcoveSettings get_settings(AlcoveQuality quality, float radius) {
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  EXPECT_EQ(alcoveGetSettings(quality, radius, &settings), ALCOVE_SUCCESS);
+  return settings;
 }
 
 void throw_away(VkCommandBuffer commands) {

@@ -33,6 +33,9 @@ class Engine {
   // Destroys an image that make_image() returned. The device must have finished using it.
   void destroy_image(const AlcoveImage& image);
 
+  // Calls alcoveForgetImage for every image.
+  void forget_images(AlcoveContext& context) const;
+
   // Waits for the previous frame of `slot`, calls `record` with the command buffer of the slot, and
   // submits it even if `record` fails. Does not wait for the new frame.
   void submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record);
@@ -48,6 +51,8 @@ class Engine {
   std::array<Slot, kSlots> slots_;
   std::vector<std::unique_ptr<sample::GpuImage>> images_;
 };
+
+AlcoveSettings get_settings(AlcoveQuality quality, float radius);
 
 // Resets a command buffer and begins it again, so that nothing that was recorded is submitted.
 void throw_away(VkCommandBuffer commands);

@@ -8,7 +8,6 @@
 #include <alcove/passes/occlusion.h>
 
 #include "c_interface_fixture.h"
-#include "gtao_scenes.h"
 
 using namespace alcove;
 
@@ -78,24 +77,21 @@ class Example : public passes::CInterface {
 };
 
 TEST_F(Example, ReadmeExampleDrawsTheSameImageAsTheCInterface) {
-  passes::GivenView given =
-      passes::given_view(passes::test_views()[2], 40, 30, passes::ball_on_floor());
-  given.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
-  given.normals_in_view_space = false;
-  given.motion = given.roughness = given.albedo = {};
+  passes::HostView from = passes::draw_view(40, 30);
+  from.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
+  from.normals_in_view_space = false;
+  from.motion = from.roughness = from.albedo = {};
   const std::unique_ptr<Engine> started = start();
   ASSERT_NE(started, nullptr);
-  AlcoveSettings settings;
-  const AlcoveView images = view_of(given, settings);
+  const AlcoveView images = create_view(from);
   started->depth = import_of(images.depth);
   started->normals = import_of(images.normals);
   started->visibility = import_of(images.visibility);
-  const passes::Context context = create_context();
   for (std::uint32_t i = 0; i < 4; ++i) {
-    given.previous_view = given.view;
-    given.view.view_from_world[12] = 0.02f * static_cast<float>(i);
-    started->view = given.view;
-    started->previous_view = given.previous_view;
+    from.previous_view = from.view;
+    from.view.view_from_world[12] = 0.02f * static_cast<float>(i);
+    started->view = from.view;
+    started->previous_view = from.previous_view;
     started->frame = i;
     started->slot = i % 2;
     engine().submit(started->slot, [&](VkCommandBuffer commands) {
@@ -103,7 +99,7 @@ TEST_F(Example, ReadmeExampleDrawsTheSameImageAsTheCInterface) {
       EXPECT_TRUE(recorded) << recorded.error();
     });
     const passes::HostImage found = read(images.visibility);
-    EXPECT_EQ(found.texels, run_by_c(*context, {&given, 1}, i)[0].visibility.texels) << i;
+    EXPECT_EQ(found.texels, run_by_c(context(), {&from, 1}, i)[0].visibility.texels) << i;
   }
   engine().wait();
 }

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "c_interface_fixture.h"
-#include "gtao_scenes.h"
 #include "work_executor.h"
 
 namespace alcove::passes {
@@ -37,6 +36,7 @@ AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const Alcove
           .visibility_channel = view.visibility_channel,
           .half_size_outputs = view.half_size_outputs,
           .depth = image(view.depth),
+          .depth_format = static_cast<std::uint32_t>(view.depth_format),
           .normals = image(view.normals),
           .motion = image(view.motion),
           .roughness = image(view.roughness),
@@ -56,15 +56,9 @@ AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const Alcove
 struct Case {
   const char* name;
   Quality quality;
-  void (*change)(GivenView& given) = [](GivenView&) {};
+  void (*change)(HostView& view) = [](HostView&) {};
   bool area_and_mask = false;
 };
-
-void all_outputs(GivenView& given) {
-  given.settings.bent_normal = true;
-  given.settings.specular = Specular::slices;
-  given.multi_bounce = true;
-}
 
 void PrintTo(const Case& of, std::ostream* out) { *out << of.name; }
 
@@ -72,44 +66,30 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
  protected:
   // Executes the list of `view` with outputs of its own.
   Results execute(AlcoveView view, std::uint32_t index) {
-    for (AlcoveImage* image :
-         {&view.visibility, &view.bent_normal, &view.specular, &view.multi_bounce})
-      if (image->image != VK_NULL_HANDLE)
-        *image = output(image->format, image->width, image->height);
+    for (const Output& each : kOutputs) {
+      AlcoveImage& image = view.*each.image;
+      if (image.image != VK_NULL_HANDLE) image = output(image.format, image.width, image.height);
+    }
     const AlcoveWorkInfo info = info_of(view, index, index > 0 ? work_.get() : nullptr);
     char message[ALCOVE_MAX_MESSAGE];
     EXPECT_EQ(alcoveDescribeWork(&info, work_.get(), message), ALCOVE_SUCCESS) << message;
     std::vector<VkImage> host;
-    for (const AlcoveImage& image :
-         {view.depth, view.normals, view.motion, view.roughness, view.back_depth, view.second_depth,
-          view.albedo, view.mask, view.visibility, view.bent_normal, view.specular,
-          view.multi_bounce})
+    for_each_image(view, [&](const AlcoveImage& image) {
       if (image.image != VK_NULL_HANDLE) host.push_back(image.image);
+    });
     engine().submit(0,
                     [&](VkCommandBuffer commands) { executor_->record(commands, *work_, host); });
     engine().wait();
-    return results_of(view);
+    return read_results(view);
   }
 
   // A mask with all values, in columns.
-  AlcoveImage mask() {
-    AlcoveImage image = engine().make_image(
+  AlcoveImage create_mask() {
+    const AlcoveImage image = engine().make_image(
         VK_FORMAT_R8_UNORM, 37, 26, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    auto buffer =
-        sample::HostBuffer::create(gpu().device(), 37 * 26, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-    EXPECT_TRUE(buffer);
-    for (std::size_t i = 0; i < 37 * 26; ++i)
-      (*buffer)->bytes()[i] = static_cast<std::byte>(i % 37 / 10);
-    run([&](framegraph::Graph& graph) {
-      const framegraph::State state{kResting.stages, kResting.access, kResting.layout};
-      sample::add_copy(graph, **buffer,
-                       graph.import_texture(
-                           "mask", {.image = image.image,
-                                    .desc = {image.format, framegraph::Extent::absolute(37, 26)},
-                                    .usage = image.usage,
-                                    .initial_state = state,
-                                    .final_state = state}));
-    });
+    Bytes bytes(37 * 26);
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i % 37 / 10);
+    write_bytes(image, bytes);
     return image;
   }
 
@@ -128,88 +108,86 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
 };
 
 TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
-  GivenView given = given_view(test_views()[2], 37, 26, groove(0.8));
-  const OcclusionSettings defaults = given.settings;
-  given.settings = quality_settings(GetParam().quality, 0.5f);
-  given.settings.roughness_channel = defaults.roughness_channel;
-  GetParam().change(given);
-  const Context context = create_context();
+  HostView from = draw_view(37, 26, groove(0.8));
+  const OcclusionSettings defaults = from.settings;
+  from.settings = quality_settings(GetParam().quality, 0.5f);
+  from.settings.roughness_channel = defaults.roughness_channel;
+  GetParam().change(from);
   // A first frame, frames in motion, and frames without motion up to a converged one.
   for (std::uint32_t index = 0; index < 5; ++index) {
     SCOPED_TRACE("frame " + std::to_string(index));
-    given.previous_view = given.view;
-    if (index == 1 || index == 2) given.view.view_from_world[12] += 0.03f;
-    given.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
-    AlcoveSettings settings;
-    AlcoveView view = view_of(given, settings);
+    from.previous_view = from.view;
+    if (index == 1 || index == 2) from.view.view_from_world[12] += 0.03f;
+    from.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
+    AlcoveView view = create_view(from);
     if (GetParam().area_and_mask) {
       view.read_area = {0, 0, view.depth.width, view.depth.height};
-      view.mask = mask();
+      view.mask = create_mask();
       view.not_receiving = 1;
       view.not_occluding = 2;
     }
-    run_frame(*context, {&view, 1}, index);
-    engine().wait();
-    const Results expected = results_of(view);
+    const Results expected = run_view(view, index);
     expect_equal(execute(view, index), expected);
-    EXPECT_EQ(work_->history_valid, index > 0 && given.settings.history_frames > 0 ? 1u : 0u);
+    EXPECT_EQ(work_->history_valid, index > 0 && from.settings.history_frames > 0 ? 1u : 0u);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Settings, WorkExecution,
-                         testing::Values(Case{"Console", Quality::console, all_outputs},
-                                         Case{"Low", Quality::low, all_outputs},
-                                         Case{"Medium", Quality::medium, all_outputs},
-                                         Case{"High", Quality::high, all_outputs},
-                                         Case{"Ultra", Quality::ultra, all_outputs},
-                                         Case{"Reference", Quality::reference, all_outputs},
-                                         Case{"VisibilityAlone", Quality::medium},
-                                         Case{"ConsoleVisibilityAlone", Quality::console},
-                                         Case{"BentNormalAlone", Quality::medium,
-                                              [](GivenView& given) {
-                                                given.settings.visibility = false;
-                                                given.settings.bent_normal = true;
-                                              }},
-                                         Case{"MultiBounceAlone", Quality::low,
-                                              [](GivenView& given) {
-                                                given.settings.visibility = false;
-                                                given.multi_bounce = true;
-                                              }},
-                                         Case{"SpecularByTableWithoutNormals", Quality::medium,
-                                              [](GivenView& given) {
-                                                given.settings.specular = Specular::table;
-                                                given.normals = {};
-                                              }},
-                                         Case{"SpecularByConeAtHalfResolution", Quality::low,
-                                              [](GivenView& given) {
-                                                given.settings.specular = Specular::cone;
-                                                given.settings.half_resolution = true;
-                                              }},
-                                         Case{"TwoDepthLayers", Quality::high,
-                                              [](GivenView& given) {
-                                                all_outputs(given);
-                                                given.settings.depth_layers = 2;
-                                                given.motion = {};
-                                              }},
-                                         Case{"OutputsOfHalfSize", Quality::console,
-                                              [](GivenView& given) {
-                                                given.settings.bent_normal = true;
-                                                given.settings.specular = Specular::slices;
-                                                given.half_size_outputs = true;
-                                              }},
-                                         Case{"AreaAndMask", Quality::medium, all_outputs, true},
-                                         Case{"HalfResolutionAreaAndMask", Quality::console,
-                                              all_outputs, true},
-                                         Case{"HalfResolutionWithoutHistory", Quality::low,
-                                              [](GivenView& given) {
-                                                all_outputs(given);
-                                                given.settings.half_resolution = true;
-                                                given.settings.history_frames = 0;
-                                              }}),
-                         [](const auto& of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Settings, WorkExecution,
+    testing::Values(Case{"Console", Quality::console, request_all_outputs},
+                    Case{"Low", Quality::low, request_all_outputs},
+                    Case{"Medium", Quality::medium, request_all_outputs},
+                    Case{"High", Quality::high, request_all_outputs},
+                    Case{"Ultra", Quality::ultra, request_all_outputs},
+                    Case{"Reference", Quality::reference, request_all_outputs},
+                    Case{"VisibilityAlone", Quality::medium},
+                    Case{"ConsoleVisibilityAlone", Quality::console},
+                    Case{"DepthCopiedFrom16Bits", Quality::medium,
+                         [](HostView& view) { view.depth_format = VK_FORMAT_D16_UNORM; }},
+                    Case{"BentNormalAlone", Quality::medium,
+                         [](HostView& view) {
+                           view.settings.visibility = false;
+                           view.settings.bent_normal = true;
+                         }},
+                    Case{"MultiBounceAlone", Quality::low,
+                         [](HostView& view) {
+                           view.settings.visibility = false;
+                           view.multi_bounce = true;
+                         }},
+                    Case{"SpecularByTableWithoutNormals", Quality::medium,
+                         [](HostView& view) {
+                           view.settings.specular = Specular::table;
+                           view.normals = {};
+                         }},
+                    Case{"SpecularByConeAtHalfResolution", Quality::low,
+                         [](HostView& view) {
+                           view.settings.specular = Specular::cone;
+                           view.settings.half_resolution = true;
+                         }},
+                    Case{"TwoDepthLayers", Quality::high,
+                         [](HostView& view) {
+                           request_all_outputs(view);
+                           view.settings.depth_layers = 2;
+                           view.motion = {};
+                         }},
+                    Case{"OutputsOfHalfSize", Quality::console,
+                         [](HostView& view) {
+                           view.settings.bent_normal = true;
+                           view.settings.specular = Specular::slices;
+                           view.half_size_outputs = true;
+                         }},
+                    Case{"AreaAndMask", Quality::medium, request_all_outputs, true},
+                    Case{"HalfResolutionAreaAndMask", Quality::console, request_all_outputs, true},
+                    Case{"HalfResolutionWithoutHistory", Quality::low,
+                         [](HostView& view) {
+                           request_all_outputs(view);
+                           view.settings.half_resolution = true;
+                           view.settings.history_frames = 0;
+                         }}),
+    [](const auto& of) { return std::string(of.param.name); });
 
 // The list of a frame of 64x48 pixels with a depth image and visibility.
-struct Described {
+struct Description {
   AlcoveResult result = ALCOVE_SUCCESS;
   std::string message;
   std::unique_ptr<AlcoveWork> work = std::make_unique<AlcoveWork>();
@@ -223,8 +201,8 @@ class WorkOfView : public testing::Test {
     std::ranges::copy(test_views()[2].view.clip_from_view, info_.camera.clip_from_view);
     std::ranges::copy(kIdentity, info_.camera.view_from_world);
   }
-  Described describe() const {
-    Described made;
+  Description describe() const {
+    Description made;
     char message[ALCOVE_MAX_MESSAGE];
     made.result = alcoveDescribeWork(&info_, made.work.get(), message);
     made.message = message;
@@ -239,7 +217,7 @@ class WorkOfView : public testing::Test {
 };
 
 TEST_F(WorkOfView, TransientsLiveFromTheDispatchThatWritesThemToTheLastThatReadsThem) {
-  const Described made = describe();
+  const Description made = describe();
   ASSERT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
   ASSERT_EQ(made.work->dispatch_count, 2u);
   const AlcoveWorkResource* const raw = std::ranges::find(
@@ -252,7 +230,7 @@ TEST_F(WorkOfView, TransientsLiveFromTheDispatchThatWritesThemToTheLastThatReads
 }
 
 TEST_F(WorkOfView, HistoryContinuesOnlyFromAListWithTheSameHistories) {
-  const Described first = describe();
+  const Description first = describe();
   EXPECT_EQ(first.work->history_valid, 0u);
   info_.previous = first.work.get();
   EXPECT_EQ(describe().work->history_valid, 1u);
@@ -271,7 +249,7 @@ TEST_F(WorkOfView, HistoryContinuesOnlyFromAListWithTheSameHistories) {
 TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime) {
   info_.specular = info_.visibility;
   settings_.specular = ALCOVE_SPECULAR_TABLE;
-  const Described made = describe();
+  const Description made = describe();
   ASSERT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
   const AlcoveWork& work = *made.work;
   for (std::uint32_t i = 0; i < work.dispatch_count; ++i) {
@@ -313,7 +291,7 @@ TEST_F(WorkOfView, InvalidInputIsASentence) {
 }
 
 TEST_F(WorkOfView, PrintedListNamesResourcesShadersConstantsAndHistories) {
-  const Described made = describe();
+  const Description made = describe();
   std::string text(alcovePrintWork(made.work.get(), nullptr, 0) + 1, '\0');
   alcovePrintWork(made.work.get(), text.data(), text.size());
   EXPECT_THAT(text, HasSubstr("raw occlusion: transient, VK_FORMAT_R32G32_UINT, 16x12"));

@@ -64,8 +64,8 @@ typedef struct AlcoveMemoryBlock {
 } AlcoveMemoryBlock;
 
 // The bytes of device memory of the last recorded frame. All are zero before the first frame, and
-// after a frame that failed or was discarded. `transients` counts the memory of the largest frame
-// so far, because this memory grows and does not shrink.
+// after a frame that failed or was discarded. `transients` is the memory that this frame uses. The
+// context holds as much as the largest frame so far has used, which `allocated` counts.
 typedef struct AlcoveMemory {
   uint32_t struct_size;
   uint64_t transients;           // intermediate images, which share memory
@@ -86,14 +86,22 @@ typedef enum AlcoveOutput {
   ALCOVE_OUTPUT_MAX_ENUM = 0x7fffffff
 } AlcoveOutput;
 
+// The inputs of a view that its memory depends on, as bits to be combined.
+typedef enum AlcoveInput {
+  ALCOVE_INPUT_NORMALS = 1,  // AlcoveView::normals has an image
+  ALCOVE_INPUT_MASK = 2,     // AlcoveView::mask has an image: depth is copied twice
+  ALCOVE_INPUT_SAMPLES = 4,  // AlcoveView::depth has several samples per pixel: depth is copied
+  ALCOVE_INPUT_MAX_ENUM = 0x7fffffff
+} AlcoveInput;
+
 // Fills `memory`, whose struct_size must be set, with the bytes that one view of width x height
-// pixels takes. It needs no context and no frame. `outputs` is a combination of AlcoveOutput;
-// `normals_given` says whether AlcoveView::normals has an image. The bytes are those of the texels;
-// drivers round each image up. `transients` and `transients_unshared` are both what the view needs
-// if no images share memory; a recorded frame may need less. `allocated` is the sum of transients
-// and history. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message.
+// pixels takes. It needs no context and no frame. `outputs` is a combination of AlcoveOutput, and
+// `inputs` one of AlcoveInput. The bytes are those of the texels; drivers round each image up.
+// `transients` and `transients_unshared` are both what the view needs if no images share memory; a
+// recorded frame may need less. `allocated` is the sum of transients and history. Returns
+// ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message.
 AlcoveResult alcoveEstimateMemory(const struct AlcoveSettings* settings, uint32_t width,
-                                  uint32_t height, uint32_t outputs, VkBool32 normals_given,
+                                  uint32_t height, uint32_t outputs, uint32_t inputs,
                                   AlcoveMemory* memory);
 
 #ifdef __cplusplus

@@ -182,6 +182,7 @@ typedef struct AlcoveWorkInfo {
   AlcoveChannel visibility_channel;
   uint32_t half_size_outputs;
   AlcoveWorkImage depth;
+  uint32_t depth_format;  // the number of its VkFormat; 0: that of `depth`
   AlcoveWorkImage normals;
   AlcoveWorkImage motion;
   AlcoveWorkImage roughness;

@@ -174,7 +174,7 @@ ViewName::ViewName(std::uint32_t id) {
   std::snprintf(text_.data(), text_.size(), "view %u", static_cast<unsigned>(id));
 }
 
-tl::expected<SettledView, Failure> settle(const AlcoveView& view, const ImageImporter& importer) {
+tl::expected<ViewSetup, Failure> set_up(const AlcoveView& view, const ImageImporter& importer) {
   auto given = to_settings(view.settings);
   if (!given) return tl::unexpected(std::move(given.error()));
   OcclusionSettings& settings = *given;
@@ -191,19 +191,19 @@ tl::expected<SettledView, Failure> settle(const AlcoveView& view, const ImageImp
   settings.visibility = into.visibility || inputs->multi_bounce;
   settings.bent_normal = bool(into.bent_normal);
   if (!into.specular) settings.specular = Specular::none;
-  return SettledView{*inputs, settings};
+  return ViewSetup{*inputs, settings};
 }
 
 namespace {
 
 // Checks a view and imports its images into a graph.
-tl::expected<SettledView, Failure> settle_in(framegraph::Graph& graph, ImageTable& images,
-                                             const AlcoveView& view) {
+tl::expected<ViewSetup, Failure> set_up_in(framegraph::Graph& graph, ImageTable& images,
+                                           const AlcoveView& view) {
   struct Import {
     framegraph::Graph& graph;
     ImageTable& images;
   } target{graph, images};
-  return settle(
+  return set_up(
       view, {[](void* user, const ImageRole& role, const AlcoveImage& image, const AlcoveView& of) {
                const Import& to = *static_cast<Import*>(user);
                return to.images.import(to.graph, role, image, of);
@@ -215,14 +215,14 @@ tl::expected<SettledView, Failure> settle_in(framegraph::Graph& graph, ImageTabl
 
 tl::expected<void, Failure> import_view(framegraph::Graph& graph, ImageTable& images,
                                         const AlcoveView& view) {
-  return settle_in(graph, images, view).map([](const SettledView&) {});
+  return set_up_in(graph, images, view).map([](const ViewSetup&) {});
 }
 
 tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
                                      const AlcoveView& view, const AlcoveFrame& described,
                                      bool prepare, PixelObserver* observer) {
-  const auto settled = settle_in(graph, images, view);
-  if (!settled) return tl::unexpected(settled.error());
+  const auto setup = set_up_in(graph, images, view);
+  if (!setup) return tl::unexpected(setup.error());
   const bool reset = view.reset_history != VK_FALSE;
   if (reset) graph.reset_history(ViewName(view.id));
   Frame frame{graph,
@@ -235,10 +235,10 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   frame.areas = to_areas(view);
   frame.largest_size = {view.largest_width, view.largest_height};
   if (!reset) frame.previous_size = {view.previous_width, view.previous_height};
-  const auto added = passes::add_view(frame, settled->inputs, settled->settings, ViewName(view.id));
+  const auto added = passes::add_view(frame, setup->inputs, setup->settings, ViewName(view.id));
   if (!added) return tl::unexpected(failure_of(added.error(), view_name(view)));
   if (observer == nullptr || view.depth.samples > 1) return {};
-  return observer->add(frame, view, settled->inputs.occlusion, described.slot)
+  return observer->add(frame, view, setup->inputs.occlusion, described.slot)
       .map_error([](const Error& error) { return failure_of(error, "View"); });
 }
 

@@ -35,14 +35,14 @@ struct ImageImporter {
 };
 
 // The inputs of a view, and its settings with the outputs that it has images for.
-struct SettledView {
+struct ViewSetup {
   ViewInputs inputs;
   OcclusionSettings settings;
 };
 
 // Checks a view and imports its images.
-[[nodiscard]] tl::expected<SettledView, Failure> settle(const AlcoveView& view,
-                                                        const ImageImporter& importer);
+[[nodiscard]] tl::expected<ViewSetup, Failure> set_up(const AlcoveView& view,
+                                                      const ImageImporter& importer);
 
 // Checks a view and imports its images, which the frame brings into their final states, without
 // adding a pass.

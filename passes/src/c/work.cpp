@@ -44,6 +44,7 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
                   .output_x = info.output_x,
                   .output_y = info.output_y,
                   .depth = to_image(info.depth, 1),
+                  .depth_format = static_cast<VkFormat>(info.depth_format),
                   .normals = to_image(info.normals, 2),
                   .motion = to_image(info.motion, 3),
                   .roughness = to_image(info.roughness, 4),
@@ -88,7 +89,7 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
   work->camera = info.camera;
   work->width = size.width;
   work->height = size.height;
-  const auto settled = passes::settle(
+  const auto setup = passes::set_up(
       view, {[](void* user, const passes::ImageRole& role, const AlcoveImage& image,
                 const AlcoveView& of) -> tl::expected<framegraph::Texture, passes::Failure> {
                if (image.image == VK_NULL_HANDLE) return framegraph::Texture{};
@@ -100,9 +101,8 @@ Result describe(const AlcoveWorkInfo* given, AlcoveWork* work) {
                });
              },
              &list});
-  if (!settled) return tl::unexpected(settled.error());
-  if (const auto made = passes::describe_view(list, frame, settled->inputs, settled->settings);
-      !made)
+  if (!setup) return tl::unexpected(setup.error());
+  if (const auto made = passes::describe_view(list, frame, setup->inputs, setup->settings); !made)
     return tl::unexpected(passes::failure_of(made.error(), "The view"));
   return {};
 }

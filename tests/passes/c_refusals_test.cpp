@@ -1,0 +1,485 @@
+// Tests that invalid input of any kind gives an error value and a message of one sentence, that
+// nothing is recorded then, and that the next frame is the same as without the invalid call.
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <random>
+#include <string>
+#include <variant>
+
+#include "c_interface_fixture.h"
+
+namespace alcove::passes {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::uint32_t kMost = ~0u;
+
+bool is_a_sentence(const std::string& text) {
+  return !text.empty() && text.back() == '.' && std::isupper(static_cast<unsigned char>(text[0]));
+}
+
+// Sets an enum of the C interface to a number that need not be one of its enumerators.
+template <typename Enum>
+void set_number(Enum& value, std::uint32_t number) {
+  std::memcpy(&value, &number, sizeof number);
+}
+
+// A frame of the view number 0, which tests make invalid.
+struct Draft {
+  AlcoveFrame frame;
+  std::array<AlcoveView, 9> views;
+  AlcoveSettings settings;
+  AlcoveAdvancedSettings advanced;
+};
+
+struct Areas {
+  AlcoveArea read, written;
+  std::uint32_t output_x = 0, output_y = 0;
+};
+
+// A change that makes a frame invalid, and a part of the message.
+struct Refusal {
+  const char* message;
+  std::variant<Areas, void (*)(AlcoveFrame&), void (*)(AlcoveView&), void (*)(AlcoveSettings&),
+               void (*)(AlcoveAdvancedSettings&), void (*)(Draft&)>
+      change;
+};
+
+class CRefusals : public CInterface {
+ protected:
+  void SetUp() override {
+    CInterface::SetUp();
+    if (HasFatalFailure()) return;
+    from_ = draw_view(16, 12, groove(0.8));
+    request_all_outputs(from_);
+    view_ = create_view(from_);
+    view_.mask = engine().make_image(VK_FORMAT_R8_UINT, 16, 12,
+                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    write_bytes(view_.mask, Bytes(16UL * 12));  // without effect
+    view_.not_receiving = 1;
+  }
+
+  // Expects the same error from alcovePrepareFrame and alcoveRecordFrame.
+  void expect_refused(const Refusal& refusal) {
+    SCOPED_TRACE(refusal.message);
+    Draft draft{.settings = *view_.settings, .advanced = *view_.settings->advanced};
+    draft.settings.advanced = &draft.advanced;
+    draft.views.fill(view_);
+    for (std::uint32_t i = 0; i < draft.views.size(); ++i) {
+      draft.views.at(i).id = i;
+      draft.views.at(i).settings = &draft.settings;
+    }
+    draft.frame = make_frame(std::span(draft.views).first(1), 1);
+    std::visit(
+        [&](auto change) {
+          if constexpr (std::is_same_v<decltype(change), Areas>)
+            set_areas(draft.views[0], change);
+          else if constexpr (std::is_invocable_v<decltype(change), AlcoveFrame&>)
+            change(draft.frame);
+          else if constexpr (std::is_invocable_v<decltype(change), AlcoveView&>)
+            change(draft.views[0]);
+          else if constexpr (std::is_invocable_v<decltype(change), AlcoveSettings&>)
+            change(draft.settings);
+          else if constexpr (std::is_invocable_v<decltype(change), AlcoveAdvancedSettings&>)
+            change(draft.advanced);
+          else
+            change(draft);
+        },
+        refusal.change);
+    EXPECT_EQ(alcovePrepareFrame(&context(), &draft.frame), ALCOVE_ERROR_INVALID_INPUT);
+    const std::string message = alcoveGetMessage(&context());
+    EXPECT_THAT(message, HasSubstr(refusal.message));
+    EXPECT_PRED1(is_a_sentence, message);
+    EXPECT_EQ(record(context(), draft.frame), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(message, alcoveGetMessage(&context()));
+  }
+
+  static void set_areas(AlcoveView& view, const Areas& areas) {
+    view.read_area = areas.read;
+    view.written_area = areas.written;
+    view.output_x = areas.output_x;
+    view.output_y = areas.output_y;
+  }
+
+  void expect_a_good_frame() {
+    from_.reset = true;  // by C the view was never recorded before
+    expect_equal(run_view(view_, 0), run_by_cpp(from_, 0));
+  }
+
+  AlcoveView& view() { return view_; }
+
+ private:
+  HostView from_;
+  AlcoveView view_{};
+};
+
+TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
+  using F = AlcoveFrame;
+  using V = AlcoveView;
+  using S = AlcoveSettings;
+  using A = AlcoveAdvancedSettings;
+  using D = Draft;
+  const Refusal refusals[] = {
+      {"AlcoveFrame::struct_size is 0", [](F& f) { f.struct_size = 0; }},
+      {"AlcoveFrame::struct_size", [](F& f) { f.struct_size = kMost; }},
+      {"slot is 2", [](F& f) { f.slot = 2; }},
+      {"slot is 4294967295", [](F& f) { f.slot = kMost; }},
+      {"0 views", [](F& f) { f.view_count = 0; }},
+      {"9 views", [](F& f) { f.view_count = 9; }},
+      {"0 views", [](F& f) { f.views = nullptr; }},
+      {"given twice", [](F& f) { f.view_count = 2; }},
+      {"id 1",
+       [](D& d) {
+         d.frame.view_count = 2;
+         d.views[0].id = d.views[1].id;
+       }},
+      {"AlcoveView::struct_size", [](V& v) { v.struct_size -= 1; }},
+
+      // Settings: the names and ranges of all are tested without the C interface.
+      {"no settings", [](V& v) { v.settings = nullptr; }},
+      {"AlcoveSettings::struct_size", [](S& s) { s.struct_size = 4; }},
+      {"AlcoveAdvancedSettings::struct_size is 4;", [](A& a) { a.struct_size = 4; }},
+      {"'radius' is nan;", [](S& s) { s.radius = kNaN; }},
+      {"'history_frames' is 128; it must be 0 to 127.", [](S& s) { s.history_frames = 128; }},
+      {"'specular' is 0;", [](S& s) { set_number(s.specular, 0); }},
+      {"'specular' is 4;", [](S& s) { set_number(s.specular, 4); }},
+      {"'precision' is 3;", [](S& s) { set_number(s.precision, 3); }},
+      {"'estimator' is 3; it must be horizons,", [](A& a) { set_number(a.estimator, 3); }},
+      {"'estimator' is 255;", [](A& a) { set_number(a.estimator, kMost); }},
+      {"'thickness_unit' is 3;", [](A& a) { set_number(a.thickness_unit, 3); }},
+      {"'falloff' is 0.5 with the estimator connected", [](A& a) { a.falloff = 0.5f; }},
+
+      // Cameras. In a row-major matrix the translation lies where this matrix has its last row.
+      {"The view cannot be used: view_from_world",
+       [](V& v) { v.camera.view_from_world[13] = kNaN; }},
+      {"column-major", [](V& v) { v.camera.view_from_world[3] = 5.0f; }},
+      {"The view cannot be used", [](V& v) { v.camera.clip_from_view[11] = 1.0f; }},
+
+      // Images: size, format, usage and layout.
+      {"no image of depth", [](V& v) { v.depth = {}; }},
+      {"depth is 0x12", [](V& v) { v.depth.width = 0; }},
+      {"depth", [](V& v) { v.depth.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"depth", [](V& v) { v.depth.format = VK_FORMAT_UNDEFINED; }},
+      {"without contents", [](V& v) { v.depth.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"normals is 16x0", [](V& v) { v.normals.height = 0; }},
+      {"normals is 15x12", [](V& v) { v.normals.width = 15; }},
+      {"normals has the format VK_FORMAT_R8G8B8A8_UNORM",
+       [](V& v) { v.normals.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"normals has the format VK_FORMAT",
+       [](V& v) { v.normals.format = VK_FORMAT_R16G16_SFLOAT; }},
+      {"normal_encoding is 4", [](V& v) { set_number(v.normal_encoding, 4); }},
+      {"motion vectors has the format VK_FORMAT",
+       [](V& v) { v.motion.format = VK_FORMAT_R32G32_UINT; }},
+      {"scale of motion vectors is 0", [](V& v) { v.motion_scale[0] = 1.0f; }},
+      {"roughness has the format VK_FORMAT", [](V& v) { v.roughness.format = VK_FORMAT_R8_UNORM; }},
+      {"back-face depth is 16x13", [](V& v) { v.back_depth.height = 13; }},
+      {"no image of back_depth",
+       [](D& d) {
+         d.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+         d.views[0].back_depth = {};
+       }},
+      {"second depth is 16x13", [](V& v) { v.second_depth.height = 13; }},
+      {"no image of second_depth",
+       [](D& d) {
+         d.settings.depth_layers = 2;
+         d.views[0].second_depth = {};
+       }},
+      {"albedo has the format VK_FORMAT", [](V& v) { v.albedo.format = VK_FORMAT_BC7_SRGB_BLOCK; }},
+      {"no image of albedo", [](V& v) { v.albedo = {}; }},
+      {"without VK_IMAGE_USAGE_SAMPLED_BIT", [](V& v) { v.albedo.usage = 0; }},
+      {"visibility has the format VK_FORMAT",
+       [](V& v) { v.visibility.format = VK_FORMAT_D32_SFLOAT; }},
+      // The multi-bounce pass samples it.
+      {"visibility of view 0' with usage SAMPLED",
+       [](V& v) { v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT; }},
+      {"bent normals has the format VK_FORMAT",
+       [](V& v) { v.bent_normal.format = VK_FORMAT_R8G8B8A8_UNORM; }},
+      {"without VK_IMAGE_USAGE_STORAGE_BIT",
+       [](V& v) { v.bent_normal.usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
+      {"specular occlusion is 1x1", [](V& v) { v.specular.width = v.specular.height = 1; }},
+      {"no layout to be left in",
+       [](V& v) { v.specular.final_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"multi-bounce has the format VK_FORMAT",
+       [](V& v) { v.multi_bounce.format = VK_FORMAT_R32_SFLOAT; }},
+      {"given twice", [](V& v) { v.specular = v.visibility; }},
+      {"given twice",
+       [](V& v) {
+         v.motion = v.roughness;
+         v.motion.final_state.stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+       }},
+      {"no image to write to",
+       [](V& v) { v.visibility = v.bent_normal = v.specular = v.multi_bounce = {}; }},
+
+      // Samples.
+      {"View 0: the image of normals has 4 samples a pixel; resolve it first, depths and normals "
+       "to "
+       "sample 0.",
+       [](V& v) { v.normals.samples = 4; }},
+      {"the image of mask has 4 samples a pixel; resolve it first",
+       [](V& v) { v.mask.samples = 4; }},
+      {"the image of depth has 3 samples a pixel; it must be a power of two",
+       [](V& v) { v.depth.samples = 3; }},
+      {"the image of depth has 128 samples a pixel", [](V& v) { v.depth.samples = 128; }},
+      {"64", [](V& v) { v.depth.samples = 64; }},  // more than any device has
+
+      // Masks.
+      {"must be VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT",
+       [](V& v) { v.mask.format = VK_FORMAT_R16_UINT; }},
+      {"the image of mask is 15x12 pixels and that of depth 16x12",
+       [](V& v) { v.mask.width = 15; }},
+      {"give at least one bit", [](V& v) { v.not_receiving = 0; }},
+      {"values up to 255", [](V& v) { v.not_occluding = 256; }},
+
+      // One channel of visibility.
+      {"visibility_channel is 5", [](V& v) { set_number(v.visibility_channel, 5); }},
+      {"of which visibility_channel cannot be written alone; give",
+       [](V& v) { v.visibility_channel = ALCOVE_CHANNEL_G; }},
+      {"of which visibility_channel cannot be written alone; give",
+       [](V& v) {
+         v.visibility.format = VK_FORMAT_R8G8B8A8_SNORM;
+         v.visibility_channel = ALCOVE_CHANNEL_A;
+       }},
+      {"the image of visibility arrives in VK_IMAGE_LAYOUT_UNDEFINED, without contents",
+       [](V& v) { v.visibility_channel = ALCOVE_CHANNEL_R; }},
+      {"the image of visibility was made without VK_IMAGE_USAGE_SAMPLED_BIT",
+       [](V& v) {
+         v.visibility.initial_state = kResting;
+         v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT;
+         v.visibility_channel = ALCOVE_CHANNEL_R;
+       }},
+
+      // Outputs of half size.
+      {"needs half_resolution in its settings", [](V& v) { v.half_size_outputs = VK_TRUE; }},
+      {"half_size_outputs and an image of multi-bounce",
+       [](D& d) {
+         d.settings.half_resolution = VK_TRUE;
+         d.views[0].half_size_outputs = VK_TRUE;
+       }},
+      {"is 16x12 pixels; with half_size_outputs it must be 8x6, half of depth's 16x12 rounded up.",
+       [](D& d) {
+         d.settings.half_resolution = d.views[0].half_size_outputs = VK_TRUE;
+         d.views[0].multi_bounce = {};
+       }},
+      {"outputs of half size need slices",
+       [](D& d) {
+         d.settings.half_resolution = d.views[0].half_size_outputs = VK_TRUE;
+         d.settings.specular = ALCOVE_SPECULAR_TABLE;
+         d.views[0].multi_bounce = {};
+         for (const Output& output : kOutputs) {
+           (d.views[0].*output.image).width = 8;
+           (d.views[0].*output.image).height = 6;
+         }
+       }},
+
+      // Dynamic resolution.
+      {"within 15x12",
+       [](V& v) {
+         v.largest_width = 15;
+         v.largest_height = 12;
+       }},
+      {"within 0x12", [](V& v) { v.largest_height = 12; }},
+
+      // Areas.
+      {"read has 17x12 pixels at (0, 0); it must lie within", Areas{{0, 0, 17, 12}}},
+      {"read has 16x12 pixels at (1, 0); it must lie within", Areas{{1, 0, 16, 12}}},
+      {"it must lie within depth's 16x12", Areas{{kMost, 0, 2, 12}}},
+      {"it must lie within depth's 16x12", Areas{{0, 0, kMost, kMost}}},
+      {"read has 0x5 pixels at (2, 2); each side must be at least 1", Areas{{2, 2, 0, 5}}},
+      {"read has 0x0 pixels at (2, 2); each side must be at least 1", Areas{{2, 2, 0, 0}}},
+      {"written has 3x0 pixels at (2, 2); each side must be at least 1", Areas{{}, {2, 2, 3, 0}}},
+      {"it must lie within the area that is read", Areas{{2, 2, 10, 9}, {1, 2, 4, 4}}},
+      {"it must lie within the area that is read", Areas{{2, 2, 10, 9}, {3, 3, 10, 4}}},
+      {"it must lie within the area that is read", Areas{{2, 2, 10, 9}, {3, 3, kMost, kMost}}},
+      {"it needs room for 10x9 pixels at (12, 0)", Areas{{2, 2, 10, 9}, {}, 12, 0}},
+      {"it needs room for 10x9 pixels at (0, 4294967295)", Areas{{2, 2, 10, 9}, {}, 0, kMost}},
+  };
+  for (const Refusal& refusal : refusals) expect_refused(refusal);
+  expect_a_good_frame();
+}
+
+TEST_F(CRefusals, PreviousCameraAndSizeAreCheckedOnlyIfTheViewHasHistoryContents) {
+  view().previous_camera = {};
+  const AlcoveFrame frame = make_frame({&view(), 1}, 0);
+  EXPECT_EQ(alcovePrepareFrame(&context(), &frame), ALCOVE_SUCCESS) << alcoveGetMessage(&context());
+  run_frame(context(), {&view(), 1}, 0);  // the view's first frame
+  EXPECT_EQ(record(context(), frame), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(alcoveGetMessage(&context()), HasSubstr("The previous view cannot be used"));
+  EXPECT_THAT(alcoveGetMessage(&context()), HasSubstr("reset_history"));
+  view().previous_camera = view().camera;
+  for (const auto& [width, height, largest, message] :
+       {std::tuple{30u, 15u, 30u, "had 30x15 in the frame before"},
+        {30u, 0u, 30u, "had 30x0"},
+        {30u, 12u, 0u, "within 16x12"}}) {
+    view().previous_width = width;
+    view().previous_height = height;
+    view().largest_width = largest;
+    view().largest_height = largest == 0 ? 0 : 12;
+    EXPECT_EQ(record(context(), frame), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_THAT(alcoveGetMessage(&context()), HasSubstr(message));
+  }
+  view().previous_camera = {};
+  view().reset_history = VK_TRUE;
+  expect_a_good_frame();
+}
+
+TEST_F(CRefusals, PreviousCameraAndImageSizesAreIgnoredIfHistoryIsOff) {
+  AlcoveSettings settings = *view().settings;
+  settings.history_frames = 0;
+  view().settings = &settings;
+  const Results expected = run_view(view(), 0);
+  view().previous_camera = {};
+  view().previous_width = view().previous_height = 1000;
+  view().largest_width = 1;
+  expect_equal(run_view(view(), 0), expected);
+}
+
+TEST_F(CRefusals, NullPointersAndUnknownSizesOfStructsAreErrors) {
+  AlcoveContext* const context = &this->context();
+  const AlcoveResult error = ALCOVE_ERROR_INVALID_INPUT;
+  AlcoveFrame frame{.struct_size = sizeof frame};
+  EXPECT_EQ(alcoveRecordFrame(context, VK_NULL_HANDLE, &frame), error);
+  EXPECT_THAT(alcoveGetMessage(context), HasSubstr("command buffer"));
+  EXPECT_EQ(alcoveRecordFrame(nullptr, VK_NULL_HANDLE, &frame), error);
+  engine().submit(0, [&](VkCommandBuffer commands) {
+    EXPECT_EQ(alcoveRecordFrame(context, commands, nullptr), error);
+  });
+  EXPECT_EQ(alcovePrepareFrame(nullptr, &frame), error);
+  EXPECT_EQ(alcovePrepareFrame(context, nullptr), error);
+  EXPECT_THAT(alcoveGetMessage(context), HasSubstr("no AlcoveFrame"));
+  EXPECT_EQ(alcoveGetMemory(context, nullptr), error);
+  EXPECT_EQ(alcoveGetMemory(nullptr, nullptr), error);
+  AlcoveMemory memory{};
+  EXPECT_EQ(alcoveGetMemory(context, &memory), error);
+  EXPECT_THAT(alcoveGetMessage(context), HasSubstr("AlcoveMemory::struct_size"));
+  std::uint32_t count = 0;
+  EXPECT_EQ(alcoveGetTimings(context, 0, nullptr, nullptr), error);
+  EXPECT_EQ(alcoveGetTimings(context, 2, &count, nullptr), error);
+  EXPECT_EQ(alcoveGetTimings(nullptr, 0, &count, nullptr), error);
+  EXPECT_EQ(alcovePrintPlan(nullptr, nullptr, 0), 0u);
+  EXPECT_EQ(alcoveDiagnose(nullptr, nullptr, 0), 0u);
+  EXPECT_EQ(alcoveDropView(nullptr, 0), error);
+  EXPECT_EQ(alcoveForgetImage(nullptr, VK_NULL_HANDLE), error);
+  EXPECT_EQ(alcoveForgetImage(context, VK_NULL_HANDLE), ALCOVE_SUCCESS);
+  AlcoveViewState state{};
+  EXPECT_EQ(alcoveGetViewState(nullptr, 0, &state), error);
+  EXPECT_EQ(alcoveGetViewState(context, 0, nullptr), error);
+  EXPECT_EQ(alcoveGetViewState(context, 0, &state), error);
+  EXPECT_THAT(alcoveGetMessage(context), HasSubstr("AlcoveViewState::struct_size is 0"));
+  AlcoveView empty{};
+  EXPECT_EQ(alcoveSetStillFrame(0, nullptr), error);
+  EXPECT_EQ(alcoveSetStillFrame(0, &empty), error);
+  EXPECT_STRNE(alcoveGetMessage(nullptr), "");
+  alcoveDestroyContext(nullptr);
+  expect_a_good_frame();
+}
+
+TEST_F(CRefusals, InvalidCreationInfoOfAContextIsReported) {
+  struct Case {
+    const char* message;
+    void (*change)(AlcoveContextInfo&);
+  };
+  using I = AlcoveContextInfo;
+  const Case cases[] = {
+      {"struct_size", [](I& i) { i.struct_size = 0; }},
+      {"instance is null", [](I& i) { i.instance = VK_NULL_HANDLE; }},
+      {"physical_device is null", [](I& i) { i.physical_device = VK_NULL_HANDLE; }},
+      {"device is null", [](I& i) { i.device = VK_NULL_HANDLE; }},
+      {"get_instance_proc_addr is null", [](I& i) { i.get_instance_proc_addr = nullptr; }},
+      {"frames_in_flight is 0", [](I& i) { i.frames_in_flight = 0; }},
+      {"frames_in_flight is 9", [](I& i) { i.frames_in_flight = 9; }},
+      {"queue_family is 4294967295", [](I& i) { i.queue_family = kMost; }},
+      {"only one of allocate and free",
+       [](I& i) { i.memory_functions.free = [](void*, const AlcoveMemoryRange*) {}; }},
+      {"memory type 32",
+       [](I& i) {
+         i.memory_block = {(VkDeviceMemory)1, 0, 4096, 32};
+       }},
+      {"0 bytes",
+       [](I& i) {
+         i.memory_block = {(VkDeviceMemory)1, 0, 0, 0};
+       }},
+  };
+  char message[ALCOVE_MAX_MESSAGE];
+  for (const Case& bad : cases) {
+    AlcoveContextInfo info = engine().context_info();
+    bad.change(info);
+    AlcoveContext* handle = &context();
+    EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(handle, nullptr);
+    EXPECT_THAT(message, HasSubstr(bad.message));
+    EXPECT_PRED1(is_a_sentence, message);
+  }
+  AlcoveContext* handle = nullptr;
+  EXPECT_EQ(alcoveCreateContext(nullptr, &handle, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  const AlcoveContextInfo info = engine().context_info();
+  EXPECT_EQ(alcoveCreateContext(&info, nullptr, message), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_PRED1(is_a_sentence, message);
+}
+
+TEST_F(CRefusals, SettingsOfAnUnknownQualityRadiusOrSizeAreNotFilledIn) {
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  AlcoveQuality quality = ALCOVE_QUALITY_LOW;
+  for (const float radius : {0.0f, -1.0f, kNaN, kInfinity})
+    EXPECT_EQ(alcoveGetSettings(quality, radius, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  set_number(quality, ALCOVE_QUALITY_REFERENCE + 1);
+  EXPECT_EQ(alcoveGetSettings(quality, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  settings.struct_size = 12;
+  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveGetConvergedFrames(&settings), 0u);
+  EXPECT_EQ(alcoveGetConvergedFrames(nullptr), 0u);
+  for (const AlcoveSettings* bad : {static_cast<const AlcoveSettings*>(&settings),
+                                    static_cast<const AlcoveSettings*>(nullptr)}) {
+    char text[64] = "before";
+    EXPECT_EQ(alcovePrintSettings(bad, text, sizeof text), 0u);
+    EXPECT_STREQ(text, "");
+  }
+}
+
+// Random numbers in settings and cameras never crash: either the frame is recorded, or it is
+// refused with a sentence.
+TEST_F(CRefusals, FramesWithRandomSettingsAndCamerasAreRecordedOrRefusedWithAMessage) {
+  const std::uint32_t seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  const std::array<float, 8> floats{0.0f, -0.0f, 1.0f, -1.0f, 1e30f, 1e-30f, kNaN, -1e38f};
+  constexpr std::size_t kFirst = offsetof(AlcoveSettings, radius);
+  constexpr std::size_t kCount = (offsetof(AlcoveSettings, intensity) + 4 - kFirst) / 4;
+  constexpr std::size_t kFirstAdvanced = offsetof(AlcoveAdvancedSettings, estimator);
+  constexpr std::size_t kAdvancedCount = (sizeof(AlcoveAdvancedSettings) - kFirstAdvanced) / 4;
+  int refused = 0;
+  for (int i = 0; i < 40; ++i) {
+    AlcoveSettings settings = get_settings(ALCOVE_QUALITY_LOW, 0.5f);
+    AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
+    ASSERT_EQ(alcoveGetAdvancedSettings(ALCOVE_QUALITY_LOW, &advanced), ALCOVE_SUCCESS);
+    settings.advanced = &advanced;
+    AlcoveView changed = view();
+    changed.settings = &settings;
+    const std::uint32_t small = random() % 8;
+    const float number = floats.at(random() % floats.size());
+    char* const field =
+        random() % 2 == 0
+            ? reinterpret_cast<char*>(&settings) + kFirst + 4 * (random() % kCount)
+            : reinterpret_cast<char*>(&advanced) + kFirstAdvanced + 4 * (random() % kAdvancedCount);
+    if (random() % 2 == 0)
+      std::memcpy(field, &small, 4);
+    else if (random() % 2 == 0)
+      std::memcpy(field, &number, 4);
+    else
+      changed.camera.clip_from_view[random() % 16] = number;
+    const AlcoveResult result = record(context(), make_frame({&changed, 1}, 0));
+    if (result != ALCOVE_SUCCESS) {
+      ++refused;
+      EXPECT_EQ(result, ALCOVE_ERROR_INVALID_INPUT) << alcoveGetMessage(&context());
+      EXPECT_PRED1(is_a_sentence, alcoveGetMessage(&context()));
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+}  // namespace
+}  // namespace alcove::passes
