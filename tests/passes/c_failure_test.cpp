@@ -167,6 +167,31 @@ TEST(CResult, ResultNamesMatchTheEnumerators) {
     EXPECT_STREQ(alcoveGetResultName(static_cast<AlcoveResult>(none)), "unknown AlcoveResult");
 }
 
+// The sentence about a radius below 0 needs memory.
+TEST(COutOfMemory, FunctionsWithoutAContextReturnAValue) {
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 1.0f, &settings), ALCOVE_SUCCESS);
+  AlcoveSettings bad = settings;
+  bad.radius = -1.0f;
+  AlcoveMemory memory{.struct_size = sizeof memory};
+  const auto with_failure = [](const auto& call) {
+    framegraph::fail_allocation(1);
+    const auto result = call();
+    EXPECT_TRUE(framegraph::allocation_failed());
+    framegraph::fail_allocation(0);
+    return result;
+  };
+  EXPECT_EQ(
+      with_failure([&] { return alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, -1.0f, &settings); }),
+      ALCOVE_ERROR_OUT_OF_HOST_MEMORY);
+  EXPECT_EQ(with_failure([&] { return alcovePrintSettings(&settings, nullptr, 0); }), 0u);
+  EXPECT_EQ(with_failure([&] { return alcoveGetConvergedFrames(&bad); }), 0u);
+  EXPECT_EQ(with_failure([&] {
+              return alcoveEstimateMemory(&bad, 8, 8, ALCOVE_OUTPUT_VISIBILITY, 0, &memory);
+            }),
+            ALCOVE_ERROR_OUT_OF_HOST_MEMORY);
+}
+
 // Makes a call while its first allocation fails, again while its second one fails, and so on until
 // it makes no more of them. `check` is given the result and whether an allocation has failed.
 void fail_each_allocation(const std::function<AlcoveResult(std::size_t number)>& call,

@@ -1,5 +1,6 @@
 // Estimates the memory of a view from its settings.
 #include "alcove/alcove.h"
+#include "c/failure.h"
 #include "c/settings.h"
 #include "work/view_work.h"
 
