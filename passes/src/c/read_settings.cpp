@@ -1,4 +1,5 @@
 // Reads settings from JSON.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
