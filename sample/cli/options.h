@@ -72,7 +72,6 @@ struct OcclusionOptions {
 };
 
 struct CostOptions {
-  std::string family;            // of the modelled GPU; empty for all that the model knows
   bool motion_vectors = false;   // gives motion vectors to the passes
   bool area = false;             // the images are read and written in part
   bool mask = false;             // gives a mask of surfaces
@@ -102,7 +101,7 @@ struct Options {
   std::optional<Situation> situation;  // recommend: empty for a mix of all
   uint32_t target_width = 1920;        // recommend: of the image whose time is modelled, pixels
   uint32_t target_height = 1080;
-  const GpuPart* gpu = &kGpuParts[1];  // recommend: the modelled one
+  const GpuPart* gpu = &kGpuParts[1];  // the modelled one; null for all (cost)
   bool exhaustive = false;             // recommend: also measures all settings of measure_all()
   std::filesystem::path settings_out;  // recommend: empty for none
   std::optional<Clock> clock;          // bench, recommend: empty for the clock that fits the device

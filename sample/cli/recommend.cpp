@@ -20,13 +20,13 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-std::string shown(const TradePoint& point) {
-  return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.name, point.rmse,
-                     point.time_ms, mib(point.bytes));
+std::string shown(const Measurement& point) {
+  return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.variant.name,
+                     point.scene.rmse, point.time_ms, mib(point.cost.bytes));
 }
 
 // Prints the next faster and the next more accurate point of the Pareto front.
-void print_neighbours(const Trade& trade, const TradePoint& chosen) {
+void print_neighbours(const Trade& trade, const Measurement& chosen) {
   const auto own = static_cast<std::size_t>(&chosen - trade.points.data());
   for (std::size_t i = own; i-- > 0;) {
     if (trade.on_pareto_front[i]) {
@@ -195,15 +195,16 @@ Result<void> recommend_by_model(const Options& options, const Session& session,
 // Chooses among numbers of samples by times that are measured on the device.
 Result<void> recommend_by_clock(const Options& options, const Session& session,
                                 const RecommendationGoal& goal) {
-  ALCOVE_TRY(MeasuredTrade measured, measure_trade(session, static_setup(options, session.camera),
-                                                   truth_options(options), options.clock));
+  ALCOVE_TRY(MeasuredTrade measured,
+             measure_trade(session, static_setup(options, session.camera), truth_options(options),
+                           *options.gpu, options.clock));
   const Trade trade = trade_of(std::move(measured.points));
-  const auto achievement = [](const TradePoint& point) {
-    return Achievement{point.settings,
-                       {point.rmse, point.rmse, point.rmse},
-                       {point.time_ms, point.time_ms, point.time_ms}};
+  const auto achievement = [](const Measurement& point) {
+    const double rmse = point.scene.rmse;
+    return Achievement{
+        point.variant.settings, {rmse, rmse, rmse}, {point.time_ms, point.time_ms, point.time_ms}};
   };
-  const TradePoint& chosen = *std::ranges::min_element(
+  const Measurement& chosen = *std::ranges::min_element(
       trade.points, [&](const Achievement& a, const Achievement& b) { return goal.prefers(a, b); },
       achievement);
   if (!goal.met(achievement(chosen))) return Failure(unmet_message(goal, shown(chosen)));
@@ -212,7 +213,7 @@ Result<void> recommend_by_clock(const Options& options, const Session& session,
   std::cout << fmt::format("RMSE of visibility against ray-traced truth; {} at {}x{} on {}\n{}\n",
                            measured.clock_title, options.view.width, options.view.height,
                            session.gpu->device().properties().deviceName,
-                           render_line(options, session, chosen.settings));
+                           render_line(options, session, chosen.variant.settings));
   return {};
 }
 

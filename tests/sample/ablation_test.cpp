@@ -118,22 +118,26 @@ TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
   auto gpu = open_gpu(session.device);
   ASSERT_TRUE(gpu) << gpu.error();
   session.gpu = std::move(*gpu);
-  const auto report = run_variants(session, setup_, {64, 1, false}, estimators, "estimators", 3);
-  ASSERT_TRUE(report) << report.error();
-  const VariantErrors& connected = report->rows.front();
+  const ChosenClock clock{Clock::processor, {}};
+  const auto rows =
+      measure_variants(session, setup_, {64, 1, false}, estimators, "estimators", &clock);
+  ASSERT_TRUE(rows) << rows.error();
+  const Measurement& connected = rows->front();
   EXPECT_GT(connected.scene.rmse, 0.01);
-  EXPECT_GT(report->base_times.processor_ms, 0.0);
-  for (std::size_t i = 1; i < report->rows.size(); ++i) {
-    const VariantErrors& other = report->rows[i];
+  EXPECT_GT(connected.time_ms, 0.0);
+  for (std::size_t i = 1; i < rows->size(); ++i) {
+    const Measurement& other = (*rows)[i];
     EXPECT_GT(other.scene.rmse, 1.02 * connected.scene.rmse) << other.variant.name;
-    EXPECT_GT(other.cost.processor, 0.0) << other.variant.name;
+    EXPECT_GT(other.time_ms, 0.0) << other.variant.name;
     EXPECT_EQ(other.cost.bytes, connected.cost.bytes) << other.variant.name;
   }
   Variant without_history{"history", "none", base_};
   without_history.settings.history_frames = 0;
-  const auto less = run_variants(session, setup_, {64, 1, false}, {without_history}, "history", 0);
+  const auto less =
+      measure_variants(session, setup_, {64, 1, false}, {without_history}, "history", nullptr);
   ASSERT_TRUE(less) << less.error();
-  EXPECT_LT(less->rows[1].cost.bytes, less->rows[0].cost.bytes / 2);
+  EXPECT_LT((*less)[1].cost.bytes, (*less)[0].cost.bytes / 2);
+  EXPECT_EQ((*less)[1].time_ms, 0.0);
 }
 
 // The noise of few traces per pixel must not form a regular pattern. The limit is an eighth of the

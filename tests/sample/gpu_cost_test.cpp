@@ -220,10 +220,10 @@ TEST(CacheTraffic, LoadsOfNeighbouringTexelsTouchFewerLinesThanScatteredOnes) {
         cache_traffic(part, over_image({at_invocation(kImage)}), kWaves);
     const CacheTraffic far_traffic =
         cache_traffic(part, over_image({{kImage, 1, scattered}}), kWaves);
-    EXPECT_EQ(near_traffic.lines_per_load, 8 * 8 * 4 / part.line_bytes) << part.family;
-    EXPECT_GT(far_traffic.lines_per_load, 60) << part.family;
-    EXPECT_GT(far_traffic.texture_cycles, 3.5 * near_traffic.texture_cycles) << part.family;
-    EXPECT_GT(far_traffic.l2_bytes, 10 * near_traffic.l2_bytes) << part.family;
+    EXPECT_EQ(near_traffic.lines_per_load, 8 * 8 * 4 / part.line_bytes) << part.name;
+    EXPECT_GT(far_traffic.lines_per_load, 60) << part.name;
+    EXPECT_GT(far_traffic.texture_cycles, 3.5 * near_traffic.texture_cycles) << part.name;
+    EXPECT_GT(far_traffic.l2_bytes, 10 * near_traffic.l2_bytes) << part.name;
   }
 }
 
@@ -231,13 +231,13 @@ TEST(CacheTraffic, RepeatedLoadsAreServedByCachesAndMovedFromMemoryOnce) {
   for (const GpuPart& part : kGpuParts) {
     const double bytes = 4.0 * kSide * kSide;
     const CacheTraffic once = cache_traffic(part, over_image({at_invocation(kImage)}), kWaves);
-    EXPECT_DOUBLE_EQ(once.memory_bytes, bytes) << part.family;
+    EXPECT_DOUBLE_EQ(once.memory_bytes, bytes) << part.name;
     const CacheTraffic often = cache_traffic(
         part, over_image({at_invocation(kImage), at_invocation(kImage), at_invocation(kImage)}),
         kWaves);
-    EXPECT_DOUBLE_EQ(often.memory_bytes, bytes) << part.family;
-    EXPECT_LT(often.l2_bytes, 1.1 * once.l2_bytes) << part.family;
-    EXPECT_GT(often.texture_cycles, 2.5 * once.texture_cycles) << part.family;
+    EXPECT_DOUBLE_EQ(often.memory_bytes, bytes) << part.name;
+    EXPECT_LT(often.l2_bytes, 1.1 * once.l2_bytes) << part.name;
+    EXPECT_GT(often.texture_cycles, 2.5 * once.texture_cycles) << part.name;
   }
 }
 
@@ -281,11 +281,11 @@ TEST(CacheTraffic, TrafficOfTheSearchAgreesWithAnotherModel) {
         kGpuParts[i],
         passes::cost::accesses_of({"gtao", settings, FrameState::moving, images, {1, 60, 34}}),
         expected.waves);
-    EXPECT_NEAR(found.lines_per_load / expected.lines, 1, 0.1) << kGpuParts[i].family;
+    EXPECT_NEAR(found.lines_per_load / expected.lines, 1, 0.1) << kGpuParts[i].name;
     EXPECT_NEAR(found.l2_bytes / kPixels / expected.l2_bytes_per_pixel, 1, 0.1)
-        << kGpuParts[i].family;
+        << kGpuParts[i].name;
     EXPECT_NEAR(found.memory_bytes / kPixels / expected.memory_bytes_per_pixel, 1, 0.1)
-        << kGpuParts[i].family;
+        << kGpuParts[i].name;
   }
 }
 
@@ -298,11 +298,11 @@ TEST(XeGtao, ModelledTimeIsThatOfItsShadersAndGrowsWithTheImage) {
       const double tolerance = j == 0 ? 0.1 : 0.015;
       EXPECT_NEAR(xegtao_ms(part, kXeGtao[j], 1920, 1080) - 3e3 * part.dispatch_seconds,
                   kMeasured[i][j], tolerance * kMeasured[i][j])
-          << part.family << ", " << kXeGtao[j].name;
+          << part.name << ", " << kXeGtao[j].name;
     }
     EXPECT_NEAR(xegtao_ms(part, kXeGtaoHigh, 1920, 1080) / xegtao_ms(part, kXeGtaoHigh, 960, 540),
                 4.0, 0.4)
-        << part.family;
+        << part.name;
   }
 }
 
@@ -326,7 +326,7 @@ TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
   EXPECT_THAT(complaints(one_pass(80, 48, 10, 0)),
               ElementsAre(HasSubstr("instructions_per_pixel[0] is 80")));
   EXPECT_THAT(complaints(one_pass(101.5, 64, 8, 0)),
-              ElementsAre("navi21, medium, gtao: instructions_per_pixel[0] is 101.5, the budget is "
+              ElementsAre("rdna2, medium, gtao: instructions_per_pixel[0] is 101.5, the budget is "
                           "100."));
   EXPECT_THAT(complaints(one_pass(100, 68, 8, 0)), ElementsAre(HasSubstr("registers[2] is 68")));
   EXPECT_THAT(complaints(one_pass(100, 64, 7, 0)), ElementsAre(HasSubstr("waves")));
@@ -394,7 +394,7 @@ struct BudgetCase {
 };
 // GoogleTest prints the GPU and the settings in the names that ctest lists.
 std::ostream& operator<<(std::ostream& out, const BudgetCase& budgeted) {
-  return out << budgeted.part->family << ", " << budgeted.settings.label;
+  return out << budgeted.part->name << ", " << budgeted.settings.label;
 }
 
 std::vector<BudgetCase> all_budgeted() {
@@ -405,7 +405,7 @@ std::vector<BudgetCase> all_budgeted() {
 }
 
 std::string name_of_test(const testing::TestParamInfo<BudgetCase>& info) {
-  std::string name(info.param.part->family);
+  std::string name(info.param.part->name);
   name += "_" + info.param.settings.label;
   std::ranges::replace(name, ' ', '_');
   return name;
@@ -475,15 +475,15 @@ TEST(NormalEncodings, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPi
       inputs.settings.bent_normal = bent_normal;
       const auto plain = instructions_of(part, *device, inputs);
       ASSERT_TRUE(plain) << plain.error();
-      std::printf("%s, bent normals %s: signed xyz %.1f instructions per pixel", part.family.data(),
+      std::printf("%s, bent normals %s: signed xyz %.1f instructions per pixel", part.name.data(),
                   bent_normal ? "on" : "off", *plain);
       for (const PackedEncoding& packed : kPacked) {
         inputs.normal_encoding = packed.encoding;
         const auto found = instructions_of(part, *device, inputs);
         ASSERT_TRUE(found) << found.error();
         std::printf(", %s %+.1f", packed.name, *found - *plain);
-        EXPECT_LE(*found - *plain, packed.most) << part.family << ", " << packed.name;
-        EXPECT_GT(*found, *plain) << part.family << ", " << packed.name;
+        EXPECT_LE(*found - *plain, packed.most) << part.name << ", " << packed.name;
+        EXPECT_GT(*found, *plain) << part.name << ", " << packed.name;
       }
       std::printf("\n");
     }

@@ -19,8 +19,9 @@ namespace {
 
 using passes::OcclusionSettings;
 
-TradePoint point(const std::string& name, double time_ms, double rmse, double spread_ms = 0) {
-  return {name, {}, rmse, 0.5 * rmse, time_ms, spread_ms, 2.0 * time_ms, 1000};
+Measurement point(const std::string& name, double time_ms, double rmse, double spread_ms = 0) {
+  return {{"", name, {}}, {.rmse = rmse}, {.rmse = 0.5 * rmse}, {.bytes = 1000},
+          time_ms,        spread_ms,      2.0 * time_ms};
 }
 
 TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
@@ -77,7 +78,7 @@ TEST(SpeedErrorTrade, ParetoFrontOfTimeAndErrorExcludesDominatedSettings) {
       trade_of({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
                 point("fair", 3, 0.05), point("equal", 5, 0.05)});
   std::vector<std::string> names;
-  for (const TradePoint& each : trade.points) names.push_back(each.name);
+  for (const Measurement& each : trade.points) names.push_back(each.variant.name);
   EXPECT_EQ(names, (std::vector<std::string>{"fast", "fair", "worse", "equal", "slow"}));
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
@@ -97,7 +98,7 @@ TEST(SpeedErrorTrade, ParetoFrontDoesNotChangeWithTimingNoiseWithinTheMeasuredSp
                                   point("b", 2.05 + noise(random), 0.05, 0.1),
                                   point("c", 3.0 + noise(random), 0.04, 0.1)});
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].name != "a") << run;
+      EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].variant.name != "a") << run;
   }
 }
 
@@ -111,8 +112,8 @@ struct TrueSetting {
 // Measures settings on a simulated machine on which other programs run. They slow down both frames
 // of a pair by a common factor, each frame by a few per cent, and one frame in ten by up to three
 // times. The base settings take 5 ms.
-std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> settings,
-                                                   std::mt19937& random) {
+std::vector<Measurement> measured_on_a_busy_machine(std::span<const TrueSetting> settings,
+                                                    std::mt19937& random) {
   std::lognormal_distribution<double> common(0.0, 0.4);
   std::normal_distribution<double> own(1.0, 0.04);
   std::uniform_real_distribution<double> stall(1.2, 3.0);
@@ -121,7 +122,7 @@ std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> 
     ms *= std::max(own(random), 0.5);
     return FrameTimes{0.0, stalls(random) ? ms * stall(random) : ms};
   };
-  std::vector<TradePoint> points;
+  std::vector<Measurement> points;
   for (const TrueSetting& setting : settings) {
     std::vector<TimedPair> pairs;
     for (std::uint32_t i = 0; i < kDecidingPairs; ++i) {
@@ -138,7 +139,7 @@ std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> 
 std::vector<std::string> sorted_front(const Trade& trade) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < trade.points.size(); ++i)
-    if (trade.on_pareto_front[i]) names.push_back(trade.points[i].name);
+    if (trade.on_pareto_front[i]) names.push_back(trade.points[i].variant.name);
   std::ranges::sort(names);
   return names;
 }
@@ -200,13 +201,13 @@ TEST(SamplingGrid, GridHasEveryPairOfStepsAndSlicesOrderedBySteps) {
 }
 
 TEST(SpeedErrorTrade, SeveralScenesAreCombinedByMeanTimeAndRootMeanSquareError) {
-  const std::vector<std::vector<TradePoint>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
-  const std::vector<TradePoint> all = over_scenes(scenes);
+  const std::vector<std::vector<Measurement>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
+  const std::vector<Measurement> all = over_scenes(scenes);
   ASSERT_EQ(all.size(), 1u);
   EXPECT_DOUBLE_EQ(all[0].time_ms, 2.0);
   EXPECT_DOUBLE_EQ(all[0].processor_ms, 4.0);
-  EXPECT_NEAR(all[0].rmse, std::sqrt(0.125), 1e-12);
-  EXPECT_EQ(all[0].bytes, 1000u);
+  EXPECT_NEAR(all[0].scene.rmse, std::sqrt(0.125), 1e-12);
+  EXPECT_EQ(all[0].cost.bytes, 1000u);
 }
 
 TEST(TradePlot, PlotLabelsOnlyPointsOnTheParetoFrontAndEscapesText) {
@@ -240,7 +241,7 @@ std::vector<PlacedName> placed_names(const std::string& plot, const std::string&
 }
 
 TEST(TradePlot, LabelsOfAdjacentPointsInThePlotDoNotOverlap) {
-  std::vector<TradePoint> points;
+  std::vector<Measurement> points;
   for (int i = 0; i < 9; ++i) {
     points.push_back(
         point("setting number " + std::to_string(i), 1.0 + 0.02 * i, 0.1 - 0.0005 * i));

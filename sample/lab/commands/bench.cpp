@@ -60,7 +60,7 @@ Result<void> run_bench(const Options& options) {
   Json report;
   report["frames"] = options.view.frames;
   std::string clock;
-  std::vector<std::vector<TradePoint>> measured;
+  std::vector<std::vector<Measurement>> measured;
   for (const std::string& scene : scenes) {
     Options one = options;
     one.scene = scene;
@@ -71,7 +71,7 @@ Result<void> run_bench(const Options& options) {
       ALCOVE_TRY_VOID(print_grid(session, setup, one, report));
       continue;
     }
-    ALCOVE_TRY(auto trade, measure_trade(session, setup, truth_options(one), one.clock));
+    ALCOVE_TRY(auto trade, measure_trade(session, setup, truth_options(one), *one.gpu, one.clock));
     report["time"] = clock = trade.clock_title;
     std::cout << trade.note;
     print_trade(trade_of(trade.points), title_of(options, scene), clock, report);

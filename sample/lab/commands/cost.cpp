@@ -47,7 +47,7 @@ Result<std::vector<LabelledSettings>> settings_of(const Options& options, passes
 Result<std::vector<SettingsCost>> measure(const Options& options) {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
-    if (!options.cost.family.empty() && options.cost.family != part.family) continue;
+    if (options.gpu != nullptr && options.gpu != &part) continue;
     ALCOVE_TRY(const auto device, create_null_device(part.family));
     for (const passes::Quality quality : chosen_presets(options.occlusion)) {
       ALCOVE_TRY(const auto all, settings_of(options, quality));

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "gpu/vulkan_device.h"
+#include "gpu/gpu.h"
 #include "support/result.h"
 
 namespace alcove::sample {
@@ -13,6 +13,6 @@ struct DispatchCost {
   double behind_barrier_us = 0;  // of one that waits for the memory writes of the one before
 };
 
-[[nodiscard]] Result<DispatchCost> measure_dispatch_cost(const VulkanDevice& device);
+[[nodiscard]] Result<DispatchCost> measure_dispatch_cost(Gpu& gpu);
 
 }  // namespace alcove::sample

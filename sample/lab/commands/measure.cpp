@@ -91,7 +91,7 @@ Json print(const MeasuredFrame& frame) {
   std::cout << fmt::format("{}, {}x{}, moving camera: measured ms", frame.settings.label,
                            inputs.width, inputs.height);
   for (const auto& [part, model] : models)
-    std::cout << fmt::format("; modelled {} ms, measured / modelled", part->family);
+    std::cout << fmt::format("; modelled {} ms, measured / modelled", part->name);
   std::cout << "\n";
   Json passes = Json::array();
   for (const PassTime& pass : frame.passes) {
@@ -102,8 +102,8 @@ Json print(const MeasuredFrame& frame) {
       if (own != model.passes.end()) {
         const double ratio = pass.milliseconds / own->milliseconds();
         std::cout << fmt::format("{:12.4f}{:8.2f}", own->milliseconds(), ratio);
-        row["modelled"][std::string(part->family)] = {{"ms", own->milliseconds()},
-                                                      {"quotient", ratio}};
+        row["modelled"][std::string(part->name)] = {{"ms", own->milliseconds()},
+                                                    {"quotient", ratio}};
       }
     }
     std::cout << "\n";
@@ -156,7 +156,7 @@ Result<void> run_measure(const Options& options) {
   ALCOVE_TRY(session.gpu, open_gpu(session.device));
   const VulkanDevice& device = session.gpu->device();
   std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
-  ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(device));
+  ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(*session.gpu));
   std::cout << fmt::format("An empty dispatch takes {:.2f} microseconds, behind a barrier {:.2f}\n",
                            dispatch.alone_us, dispatch.behind_barrier_us);
   Json report{{"device", device.properties().deviceName},

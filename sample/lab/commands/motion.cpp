@@ -71,56 +71,54 @@ Json to_json(const ErrorPair& errors) {
           {"ratio", errors.ratio()}};
 }
 
-ErrorPair degrees(const ErrorPair& radians) {
-  return {radians.pixels, glm::degrees(radians.moving), glm::degrees(radians.static_camera)};
-}
-
 Json to_json(const MotionReport& report) {
-  return {{"px_per_frame",
-           {{"mean", report.speed.mean}, {"percentile_95", report.speed.percentile_95}}},
-          {"all", to_json(report.all)},
-          {"uncovered", to_json(report.uncovered)},
-          {"entered", to_json(report.entered)},
-          {"near_object", to_json(report.near_object)},
-          {"bent_normals_degrees", to_json(degrees(report.bent_normals))},
-          {"flicker",
-           {{"with_history", report.flicker.with_history},
-            {"without_history", report.flicker.without_history},
-            {"raw", report.flicker.raw},
-            {"static", report.flicker.static_camera},
-            {"truth", report.flicker.truth},
-            {"ratio", report.flicker.ratio()},
-            {"ratio_to_raw", report.flicker.ratio_to_raw()}}},
-          {"weave", {{"moving", to_json(report.weave)}, {"static", to_json(report.static_weave)}}}};
-}
-
-Json to_json(const CutReport& report) {
-  Json after = Json::array();
-  for (const CutErrors& errors : report.after) {
-    after.push_back(
+  Json json;
+  for (const CutErrors& errors : report.after_cut) {
+    json["after"].push_back(
         {{"frames", errors.frames}, {"kept", errors.kept}, {"restarted", errors.restarted}});
   }
-  return {{"after", after}};
-}
-
-std::string error_row(const std::string& name, const ErrorPair& errors, int digits = 4) {
-  if (errors.pixels == 0) return fmt::format("  {:34}none\n", name);
-  return fmt::format("  {:34}{:6.{}f}   {:6.{}f}{:8.2f}{:10}\n", name, errors.moving, digits,
-                     errors.static_camera, digits, errors.ratio(), errors.pixels);
+  if (!report.after_cut.empty()) return json;
+  json["px_per_frame"] = {{"mean", report.speed.mean},
+                          {"percentile_95", report.speed.percentile_95}};
+  for (std::size_t i = 0; i < report.errors.size(); ++i)
+    json[kMotionErrorNames[i]] = to_json(report.errors[i]);
+  const Flicker& flicker = report.flicker;
+  json["flicker"] = {{"with_history", flicker.with_history},
+                     {"without_history", flicker.without_history},
+                     {"raw", flicker.raw},
+                     {"static", flicker.static_camera},
+                     {"truth", flicker.truth},
+                     {"ratio", flicker.ratio()},
+                     {"ratio_to_raw", flicker.ratio_to_raw()}};
+  json["weave"] = {{"moving", to_json(report.weave)}, {"static", to_json(report.static_weave)}};
+  return json;
 }
 
 std::string table_of(MotionKind kind, const MotionReport& report) {
-  const std::string ago = fmt::format("{} frames ago", kUncoveredFrames);
+  if (!report.after_cut.empty()) {
+    std::string out = "cut: RMSE by frames since the cut   kept     restarted history\n";
+    for (const CutErrors& errors : report.after_cut)
+      out += fmt::format("  {:<34}{:.4f}   {:.4f}\n", errors.frames, errors.kept, errors.restarted);
+    return out;
+  }
+  std::string out = fmt::format(
+      "{}: surfaces move by {:.1f} pixels per frame on average, 95 % by at most {:.1f}\n"
+      "  RMSE against ray-traced truth     moving   static  ratio    pixels\n",
+      name_of(kind), report.speed.mean, report.speed.percentile_95);
+  for (std::size_t i = 0; i < report.errors.size(); ++i) {
+    const ErrorPair& errors = report.errors[i];
+    const auto error = static_cast<MotionError>(i);
+    const int digits = error == MotionError::bent_normals ? 2 : 4;
+    if (errors.pixels > 0) {
+      out += fmt::format("  {:34}{:6.{}f}   {:6.{}f}{:8.2f}{:10}\n", kMotionErrorTitles[i],
+                         errors.moving, digits, errors.static_camera, digits, errors.ratio(),
+                         errors.pixels);
+    } else if (error != MotionError::near_object) {
+      out += fmt::format("  {:34}none\n", kMotionErrorTitles[i]);
+    }
+  }
   const Flicker& flicker = report.flicker;
-  return fmt::format(
-             "{}: surfaces move by {:.1f} pixels per frame on average, 95 % by at most {:.1f}\n"
-             "  RMSE against ray-traced truth     moving   static  ratio    pixels\n",
-             name_of(kind), report.speed.mean, report.speed.percentile_95) +
-         error_row("whole frames", report.all) + error_row("uncovered " + ago, report.uncovered) +
-         error_row("entered the image " + ago, report.entered) +
-         (report.near_object.pixels > 0 ? error_row("near the moving object", report.near_object)
-                                        : "") +
-         error_row("bent normals, degrees", degrees(report.bent_normals), 2) +
+  return out +
          fmt::format(
              "  change of visibility per frame    {:.4f} with history; {:.4f} without motion; the "
              "truth changes by at least {:.4f}\n"
@@ -130,35 +128,6 @@ std::string table_of(MotionKind kind, const MotionReport& report) {
              flicker.with_history, flicker.static_camera, flicker.truth, flicker.raw,
              flicker.ratio_to_raw(), flicker.without_history, flicker.ratio(),
              weave_line(report.weave), weave_line(report.static_weave));
-}
-
-std::string table_of(const CutReport& report) {
-  std::string out = "cut: RMSE by frames since the cut   kept     restarted history\n";
-  for (const CutErrors& errors : report.after)
-    out += fmt::format("  {:<34}{:.4f}   {:.4f}\n", errors.frames, errors.kept, errors.restarted);
-  return out;
-}
-
-// Measures one path; prints the result and adds it to `report`.
-Result<void> run_path(MotionInputs& inputs, MotionKind kind, const Options& options, Json& report) {
-  const MotionPath path(kind, inputs.start, options.view.frames);
-  std::vector<MotionPicture> pictures;
-  std::string table;
-  if (kind == MotionKind::cut) {
-    ALCOVE_TRY(auto made, run_cut(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
-    report[std::string(name_of(kind))] = to_json(made);
-    table = table_of(made);
-    pictures = std::move(made.pictures);
-  } else {
-    ALCOVE_TRY(auto made,
-               run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
-    report[std::string(name_of(kind))] = to_json(made);
-    table = table_of(kind, made);
-    pictures = std::move(made.pictures);
-  }
-  ALCOVE_TRY_VOID(check_validation(*inputs.session.gpu));
-  std::cout << table << std::flush;
-  return write_pictures(options.out, kind, pictures);
 }
 
 }  // namespace
@@ -172,7 +141,13 @@ Result<void> run_motion(const Options& options) {
   report["frames"] = options.view.frames;
   for (const MotionKind kind : kMotionKinds) {
     if (options.path && *options.path != kind) continue;
-    ALCOVE_TRY_VOID(run_path(inputs, kind, options, report["paths"]));
+    const MotionPath path(kind, inputs.start, options.view.frames);
+    ALCOVE_TRY(const auto result,
+               run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
+    ALCOVE_TRY_VOID(check_validation(*inputs.session.gpu));
+    report["paths"][std::string(name_of(kind))] = to_json(result);
+    std::cout << table_of(kind, result) << std::flush;
+    ALCOVE_TRY_VOID(write_pictures(options.out, kind, result.pictures));
   }
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
     std::cout

@@ -8,26 +8,26 @@
 #include "evaluate/trade.h"
 #include "evaluate/truths.h"
 #include "evaluate/variant.h"
+#include "gpu_cost/gpu_part.h"
 #include "render/session.h"
 #include "support/result.h"
 
 namespace alcove::sample {
 
-// The points of a trade, and the clock that measured their times.
+// The points of a trade.
 struct MeasuredTrade {
-  std::vector<TradePoint> points;
-  Clock clock = Clock::processor;
+  std::vector<Measurement> points;
   std::string clock_title;  // for headings, such as "modelled time on ..."
   std::string note;         // a line about settings that were left out; empty: none were
 };
 
 // Renders the session's view with every variant of preset_sweep() and compares each with the
-// truths. choose_clock() says by which clock; modelled times are those of an RDNA2 part. Leaves out
-// half resolution if the device cannot store its format. Errors: `clock` is `modelled` and the
-// driver is not installed, or a rendering fails.
+// truths. choose_clock() says by which clock; modelled times are those of `part` at the size of the
+// view. Leaves out half resolution if the device cannot store its format. Errors: `clock` is
+// `modelled` and the driver is not installed, or a rendering fails.
 [[nodiscard]] Result<MeasuredTrade> measure_trade(const Session& session, const StaticSetup& setup,
                                                   const TruthOptions& truth_options,
-                                                  std::optional<Clock> clock);
+                                                  const GpuPart& part, std::optional<Clock> clock);
 
 // The errors of sampling_grid() against scene truth, in its order. Nothing is timed.
 [[nodiscard]] Result<std::vector<double>> measure_grid(const Session& session,

@@ -254,21 +254,18 @@ struct SquaresPair {
   ErrorPair errors() const { return {moving.count, root(moving), root(static_camera)}; }
 };
 
-// Sums over the compared frames.
+// Sums over the compared frames. Those of bent normals are in radians.
 struct Comparison {
-  SquaresPair all;
-  SquaresPair uncovered;
-  SquaresPair entered;
-  SquaresPair near_object;
-  SquaresPair bent_normals;
+  std::array<SquaresPair, kMotionErrorNames.size()> errors;
   RunningMean static_change;
   RunningMean truth_change;
-  Weave weave;
-  Weave static_weave;
-  std::vector<MotionPicture> pictures;
+
+  SquaresPair& operator[](MotionError kind) { return errors[static_cast<std::size_t>(kind)]; }
 };
 
-Result<void> compare(MotionRenderer& renderer, const Compared& compared, Comparison& sums) {
+// Adds a compared frame to the sums and to `report`.
+Result<void> compare(MotionRenderer& renderer, const Compared& compared, Comparison& sums,
+                     MotionReport& report) {
   ALCOVE_TRY(auto standing, render_static(renderer, compared.frame));
   ALCOVE_TRY(const auto truth, renderer.truth(compared.frame, compared.seen));
   ALCOVE_TRY(const auto truth_before, renderer.truth(compared.frame - 1, compared.before));
@@ -277,22 +274,22 @@ Result<void> compare(MotionRenderer& renderer, const Compared& compared, Compari
   };
   const RenderedFrame& seen = compared.seen;
   const Mask surfaces = surfaces_of(seen);
-  const auto add = [&](SquaresPair& squares, const Mask& mask) {
-    squares.add(seen.visibility, standing.visibility, truth.visibility, mask);
+  const auto add = [&](MotionError kind, const Mask& mask) {
+    sums[kind].add(seen.visibility, standing.visibility, truth.visibility, mask);
   };
-  add(sums.all, surfaces);
-  add(sums.uncovered, pixels_of_age(compared.ages, true));
-  add(sums.entered, pixels_of_age(compared.ages, false));
-  add(sums.near_object, surfaces_where(seen, is_near_object));
-  sums.bent_normals.add(seen.bent_normal_ws, standing.bent_normal_ws, truth.bent_normal_ws,
-                        surfaces);
+  add(MotionError::all, surfaces);
+  add(MotionError::uncovered, pixels_of_age(compared.ages, true));
+  add(MotionError::entered, pixels_of_age(compared.ages, false));
+  add(MotionError::near_object, surfaces_where(seen, is_near_object));
+  sums[MotionError::bent_normals].add(seen.bent_normal_ws, standing.bent_normal_ws,
+                                      truth.bent_normal_ws, surfaces);
   sums.static_change += standing.change;
   sums.truth_change +=
       change_lower_bound(truth.visibility, truth_before.visibility, compared.reprojection);
   Image<float> mean_truth = mean_of(truth.visibility);
-  sums.weave += weave_of(seen.visibility, mean_truth, surfaces);
-  sums.static_weave += weave_of(standing.visibility, mean_truth, surfaces);
-  sums.pictures.push_back(
+  report.weave += weave_of(seen.visibility, mean_truth, surfaces);
+  report.static_weave += weave_of(standing.visibility, mean_truth, surfaces);
+  report.pictures.push_back(
       {compared.frame, seen.visibility, std::move(standing.visibility), std::move(mean_truth)});
   return {};
 }
@@ -319,50 +316,45 @@ Result<std::vector<RenderedFrame>> after_cut(MotionRenderer& renderer, bool rest
   return seen;
 }
 
-}  // namespace
-
-Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
-                                const MotionSetup& setup) {
-  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
-  ALCOVE_TRY(const auto passed, render_path(renderer, Filtering::spatial_and_temporal));
-  ALCOVE_TRY(const auto unkept, render_path(renderer, Filtering::spatial));
-  ALCOVE_TRY(const auto unfiltered, render_path(renderer, Filtering::none));
-  Comparison sums;
-  for (const Compared& compared : passed.compared)
-    ALCOVE_TRY_VOID(compare(renderer, compared, sums));
-  return MotionReport{
-      .speed = {passed.speed.mean(), passed.fast.mean()},
-      .all = sums.all.errors(),
-      .uncovered = sums.uncovered.errors(),
-      .entered = sums.entered.errors(),
-      .near_object = sums.near_object.errors(),
-      .bent_normals = sums.bent_normals.errors(),
-      .flicker = {passed.change.mean(), unkept.change.mean(), unfiltered.change.mean(),
-                  sums.static_change.mean(), sums.truth_change.mean()},
-      .weave = sums.weave,
-      .static_weave = sums.static_weave,
-      .pictures = std::move(sums.pictures)};
-}
-
-Result<CutReport> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
-                          const MotionSetup& setup) {
-  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
+Result<MotionReport> run_cut(MotionRenderer& renderer) {
   ALCOVE_TRY(auto kept_frames, after_cut(renderer, false));
   ALCOVE_TRY(auto restarted_frames, after_cut(renderer, true));
-  const std::uint32_t cut = path.cut().value_or(0);
+  const std::uint32_t cut = renderer.path().cut().value_or(0);
   ALCOVE_TRY(const auto truth, renderer.truth(cut, kept_frames.front()));
-  CutReport report;
+  MotionReport report;
   const Mask surfaces = surfaces_of(kept_frames.front());
   for (std::size_t i = 0; i < kept_frames.size(); ++i) {
     RenderedFrame& kept = kept_frames[i];
     RenderedFrame& restarted = restarted_frames[i];
     const std::uint32_t frames = 1u << i;
     const SplitTruth<float>& visibility = truth.visibility;
-    report.after.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
-                            root(squared_error(restarted.visibility, visibility, surfaces))});
+    report.after_cut.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
+                                root(squared_error(restarted.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),
                                std::move(restarted.visibility), mean_of(visibility)});
   }
+  return report;
+}
+
+}  // namespace
+
+Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                                const MotionSetup& setup) {
+  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
+  if (path.cut()) return run_cut(renderer);
+  ALCOVE_TRY(const auto passed, render_path(renderer, Filtering::spatial_and_temporal));
+  ALCOVE_TRY(const auto without_history, render_path(renderer, Filtering::spatial));
+  ALCOVE_TRY(const auto raw, render_path(renderer, Filtering::none));
+  MotionReport report{.speed = {passed.speed.mean(), passed.fast.mean()}};
+  Comparison sums;
+  for (const Compared& compared : passed.compared)
+    ALCOVE_TRY_VOID(compare(renderer, compared, sums, report));
+  std::ranges::transform(sums.errors, report.errors.begin(), &SquaresPair::errors);
+  ErrorPair& angles = report.errors.back();
+  angles.moving = glm::degrees(angles.moving);
+  angles.static_camera = glm::degrees(angles.static_camera);
+  report.flicker = {passed.change.mean(), without_history.change.mean(), raw.change.mean(),
+                    sums.static_change.mean(), sums.truth_change.mean()};
   return report;
 }
 

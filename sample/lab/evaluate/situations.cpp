@@ -171,14 +171,20 @@ RecommendationWorld recommendation_world(SituationErrors& errors, const Modelled
           [&](const OcclusionSettings& settings) { return times.measure(settings); }};
 }
 
-Result<Clock> choose_clock(const VkPhysicalDeviceProperties& device, const GpuPart& part,
-                           std::optional<Clock> wanted) {
-  const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+Result<ChosenClock> choose_clock(const VulkanDevice& device,
+                                 const std::function<Result<ModelledTimes>()>& create_model,
+                                 std::optional<Clock> wanted) {
+  const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const Clock clock = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
-  if (clock != Clock::modelled) return clock;
-  const auto driver = create_null_device(part.family);
-  if (!driver && wanted) return Failure(driver.error());
-  return driver ? Clock::modelled : Clock::processor;
+  if (clock != Clock::modelled) return ChosenClock{clock, {}};
+  auto created = create_model();
+  if (!created && wanted) return Failure(created.error());
+  if (!created) return ChosenClock{Clock::processor, {}};
+  return ChosenClock{clock, [model = std::move(*created)](const OcclusionSettings& settings) {
+                       return model.measure(settings).map([](const std::array<double, 3>& ms) {
+                         return ms[static_cast<std::size_t>(Situation::moving)];
+                       });
+                     }};
 }
 
 }  // namespace alcove::sample

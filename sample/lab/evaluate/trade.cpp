@@ -85,18 +85,19 @@ std::vector<Variant> sampling_grid(const OcclusionSettings& base) {
   return grid;
 }
 
-Trade trade_of(std::vector<TradePoint> points) {
+Trade trade_of(std::vector<Measurement> points) {
   // Points of equal time are ordered by error.
-  std::ranges::stable_sort(points, [](const TradePoint& a, const TradePoint& b) {
-    return std::pair(a.time_ms, a.rmse) < std::pair(b.time_ms, b.rmse);
+  std::ranges::stable_sort(points, [](const Measurement& a, const Measurement& b) {
+    return std::pair(a.time_ms, a.scene.rmse) < std::pair(b.time_ms, b.scene.rmse);
   });
   Trade trade{std::move(points), {}};
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
-    const TradePoint& point = trade.points[i];
+    const Measurement& point = trade.points[i];
     bool on_front = true;
     for (std::size_t j = 0; j < trade.points.size() && on_front; ++j) {
-      const TradePoint& other = trade.points[j];
-      const bool has_less_error = other.rmse < point.rmse || (other.rmse == point.rmse && j < i);
+      const Measurement& other = trade.points[j];
+      const bool has_less_error =
+          other.scene.rmse < point.scene.rmse || (other.scene.rmse == point.scene.rmse && j < i);
       on_front = j == i || !has_less_error ||
                  other.time_ms > point.time_ms + point.spread_ms + other.spread_ms;
     }
@@ -105,23 +106,26 @@ Trade trade_of(std::vector<TradePoint> points) {
   return trade;
 }
 
-std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes) {
-  std::vector<TradePoint> all = scenes.front();
+std::vector<Measurement> over_scenes(std::span<const std::vector<Measurement>> scenes) {
+  std::vector<Measurement> all = scenes.front();
   const auto count = static_cast<double>(scenes.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto mean = [&](const auto& of) {
       double sum = 0;
-      for (const std::vector<TradePoint>& points : scenes) sum += of(points[i]);
+      for (const std::vector<Measurement>& points : scenes) sum += of(points[i]);
       return sum / count;
     };
-    all[i].rmse = std::sqrt(mean([](const TradePoint& p) { return p.rmse * p.rmse; }));
-    all[i].height_field_rmse = std::sqrt(
-        mean([](const TradePoint& p) { return p.height_field_rmse * p.height_field_rmse; }));
-    all[i].time_ms = mean([](const TradePoint& p) { return p.time_ms; });
-    all[i].spread_ms = mean([](const TradePoint& p) { return p.spread_ms; });
-    all[i].processor_ms = mean([](const TradePoint& p) { return p.processor_ms; });
-    for (const std::vector<TradePoint>& points : scenes)
-      all[i].bytes = std::max(all[i].bytes, points[i].bytes);
+    const auto root_mean_square = [&](ErrorSummary Measurement::*errors) {
+      return std::sqrt(
+          mean([&](const Measurement& m) { return (m.*errors).rmse * (m.*errors).rmse; }));
+    };
+    all[i].scene.rmse = root_mean_square(&Measurement::scene);
+    all[i].height_field.rmse = root_mean_square(&Measurement::height_field);
+    for (double Measurement::*time :
+         {&Measurement::time_ms, &Measurement::spread_ms, &Measurement::processor_ms})
+      all[i].*time = mean([&](const Measurement& m) { return m.*time; });
+    for (const std::vector<Measurement>& points : scenes)
+      all[i].cost.bytes = std::max(all[i].cost.bytes, points[i].cost.bytes);
   }
   return all;
 }

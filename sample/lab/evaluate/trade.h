@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "evaluate/clock.h"
 #include "evaluate/variant.h"
 
 namespace alcove::sample {
@@ -25,30 +24,19 @@ inline constexpr std::array<std::uint32_t, 4> kGridSteps{8, 16, 32, 64};
 inline constexpr std::array<std::uint32_t, 4> kGridSlices{1, 2, 4, 8};
 [[nodiscard]] std::vector<Variant> sampling_grid(const passes::OcclusionSettings& base);
 
-// Settings, what they cost, and the error of their visibility.
-struct TradePoint {
-  std::string name;
-  passes::OcclusionSettings settings;
-  double rmse = 0;               // against ray-traced scene truth
-  double height_field_rmse = 0;  // against brute force on the same depth buffer
-  double time_ms = 0;            // of the occlusion passes of a frame, by the trade's clock
-  double spread_ms = 0;          // of that time; 0 if it is modelled
-  double processor_ms = 0;       // processor time of all threads for them; 0 if it was not measured
-  std::uint64_t bytes = 0;       // of transients at their peak, and histories
-};
-
 // Points in order of time. `on_pareto_front[i]` is true if every point with an error no larger than
 // that of point i is slower by more than the spreads of both, because a smaller difference may be
 // chance.
 struct Trade {
-  std::vector<TradePoint> points;
+  std::vector<Measurement> points;
   std::vector<bool> on_pareto_front;
 };
-[[nodiscard]] Trade trade_of(std::vector<TradePoint> points);
+[[nodiscard]] Trade trade_of(std::vector<Measurement> points);
 
 // Combines the points of the same settings in several scenes: the mean of times and spreads, the
-// root mean square of errors, and the largest number of bytes. There must be at least one list. All
-// lists must have one length and one order of settings.
-[[nodiscard]] std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes);
+// root mean square of the RMSEs, and the largest number of bytes. There must be at least one list.
+// All lists must have one length and one order of settings.
+[[nodiscard]] std::vector<Measurement> over_scenes(
+    std::span<const std::vector<Measurement>> scenes);
 
 }  // namespace alcove::sample

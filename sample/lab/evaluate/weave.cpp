@@ -79,43 +79,38 @@ bool is_smooth(const Window& truth) {
   return std::sqrt(squares / means.size()) <= kSmooth;
 }
 
+using Spectrum = std::array<std::complex<double>, kBins>;
+
+// Returns the Fourier transforms of the columns, as rows.
+Spectrum transformed_columns(const Spectrum& values) {
+  static const auto kWaves = [] {
+    std::array<std::complex<double>, kWindow> waves;
+    for (std::uint32_t i = 0; i < kWindow; ++i)
+      waves[i] = std::polar(1.0 / kWindow, -2.0 * kPi * i / kWindow);
+    return waves;
+  }();
+  Spectrum transforms{};
+  for (std::uint32_t i = 0; i < kBins; ++i)
+    for (std::uint32_t u = 0; u < kWindow; ++u)
+      transforms[i % kWindow * kWindow + u] += values[i] * kWaves[u * (i / kWindow) % kWindow];
+  return transforms;
+}
+
 // The power at each frequency: element v * 32 + u is the part of the variance of `values` that
 // waves of u/32 cycles per pixel in x and v/32 in y have. Frequencies from 16/32 on stand for
 // negative ones. A Hann window keeps what is not periodic in the window from leaking into all
 // frequencies; it spreads a wave over 3x3 of them.
 std::vector<double> power_spectrum(const Window& values) {
-  static const auto kHann = [] {
-    std::array<double, kWindow> hann;
-    for (std::uint32_t i = 0; i < kWindow; ++i) {
-      // The factor keeps the variance of white noise.
-      hann[i] = std::sqrt(2.0 / 3.0) * (1.0 - std::cos(2.0 * kPi * (i + 0.5) / kWindow));
-    }
-    return hann;
-  }();
-  static const auto kWaves = [] {
-    std::array<std::complex<double>, kWindow> waves;
-    for (std::uint32_t i = 0; i < kWindow; ++i) {
-      waves[i] = std::polar(1.0 / kWindow, -2.0 * kPi * i / kWindow);
-    }
-    return waves;
-  }();
-  std::array<std::complex<double>, kBins> rows{};
-  for (std::uint32_t y = 0; y < kWindow; ++y) {
-    for (std::uint32_t x = 0; x < kWindow; ++x) {
-      const double value = values[y * kWindow + x] * kHann[x] * kHann[y];
-      for (std::uint32_t u = 0; u < kWindow; ++u)
-        rows[y * kWindow + u] += value * kWaves[u * x % kWindow];
-    }
-  }
+  // The factor keeps the variance of white noise.
+  const auto hann = [](std::uint32_t i) {
+    return std::sqrt(2.0 / 3.0) * (1.0 - std::cos(2.0 * kPi * (i + 0.5) / kWindow));
+  };
+  Spectrum weighted;
+  for (std::uint32_t i = 0; i < kBins; ++i)
+    weighted[i] = values[i] * hann(i % kWindow) * hann(i / kWindow);
+  const Spectrum spectrum = transformed_columns(transformed_columns(weighted));
   std::vector<double> powers(kBins);
-  for (std::uint32_t v = 0; v < kWindow; ++v) {
-    for (std::uint32_t u = 0; u < kWindow; ++u) {
-      std::complex<double> sum = 0;
-      for (std::uint32_t y = 0; y < kWindow; ++y)
-        sum += rows[y * kWindow + u] * kWaves[v * y % kWindow];
-      powers[v * kWindow + u] = std::norm(sum);
-    }
-  }
+  std::ranges::transform(spectrum, powers.begin(), [](auto wave) { return std::norm(wave); });
   return powers;
 }
 

@@ -19,7 +19,7 @@ using passes::Quality;
 constexpr double kTolerance =
     0.01;                        // relative difference of instructions per pixel that is allowed
 constexpr float kRadius = 0.5f;  // scene units; the instructions do not depend on it
-constexpr const char* kKeys[] = {"part", "settings", "pass"};
+constexpr const char* kKeys[] = {"gpu", "settings", "pass"};
 
 LabelledSettings preset(Quality quality) {
   LabelledSettings settings;
@@ -36,7 +36,7 @@ Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
       if (pass.pass == occupancy.pass)
         instructions.push_back(std::ceil(10 * pass.instructions_per_pixel) / 10);
   }
-  return {{"part", cost.part->family},
+  return {{"gpu", cost.part->name},
           {"settings", cost.settings.label},
           {"pass", occupancy.pass},
           {"instructions_per_pixel", std::move(instructions)},
@@ -69,7 +69,7 @@ void check(const Json& limits, const Json& row, const char* key, Bound bound,
     const bool known = i < limit.size() && limit[i].is_number();
     if (!known || !keeps(bound, value, limit[i].get<double>())) {
       complaints.push_back(fmt::format(
-          "{}, {}, {}: {}[{}] is {:g}, the budget is {}.", row["part"].get<std::string>(),
+          "{}, {}, {}: {}[{}] is {:g}, the budget is {}.", row["gpu"].get<std::string>(),
           row["settings"].get<std::string>(), row["pass"].get<std::string>(), key, i, value,
           known ? fmt::format("{:g}", limit[i].get<double>()) : "missing"));
     }

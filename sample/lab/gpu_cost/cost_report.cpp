@@ -183,8 +183,8 @@ std::string table_of(std::span<const SettingsCost> costs, bool loops) {
     const auto first = std::ranges::find(costs, &part, &SettingsCost::part);
     if (first == costs.end()) continue;
     const CostInputs& size = first->settings.inputs;
-    out += fmt::format("{}: {}. Modelled milliseconds at {}x{};", part.family, part.title,
-                       size.width, size.height);
+    out += fmt::format("{}: {}. Modelled milliseconds at {}x{};", part.name, part.title, size.width,
+                       size.height);
     for (const XeGtao& peer : kXeGtao) {
       out += fmt::format("{} {} {:.3f}", &peer == kXeGtao.data() ? "" : ",", peer.name,
                          xegtao_ms(part, peer, size.width, size.height));
@@ -214,7 +214,7 @@ Json to_json(std::span<const SettingsCost> costs) {
           to_json(cost, peers[std::string(kXeGtaoHigh.name)], output_ratios(cost, costs)));
     }
     if (!settings.empty()) {
-      parts.push_back({{"family", part.family},
+      parts.push_back({{"gpu", part.name},
                        {"part", part.title},
                        {"peers_ms", std::move(peers)},
                        {"settings", std::move(settings)}});
