@@ -54,6 +54,14 @@ CompiledShader shader_of(const char* aco, const char* assembly = "not supported"
   return shader;
 }
 
+// The loops of a shader, which run as often as said.
+std::vector<Loop> repeated_loops(const std::vector<BasicBlock>& blocks,
+                                 std::initializer_list<double> iterations) {
+  std::vector<Loop> loops = loops_of(blocks);
+  for (std::size_t i = 0; i < loops.size(); ++i) loops[i].iterations = iterations.begin()[i];
+  return loops;
+}
+
 TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
   const auto blocks = blocks_of(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
@@ -70,7 +78,7 @@ TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
 TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
   const auto blocks = blocks_of(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
-  const WaveWork work = wave_work(*blocks, loops_of(*blocks), {3, 5}, {}, false, 64);
+  const WaveWork work = wave_work(*blocks, repeated_loops(*blocks, {3, 5}), {}, false, 64);
   EXPECT_EQ(work.loads, 15);
   EXPECT_EQ(work.stores, 1);
   EXPECT_EQ(work.transcendentals, 3);
@@ -91,7 +99,7 @@ TEST(GpuCost, InstructionsAreCountedInTheDisassemblyIfTheCompilerGivesOne) {
                                           "BB4:\n"
                                           "\ts_endpgm ; bf810000\n"));
   ASSERT_TRUE(blocks) << blocks.error();
-  const WaveWork work = wave_work(*blocks, loops_of(*blocks), {1, 2}, {}, true, 64);
+  const WaveWork work = wave_work(*blocks, repeated_loops(*blocks, {1, 2}), {}, true, 64);
   EXPECT_EQ(work.selects, 1);
   EXPECT_EQ(work.loads, 2);
   EXPECT_EQ(work.shared_operations, 2);
@@ -186,7 +194,7 @@ TEST(GpuCost, BranchCountsByTheShareOfWavesThatExecuteIt) {
   EXPECT_EQ(branches[0].summary.loads, 1u);
   EXPECT_EQ(branches[1].summary.instructions, 1u);
   branches[0].share = 0.25;
-  const WaveWork work = wave_work(*blocks, {}, {}, branches, false, 64);
+  const WaveWork work = wave_work(*blocks, {}, branches, false, 64);
   EXPECT_EQ(work.loads, 0.25);
   EXPECT_EQ(work.instructions, 1 + 0.25 * 2 + 1 + 1);
 }
@@ -344,8 +352,8 @@ TEST(GpuBudget, PassWithoutABudgetAndBudgetOfAnotherCompilerAreReported) {
 SettingsCost frames_of(const std::string& label, const GpuPart& part, double moving_ms,
                        double static_ms, const std::string& label_without = "") {
   ModelledPass moving, unchanged;
-  moving.alu_ms = moving_ms;
-  unchanged.alu_ms = static_ms;
+  moving.limits_ms[0] = moving_ms;
+  unchanged.limits_ms[0] = static_ms;
   return {{label, {}, label_without},
           &part,
           {{FrameState::moving, {moving}}, {FrameState::unchanged, {unchanged}}},
@@ -420,7 +428,7 @@ TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   const std::string budget{std::istreambuf_iterator<char>(file), {}};
   const auto cost = cost_of(*GetParam().part, *device, GetParam().settings);
   ASSERT_TRUE(cost) << cost.error();
-  const auto complaints = over_budget(budget, compiler_name(*device), {*cost});
+  const auto complaints = over_budget(budget, device->compiler, {*cost});
   if (!complaints) GTEST_SKIP() << complaints.error();
   for (const std::string& complaint : *complaints)
     ADD_FAILURE() << complaint << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "alcove/passes/setting_names.h"
@@ -45,25 +47,18 @@ Result<std::vector<LabelledSettings>> settings_of(const Options& options, passes
 }
 
 Result<std::vector<SettingsCost>> measure(const Options& options) {
-  std::vector<SettingsCost> costs;
-  for (const GpuPart& part : kGpuParts) {
-    if (options.gpu != nullptr && options.gpu != &part) continue;
-    ALCOVE_TRY(const auto device, create_null_device(part.family));
-    for (const passes::Quality quality : chosen_presets(options.occlusion)) {
-      ALCOVE_TRY(const auto all, settings_of(options, quality));
-      for (const LabelledSettings& settings : all) {
-        ALCOVE_TRY(auto cost, cost_of(part, device, settings));
-        costs.push_back(std::move(cost));
-      }
-    }
+  std::vector<LabelledSettings> settings;
+  for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+    ALCOVE_TRY(auto all, settings_of(options, quality));
+    std::ranges::move(all, std::back_inserter(settings));
   }
-  return costs;
+  return costs_of(settings, options.gpu);
 }
 
 Result<void> write_budget(const std::filesystem::path& file) {
   ALCOVE_TRY(const auto device, create_null_device(kGpuParts.front().family));
-  ALCOVE_TRY(const auto costs, budgeted_costs());
-  return write_text(file, budget_of(costs, compiler_name(device)));
+  ALCOVE_TRY(const auto costs, costs_of(budgeted_settings()));
+  return write_text(file, budget_of(costs, device.compiler));
 }
 
 }  // namespace

@@ -269,7 +269,7 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
       result.said = std::string(alcoveGetMessage(context)) + "\n";
   };
   for (std::uint32_t i = 0; result.said.empty() && i < course_.frames;) {
-    const std::uint32_t together = submit_late && i >= begin ? 2 : 1;
+    const std::uint32_t together = submit_late && i >= begin ? 4 : 1;
     const std::uint32_t end = std::min(i + together, course_.frames);
     ALCOVE_TRY_VOID(gpu_.run([&](Graph& graph) -> Result<void> {
       auto pass = graph.add_pass("frames of the engine");

@@ -76,8 +76,8 @@ class EngineRun {
                                                                  const EngineCourse& course);
 
   // Records the frames from 0 to `frames` as a new view. `change`, if it is given, changes them
-  // from the frame `begin` on. If `submit_late` is true, each second one of these is submitted only
-  // after the next one was recorded in the same slot.
+  // from the frame `begin` on. If `submit_late` is true, four of these at a time are recorded in the
+  // same slot before they are submitted.
   [[nodiscard]] Result<EngineResult> draw(const ChangeFrame& change = {}, std::uint32_t begin = 0,
                                           bool submit_late = false);
 

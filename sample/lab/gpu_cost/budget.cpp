@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -45,29 +46,16 @@ Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
           {"spilled_registers", occupancy.spills}};
 }
 
-enum class Bound { at_most, at_least, near };
-
-bool keeps(Bound bound, double value, double limit) {
-  switch (bound) {
-    case Bound::at_most:
-      return value <= limit;
-    case Bound::at_least:
-      return value >= limit;
-    case Bound::near:
-      return std::abs(value - limit) <= kTolerance * limit;
-  }
-  return false;
-}
-
-// Compares each number of a list with its limit.
-void check(const Json& limits, const Json& row, const char* key, Bound bound,
+// Compares each number of a list with its limit: `keeps(value, limit)`.
+template <typename Keeps>
+void check(const Json& limits, const Json& row, const char* key, const Keeps& keeps,
            std::vector<std::string>& complaints) {
   const Json& found = row[key];
   const Json limit = limits.value(key, Json::array());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double value = found[i];
     const bool known = i < limit.size() && limit[i].is_number();
-    if (!known || !keeps(bound, value, limit[i].get<double>())) {
+    if (!known || !keeps(value, limit[i].get<double>())) {
       complaints.push_back(fmt::format(
           "{}, {}, {}: {}[{}] is {:g}, the budget is {}.", row["gpu"].get<std::string>(),
           row["settings"].get<std::string>(), row["pass"].get<std::string>(), key, i, value,
@@ -83,27 +71,6 @@ std::vector<LabelledSettings> budgeted_settings() {
   for (const Quality quality : presets()) all.push_back(preset(quality));
   std::ranges::move(with_each_output(preset(Quality::medium)), std::back_inserter(all));
   return all;
-}
-
-Result<std::vector<SettingsCost>> budgeted_costs() {
-  std::vector<SettingsCost> costs;
-  for (const GpuPart& part : kGpuParts) {
-    ALCOVE_TRY(const auto device, create_null_device(part.family));
-    for (const LabelledSettings& settings : budgeted_settings()) {
-      ALCOVE_TRY(auto cost, cost_of(part, device, settings));
-      costs.push_back(std::move(cost));
-    }
-  }
-  return costs;
-}
-
-std::string compiler_name(const NullDevice& device) {
-  VkPhysicalDeviceDriverProperties driver{.sType =
-                                              VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-                                         .pNext = &driver};
-  vkGetPhysicalDeviceProperties2(device.physical_device, &properties);
-  return std::string(driver.driverName) + ", " + driver.driverInfo;
 }
 
 std::string budget_of(const std::vector<SettingsCost>& costs, const std::string& compiler) {
@@ -125,6 +92,9 @@ Result<std::vector<std::string>> over_budget(const std::string& budget, const st
     return Failure("The budget was written with another compiler than " + compiler +
                    ", which makes other code.");
   }
+  const auto near = [](double value, double limit) {
+    return std::abs(value - limit) <= kTolerance * limit;
+  };
   std::vector<std::string> complaints;
   for (const SettingsCost& cost : costs) {
     for (const Occupancy& occupancy : cost.occupancies) {
@@ -136,10 +106,10 @@ Result<std::vector<std::string>> over_budget(const std::string& budget, const st
       });
       const Json none = Json::object();
       const Json& found = limits == rows.end() ? none : *limits;
-      check(found, row, "instructions_per_pixel", Bound::near, complaints);
-      check(found, row, "vector_registers", Bound::at_most, complaints);
-      check(found, row, "waves_per_simd", Bound::at_least, complaints);
-      check(found, row, "spilled_registers", Bound::at_most, complaints);
+      check(found, row, "instructions_per_pixel", near, complaints);
+      check(found, row, "vector_registers", std::less_equal<>(), complaints);
+      check(found, row, "waves_per_simd", std::greater_equal<>(), complaints);
+      check(found, row, "spilled_registers", std::less_equal<>(), complaints);
     }
   }
   return complaints;

@@ -37,6 +37,11 @@ struct SettingsCost {
 [[nodiscard]] Result<SettingsCost> cost_of(const GpuPart& part, const NullDevice& device,
                                            const LabelledSettings& settings);
 
+// The costs of all these settings on each GPU of the model, or on `only`. Errors: those of
+// create_null_device() and modelled_frames().
+[[nodiscard]] Result<std::vector<SettingsCost>> costs_of(std::span<const LabelledSettings> settings,
+                                                         const GpuPart* only = nullptr);
+
 // Returns the costs as text: a table for each GPU, with the passes of each frame and their sums.
 // With `loops`, also the instructions of a wave by kind, each loop of the compiled shader with its
 // number of iterations, and each branch that not every wave executes. The ratios of output_ratios()

@@ -44,10 +44,9 @@ bool is_slow_multiply(std::string_view operation) {
 }
 
 bool is_64_bit(std::string_view operation) {
-  constexpr std::array<std::string_view, 4> kTypes{"_f64", "_b64", "_u64", "_i64"};
-  return std::ranges::any_of(kTypes, [operation](std::string_view type) {
-    return operation.find(type) != std::string_view::npos;
-  });
+  return std::ranges::any_of(
+      std::array<std::string_view, 4>{"_f64", "_b64", "_u64", "_i64"},
+      [&](std::string_view type) { return operation.find(type) != std::string_view::npos; });
 }
 
 // Conversions on GCN run at a quarter of the rate, by LLVM's tables; unpacking bytes does not.
@@ -190,12 +189,6 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
   }
 }
 
-const std::string* text_of(const CompiledShader& shader, std::string_view name) {
-  for (const auto& [title, text] : shader.texts)
-    if (title == name) return &text;
-  return nullptr;
-}
-
 // Adds the cycles of a vector instruction by the rules of ACO's statistics (aco_statistics.cpp).
 void add_vector(std::string_view operation, bool rdna, double half_waves, double times,
                 WaveWork& work) {
@@ -279,20 +272,20 @@ double WaveWork::busiest() const {
 }
 
 Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader) {
-  const std::string* aco = text_of(shader, "ACO IR");
-  if (aco == nullptr)
+  const auto aco = shader.texts.find("ACO IR");
+  if (aco == shader.texts.end())
     return Failure("The driver gives no 'ACO IR' for its pipelines; Mesa's AMD driver is needed.");
   // LLVM disassembles GFX8 and later; for older GPUs ACO's own text has the instructions.
-  const std::string* assembly = text_of(shader, "Assembly");
-  const bool disassembled = assembly != nullptr && assembly->starts_with("BB");
-  std::vector<BasicBlock> blocks = blocks_of_aco(*aco, !disassembled);
+  const auto assembly = shader.texts.find("Assembly");
+  const bool disassembled = assembly != shader.texts.end() && assembly->second.starts_with("BB");
+  std::vector<BasicBlock> blocks = blocks_of_aco(aco->second, !disassembled);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (blocks[i].index != i) {
       return Failure(
           fmt::format("The driver's 'ACO IR' has an unknown format: block {} is missing.", i));
     }
   }
-  if (disassembled) add_disassembly(*assembly, blocks);
+  if (disassembled) add_disassembly(assembly->second, blocks);
   if (blocks.empty())
     return Failure("The driver's 'ACO IR' has an unknown format: it has no blocks.");
   return blocks;
@@ -346,13 +339,12 @@ std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks) {
 }
 
 WaveWork wave_work(const std::vector<BasicBlock>& blocks, const std::vector<Loop>& loops,
-                   const std::vector<double>& iterations, const std::vector<Branch>& branches,
-                   bool rdna, std::uint32_t wave) {
+                   const std::vector<Branch>& branches, bool rdna, std::uint32_t wave) {
   WaveWork work;
   for (const BasicBlock& block : blocks) {
     double times = 1.0;
-    for (std::size_t i = 0; i < loops.size(); ++i)
-      if (loops[i].first <= block.index && block.index <= loops[i].last) times *= iterations[i];
+    for (const Loop& loop : loops)
+      if (loop.first <= block.index && block.index <= loop.last) times *= loop.iterations;
     for (const Branch& branch : branches)
       if (branch.first <= block.index && block.index <= branch.last) times *= branch.share;
     for (const Instruction& instruction : block.instructions)

@@ -62,6 +62,7 @@ struct Loop {
   passes::cost::CompiledLoop summary;
   std::uint32_t first = 0;
   std::uint32_t last = 0;
+  double iterations = 1;  // each time that it is entered
 };
 [[nodiscard]] std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks);
 
@@ -74,10 +75,8 @@ struct Branch {
 };
 [[nodiscard]] std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks);
 
-// `iterations[i]` is the number of iterations of loop i each time that it is entered.
 [[nodiscard]] WaveWork wave_work(const std::vector<BasicBlock>& blocks,
                                  const std::vector<Loop>& loops,
-                                 const std::vector<double>& iterations,
                                  const std::vector<Branch>& branches, bool rdna,
                                  std::uint32_t wave);
 
