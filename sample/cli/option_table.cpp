@@ -18,25 +18,25 @@ namespace {
 using O = Options;
 using V = OptionValue;
 
-constexpr std::uint32_t set_of(std::initializer_list<Command> commands) {
+constexpr std::uint32_t bits(std::initializer_list<Command> commands) {
   std::uint32_t set = 0;
   for (const Command command : commands) set |= 1u << static_cast<std::uint32_t>(command);
   return set;
 }
 
 // Sets of commands.
-constexpr std::uint32_t kRender = set_of({Command::render});
-constexpr std::uint32_t kView = set_of({Command::view});
-constexpr std::uint32_t kCompare = set_of({Command::compare});
-constexpr std::uint32_t kRecommend = set_of({Command::recommend});
-constexpr std::uint32_t kGraph = set_of({Command::graph});
-constexpr std::uint32_t kDoctor = set_of({Command::doctor});
-constexpr std::uint32_t kMotion = set_of({Command::motion});
-constexpr std::uint32_t kAblate = set_of({Command::ablate});
-constexpr std::uint32_t kBench = set_of({Command::bench});
-constexpr std::uint32_t kCost = set_of({Command::cost});
-constexpr std::uint32_t kMeasure = set_of({Command::measure});
-constexpr std::uint32_t kReport = set_of({Command::report});
+constexpr std::uint32_t kRender = bits({Command::render});
+constexpr std::uint32_t kView = bits({Command::view});
+constexpr std::uint32_t kCompare = bits({Command::compare});
+constexpr std::uint32_t kRecommend = bits({Command::recommend});
+constexpr std::uint32_t kGraph = bits({Command::graph});
+constexpr std::uint32_t kDoctor = bits({Command::doctor});
+constexpr std::uint32_t kMotion = bits({Command::motion});
+constexpr std::uint32_t kAblate = bits({Command::ablate});
+constexpr std::uint32_t kBench = bits({Command::bench});
+constexpr std::uint32_t kCost = bits({Command::cost});
+constexpr std::uint32_t kMeasure = bits({Command::measure});
+constexpr std::uint32_t kReport = bits({Command::report});
 constexpr std::uint32_t kAll = kRender | kView | kCompare | kRecommend | kGraph | kDoctor |
                                kMotion | kAblate | kBench | kCost | kMeasure | kReport;
 constexpr std::uint32_t kOnDevice = kAll & ~kCost;
@@ -104,7 +104,7 @@ constexpr std::array<std::string_view, 2> kGpuNames{kGpuParts[0].name, kGpuParts
 void check_plane(const std::string& option, const std::optional<float>& distance,
                  const ViewOptions& view) {
   if (distance && !(*distance > 0.0f) && !view.ortho_height) {
-    throw Mistake{option + " " + shown(*distance) +
+    throw Mistake{option + " " + number_text(*distance) +
                   ": give a length above 0, in the scene's units, or --ortho-height too"};
   }
 }
@@ -369,7 +369,7 @@ void check_together(const Options& options) {
   check_plane("--near", view.near_plane, view);
   check_plane("--far", view.far_plane, view);
   if (view.near_plane && view.far_plane && !(*view.near_plane < *view.far_plane))
-    throw Mistake{"--near " + shown(*view.near_plane) + ": give a length below --far"};
+    throw Mistake{"--near " + number_text(*view.near_plane) + ": give a length below --far"};
   if (view.ortho_height && view.fov_y)
     throw Mistake{"--ortho-height and --fov-y: give one, an orthographic view has no angle"};
   if (view.ortho_height && view.far_plane && std::isinf(*view.far_plane))

@@ -76,8 +76,8 @@ std::size_t OptionValue::one_of(std::span<const std::string_view> names) const {
   return static_cast<std::size_t>(found - names.begin());
 }
 
-std::string shown_coordinate(float value, double origin) {
-  if (origin == 0.0) return shown(value);
+std::string coordinate_text(float value, double origin) {
+  if (origin == 0.0) return number_text(value);
   std::string text;
   for (int digits = 6; digits <= 17; ++digits) {
     text = fmt::format("{:.{}g}", origin + static_cast<double>(value), digits);

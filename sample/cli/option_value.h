@@ -65,12 +65,12 @@ struct OptionValue {
 
 // Returns the shortest text that is parsed as the same number.
 template <typename Number>
-[[nodiscard]] std::string shown(Number value) {
+[[nodiscard]] std::string number_text(Number value) {
   return fmt::to_string(value);
 }
 
 // Returns the shortest text of a coordinate from which the same float is parsed. The text is in the
 // space of the scene's file, which is `value` plus `origin`.
-[[nodiscard]] std::string shown_coordinate(float value, double origin);
+[[nodiscard]] std::string coordinate_text(float value, double origin);
 
 }  // namespace alcove::sample

@@ -123,7 +123,7 @@ std::string one_line(std::string text) {
 }
 
 // Returns the help of the command for which it was requested, or an empty text if none was.
-std::string help_of_command(const CLI::App& app) {
+std::string requested_help(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands())
     if (sub->count("--help") != 0) return sub->help(app.get_name());
   return "";
@@ -132,7 +132,7 @@ std::string help_of_command(const CLI::App& app) {
 Stop no_command(const std::string& what) { return {2, what + "; see alcove --help"}; }
 
 // Converts an error of CLI11 to a sentence that also names the --help to read.
-Stop mistake_of(const CLI::App& app, const CLI::ParseError& error) {
+Stop to_stop(const CLI::App& app, const CLI::ParseError& error) {
   const auto commands = app.get_subcommands();
   if (commands.empty()) return no_command("name a command first");
   return {2, one_line(error.what()) + "; see alcove " + commands.front()->get_name() + " --help"};
@@ -173,14 +173,14 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       return options[i];
     }
   } catch (const CLI::CallForHelp&) {
-    const std::string help = help_of_command(app);
+    const std::string help = requested_help(app);
     return tl::unexpected(Stop{0, help.empty() ? app.help() : help});
   } catch (const CLI::CallForVersion& version) {
     return tl::unexpected(Stop{0, version.what()});
   } catch (const CLI::ParseError& error) {
-    return tl::unexpected(mistake_of(app, error));
+    return tl::unexpected(to_stop(app, error));
   } catch (const Mistake& mistake) {
-    const std::string help = help_of_command(app);
+    const std::string help = requested_help(app);
     if (!help.empty()) return tl::unexpected(Stop{0, help});
     return tl::unexpected(Stop{2, mistake.text});
   }

@@ -42,8 +42,8 @@ enum class Command {
 enum class GraphFormat { text, dot, work };
 inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "dot", "work"};
 
-// The options of the view. Optional members are empty if the option was not given: camera_of() then
-// takes the value from the scene's camera or derives it from the scene. Angles are in radians.
+// The options of the view. Optional members are empty if the option was not given: choose_camera()
+// then takes the value from the scene's camera or derives it from the scene. Angles are in radians.
 struct ViewOptions {
   std::string camera;  // name of a scene's camera; empty: the default one
   // Positions in the space of the scene's file. Scene::origin is subtracted from them later.
@@ -126,7 +126,7 @@ struct Stop {
 };
 
 // Parses the command line. It never exits and never prints. Each value is checked alone and against
-// the other options; checks that need the scene are made by camera_of().
+// the other options; checks that need the scene are made by choose_camera().
 [[nodiscard]] tl::expected<Options, Stop> parse_options(int argc, const char* const* argv);
 
 }  // namespace alcove::sample

@@ -16,7 +16,7 @@ using passes::OcclusionSettings;
 using passes::Quality;
 
 std::string vector_text(const glm::vec3& v) {
-  return fmt::format("{},{},{}", shown(v.x), shown(v.y), shown(v.z));
+  return fmt::format("{},{},{}", number_text(v.x), number_text(v.y), number_text(v.z));
 }
 
 // The shortest text that is parsed as the same angle.
@@ -47,17 +47,18 @@ std::vector<std::string> changes(Quality quality, const OcclusionSettings& setti
 
 void append_camera(const Camera& camera, std::vector<std::string>& to) {
   const auto position = [&](const glm::vec3& p) {
-    return fmt::format("{},{},{}", shown_coordinate(p.x, camera.origin.x),
-                       shown_coordinate(p.y, camera.origin.y),
-                       shown_coordinate(p.z, camera.origin.z));
+    return fmt::format("{},{},{}", coordinate_text(p.x, camera.origin.x),
+                       coordinate_text(p.y, camera.origin.y),
+                       coordinate_text(p.z, camera.origin.z));
   };
   to.insert(to.end(), {"--eye", position(camera.eye_ws), "--target", position(camera.target_ws),
                        "--up", vector_text(camera.up_ws)});
   if (camera.orthographic)
-    to.insert(to.end(), {"--ortho-height", shown(camera.ortho_height)});
+    to.insert(to.end(), {"--ortho-height", number_text(camera.ortho_height)});
   else
     to.insert(to.end(), {"--fov-y", degrees_text(camera.fov_y)});
-  to.insert(to.end(), {"--near", shown(camera.near_plane), "--far", shown(camera.far_plane)});
+  to.insert(to.end(),
+            {"--near", number_text(camera.near_plane), "--far", number_text(camera.far_plane)});
   if (camera.reversed_z == camera.orthographic)  // not the default
     to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
 }
@@ -75,7 +76,7 @@ void append_settings(const OcclusionSettings& settings, std::vector<std::string>
     }
   }
   to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
-                       shown(settings.radius)});
+                       number_text(settings.radius)});
   for (const std::string& change : fewest) to.insert(to.end(), {"--set", change});
 }
 
@@ -95,11 +96,12 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
   }
-  if (shot.roughness) arguments.insert(arguments.end(), {"--roughness", shown(*shot.roughness)});
+  if (shot.roughness)
+    arguments.insert(arguments.end(), {"--roughness", number_text(*shot.roughness)});
   if (!options.environment.empty())
     arguments.insert(arguments.end(), {"--environment", options.environment.string()});
   const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
-  if (frames > 1) arguments.insert(arguments.end(), {"--frames", shown(frames)});
+  if (frames > 1) arguments.insert(arguments.end(), {"--frames", number_text(frames)});
   if (options.device >= 0)
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   return arguments;

@@ -128,7 +128,7 @@ Result<std::vector<std::pair<std::string, std::string>>> read_settings(const std
   std::vector<std::pair<std::string, std::string>> found;
   for (const auto& [name, value] : json["settings"].items()) {
     const std::string shown_value = value.is_string()         ? value.get<std::string>()
-                                    : value.is_number_float() ? shown(value.get<float>())
+                                    : value.is_number_float() ? number_text(value.get<float>())
                                                               : value.dump();
     if (const auto wanted = wanted_instead(name, shown_value)) {
       return Failure(printable(file) + ": " + printable(name) + " is " + printable(shown_value) +

@@ -28,7 +28,7 @@ namespace alcove::sample {
 template <typename Value>
 std::string value_text(Value value) {
   if constexpr (passes::kNames<Value>.empty())
-    return shown(value);
+    return number_text(value);
   else
     return std::string(passes::name_of(value));
 }

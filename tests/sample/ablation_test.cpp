@@ -26,7 +26,7 @@ TEST(AblationVariants, EachVariantDiffersFromTheBaseSettingsAndHasAUniqueName) {
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     std::set<std::string> names, parts;
-    for (const Variant& variant : variants_of(base)) {
+    for (const Variant& variant : ablation_variants(base)) {
       EXPECT_FALSE(variant.settings == base) << variant.name;
       EXPECT_TRUE(names.insert(variant.part + variant.name).second) << variant.name;
       EXPECT_EQ(variant.settings.radius, base.radius) << variant.name;
@@ -43,7 +43,7 @@ TEST(AblationVariants, OnlyVariantsWithHorizonEstimatorsHaveAFalloff) {
   OcclusionSettings base = passes::quality_settings(Quality::medium, 0.5f);
   base.advanced.estimator = passes::Estimator::horizons;
   base.advanced.falloff = 0.5f;
-  for (const Variant& variant : variants_of(base)) {
+  for (const Variant& variant : ablation_variants(base)) {
     const bool has_falloff = variant.settings.advanced.estimator == passes::Estimator::horizons;
     EXPECT_EQ(variant.settings.advanced.falloff, has_falloff ? 0.5f : 0.0f) << variant.name;
   }
@@ -110,7 +110,7 @@ TEST_F(AblationTest, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
 }
 
 TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
-  std::vector<Variant> estimators = variants_of(base_);
+  std::vector<Variant> estimators = ablation_variants(base_);
   std::erase_if(estimators, [](const Variant& v) { return v.part != "estimator"; });
   ASSERT_GE(estimators.size(), 2u);
   Session session{scene_, setup_.camera, base_};
@@ -148,7 +148,7 @@ TEST_F(AblationTest, FirstFramesOfAHistoryHaveNoWeave) {
   setup_.frames = 8;
   const FrameImages images = draw(base_);
   const TracedTruth truth = truth_of(images);
-  const Weave weave = weave_of(images.visibility, truth.visibility, truth.surfaces);
+  const Weave weave = measure_weave(images.visibility, truth.visibility, truth.surfaces);
   EXPECT_GT(weave.windows, 30u);
   EXPECT_LT(weave.rms(), 0.0024);
 }
@@ -236,7 +236,7 @@ TEST_F(AblationTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThe
 }
 
 TEST_F(AblationTest, PairsOfViewsThatShouldLookEqualGiveNearlyEqualImages) {
-  for (const InvariancePair& pair : invariance_pairs_of(setup_.camera, setup_.height)) {
+  for (const InvariancePair& pair : invariance_pairs(setup_.camera, setup_.height)) {
     if (pair.scale != 1 || pair.further > 0.0f) continue;
     StaticSetup second = setup_;
     setup_.camera = pair.first;

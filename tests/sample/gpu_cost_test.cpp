@@ -57,15 +57,15 @@ CompiledShader shader_of(const char* aco, const char* assembly = "not supported"
 // The loops of a shader, which run as often as said.
 std::vector<Loop> repeated_loops(const std::vector<BasicBlock>& blocks,
                                  std::initializer_list<double> iterations) {
-  std::vector<Loop> loops = loops_of(blocks);
+  std::vector<Loop> loops = find_loops(blocks);
   for (std::size_t i = 0; i < loops.size(); ++i) loops[i].iterations = iterations.begin()[i];
   return loops;
 }
 
 TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
-  const auto blocks = blocks_of(shader_of(kNestedLoops));
+  const auto blocks = parse_blocks(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
-  const std::vector<Loop> loops = loops_of(*blocks);
+  const std::vector<Loop> loops = find_loops(*blocks);
   ASSERT_EQ(loops.size(), 2u);
   EXPECT_EQ(loops[0].first, 1u);
   EXPECT_EQ(loops[0].last, 3u);
@@ -76,7 +76,7 @@ TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
 }
 
 TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
-  const auto blocks = blocks_of(shader_of(kNestedLoops));
+  const auto blocks = parse_blocks(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
   const WaveWork work = wave_work(*blocks, repeated_loops(*blocks, {3, 5}), {}, false, 64);
   EXPECT_EQ(work.loads, 15);
@@ -90,14 +90,15 @@ TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
 }
 
 TEST(GpuCost, InstructionsAreCountedInTheDisassemblyIfTheCompilerGivesOne) {
-  const auto blocks = blocks_of(shader_of(kNestedLoops,
-                                          "BB0:\n"
-                                          "\tv_cndmask_b32_e32 v0, v1, v2, vcc ; 02000300\n"
-                                          "BB2:\n"
-                                          "\timage_load v[0:3], v[2:3], s[0:7] dmask:0xf ; f000\n"
-                                          "\tds_read2_b64 v[0:3], v4 ; d8ee\n"
-                                          "BB4:\n"
-                                          "\ts_endpgm ; bf810000\n"));
+  const auto blocks =
+      parse_blocks(shader_of(kNestedLoops,
+                             "BB0:\n"
+                             "\tv_cndmask_b32_e32 v0, v1, v2, vcc ; 02000300\n"
+                             "BB2:\n"
+                             "\timage_load v[0:3], v[2:3], s[0:7] dmask:0xf ; f000\n"
+                             "\tds_read2_b64 v[0:3], v4 ; d8ee\n"
+                             "BB4:\n"
+                             "\ts_endpgm ; bf810000\n"));
   ASSERT_TRUE(blocks) << blocks.error();
   const WaveWork work = wave_work(*blocks, repeated_loops(*blocks, {1, 2}), {}, true, 64);
   EXPECT_EQ(work.selects, 1);
@@ -110,10 +111,10 @@ TEST(GpuCost, InstructionsAreCountedInTheDisassemblyIfTheCompilerGivesOne) {
 TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
   CompiledShader shader;
   shader.texts = {{"Final Assembly", "mov r0, r1\n"}};
-  const auto none = blocks_of(shader);
+  const auto none = parse_blocks(shader);
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error(), HasSubstr("Mesa's AMD driver is needed"));
-  EXPECT_FALSE(blocks_of(shader_of("no blocks here")));
+  EXPECT_FALSE(parse_blocks(shader_of("no blocks here")));
 }
 
 // The number of times that each loop of the search runs; empty if one is not known.
@@ -186,9 +187,9 @@ constexpr const char* kBranch =
     "\ts_endpgm\n";
 
 TEST(GpuCost, BranchCountsByTheShareOfWavesThatExecuteIt) {
-  const auto blocks = blocks_of(shader_of(kBranch));
+  const auto blocks = parse_blocks(shader_of(kBranch));
   ASSERT_TRUE(blocks) << blocks.error();
-  std::vector<Branch> branches = branches_of(*blocks);
+  std::vector<Branch> branches = find_branches(*blocks);
   ASSERT_EQ(branches.size(), 2u);
   EXPECT_EQ(branches[0].summary.instructions, 2u);
   EXPECT_EQ(branches[0].summary.loads, 1u);
@@ -325,7 +326,7 @@ SettingsCost one_pass(double instructions, double registers, double waves, doubl
 }
 
 TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
-  const std::string budget = budget_of({one_pass(100, 64, 8, 0)}, "compiler");
+  const std::string budget = format_budget({one_pass(100, 64, 8, 0)}, "compiler");
   const auto complaints = [&](const SettingsCost& cost) {
     return over_budget(budget, "compiler", {cost}).value();
   };
@@ -342,10 +343,10 @@ TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
 }
 
 TEST(GpuBudget, PassWithoutABudgetAndBudgetOfAnotherCompilerAreReported) {
-  const std::string budget = budget_of({}, "compiler");
+  const std::string budget = format_budget({}, "compiler");
   EXPECT_THAT(over_budget(budget, "compiler", {one_pass(1, 1, 1, 0)}).value(),
               testing::Contains(HasSubstr("the budget is missing")));
-  for (const std::string& other : {budget_of({}, "another"), std::string(), std::string("{")})
+  for (const std::string& other : {format_budget({}, "another"), std::string(), std::string("{")})
     EXPECT_FALSE(over_budget(other, "compiler", {one_pass(1, 1, 1, 0)})) << other;
 }
 
@@ -369,9 +370,9 @@ TEST(CostReport, TimeWithAnOptionalOutputIsComparedWithTheTimeWithoutItOnTheSame
   EXPECT_THAT(output_ratios(costs[2], costs), IsEmpty()) << "medium is compared with nothing";
   EXPECT_THAT(output_ratios(costs[3], std::span(costs).first(2)), IsEmpty())
       << "medium is not among the costs of this GPU";
-  EXPECT_THAT(table_of(costs, false),
+  EXPECT_THAT(format_table(costs, false),
               HasSubstr("medium with bent normals                  1.500      1.250\n"));
-  EXPECT_THAT(table_of(std::span(costs).first(3), false), Not(HasSubstr("without the output")));
+  EXPECT_THAT(format_table(std::span(costs).first(3), false), Not(HasSubstr("without the output")));
   EXPECT_EQ(to_json(costs)[1]["settings"][2]["frames"][0]["of_time_without_output"], 1.5);
 }
 
@@ -426,7 +427,7 @@ TEST_P(ShippedPresets, ModelledCostOfThePresetStaysWithinItsGpuBudget) {
   if (!device) GTEST_SKIP() << device.error();
   std::ifstream file(ALCOVE_GPU_BUDGET);
   const std::string budget{std::istreambuf_iterator<char>(file), {}};
-  const auto cost = cost_of(*GetParam().part, *device, GetParam().settings);
+  const auto cost = model_cost(*GetParam().part, *device, GetParam().settings);
   ASSERT_TRUE(cost) << cost.error();
   const auto complaints = over_budget(budget, device->compiler, {*cost});
   if (!complaints) GTEST_SKIP() << complaints.error();

@@ -75,8 +75,8 @@ TEST(PresetSweep, SweepChangesOnlyNumbersOfSamplesHalfResolutionAndDepthLayers) 
 
 TEST(SpeedErrorTrade, ParetoFrontOfTimeAndErrorExcludesDominatedSettings) {
   const Trade trade =
-      trade_of({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
-                point("fair", 3, 0.05), point("equal", 5, 0.05)});
+      find_pareto_front({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
+                         point("fair", 3, 0.05), point("equal", 5, 0.05)});
   std::vector<std::string> names;
   for (const Measurement& each : trade.points) names.push_back(each.variant.name);
   EXPECT_EQ(names, (std::vector<std::string>{"fast", "fair", "worse", "equal", "slow"}));
@@ -85,8 +85,8 @@ TEST(SpeedErrorTrade, ParetoFrontOfTimeAndErrorExcludesDominatedSettings) {
 
 TEST(SpeedErrorTrade, LessAccurateSettingFasterOnlyWithinMeasurementSpreadIsNotOnTheParetoFront) {
   const Trade trade =
-      trade_of({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
-                point("surely faster", 9.0, 0.08, 0.3)});
+      find_pareto_front({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
+                         point("surely faster", 9.0, 0.08, 0.3)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false, true}));
 }
 
@@ -94,9 +94,9 @@ TEST(SpeedErrorTrade, ParetoFrontDoesNotChangeWithTimingNoiseWithinTheMeasuredSp
   std::mt19937 random(3);
   std::uniform_real_distribution<double> noise(-0.07, 0.07);
   for (int run = 0; run < 100; ++run) {
-    const Trade trade = trade_of({point("a", 2.0 + noise(random), 0.06, 0.1),
-                                  point("b", 2.05 + noise(random), 0.05, 0.1),
-                                  point("c", 3.0 + noise(random), 0.04, 0.1)});
+    const Trade trade = find_pareto_front({point("a", 2.0 + noise(random), 0.06, 0.1),
+                                           point("b", 2.05 + noise(random), 0.05, 0.1),
+                                           point("c", 3.0 + noise(random), 0.04, 0.1)});
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].variant.name != "a") << run;
   }
@@ -129,7 +129,7 @@ std::vector<Measurement> measured_on_a_busy_machine(std::span<const TrueSetting>
       const double base_ms = 5.0 * common(random);
       pairs.push_back({frame(base_ms), frame(base_ms * setting.time)});
     }
-    const VariantCost cost = cost_of(pairs, 1000);
+    const VariantCost cost = median_cost(pairs, 1000);
     points.push_back(
         point(setting.name, 5.0 * cost.processor, setting.rmse, 5.0 * cost.processor_spread));
   }
@@ -154,7 +154,7 @@ constexpr std::array<TrueSetting, 6> kTrueSettings{{{"fast", 0.3, 0.08},
 TEST(SpeedErrorTrade, RepeatedMeasurementsOnABusyMachineGiveTheSameParetoFront) {
   std::mt19937 random(5);
   for (int run = 0; run < 200; ++run) {
-    EXPECT_THAT(sorted_front(trade_of(measured_on_a_busy_machine(kTrueSettings, random))),
+    EXPECT_THAT(sorted_front(find_pareto_front(measured_on_a_busy_machine(kTrueSettings, random))),
                 testing::ElementsAre("fair", "fast", "slow"));
   }
 }
@@ -165,7 +165,7 @@ TEST(SpeedErrorTrade, SettingThatBecomesFasterEntersTheParetoFrontOnABusyMachine
   settings[3] = {"faster but worse", 0.4, 0.06};
   settings[0].time = settings[1].time = 0.1;
   for (int run = 0; run < 200; ++run) {
-    EXPECT_THAT(sorted_front(trade_of(measured_on_a_busy_machine(settings, random))),
+    EXPECT_THAT(sorted_front(find_pareto_front(measured_on_a_busy_machine(settings, random))),
                 testing::ElementsAre("fair", "fast", "faster but worse", "slow"));
   }
 }
@@ -174,17 +174,17 @@ TEST(VariantCost, CostIsTheMedianRatioOfTimedPairsWithHalfTheInterquartileRangeA
   std::vector<TimedPair> pairs;
   for (const double ratio : {2.0, 1.0, 9.0, 3.0, 4.0})
     pairs.push_back({{10.0, 7.0}, {10.0 * ratio, 14.0 * ratio}});
-  const VariantCost cost = cost_of(pairs, 5);
+  const VariantCost cost = median_cost(pairs, 5);
   EXPECT_DOUBLE_EQ(cost.gpu, 3.0);
   EXPECT_DOUBLE_EQ(cost.gpu_spread, 1.0);
   EXPECT_DOUBLE_EQ(cost.processor, 6.0);
   EXPECT_DOUBLE_EQ(cost.processor_spread, 2.0);
   EXPECT_EQ(cost.bytes, 5u);
-  EXPECT_EQ(cost_of({}, 5).gpu, 1.0);
+  EXPECT_EQ(median_cost({}, 5).gpu, 1.0);
 }
 
 TEST(SpeedErrorTrade, OnlyOneOfSeveralEqualSettingsIsOnTheParetoFront) {
-  const Trade trade = trade_of({point("a", 1, 0.1), point("b", 1, 0.1)});
+  const Trade trade = find_pareto_front({point("a", 1, 0.1), point("b", 1, 0.1)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false}));
 }
 
@@ -211,9 +211,9 @@ TEST(SpeedErrorTrade, SeveralScenesAreCombinedByMeanTimeAndRootMeanSquareError) 
 }
 
 TEST(TradePlot, PlotLabelsOnlyPointsOnTheParetoFrontAndEscapesText) {
-  const std::string plot =
-      plot_of(trade_of({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
-              "scene & size", "modelled time");
+  const std::string plot = draw_plot(
+      find_pareto_front({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
+      "scene & size", "modelled time");
   EXPECT_NE(plot.find(">fast</text>"), std::string::npos);
   EXPECT_NE(plot.find(">a &lt; b</text>"), std::string::npos);
   EXPECT_NE(plot.find("scene &amp; size"), std::string::npos);
@@ -247,7 +247,7 @@ TEST(TradePlot, LabelsOfAdjacentPointsInThePlotDoNotOverlap) {
         point("setting number " + std::to_string(i), 1.0 + 0.02 * i, 0.1 - 0.0005 * i));
   }
   const std::vector<PlacedName> names =
-      placed_names(plot_of(trade_of(points), "close", "time"), "setting number");
+      placed_names(draw_plot(find_pareto_front(points), "close", "time"), "setting number");
   ASSERT_EQ(names.size(), points.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -260,7 +260,7 @@ TEST(TradePlot, LabelsOfAdjacentPointsInThePlotDoNotOverlap) {
 }
 
 TEST(TradePlot, PlotOfASinglePointIsValid) {
-  const std::string plot = plot_of(trade_of({point("only", 1, 0.0)}), "one", "time");
+  const std::string plot = draw_plot(find_pareto_front({point("only", 1, 0.0)}), "one", "time");
   EXPECT_NE(plot.find("<circle"), std::string::npos);
   EXPECT_EQ(plot.find("nan"), std::string::npos);
 }

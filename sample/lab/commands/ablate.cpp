@@ -73,7 +73,7 @@ Result<InvariancePairRow> run_invariance_pair(Gpu& gpu, const Session& session,
                                           common_surfaces(pair, images, others))};
 }
 
-std::string table_of(const std::vector<Measurement>& rows, Clock clock) {
+std::string format_table(const std::vector<Measurement>& rows, Clock clock) {
   std::string out = fmt::format(
       "RMSE of visibility over {} pixels, and cost relative to the first row\n"
       "  {:47}scene truth   height field    bias {:>5}   processor   MiB\n",
@@ -91,7 +91,7 @@ std::string table_of(const std::vector<Measurement>& rows, Clock clock) {
   return out;
 }
 
-std::string table_of(const std::vector<InvariancePairRow>& rows) {
+std::string format_table(const std::vector<InvariancePairRow>& rows) {
   std::string out =
       "Difference of visibility between equal views              RMS   95 % within    pixels\n";
   for (const InvariancePairRow& row : rows) {
@@ -120,13 +120,14 @@ Result<void> run_ablate(const Options& options) {
   ALCOVE_TRY(const auto clock,
              choose_clock(
                  session.gpu->device(), [&] { return modelled_times(options); }, options.clock));
-  ALCOVE_TRY(const auto rows, measure_variants(session, static_setup(options, session.camera),
-                                               truth_options(options),
-                                               variants_of(session.settings), "changes", &clock));
-  std::cout << table_of(rows, clock.clock) << std::flush;
+  ALCOVE_TRY(
+      const auto rows,
+      measure_variants(session, static_setup(options, session.camera), truth_options(options),
+                       ablation_variants(session.settings), "changes", &clock));
+  std::cout << format_table(rows, clock.clock) << std::flush;
   std::vector<InvariancePairRow> invariance_pair_rows;
   const std::uint32_t largest = session.gpu->device().properties().limits.maxImageDimension2D;
-  for (const InvariancePair& pair : invariance_pairs_of(session.camera, options.view.height)) {
+  for (const InvariancePair& pair : invariance_pairs(session.camera, options.view.height)) {
     if (pair.scale * std::max(options.view.width, options.view.height) > largest) {
       std::cout << "Skipped: " << pair.name
                 << ": the device does not support images of that size\n";
@@ -136,7 +137,7 @@ Result<void> run_ablate(const Options& options) {
     invariance_pair_rows.push_back(std::move(row));
   }
   ALCOVE_TRY_VOID(check_validation(*session.gpu));
-  std::cout << table_of(invariance_pair_rows);
+  std::cout << format_table(invariance_pair_rows);
   Json report;
   report["device"] = session.gpu->device().properties().deviceName;
   report["settings"] = to_json(session.settings);

@@ -19,7 +19,8 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 
 // The preset with the changes of --set. With --outputs, also with each further output.
-Result<std::vector<LabelledSettings>> settings_of(const Options& options, passes::Quality quality) {
+Result<std::vector<LabelledSettings>> labelled_settings(const Options& options,
+                                                        passes::Quality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
   one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
@@ -49,16 +50,16 @@ Result<std::vector<LabelledSettings>> settings_of(const Options& options, passes
 Result<std::vector<SettingsCost>> measure(const Options& options) {
   std::vector<LabelledSettings> settings;
   for (const passes::Quality quality : chosen_presets(options.occlusion)) {
-    ALCOVE_TRY(auto all, settings_of(options, quality));
+    ALCOVE_TRY(auto all, labelled_settings(options, quality));
     std::ranges::move(all, std::back_inserter(settings));
   }
-  return costs_of(settings, options.gpu);
+  return model_costs(settings, options.gpu);
 }
 
 Result<void> write_budget(const std::filesystem::path& file) {
   ALCOVE_TRY(const auto device, create_null_device(kGpuParts.front().family));
-  ALCOVE_TRY(const auto costs, costs_of(budgeted_settings()));
-  return write_text(file, budget_of(costs, device.compiler));
+  ALCOVE_TRY(const auto costs, model_costs(budgeted_settings()));
+  return write_text(file, format_budget(costs, device.compiler));
 }
 
 }  // namespace
@@ -66,12 +67,12 @@ Result<void> write_budget(const std::filesystem::path& file) {
 Result<void> run_cost(const Options& options) {
   if (!options.cost.budget.empty()) return write_budget(options.cost.budget);
   ALCOVE_TRY(const auto costs, measure(options));
-  std::cout << table_of(costs, options.cost.loops);
+  std::cout << format_table(costs, options.cost.loops);
   Result<void> written;
   if (!options.cost.json.empty())
     written = write_text(options.cost.json, to_json(costs).dump(2) + "\n");
   if (written && !options.cost.chart.empty())
-    written = write_text(options.cost.chart, chart_of(costs));
+    written = write_text(options.cost.chart, draw_chart(costs));
   return written;
 }
 

@@ -94,7 +94,7 @@ Json to_json(const MotionReport& report) {
   return json;
 }
 
-std::string table_of(MotionKind kind, const MotionReport& report) {
+std::string format_table(MotionKind kind, const MotionReport& report) {
   if (!report.after_cut.empty()) {
     std::string out = "cut: RMSE by frames since the cut   kept     restarted history\n";
     for (const CutErrors& errors : report.after_cut)
@@ -146,7 +146,7 @@ Result<void> run_motion(const Options& options) {
                run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
     ALCOVE_TRY_VOID(check_validation(*inputs.session.gpu));
     report["paths"][std::string(name_of(kind))] = to_json(result);
-    std::cout << table_of(kind, result) << std::flush;
+    std::cout << format_table(kind, result) << std::flush;
     ALCOVE_TRY_VOID(write_pictures(options.out, kind, result.pictures));
   }
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {

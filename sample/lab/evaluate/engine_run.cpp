@@ -41,10 +41,10 @@ AlcoveCamera to_camera(const CameraMatrices& matrices) {
 Result<AlcoveImage> EngineRun::create_image(VkFormat format, VkExtent2D size,
                                             VkImageUsageFlags usage) {
   ALCOVE_TRY(
-      auto made,
+      auto texture,
       GpuImage::create(gpu_.device(),
                        {format, framegraph::Extent::absolute(size.width, size.height)}, usage));
-  images_.push_back(std::move(made));
+  images_.push_back(std::move(texture));
   AlcoveImage image{};
   image.image = images_.back()->image();
   image.format = format;
@@ -112,11 +112,11 @@ Result<void> EngineRun::create_context() {
   info.device = gpu_.device().device();
   info.get_instance_proc_addr = vkGetInstanceProcAddr;
   info.frames_in_flight = kSlots;
-  AlcoveContext* made = nullptr;
+  AlcoveContext* context = nullptr;
   std::array<char, ALCOVE_MAX_MESSAGE> message{};
-  if (alcoveCreateContext(&info, &made, message.data()) != ALCOVE_SUCCESS)
+  if (alcoveCreateContext(&info, &context, message.data()) != ALCOVE_SUCCESS)
     return Failure(message.data());
-  context_.reset(made);
+  context_.reset(context);
   return {};
 }
 
@@ -163,8 +163,8 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
                                       kDepthFormat,
                                       {size.width / 2, size.height / 2},
                                       kDepthUsage}}) {
-    ALCOVE_TRY(auto made, create_image(target.format, target.size, target.usage));
-    target.image = made;
+    ALCOVE_TRY(auto texture, create_image(target.format, target.size, target.usage));
+    target.image = texture;
   }
   drawn.other.half_depth.width = size.width;
   drawn.other.half_depth.height = size.height;
@@ -212,7 +212,9 @@ Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t fra
     in_view.emplace_back(glm::mat3(now.view_from_world) * normal, 0.0f);
   }
   const auto fill = [&](AlcoveImage& into, VkFormat format, const auto& texels) {
-    return create_filled(format, size, texels).map([&](const AlcoveImage& made) { into = made; });
+    return create_filled(format, size, texels).map([&](const AlcoveImage& texture) {
+      into = texture;
+    });
   };
   return fill(drawn.other.linear_depth, VK_FORMAT_R32_SFLOAT, linear)
       .and_then([&] { return fill(drawn.other.coarse_depth, VK_FORMAT_R32_SFLOAT, coarse); })

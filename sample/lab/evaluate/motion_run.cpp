@@ -44,12 +44,13 @@ class MotionRenderer {
  public:
   static Result<MotionRenderer> create(Gpu& gpu, const Scene& scene, const MotionPath& path,
                                        const MotionSetup& setup) {
-    MotionRenderer made(path, setup);
-    made.scene_ = std::make_unique<Scene>(scene);
-    path.add_to(*made.scene_);
-    ALCOVE_TRY(made.renderer_, FrameRenderer::create(gpu, *made.scene_, {setup.width, setup.height},
-                                                     setup.normals));
-    return made;
+    MotionRenderer renderer(path, setup);
+    renderer.scene_ = std::make_unique<Scene>(scene);
+    path.add_to(*renderer.scene_);
+    ALCOVE_TRY(
+        renderer.renderer_,
+        FrameRenderer::create(gpu, *renderer.scene_, {setup.width, setup.height}, setup.normals));
+    return renderer;
   }
 
   Result<RenderedFrame> draw_and_read(const Step& step) {
@@ -135,11 +136,11 @@ Result<MotionTruth> MotionRenderer::truth(std::uint32_t frame, const RenderedFra
   return truth;
 }
 
-Mask surfaces_of(const RenderedFrame& seen) {
+Mask surface_mask(const RenderedFrame& seen) {
   return surfaces_where(seen, [](const glm::vec3&) { return true; });
 }
 
-Mask pixels_of_age(const Image<Age>& ages, bool uncovered) {
+Mask pixels_with_age(const Image<Age>& ages, bool uncovered) {
   Mask mask(ages.width, ages.height);
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
     const Age& age = ages.pixels[i];
@@ -201,7 +202,7 @@ Result<PathResult> render_path(MotionRenderer& renderer, Filtering filtering) {
       ages = next_ages(seen, reprojection, ages);
       if (frame >= first_converged(path))
         passed.change += visibility_change(seen.visibility, before.visibility, reprojection);
-      const Speed speed = speed_of(reprojection);
+      const Speed speed = measure_speed(reprojection);
       passed.speed += {speed.mean, 1};
       passed.fast += {speed.percentile_95, 1};
       if (history && is_compared(path, frame))
@@ -273,22 +274,22 @@ Result<void> compare(MotionRenderer& renderer, const Compared& compared, Compari
     return renderer.path().is_near_object(position, compared.frame, kTrailFrames);
   };
   const RenderedFrame& seen = compared.seen;
-  const Mask surfaces = surfaces_of(seen);
+  const Mask surfaces = surface_mask(seen);
   const auto add = [&](MotionError kind, const Mask& mask) {
     sums[kind].add(seen.visibility, standing.visibility, truth.visibility, mask);
   };
   add(MotionError::all, surfaces);
-  add(MotionError::uncovered, pixels_of_age(compared.ages, true));
-  add(MotionError::entered, pixels_of_age(compared.ages, false));
+  add(MotionError::uncovered, pixels_with_age(compared.ages, true));
+  add(MotionError::entered, pixels_with_age(compared.ages, false));
   add(MotionError::near_object, surfaces_where(seen, is_near_object));
   sums[MotionError::bent_normals].add(seen.bent_normal_ws, standing.bent_normal_ws,
                                       truth.bent_normal_ws, surfaces);
   sums.static_change += standing.change;
   sums.truth_change +=
       change_lower_bound(truth.visibility, truth_before.visibility, compared.reprojection);
-  Image<float> mean_truth = mean_of(truth.visibility);
-  report.weave += weave_of(seen.visibility, mean_truth, surfaces);
-  report.static_weave += weave_of(standing.visibility, mean_truth, surfaces);
+  Image<float> mean_truth = mean_image(truth.visibility);
+  report.weave += measure_weave(seen.visibility, mean_truth, surfaces);
+  report.static_weave += measure_weave(standing.visibility, mean_truth, surfaces);
   report.pictures.push_back(
       {compared.frame, seen.visibility, std::move(standing.visibility), std::move(mean_truth)});
   return {};
@@ -322,7 +323,7 @@ Result<MotionReport> run_cut(MotionRenderer& renderer) {
   const std::uint32_t cut = renderer.path().cut().value_or(0);
   ALCOVE_TRY(const auto truth, renderer.truth(cut, kept_frames.front()));
   MotionReport report;
-  const Mask surfaces = surfaces_of(kept_frames.front());
+  const Mask surfaces = surface_mask(kept_frames.front());
   for (std::size_t i = 0; i < kept_frames.size(); ++i) {
     RenderedFrame& kept = kept_frames[i];
     RenderedFrame& restarted = restarted_frames[i];
@@ -331,7 +332,7 @@ Result<MotionReport> run_cut(MotionRenderer& renderer) {
     report.after_cut.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
                                 root(squared_error(restarted.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),
-                               std::move(restarted.visibility), mean_of(visibility)});
+                               std::move(restarted.visibility), mean_image(visibility)});
   }
   return report;
 }

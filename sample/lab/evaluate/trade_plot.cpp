@@ -162,7 +162,8 @@ void draw_points(Svg& svg, const Trade& trade, const Axes& axes) {
 
 }  // namespace
 
-std::string plot_of(const Trade& trade, const std::string& title, const std::string& clock_title) {
+std::string draw_plot(const Trade& trade, const std::string& title,
+                      const std::string& clock_title) {
   const Axes axes(trade);
   Svg svg;
   svg.text({0.5 * kWidth, 20}, "middle", title);

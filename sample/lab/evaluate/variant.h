@@ -58,7 +58,7 @@ struct VariantCost {
   double gpu = 1;           // ratio of the GPU times of the occlusion
   double processor = 1;     // ratio of the processor times of all threads
   std::uint64_t bytes = 0;  // transient images at their peak, and histories
-  double gpu_spread = 0;    // of the ratios, as cost_of() defines it
+  double gpu_spread = 0;    // of the ratios, as median_cost() defines it
   double processor_spread = 0;
 };
 
@@ -78,7 +78,7 @@ struct TimedPair {
 // Returns the cost of a variant relative to the base: the median over the pairs of the ratio of its
 // time to that of the base. The spread is half the distance between the quartiles of these ratios.
 // Without pairs, the ratios are 1 and the spreads 0.
-[[nodiscard]] VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes);
+[[nodiscard]] VariantCost median_cost(std::span<const TimedPair> pairs, std::uint64_t bytes);
 
 // The number of timed pairs for times that decide between settings: with 21 pairs, the quartiles
 // are a confidence interval of 97 % for the median.

@@ -52,7 +52,7 @@ Window without_plane(const Window& values) {
 }
 
 // The image in the window whose upper left pixel is (left, top).
-Window window_of(const Image<float>& image, std::uint32_t left, std::uint32_t top) {
+Window read_window(const Image<float>& image, std::uint32_t left, std::uint32_t top) {
   Window window;
   for (std::uint32_t y = 0; y < kWindow; ++y)
     for (std::uint32_t x = 0; x < kWindow; ++x)
@@ -115,7 +115,7 @@ std::vector<double> power_spectrum(const Window& values) {
 }
 
 // Cycles per pixel of a frequency.
-double cycles_of(std::size_t bin) {
+double cycles_per_pixel(std::size_t bin) {
   const auto signed_cycles = [](std::size_t i) {
     return (static_cast<double>(i) - (i >= kWindow / 2 ? kWindow : 0)) / kWindow;
   };
@@ -128,9 +128,10 @@ const std::vector<std::size_t>& sorted_frequencies() {
   static const std::vector<std::size_t> sorted = [] {
     std::vector<std::size_t> all(kBins);
     std::iota(all.begin(), all.end(), std::size_t{0});
-    std::erase_if(all, [](std::size_t bin) { return cycles_of(bin) * kWindow < 1.5; });
-    std::stable_sort(all.begin(), all.end(),
-                     [](std::size_t a, std::size_t b) { return cycles_of(a) < cycles_of(b); });
+    std::erase_if(all, [](std::size_t bin) { return cycles_per_pixel(bin) * kWindow < 1.5; });
+    std::stable_sort(all.begin(), all.end(), [](std::size_t a, std::size_t b) {
+      return cycles_per_pixel(a) < cycles_per_pixel(b);
+    });
     return all;
   }();
   return sorted;
@@ -175,7 +176,7 @@ struct Pattern {
 };
 
 // The pattern in the mean of the spectra of `windows` windows, whose sum is `sums`.
-Pattern pattern_of(const std::vector<double>& sums, double windows) {
+Pattern find_pattern(const std::vector<double>& sums, double windows) {
   const std::vector<std::size_t>& frequencies = sorted_frequencies();
   std::vector<double> powers(frequencies.size());
   std::transform(frequencies.begin(), frequencies.end(), powers.begin(),
@@ -200,7 +201,7 @@ Pattern pattern_of(const std::vector<double>& sums, double windows) {
                                   lower_quartile({at(i + 1), at(i + 1 + kSimilar)})) /
                          quartile;
     if (powers[i] <= limit * noise) continue;
-    const double cycles = cycles_of(peak_near(sums, frequencies[i]));
+    const double cycles = cycles_per_pixel(peak_near(sums, frequencies[i]));
     if (cycles * kLongestPeriod < 1.0) continue;
     pattern.variance += powers[i] - noise;
     if (powers[i] > strongest) {
@@ -214,11 +215,11 @@ Pattern pattern_of(const std::vector<double>& sums, double windows) {
 }  // namespace
 
 double Weave::rms() const {
-  return windows > 0 ? std::sqrt(pattern_of(powers, static_cast<double>(windows)).variance) : 0.0;
+  return windows > 0 ? std::sqrt(find_pattern(powers, static_cast<double>(windows)).variance) : 0.0;
 }
 
 double Weave::period() const {
-  return windows > 0 ? pattern_of(powers, static_cast<double>(windows)).period : 0.0;
+  return windows > 0 ? find_pattern(powers, static_cast<double>(windows)).period : 0.0;
 }
 
 double Weave::visible_fraction() const {
@@ -228,7 +229,7 @@ double Weave::visible_fraction() const {
 double Weave::grain() const {
   double variance = 0.0;
   for (std::size_t bin = 0; bin < powers.size(); ++bin) {
-    const double cycles = cycles_of(bin);
+    const double cycles = cycles_per_pixel(bin);
     const bool in_band = cycles * kShortestGrain <= 1.0 && cycles * kLongestGrain >= 1.0;
     variance += in_band ? powers[bin] / static_cast<double>(windows) : 0.0;
   }
@@ -244,13 +245,13 @@ Weave& Weave::operator+=(const Weave& more) {
   return *this;
 }
 
-Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask& surfaces) {
+Weave measure_weave(const Image<float>& result, const Image<float>& truth, const Mask& surfaces) {
   Weave weave;
   for (std::uint32_t top = 0; top + kWindow <= truth.height; top += kStep) {
     for (std::uint32_t left = 0; left + kWindow <= truth.width; left += kStep) {
       if (!all_surfaces(surfaces, left, top)) continue;
-      const Window true_values = window_of(truth, left, top);
-      Window error = window_of(result, left, top);
+      const Window true_values = read_window(truth, left, top);
+      Window error = read_window(result, left, top);
       std::transform(error.begin(), error.end(), true_values.begin(), error.begin(),
                      std::minus<>());
       // The comparisons are false for NaN.
@@ -258,7 +259,7 @@ Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask
           !std::isfinite(std::accumulate(error.begin(), error.end(), 0.0)))
         continue;
       std::vector<double> powers = power_spectrum(without_plane(error));
-      const bool visible = pattern_of(powers, 1.0).variance > Weave::kVisible * Weave::kVisible;
+      const bool visible = find_pattern(powers, 1.0).variance > Weave::kVisible * Weave::kVisible;
       weave += {1, visible ? 1u : 0u, std::move(powers)};
     }
   }

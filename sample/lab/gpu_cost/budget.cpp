@@ -30,7 +30,7 @@ LabelledSettings preset(Quality quality) {
 }
 
 // The figures of a pass: instructions in each frame, and registers for each kind of projection.
-Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
+Json budget_row(const SettingsCost& cost, const Occupancy& occupancy) {
   Json instructions = Json::array();
   for (const ModelledFrame& frame : cost.frames) {
     for (const ModelledPass& pass : frame.passes)
@@ -73,12 +73,12 @@ std::vector<LabelledSettings> budgeted_settings() {
   return all;
 }
 
-std::string budget_of(const std::vector<SettingsCost>& costs, const std::string& compiler) {
+std::string format_budget(const std::vector<SettingsCost>& costs, const std::string& compiler) {
   std::string lines =
       Json{{"written_by", "alcove cost --write-budget"}, {"compiler", compiler}}.dump();
   for (const SettingsCost& cost : costs)
     for (const Occupancy& occupancy : cost.occupancies)
-      (lines += "\n") += row_of(cost, occupancy).dump();
+      (lines += "\n") += budget_row(cost, occupancy).dump();
   return lines += "\n";
 }
 
@@ -98,7 +98,7 @@ Result<std::vector<std::string>> over_budget(const std::string& budget, const st
   std::vector<std::string> complaints;
   for (const SettingsCost& cost : costs) {
     for (const Occupancy& occupancy : cost.occupancies) {
-      const Json row = row_of(cost, occupancy);
+      const Json row = budget_row(cost, occupancy);
       const auto limits = std::ranges::find_if(rows, [&](const Json& other) {
         return std::ranges::all_of(kKeys, [&](const char* key) {
           return other.is_object() && other.value(key, "") == row[key];

@@ -18,8 +18,8 @@ namespace alcove::sample {
 // bent normals and with specular occlusion.
 [[nodiscard]] std::vector<LabelledSettings> budgeted_settings();
 
-[[nodiscard]] std::string budget_of(const std::vector<SettingsCost>& costs,
-                                    const std::string& compiler);
+[[nodiscard]] std::string format_budget(const std::vector<SettingsCost>& costs,
+                                        const std::string& compiler);
 
 // Returns a sentence for each figure that does not keep its budget: more than 1 % more or fewer
 // instructions per pixel (a model that forgets a loop finds fewer), more vector registers or

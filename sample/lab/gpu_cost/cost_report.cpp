@@ -160,21 +160,21 @@ std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) 
   return {std::move(bent), std::move(specular)};
 }
 
-Result<SettingsCost> cost_of(const GpuPart& part, const NullDevice& device,
-                             const LabelledSettings& settings) {
+Result<SettingsCost> model_cost(const GpuPart& part, const NullDevice& device,
+                                const LabelledSettings& settings) {
   ALCOVE_TRY(auto frames, modelled_frames(part, device, settings.inputs));
   ALCOVE_TRY(auto found, occupancies(part, device, settings.inputs));
   return SettingsCost{settings, &part, std::move(frames), std::move(found)};
 }
 
-Result<std::vector<SettingsCost>> costs_of(std::span<const LabelledSettings> settings,
-                                           const GpuPart* only) {
+Result<std::vector<SettingsCost>> model_costs(std::span<const LabelledSettings> settings,
+                                              const GpuPart* only) {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
     if (only != nullptr && only != &part) continue;
     ALCOVE_TRY(const auto device, create_null_device(part.family));
     for (const LabelledSettings& one : settings) {
-      ALCOVE_TRY(auto cost, cost_of(part, device, one));
+      ALCOVE_TRY(auto cost, model_cost(part, device, one));
       costs.push_back(std::move(cost));
     }
   }
@@ -194,7 +194,7 @@ std::vector<double> output_ratios(const SettingsCost& cost, std::span<const Sett
   return ratios;
 }
 
-std::string table_of(std::span<const SettingsCost> costs, bool loops) {
+std::string format_table(std::span<const SettingsCost> costs, bool loops) {
   std::string out;
   for (const GpuPart& part : kGpuParts) {
     const auto first = std::ranges::find(costs, &part, &SettingsCost::part);

@@ -14,7 +14,7 @@ using passes::cost::FrameState;
 using passes::cost::PassWork;
 using Failure = tl::unexpected<std::string>;
 
-Result<ShaderStatistics> statistics_of(const CompiledShader& shader) {
+Result<ShaderStatistics> read_statistics(const CompiledShader& shader) {
   std::string missing;
   const auto get = [&](const char* name) {
     const auto found = shader.statistics.find(name);
@@ -69,7 +69,7 @@ bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const Alcove
          std::ranges::equal(std::span(a.constants).first(a.constant_count),
                             std::span(b.constants).first(b.constant_count), {},
                             &AlcoveWorkConstant::value, &AlcoveWorkConstant::value) &&
-         images_of(work_a, a) == images_of(work_b, b);
+         dispatch_images(work_a, a) == dispatch_images(work_b, b);
 }
 
 Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
@@ -77,10 +77,10 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
                            FrameState state) {
   ALCOVE_TRY(const auto compiled, compile_dispatch(device, dispatch));
   const CompiledShader& shader = *compiled;
-  const auto statistics = statistics_of(shader);
-  const auto blocks = blocks_of(shader);
+  const auto statistics = read_statistics(shader);
+  const auto blocks = parse_blocks(shader);
   if (!statistics || !blocks) return Failure(statistics ? blocks.error() : statistics.error());
-  const auto images = images_of(frame, dispatch);
+  const auto images = dispatch_images(frame, dispatch);
   const auto& groups = dispatch.groups;
   const PassWork work{
       dispatch.label, inputs.settings, state, images, {groups[0], groups[1], groups[2]},
@@ -88,12 +88,12 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
   ModelledPass cost;
   cost.pass = dispatch.label;
   cost.statistics = *statistics;
-  cost.loops = loops_of(*blocks);
+  cost.loops = find_loops(*blocks);
   std::vector<CompiledLoop> summaries;
   for (const Loop& loop : cost.loops) summaries.push_back(loop.summary);
   ALCOVE_TRY(const auto iterations, passes::cost::iterations(work, summaries));
   for (std::size_t i = 0; i < iterations.size(); ++i) cost.loops[i].iterations = iterations[i];
-  std::vector<Branch> branches = branches_of(*blocks);
+  std::vector<Branch> branches = find_branches(*blocks);
   for (Branch& branch : branches) {
     branch.summary.loops =
         static_cast<std::uint32_t>(std::ranges::count_if(cost.loops, [&](const Loop& loop) {
@@ -185,7 +185,7 @@ Result<std::vector<Occupancy>> occupancies(const GpuPart& part, const NullDevice
       for (const AlcoveWorkDispatch& dispatch :
            std::span(frame.dispatches).first(frame.dispatch_count)) {
         ALCOVE_TRY(const auto shader, compile_dispatch(device, dispatch));
-        ALCOVE_TRY(const auto statistics, statistics_of(*shader));
+        ALCOVE_TRY(const auto statistics, read_statistics(*shader));
         auto own = std::ranges::find(found, std::string_view(dispatch.label), &Occupancy::pass);
         if (own == found.end()) own = found.insert(own, Occupancy{dispatch.label});
         const double held = waves_held(part, statistics, shader->wave);

@@ -87,7 +87,7 @@ bool has_executable_properties(VkPhysicalDevice device) {
   return executable.pipelineExecutableInfo == VK_TRUE;
 }
 
-VkResult create_device(NullDevice& made) {
+VkResult create_device(NullDevice& null_device) {
   VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR executable{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
       .pipelineExecutableInfo = VK_TRUE};
@@ -106,7 +106,7 @@ VkResult create_device(NullDevice& made) {
                                 .pQueueCreateInfos = &queue,
                                 .enabledExtensionCount = 1,
                                 .ppEnabledExtensionNames = &extension};
-  return vkCreateDevice(made.physical_device, &info, nullptr, &made.device);
+  return vkCreateDevice(null_device.physical_device, &info, nullptr, &null_device.device);
 }
 
 double value_of(const VkPipelineExecutableStatisticKHR& statistic) {
@@ -214,17 +214,18 @@ Result<NullDevice> create_null_device(std::string_view family) {
   const ScopedVariable old_files("VK_ICD_FILENAMES", *manifest);
   const ScopedVariable forced("RADV_FORCE_FAMILY", std::string(family));
   const SilentStandardError silent;  // RADV warns that it does not conform
-  NullDevice made;
+  NullDevice null_device;
   const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                       .pApplicationName = "alcove",
                                       .apiVersion = VK_API_VERSION_1_3};
   const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                   .pApplicationInfo = &application};
   std::uint32_t count = 1;
-  if (vkCreateInstance(&info, nullptr, &made.instance) != VK_SUCCESS ||
-      vkEnumeratePhysicalDevices(made.instance, &count, &made.physical_device) < VK_SUCCESS ||
-      count == 0 || !has_executable_properties(made.physical_device) ||
-      create_device(made) != VK_SUCCESS) {
+  if (vkCreateInstance(&info, nullptr, &null_device.instance) != VK_SUCCESS ||
+      vkEnumeratePhysicalDevices(null_device.instance, &count, &null_device.physical_device) <
+          VK_SUCCESS ||
+      count == 0 || !has_executable_properties(null_device.physical_device) ||
+      create_device(null_device) != VK_SUCCESS) {
     return Failure("Mesa's AMD driver (RADV, " + *manifest + ") has no device of the family " +
                    std::string(family) + ".");
   }
@@ -232,9 +233,9 @@ Result<NullDevice> create_null_device(std::string_view family) {
                                               VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
                                          .pNext = &driver};
-  vkGetPhysicalDeviceProperties2(made.physical_device, &properties);
-  made.compiler = std::string(driver.driverName) + ", " + driver.driverInfo;
-  return made;
+  vkGetPhysicalDeviceProperties2(null_device.physical_device, &properties);
+  null_device.compiler = std::string(driver.driverName) + ", " + driver.driverInfo;
+  return null_device;
 }
 
 Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline) {

@@ -55,7 +55,7 @@ struct BasicBlock {
 
 // Returns the basic blocks of a shader in the order of the code. Errors: the driver gave no text,
 // or the text does not have the format of Mesa's AMD compiler (ACO).
-[[nodiscard]] Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader);
+[[nodiscard]] Result<std::vector<BasicBlock>> parse_blocks(const CompiledShader& shader);
 
 // A loop, which consists of the blocks from `first` to `last`.
 struct Loop {
@@ -64,7 +64,7 @@ struct Loop {
   std::uint32_t last = 0;
   double iterations = 1;  // each time that it is entered
 };
-[[nodiscard]] std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks);
+[[nodiscard]] std::vector<Loop> find_loops(const std::vector<BasicBlock>& blocks);
 
 // One side of a divergent branch: the blocks from `first` to `last`.
 struct Branch {
@@ -73,7 +73,7 @@ struct Branch {
   std::uint32_t last = 0;
   double share = 1;  // of the waves that execute it
 };
-[[nodiscard]] std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks);
+[[nodiscard]] std::vector<Branch> find_branches(const std::vector<BasicBlock>& blocks);
 
 [[nodiscard]] WaveWork wave_work(const std::vector<BasicBlock>& blocks,
                                  const std::vector<Loop>& loops,
