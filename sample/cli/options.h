@@ -15,6 +15,7 @@
 #include "evaluate/clock.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/recommendation.h"
+#include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"
 #include "scene/load_scene.h"
@@ -72,10 +73,7 @@ struct OcclusionOptions {
 };
 
 struct CostOptions {
-  bool motion_vectors = false;   // gives motion vectors to the passes
-  bool area = false;             // the images are read and written in part
-  bool mask = false;             // gives a mask of surfaces
-  bool samples = false;          // depth has four samples per pixel
+  CostInputs inputs;             // without the settings
   bool loops = false;            // also prints the loops of the shaders
   bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none

@@ -15,10 +15,8 @@ class Motion : public GpuTest {
   static MotionSetup setup() {
     const float radius = default_radius(builtin_scene());
     return {.occlusion = passes::quality_settings(passes::Quality::medium, radius),
-            .normals = NormalSource::geometric,
-            .width = 240,
-            .height = 135,
-            .spp = 64};
+            .view = {.width = 240, .height = 135, .normals = NormalSource::geometric},
+            .truth = {.spp = 64, .use_cache = false}};
   }
   static MotionPath path_of(MotionKind kind, std::uint32_t frames) {
     const Scene scene = builtin_scene();

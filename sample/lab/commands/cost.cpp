@@ -26,25 +26,20 @@ Result<std::vector<LabelledSettings>> labelled_settings(const Options& options,
   one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
   const auto settings = occlusion_settings(one, 1.0f);
   if (!settings) return Failure(settings.error());
-  LabelledSettings given{std::string(passes::name_of(quality)),
-                         {.width = options.view.width,
-                          .height = options.view.height,
-                          .normals = options.occlusion.normals != NormalSource::depth,
-                          .motion = options.cost.motion_vectors,
-                          .area = options.cost.area,
-                          .mask = options.cost.mask,
-                          .samples = options.cost.samples,
-                          .settings = *settings},
-                         ""};
-  for (const auto& [name, value] : options.occlusion.set) given.label += " " + name + "=" + value;
-  if (!options.cost.outputs) return std::vector{std::move(given)};
+  LabelledSettings plain{std::string(passes::name_of(quality)), options.cost.inputs, ""};
+  plain.inputs.width = options.view.width;
+  plain.inputs.height = options.view.height;
+  plain.inputs.normals = options.occlusion.normals != NormalSource::depth;
+  plain.inputs.settings = *settings;
+  for (const auto& [name, value] : options.occlusion.set) plain.label += " " + name + "=" + value;
+  if (!options.cost.outputs) return std::vector{std::move(plain)};
   if (settings->bent_normal || settings->specular != passes::Specular::none) {
     return Failure(
         "--outputs compares settings with and without bent normals and specular occlusion; leave "
         "bent_normal and specular out of --set.");
   }
-  auto [bent, specular] = with_each_output(given);
-  return std::vector{std::move(given), std::move(bent), std::move(specular)};
+  auto [bent, specular] = with_each_output(plain);
+  return std::vector{std::move(plain), std::move(bent), std::move(specular)};
 }
 
 Result<std::vector<SettingsCost>> measure(const Options& options) {

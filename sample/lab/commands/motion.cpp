@@ -6,10 +6,8 @@
 #include "cli/open_session.h"
 #include "evaluate/errors.h"
 #include "evaluate/motion_run.h"
-#include "reference/truth_cache.h"
 #include "render/settings_json.h"
 #include "support/image_io.h"
-#include "support/progress.h"
 #include "support/result.h"
 #include "support/whole_file.h"
 
@@ -18,37 +16,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 using Json = nlohmann::ordered_json;
-
-// The inputs that all paths of a run share.
-struct MotionInputs {
-  Session session;
-  MotionStart start;
-  MotionSetup setup;
-};
-
-Result<MotionInputs> motion_inputs(const Options& options) {
-  ALCOVE_TRY(auto session, open_session(options));
-  MotionInputs inputs{std::move(session), {}, {}};
-  const passes::OcclusionSettings& settings = inputs.session.settings;
-  if (settings.history_frames == 0) {
-    return Failure(
-        "The occlusion keeps no history, so there is nothing to follow in motion: give another "
-        "--quality, or --set history_frames=32.");
-  }
-  ALCOVE_TRY(const auto rays, RayScene::create(inputs.session.scene));
-  const float aspect =
-      static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
-  ALCOVE_TRY(auto start, motion_start(rays, inputs.session.camera, aspect, settings.radius));
-  inputs.start = std::move(start);
-  inputs.setup = {settings,
-                  options.occlusion.normals,
-                  options.view.width,
-                  options.view.height,
-                  options.occlusion.spp,
-                  options.use_cache ? TruthCache::default_folder() : std::filesystem::path(),
-                  print_progress};
-  return inputs;
-}
 
 Result<void> write_pictures(const std::filesystem::path& folder, MotionKind kind,
                             const std::vector<MotionPicture>& pictures) {
@@ -133,18 +100,28 @@ std::string format_table(MotionKind kind, const MotionReport& report) {
 }  // namespace
 
 Result<void> run_motion(const Options& options) {
-  ALCOVE_TRY(auto inputs, motion_inputs(options));
+  ALCOVE_TRY(const auto session, open_session(options));
+  if (session.settings.history_frames == 0) {
+    return Failure(
+        "The occlusion keeps no history, so there is nothing to follow in motion: give another "
+        "--quality, or --set history_frames=32.");
+  }
+  ALCOVE_TRY(const auto rays, RayScene::create(session.scene));
+  const float aspect =
+      static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
+  ALCOVE_TRY(const auto start, motion_start(rays, session.camera, aspect, session.settings.radius));
+  const MotionSetup setup{session.settings, static_setup(options, session.camera),
+                          truth_options(options)};
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   Json report;
-  report["device"] = inputs.session.gpu->device().properties().deviceName;
-  report["settings"] = to_json(inputs.setup.occlusion);
+  report["device"] = session.gpu->device().properties().deviceName;
+  report["settings"] = to_json(session.settings);
   report["frames"] = options.view.frames;
   for (const MotionKind kind : kMotionKinds) {
     if (options.path && *options.path != kind) continue;
-    const MotionPath path(kind, inputs.start, options.view.frames);
-    ALCOVE_TRY(const auto result,
-               run_motion(*inputs.session.gpu, inputs.session.scene, path, inputs.setup));
-    ALCOVE_TRY_VOID(check_validation(*inputs.session.gpu));
+    const MotionPath path(kind, start, options.view.frames);
+    ALCOVE_TRY(const auto result, run_motion(*session.gpu, session.scene, path, setup));
+    ALCOVE_TRY_VOID(check_validation(*session.gpu));
     report["paths"][std::string(name_of(kind))] = to_json(result);
     std::cout << format_table(kind, result) << std::flush;
     ALCOVE_TRY_VOID(write_pictures(options.out, kind, result.pictures));

@@ -14,7 +14,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-constexpr std::uint32_t kSlots = 2;
 constexpr VkFormat kVisibilityFormat = VK_FORMAT_R8_UNORM;
 constexpr AlcoveState kBetweenFrames{kSampledState.stages, kSampledState.access,
                                      kSampledState.layout};
@@ -97,11 +96,32 @@ Result<std::unique_ptr<EngineRun>> EngineRun::create(Gpu& gpu, const Scene& scen
                                                      const Camera& camera,
                                                      const EngineCourse& course) {
   std::unique_ptr<EngineRun> run(new EngineRun(gpu, camera, course));
+  ALCOVE_TRY_VOID(run->create_commands());
   ALCOVE_TRY(run->gbuffer_, GbufferRenderer::create(gpu, scene, course.geometric));
   ALCOVE_TRY_VOID(run->create_context());
   for (std::uint32_t frame = 0; frame < course.frames; ++frame)
     ALCOVE_TRY_VOID(run->draw_frame(frame));
   return run;
+}
+
+EngineRun::~EngineRun() {
+  vkDeviceWaitIdle(gpu_.device().device());
+  vkDestroyCommandPool(gpu_.device().device(), pool_, nullptr);
+}
+
+Result<void> EngineRun::create_commands() {
+  const VkDevice device = gpu_.device().device();
+  const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                          .queueFamilyIndex = gpu_.device().queue_family()};
+  ALCOVE_TRY_VOID(
+      check(vkCreateCommandPool(device, &pool_info, nullptr, &pool_), "create a command pool"));
+  const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                         .commandPool = pool_,
+                                         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                         .commandBufferCount = kSlots};
+  return check(vkAllocateCommandBuffers(device, &info, commands_.data()),
+               "create a command buffer");
 }
 
 Result<void> EngineRun::create_context() {
@@ -253,35 +273,45 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
   return result;
 }
 
+VkResult EngineRun::submit(VkCommandBuffer recorded) const {
+  const VkSubmitInfo info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                          .commandBufferCount = 1,
+                          .pCommandBuffers = &recorded};
+  const VkResult result = vkQueueSubmit(gpu_.device().queue(), 1, &info, VK_NULL_HANDLE);
+  return result == VK_SUCCESS ? vkQueueWaitIdle(gpu_.device().queue()) : result;
+}
+
 Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
                                      bool submit_late) {
   AlcoveContext* const context = context_.get();
   EngineResult result;
+  VkCommandBuffer waiting = VK_NULL_HANDLE;  // recorded and not submitted
   AlcoveImage visibility{};
+  VkResult device = VK_SUCCESS;
   std::vector<std::uint32_t> ids;
-  const auto record = [&](std::uint32_t i, VkCommandBuffer commands) {
+  for (std::uint32_t i = 0; result.said.empty() && i < course_.frames; ++i) {
     EngineFrame described = describe(i);
-    if (submit_late && i >= begin) described.frame.slot = 0;
+    const bool late = submit_late && i >= begin;
+    if (late) described.frame.slot = 0;
     if (change && i >= begin) change(described);
     ids.push_back(described.view.id);
     visibility = frames_.at(i).view.visibility;
     described.view.settings = &described.settings;
     described.frame.views = &described.view;
-    if (alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
+    const VkCommandBuffer commands = commands_.at(i % kSlots);
+    const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    device = vkBeginCommandBuffer(commands, &info);
+    if (device == VK_SUCCESS &&
+        alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
       result.said = std::string(alcoveGetMessage(context)) + "\n";
-  };
-  for (std::uint32_t i = 0; result.said.empty() && i < course_.frames;) {
-    const std::uint32_t together = submit_late && i >= begin ? 4 : 1;
-    const std::uint32_t end = std::min(i + together, course_.frames);
-    ALCOVE_TRY_VOID(gpu_.run([&](Graph& graph) -> Result<void> {
-      auto pass = graph.add_pass("frames of the engine");
-      pass.side_effect();
-      pass.record([&](RecordContext& recording) {
-        for (; i < end; ++i) record(i, recording.commands);
-      });
-      return {};
-    }));
+    device = device == VK_SUCCESS ? vkEndCommandBuffer(commands) : device;
+    if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) device = submit(waiting);
+    waiting = late ? commands : VK_NULL_HANDLE;
+    if (device == VK_SUCCESS && !late) device = submit(commands);
+    if (device != VK_SUCCESS) return device_failure("run a frame", device);
   }
+  if (waiting != VK_NULL_HANDLE && submit(waiting) != VK_SUCCESS)
+    return Failure("The last frame could not be run.");
   if (result.said.empty()) {
     result.said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
     alcoveDiagnose(context, result.said.data(), result.said.size());

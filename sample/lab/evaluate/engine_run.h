@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -75,13 +76,18 @@ class EngineRun {
                                                                  const Camera& camera,
                                                                  const EngineCourse& course);
 
+  ~EngineRun();
+  EngineRun(const EngineRun&) = delete;
+  EngineRun& operator=(const EngineRun&) = delete;
+
   // Records the frames from 0 to `frames` as a new view. `change`, if it is given, changes them
-  // from the frame `begin` on. If `submit_late` is true, four of these at a time are recorded in the
-  // same slot before they are submitted.
+  // from the frame `begin` on. If `submit_late` is true, each of these is submitted after the next
+  // one was recorded.
   [[nodiscard]] Result<EngineResult> draw(const ChangeFrame& change = {}, std::uint32_t begin = 0,
                                           bool submit_late = false);
 
  private:
+  static constexpr std::uint32_t kSlots = 2;
   // A frame of the course, before a mistake is made.
   struct DrawnFrame {
     AlcoveView view{};
@@ -93,6 +99,7 @@ class EngineRun {
 
   EngineRun(Gpu& gpu, const Camera& camera, const EngineCourse& course)
       : gpu_(gpu), camera_(camera), course_(course) {}
+  Result<void> create_commands();
   Result<void> create_context();
   Result<AlcoveImage> create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usage);
   template <typename Texel>
@@ -106,6 +113,7 @@ class EngineRun {
   Result<void> draw_frame(std::uint32_t frame);
   Result<void> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
   EngineFrame describe(std::uint32_t frame) const;
+  VkResult submit(VkCommandBuffer recorded) const;  // and waits until it has finished
 
   Gpu& gpu_;
   Camera camera_;
@@ -115,6 +123,8 @@ class EngineRun {
   std::vector<DrawnFrame> frames_;
   std::unique_ptr<AlcoveContext, DestroyContext> context_;
   std::uint32_t next_id_ = 0;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::array<VkCommandBuffer, kSlots> commands_{};
 };
 
 }  // namespace alcove::sample

@@ -2,33 +2,27 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
+#include "evaluate/truths.h"
+#include "evaluate/variant.h"
 #include "evaluate/weave.h"
 #include "gpu/gpu.h"
-#include "render/normal_source.h"
 #include "scene/scene.h"
 #include "support/image.h"
-#include "support/progress.h"
 #include "support/result.h"
 
 namespace alcove::sample {
 
-// The inputs of a run other than its path.
+// The inputs of a run other than its path, which has the cameras and the number of frames.
 struct MotionSetup {
   passes::OcclusionSettings occlusion;  // with a history
-  NormalSource normals = NormalSource::shading;
-  std::uint32_t width = 960;
-  std::uint32_t height = 540;
-  std::uint32_t spp = 256;                        // rays per pixel of the truth, at least 2
-  std::filesystem::path cache;                    // folder of cached truths; empty: no cache
-  std::function<Progress(std::string)> progress;  // makes the progress of a named task; may be null
+  StaticSetup view;
+  TruthOptions truth;  // at least 2 rays per pixel
 };
 
 // The number of frames after which surfaces that were uncovered are measured. Their errors should
