@@ -54,14 +54,6 @@ CompiledShader shader_of(const char* aco, const char* assembly = "not supported"
   return shader;
 }
 
-// The loops of a shader, which run as often as said.
-std::vector<Loop> repeated_loops(const std::vector<BasicBlock>& blocks,
-                                 std::initializer_list<double> iterations) {
-  std::vector<Loop> loops = find_loops(blocks);
-  for (std::size_t i = 0; i < loops.size(); ++i) loops[i].iterations = iterations.begin()[i];
-  return loops;
-}
-
 TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
   const auto blocks = parse_blocks(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
@@ -78,7 +70,10 @@ TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
 TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
   const auto blocks = parse_blocks(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
-  const WaveWork work = wave_work(*blocks, repeated_loops(*blocks, {3, 5}), {}, false, 64);
+  std::vector<Loop> loops = find_loops(*blocks);
+  loops[0].iterations = 3;
+  loops[1].iterations = 5;
+  const WaveWork work = wave_work(*blocks, loops, {}, false, 64);
   EXPECT_EQ(work.loads, 15);
   EXPECT_EQ(work.stores, 1);
   EXPECT_EQ(work.transcendentals, 3);
@@ -100,7 +95,9 @@ TEST(GpuCost, InstructionsAreCountedInTheDisassemblyIfTheCompilerGivesOne) {
                              "BB4:\n"
                              "\ts_endpgm ; bf810000\n"));
   ASSERT_TRUE(blocks) << blocks.error();
-  const WaveWork work = wave_work(*blocks, repeated_loops(*blocks, {1, 2}), {}, true, 64);
+  std::vector<Loop> loops = find_loops(*blocks);
+  loops[1].iterations = 2;
+  const WaveWork work = wave_work(*blocks, loops, {}, true, 64);
   EXPECT_EQ(work.selects, 1);
   EXPECT_EQ(work.loads, 2);
   EXPECT_EQ(work.shared_operations, 2);
@@ -414,8 +411,7 @@ std::vector<BudgetCase> all_budgeted() {
 }
 
 std::string name_of_test(const testing::TestParamInfo<BudgetCase>& info) {
-  std::string name(info.param.part->name);
-  name += "_" + info.param.settings.label;
+  std::string name = std::string(info.param.part->name) + "_" + info.param.settings.label;
   std::ranges::replace(name, ' ', '_');
   return name;
 }
