@@ -35,11 +35,11 @@ Result<Weave> static_weave(Options options, const Truths& truths) {
   options.view.orbit_start += options.view.orbit * static_cast<float>(options.view.frames - 1);
   options.view.orbit = 0.0f;
   return render(options).map([&](const Rendering& rendering) {
-    return weave_of(rendering.images.visibility, truths.scene.visibility, truths.surfaces);
+    return measure_weave(rendering.images.visibility, truths.scene.visibility, truths.surfaces);
   });
 }
 
-Errors errors_of(const Rendering& rendering, const Truths& truths) {
+Errors measure_errors(const Rendering& rendering, const Truths& truths) {
   const FrameImages& images = rendering.images;
   const Image<float>& scene = truths.scene.visibility;
   return {compare_images(images.visibility, scene, truths.surfaces),
@@ -48,7 +48,7 @@ Errors errors_of(const Rendering& rendering, const Truths& truths) {
           compare_directions(images.bent_normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           compare_directions(images.normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           open_surfaces(images.visibility, scene, truths.surfaces),
-          weave_of(images.visibility, scene, truths.surfaces),
+          measure_weave(images.visibility, scene, truths.surfaces),
           std::nullopt};
 }
 
@@ -102,7 +102,7 @@ Result<std::string> split_table(const Options& options, const Rendering& renderi
   report["split"] = to_json(split);
   ALCOVE_TRY_VOID(check_validation(*gpu));
   ALCOVE_TRY_VOID(write_pictures(split, options.out));
-  return table_of(split);
+  return format_table(split);
 }
 
 }  // namespace
@@ -113,22 +113,22 @@ Result<void> run_compare(const Options& options) {
   ALCOVE_TRY(const auto rendering, render(options));
   const FrameImages& images = rendering.images;
   ALCOVE_TRY(const auto truths,
-             truths_of({rendering.scene, rendering.camera, rendering.settings.radius,
-                        images.depth_ndc, images.normal_ws},
-                       truth_options(options)));
-  ALCOVE_TRY(const auto light, indirect_truths_of(rendering, truth_options(options)));
-  Errors errors = errors_of(rendering, truths);
+             compute_truths({rendering.scene, rendering.camera, rendering.settings.radius,
+                             images.depth_ndc, images.normal_ws},
+                            truth_options(options)));
+  ALCOVE_TRY(const auto light, compute_indirect_truths(rendering, truth_options(options)));
+  Errors errors = measure_errors(rendering, truths);
   if (options.view.orbit != 0.0f) {
     ALCOVE_TRY(errors.static_weave, static_weave(options, truths));
   }
-  const IndirectErrors indirect_errors = indirect_errors_of(rendering, truths, light);
-  nlohmann::ordered_json report = report_of(rendering, options);
+  const IndirectErrors indirect_errors = measure_indirect_errors(rendering, truths, light);
+  nlohmann::ordered_json report = rendering_report(rendering, options);
   report["spp"] = options.occlusion.spp;
   report["errors"] = errors_json(errors);
   report["errors"].update(to_json(indirect_errors));
   std::string lit_table;
   if (light.lit) {
-    const LitErrors lit_errors = lit_errors_of(rendering, light);
+    const LitErrors lit_errors = measure_lit_errors(rendering, light);
     report["errors"].update(to_json(lit_errors));
     lit_table = lit_error_table(lit_errors);
   }

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 
-#include "cli/camera_of.h"
+#include "cli/choose_camera.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "evaluate/engine_run.h"
+#include "evaluate/errors.h"
 #include "evaluate/mistakes.h"
 #include "gpu/vulkan_device.h"
 #include "support/image_io.h"
@@ -49,28 +49,18 @@ std::string in_one_line(std::string text) {
   return text.empty() ? "nothing" : text;
 }
 
-EngineCourse course_of(const Options& options, const Session& session) {
+EngineCourse base_course(const Options& options, const Session& session) {
   return {.size = {options.view.width, options.view.height}, .radius = session.settings.radius};
-}
-
-// The root mean square difference of visibility.
-double rmse_of(const Image<float>& a, const Image<float>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) {
-    const double difference = double{a.pixels[i]} - double{b.pixels[i]};
-    sum += difference * difference;
-  }
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(a.pixels.size(), 1)));
 }
 
 // Prints a table of planted mistakes. An error names those that alcoveDiagnose should have named.
 Result<void> print_mistakes(const Options& options, const Session& session) {
   ALCOVE_TRY(auto run, MistakeRun::create(*session.gpu, session.scene, session.camera,
-                                          course_of(options, session)));
+                                          base_course(options, session)));
   std::optional<OutputFolder> folder;
   if (!options.pictures.empty()) {
-    ALCOVE_TRY(auto made, OutputFolder::create(options.pictures));
-    folder.emplace(std::move(made));
+    ALCOVE_TRY(auto pictures, OutputFolder::create(options.pictures));
+    folder.emplace(std::move(pictures));
   }
   const auto write = [&](const std::string& name, const Image<float>& picture) {
     return folder && !name.empty()
@@ -93,9 +83,12 @@ Result<void> print_mistakes(const Options& options, const Session& session) {
     if (!drawn) return Failure(std::string(mistake.name) + ": " + drawn.error());
     const bool refused = drawn->visibility.empty();
     written = written && !refused ? write(mistake.picture, drawn->visibility) : written;
-    const double rmse = rmse_of(drawn->visibility, right.at(mistake.reversed ? 1 : 0).visibility);
-    std::cout << fmt::format("{:<52} {:>5}  {}\n", mistake.name,
-                             refused ? "" : fmt::format("{:.3f}", rmse), in_one_line(drawn->said));
+    const Image<float>& expected = right.at(mistake.reversed ? 1 : 0).visibility;
+    const Mask all(expected.width, expected.height, 1);
+    std::cout << fmt::format(
+        "{:<52} {:>5}  {}\n", mistake.name,
+        refused ? "" : fmt::format("{:.3f}", compare_images(drawn->visibility, expected, all).rmse),
+        in_one_line(drawn->said));
     if (!names(drawn->said, mistake))
       failed += (failed.empty() ? "" : "; ") + std::string(mistake.name);
   }
@@ -117,13 +110,13 @@ Result<void> check_scene(const Options& options, const Session& session) {
   for (const std::string& name : names) {
     ViewOptions view = options.view;
     view.camera = name;
-    const auto camera = camera_of(view, session.scene);
+    const auto camera = choose_camera(view, session.scene);
     if (!camera) return Failure(camera.error());
-    EngineCourse course = course_of(options, session);
+    EngineCourse course = base_course(options, session);
     course.quick = true;
     for (const RightCourse& right : right_courses(course)) {
       auto run = EngineRun::create(*session.gpu, session.scene, *camera, right.course);
-      const auto said = run ? said_of_right_frames(**run) : Failure(run.error());
+      const auto said = run ? diagnose_right_frames(**run) : Failure(run.error());
       if (!said) return Failure(said.error());
       std::cout << fmt::format("camera \"{}\", {}: {}\n", name, right.name, in_one_line(*said));
       reported = reported || !said->empty();

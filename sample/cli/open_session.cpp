@@ -5,7 +5,7 @@
 #include <iostream>
 #include <utility>
 
-#include "cli/camera_of.h"
+#include "cli/choose_camera.h"
 #include "cli/option_value.h"
 #include "cli/settings.h"
 #include "scene/framing.h"
@@ -38,7 +38,7 @@ Result<Session> load_session(const Options& options) {
   if (!scene) return Failure(std::move(scene.error()));
   session.scene = std::move(*scene);
   print_notes(session.scene.warnings);
-  ALCOVE_TRY(const auto camera, camera_of(options.view, session.scene));
+  ALCOVE_TRY(const auto camera, choose_camera(options.view, session.scene));
   session.camera = camera;
   RadiusChoice radius{0.0f, "--radius"};
   if (!options.occlusion.radius) {
@@ -65,7 +65,7 @@ Result<Rendering> render(const Options& options) {
   ALCOVE_TRY(auto session, open_session(options));
   ALCOVE_TRY(auto environment, load_environment(options.environment));
   const std::string radius =
-      "Radius " + shown(session.settings.radius) + ": " + session.radius_reason + "\n";
+      "Radius " + number_text(session.settings.radius) + ": " + session.radius_reason + "\n";
   auto rendering = render(std::move(session),
                           {options.view.width,
                            options.view.height,

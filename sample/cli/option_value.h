@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,6 +14,15 @@
 #include "support/glm.h"
 
 namespace alcove::sample {
+
+// Returns the number that the whole text is, or nothing.
+template <typename Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? std::optional(value) : std::nullopt;
+}
 
 // A mistake in the command line, described by a sentence. It is thrown within parse_options() only,
 // as CLI11's own errors are.
@@ -30,14 +41,13 @@ struct OptionValue {
   // Returns a number within [low, high].
   double number(double low, double high, const std::string& wanted) const;
   std::int64_t whole_number(std::int64_t low, std::int64_t high, const std::string& wanted) const;
-  // Returns a finite number above 0.
-  double positive(const std::string& wanted) const;
-  // Returns a finite length above 0, in scene units.
-  float length() const;
+  float length() const;       // finite and above 0, in scene units
   glm::dvec3 vector() const;  // finite as floats too
-  // Returns the numbers between commas: at least one and at most `most`, each within [low, high].
-  std::vector<float> numbers(std::size_t most, float low, float high,
-                             const std::string& wanted) const;
+  // Returns the texts between commas as values of the option.
+  std::vector<OptionValue> parts() const;
+  // Returns the numbers between commas: from `fewest` to `most`, each within [low, high].
+  std::vector<double> numbers(std::size_t fewest, std::size_t most, double low, double high,
+                              const std::string& wanted) const;
   // Returns the numbers of WIDTHxHEIGHT, each from 1 to 16384.
   std::pair<std::uint32_t, std::uint32_t> size() const;
   // Returns the index of the value in a list of names.
@@ -53,11 +63,14 @@ struct OptionValue {
   }
 };
 
-// Returns the shortest text that is parsed as the same float.
-[[nodiscard]] std::string shown(float value);
+// Returns the shortest text that is parsed as the same number.
+template <typename Number>
+[[nodiscard]] std::string number_text(Number value) {
+  return fmt::to_string(value);
+}
 
 // Returns the shortest text of a coordinate from which the same float is parsed. The text is in the
 // space of the scene's file, which is `value` plus `origin`.
-[[nodiscard]] std::string shown_coordinate(float value, double origin);
+[[nodiscard]] std::string coordinate_text(float value, double origin);
 
 }  // namespace alcove::sample

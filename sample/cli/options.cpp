@@ -1,198 +1,120 @@
 #include "cli/options.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "cli/option_groups.h"
+#include "cli/option_table.h"
 #include "cli/option_value.h"
+#include "cli/settings.h"
+#include "viewer/panel.h"
 
 namespace alcove::sample {
 namespace {
 
-// Each of these functions adds the options of one command.
-void add_output(CLI::App& app, Options& options) {
-  add_out(app, options, "folder for images and report.json. Default: out");
-  add_device(app, options);
-}
-
-// `render` and `graph` accept --spp without effect, so that the arguments of a `compare` command
-// can be reused with them.
-void add_render(CLI::App& app, Options& options) {
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_view(app, options.view);
-  add_course(app, options.view, "number of frames to render; the last one is written. Default: 1");
-  add_occlusion(app, options.occlusion);
-  add_rays(app, options.occlusion);
-  add_roughness(app, options.occlusion);
-  add_light(app, options);
-  add_output(app, options);
-}
-
-void add_compare(CLI::App& app, Options& options) {
-  add_render(app, options);
-  add_split(app, options.split);
-  add_lit(app, options.lit, options.lit_points);
-  add_no_cache(app, options.use_cache);
-}
-
-void add_motion_command(CLI::App& app, Options& options) {
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_motion(app, options);
-  add_view(app, options.view);
-  add_occlusion(app, options.occlusion);
-  add_rays(app, options.occlusion);
-  add_output(app, options);
-  add_no_cache(app, options.use_cache);
-}
-
-// Adds the options for comparing a static camera with its truth.
-void add_comparison(CLI::App& app, Options& options) {
-  add_view(app, options.view);
-  add_standing(app, options.view);
-  add_occlusion(app, options.occlusion);
-  add_rays(app, options.occlusion);
-  add_no_cache(app, options.use_cache);
-}
-
-void add_ablate(CLI::App& app, Options& options) {
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_clock(app, options.clock);
-  add_comparison(app, options);
-  add_output(app, options);
-}
-
-void add_bench(CLI::App& app, Options& options) {
-  add_scenes(app, options.scenes);
-  add_grid(app, options.grid);
-  add_clock(app, options.clock);
-  add_materials(app, options.materials);
-  add_comparison(app, options);
-  add_output(app, options);
-}
-
-void add_recommend(CLI::App& app, Options& options) {
-  options.view.width = 480;
-  options.view.height = 270;
-  options.occlusion.spp = 64;
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_limits(app, options);
-  add_target(app, options);
-  add_clock(app, options.clock);
-  add_comparison(app, options);
-  add_device(app, options);
-}
-
-void add_cost_command(CLI::App& app, Options& options) {
-  options.view.width = 1920;
-  options.view.height = 1080;
-  add_cost(app, options);
-  add_occlusion(app, options.occlusion);
-}
-
-void add_report(CLI::App& app, Options& options) {
-  options.view.width = 480;
-  options.view.height = 270;
-  add_scenes(app, options.scenes);
-  add_materials(app, options.materials);
-  add_target(app, options);
-  add_comparison(app, options);
-  add_output(app, options);
-}
-
-void add_measure(CLI::App& app, Options& options) {
-  options.view.frames = 200;
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_sizes(app, options);
-  add_view(app, options.view);
-  add_occlusion(app, options.occlusion);
-  add_output(app, options);
-}
-
-void add_graph(CLI::App& app, Options& options) {
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_view(app, options.view);
-  add_occlusion(app, options.occlusion);
-  add_rays(app, options.occlusion);
-  add_roughness(app, options.occlusion);
-  add_format(app, options.graph_format);
-  add_device(app, options);
-}
-
-void add_window(CLI::App& app, Options& options) {
-  options.view.frames = 0;
-  options.out.clear();
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_view(app, options.view);
-  add_course(app, options.view,
-             "number of frames after which the window closes. Default: it stays open");
-  add_occlusion(app, options.occlusion);
-  add_roughness(app, options.occlusion);
-  add_light(app, options);
-  add_out(
-      app, options,
-      "folder for screenshots. Default: the current folder. If given, the last frame of --frames "
-      "is written there too");
-  add_device(app, options);
-}
-
-void add_doctor_command(CLI::App& app, Options& options) {
-  options.view.width = 320;
-  options.view.height = 180;
-  add_scene(app, options.scene);
-  add_materials(app, options.materials);
-  add_doctor(app, options);
-  add_view(app, options.view);
-  add_device(app, options);
-}
-
 constexpr const char* kUse = "Commands";
 constexpr const char* kLaboratory = "Laboratory, for measurements";
 
-struct Entry {
+enum class Scenes { none, one, many };
+
+// A command with those of its defaults that differ from Options.
+struct CommandRow {
   Command command;
   const char* group;
   const char* name;
   const char* help;
-  void (*add_options)(CLI::App& app, Options& options);
+  Scenes scenes = Scenes::one;
+  std::uint32_t width = 960, height = 540, frames = 1, spp = 256;
 };
-constexpr std::array<Entry, 12> kCommands{{
-    {Command::render, kUse, "render", "render a scene to occlusion images and print timings",
-     add_render},
+
+constexpr std::uint32_t kHistory = 32;  // frames that the history averages
+constexpr std::array<CommandRow, 12> kCommands{{
+    {Command::render, kUse, "render", "render a scene to occlusion images and print timings"},
     {Command::view, kUse, "view",
-     "open a window to orbit a scene, change settings and see their cost", add_window},
+     "open a window to orbit a scene, change settings and see their cost", Scenes::one, 960, 540,
+     0},
     {Command::compare, kUse, "compare",
-     "render a scene and print the errors against ray-traced and height-field truth", add_compare},
+     "render a scene and print the errors against ray-traced and height-field truth"},
     {Command::recommend, kUse, "recommend",
-     "find the most accurate setting within a time, or the fastest within an error", add_recommend},
-    {Command::graph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory",
-     add_graph},
+     "find the most accurate setting within a time, or the fastest within an error", Scenes::one,
+     480, 270, kHistory, 64},
+    {Command::graph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory"},
     {Command::doctor, kUse, "doctor",
      "list the Vulkan devices and the features that they lack, or check a scene with "
      "alcoveDiagnose",
-     add_doctor_command},
+     Scenes::one, 320, 180},
     {Command::motion, kLaboratory, "motion",
-     "measure errors and flicker while the camera or an object moves", add_motion_command},
+     "measure errors and flicker while the camera or an object moves", Scenes::one, 960, 540, 48},
     {Command::ablate, kLaboratory, "ablate",
-     "change one part of the occlusion at a time and print its cost and error", add_ablate},
+     "change one part of the occlusion at a time and print its cost and error", Scenes::one, 960,
+     540, kHistory},
     {Command::bench, kLaboratory, "bench",
-     "measure time and error of many settings, and write a table, a plot and JSON", add_bench},
+     "measure time and error of many settings, and write a table, a plot and JSON", Scenes::many,
+     960, 540, kHistory},
     {Command::cost, kLaboratory, "cost",
      "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
-     add_cost_command},
+     Scenes::none, 1920, 1080},
     {Command::measure, kLaboratory, "measure",
      "time each pass on the device, beside the times that the model of `cost` predicts",
-     add_measure},
+     Scenes::one, 960, 540, 200},
     {Command::report, kLaboratory, "report",
      "write a web page: error against time, pictures beside the truth, and what a scene requires",
-     add_report},
+     Scenes::many, 480, 270, kHistory},
 }};
+
+void add_option(CLI::App& app, const OptionRow& row, Options& options) {
+  const std::string help =
+      fmt::format(fmt::runtime(row.help),
+                  fmt::arg("size", fmt::format("{}x{}", options.view.width, options.view.height)),
+                  fmt::arg("spp", options.occlusion.spp));
+  const auto read = [&row, &options](const std::string& text) {
+    row.read(options, {row.name, text});
+  };
+  CLI::Option* option = nullptr;
+  if (row.type == nullptr) {
+    option = app.add_flag_callback(
+        row.name, [read] { read(""); }, help);
+  } else if (row.repeatable) {
+    option = app.add_option_function<std::vector<std::string>>(
+                    row.name,
+                    [read](const std::vector<std::string>& texts) {
+                      for (const std::string& text : texts) read(text);
+                    },
+                    help)
+                 ->take_all()
+                 ->expected(1);
+  } else {
+    option = app.add_option_function<std::string>(row.name, read, help)->take_last();
+  }
+  if (row.type != nullptr) option->type_name(row.type);
+  option->group(row.heading);
+}
+
+void add_command(CLI::App& app, const CommandRow& row, Options& options) {
+  options.command = row.command;
+  options.view.width = row.width;
+  options.view.height = row.height;
+  options.view.frames = row.frames;
+  options.occlusion.spp = row.spp;
+  if (row.command == Command::view) options.out.clear();
+  if (row.command == Command::cost) options.gpu = nullptr;
+  if (row.scenes == Scenes::one) {
+    app.add_option("SCENE", options.scene,
+                   "a .gltf or .glb file, or a scene that the program generates: builtin (the "
+                   "default), fence, terrain, plane:60, groove:90, corner, sphere, pit or step")
+        ->type_name("");
+  } else if (row.scenes == Scenes::many) {
+    app.add_option("SCENE", options.scenes,
+                   "any number of scenes; each is rendered with its own camera")
+        ->type_name("");
+  }
+  for (const OptionRow& option : option_rows())
+    if ((option.commands >> static_cast<std::uint32_t>(row.command) & 1u) != 0)
+      add_option(app, option, options);
+  if (row.command != Command::doctor) app.footer(settings_help());
+  if (row.command == Command::view)
+    app.footer(settings_help() + "\n\nMouse and keys:\n" + kMouseAndKeys);
+}
 
 // Joins the lines of a message of CLI11.
 std::string one_line(std::string text) {
@@ -201,7 +123,7 @@ std::string one_line(std::string text) {
 }
 
 // Returns the help of the command for which it was requested, or an empty text if none was.
-std::string help_of_command(const CLI::App& app) {
+std::string requested_help(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands())
     if (sub->count("--help") != 0) return sub->help(app.get_name());
   return "";
@@ -210,14 +132,14 @@ std::string help_of_command(const CLI::App& app) {
 Stop no_command(const std::string& what) { return {2, what + "; see alcove --help"}; }
 
 // Converts an error of CLI11 to a sentence that also names the --help to read.
-Stop mistake_of(const CLI::App& app, const CLI::ParseError& error) {
+Stop to_stop(const CLI::App& app, const CLI::ParseError& error) {
   const auto commands = app.get_subcommands();
   if (commands.empty()) return no_command("name a command first");
   return {2, one_line(error.what()) + "; see alcove " + commands.front()->get_name() + " --help"};
 }
 
 bool is_command(const std::string& word) {
-  return std::ranges::find(kCommands, word, &Entry::name) != kCommands.end();
+  return std::ranges::find(kCommands, word, &CommandRow::name) != kCommands.end();
 }
 
 }  // namespace
@@ -234,9 +156,8 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "alcove");
   std::array<Options, kCommands.size()> options;
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
-    options[i].command = kCommands[i].command;
-    CLI::App& command = *app.add_subcommand(kCommands[i].name, kCommands[i].help);
-    kCommands[i].add_options(*command.group(kCommands[i].group), options[i]);
+    const CommandRow& row = kCommands[i];
+    add_command(*app.add_subcommand(row.name, row.help)->group(row.group), row, options[i]);
   }
   app.require_subcommand(1);
   app.set_version_flag("--version", "alcove " ALCOVE_VERSION_TEXT);
@@ -252,14 +173,14 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       return options[i];
     }
   } catch (const CLI::CallForHelp&) {
-    const std::string help = help_of_command(app);
+    const std::string help = requested_help(app);
     return tl::unexpected(Stop{0, help.empty() ? app.help() : help});
   } catch (const CLI::CallForVersion& version) {
     return tl::unexpected(Stop{0, version.what()});
   } catch (const CLI::ParseError& error) {
-    return tl::unexpected(mistake_of(app, error));
+    return tl::unexpected(to_stop(app, error));
   } catch (const Mistake& mistake) {
-    const std::string help = help_of_command(app);
+    const std::string help = requested_help(app);
     if (!help.empty()) return tl::unexpected(Stop{0, help});
     return tl::unexpected(Stop{2, mistake.text});
   }

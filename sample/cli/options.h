@@ -15,6 +15,7 @@
 #include "evaluate/clock.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/recommendation.h"
+#include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"
 #include "scene/load_scene.h"
@@ -42,8 +43,8 @@ enum class Command {
 enum class GraphFormat { text, dot, work };
 inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "dot", "work"};
 
-// The options of the view. Optional members are empty if the option was not given: camera_of() then
-// takes the value from the scene's camera or derives it from the scene. Angles are in radians.
+// The options of the view. Optional members are empty if the option was not given: choose_camera()
+// then takes the value from the scene's camera or derives it from the scene. Angles are in radians.
 struct ViewOptions {
   std::string camera;  // name of a scene's camera; empty: the default one
   // Positions in the space of the scene's file. Scene::origin is subtracted from them later.
@@ -72,11 +73,7 @@ struct OcclusionOptions {
 };
 
 struct CostOptions {
-  std::string family;            // of the modelled GPU; empty for all that the model knows
-  bool motion_vectors = false;   // gives motion vectors to the passes
-  bool area = false;             // the images are read and written in part
-  bool mask = false;             // gives a mask of surfaces
-  bool samples = false;          // depth has four samples per pixel
+  CostInputs inputs;             // without the settings
   bool loops = false;            // also prints the loops of the shaders
   bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none
@@ -102,7 +99,7 @@ struct Options {
   std::optional<Situation> situation;  // recommend: empty for a mix of all
   uint32_t target_width = 1920;        // recommend: of the image whose time is modelled, pixels
   uint32_t target_height = 1080;
-  const GpuPart* gpu = &kGpuParts[1];  // recommend: the modelled one
+  const GpuPart* gpu = &kGpuParts[1];  // the modelled one; null for all (cost)
   bool exhaustive = false;             // recommend: also measures all settings of measure_all()
   std::filesystem::path settings_out;  // recommend: empty for none
   std::optional<Clock> clock;          // bench, recommend: empty for the clock that fits the device
@@ -127,7 +124,7 @@ struct Stop {
 };
 
 // Parses the command line. It never exits and never prints. Each value is checked alone and against
-// the other options; checks that need the scene are made by camera_of().
+// the other options; checks that need the scene are made by choose_camera().
 [[nodiscard]] tl::expected<Options, Stop> parse_options(int argc, const char* const* argv);
 
 }  // namespace alcove::sample

@@ -6,9 +6,9 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/render_command.h"
-#include "evaluate/measured_trade.h"
 #include "evaluate/output_needs.h"
 #include "evaluate/situations.h"
+#include "evaluate/trade.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/progress.h"
@@ -20,29 +20,29 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-std::string shown(const TradePoint& point) {
-  return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.name, point.rmse,
-                     point.time_ms, mib(point.bytes));
+std::string point_text(const Measurement& point) {
+  return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.variant.name,
+                     point.scene.rmse, point.time_ms, mib(point.cost.bytes));
 }
 
 // Prints the next faster and the next more accurate point of the Pareto front.
-void print_neighbours(const Trade& trade, const TradePoint& chosen) {
+void print_neighbours(const Trade& trade, const Measurement& chosen) {
   const auto own = static_cast<std::size_t>(&chosen - trade.points.data());
   for (std::size_t i = own; i-- > 0;) {
     if (trade.on_pareto_front[i]) {
-      std::cout << "  faster:         " << shown(trade.points[i]) << "\n";
+      std::cout << "  faster:         " << point_text(trade.points[i]) << "\n";
       break;
     }
   }
   for (std::size_t i = own + 1; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
-      std::cout << "  more accurate:  " << shown(trade.points[i]) << "\n";
+      std::cout << "  more accurate:  " << point_text(trade.points[i]) << "\n";
       break;
     }
   }
 }
 
-SituationWeights weights_of(const Options& options) {
+SituationWeights chosen_weights(const Options& options) {
   if (!options.situation) return kMixedWeights;
   SituationWeights weights{};
   weights[static_cast<std::size_t>(*options.situation)] = 1.0;
@@ -195,24 +195,25 @@ Result<void> recommend_by_model(const Options& options, const Session& session,
 // Chooses among numbers of samples by times that are measured on the device.
 Result<void> recommend_by_clock(const Options& options, const Session& session,
                                 const RecommendationGoal& goal) {
-  ALCOVE_TRY(MeasuredTrade measured, measure_trade(session, static_setup(options, session.camera),
-                                                   truth_options(options), options.clock));
-  const Trade trade = trade_of(std::move(measured.points));
-  const auto achievement = [](const TradePoint& point) {
-    return Achievement{point.settings,
-                       {point.rmse, point.rmse, point.rmse},
-                       {point.time_ms, point.time_ms, point.time_ms}};
+  ALCOVE_TRY(MeasuredTrade measured,
+             measure_trade(session, static_setup(options, session.camera), truth_options(options),
+                           *options.gpu, options.clock));
+  const Trade trade = find_pareto_front(std::move(measured.points));
+  const auto achievement = [](const Measurement& point) {
+    const double rmse = point.scene.rmse;
+    return Achievement{
+        point.variant.settings, {rmse, rmse, rmse}, {point.time_ms, point.time_ms, point.time_ms}};
   };
-  const TradePoint& chosen = *std::ranges::min_element(
+  const Measurement& chosen = *std::ranges::min_element(
       trade.points, [&](const Achievement& a, const Achievement& b) { return goal.prefers(a, b); },
       achievement);
-  if (!goal.met(achievement(chosen))) return Failure(unmet_message(goal, shown(chosen)));
-  std::cout << measured.note << shown(chosen) << "\n";
+  if (!goal.met(achievement(chosen))) return Failure(unmet_message(goal, point_text(chosen)));
+  std::cout << measured.note << point_text(chosen) << "\n";
   print_neighbours(trade, chosen);
   std::cout << fmt::format("RMSE of visibility against ray-traced truth; {} at {}x{} on {}\n{}\n",
                            measured.clock_title, options.view.width, options.view.height,
                            session.gpu->device().properties().deviceName,
-                           render_line(options, session, chosen.settings));
+                           render_line(options, session, chosen.variant.settings));
   return {};
 }
 
@@ -220,7 +221,7 @@ Result<void> recommend_by_clock(const Options& options, const Session& session,
 
 Result<void> run_recommend(const Options& options) {
   ALCOVE_TRY(const Session session, open_session(options));
-  const RecommendationGoal goal{options.budget_ms, options.tolerance, weights_of(options)};
+  const RecommendationGoal goal{options.budget_ms, options.tolerance, chosen_weights(options)};
   if (options.clock.value_or(Clock::modelled) != Clock::modelled)
     return recommend_by_clock(options, session, goal);
   const auto times = modelled_times(options);

@@ -13,7 +13,7 @@ Result<void> run_render(const Options& options) {
   return write_images(rendering, options.out)
       .and_then([&] {
         return write_text(options.out / "report.json",
-                          report_of(rendering, options).dump(2) + "\n");
+                          rendering_report(rendering, options).dump(2) + "\n");
       })
       .map([&] {
         if (!shows_surfaces(rendering)) std::cerr << "note: The view shows nothing but sky.\n";

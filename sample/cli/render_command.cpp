@@ -15,15 +15,8 @@ namespace {
 using passes::OcclusionSettings;
 using passes::Quality;
 
-// Each overload formats a value so that it is parsed as the same value.
-std::string text_of(float value) { return shown(value); }
-std::string text_of(std::uint32_t value) { return fmt::to_string(value); }
-std::string text_of(const glm::vec3& v) {
-  return fmt::format("{},{},{}", shown(v.x), shown(v.y), shown(v.z));
-}
-template <typename Choice>
-std::string text_of(Choice value) {
-  return std::string(passes::name_of(value));
+std::string vector_text(const glm::vec3& v) {
+  return fmt::format("{},{},{}", number_text(v.x), number_text(v.y), number_text(v.z));
 }
 
 // The shortest text that is parsed as the same angle.
@@ -41,11 +34,11 @@ std::vector<std::string> changes(Quality quality, const OcclusionSettings& setti
   const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
   std::vector<std::string> before, result;
   passes::for_each_setting(preset, [&](const passes::SettingInfo& info, const auto& value) {
-    before.push_back(fmt::format("{}={}", info.name, text_of(value)));
+    before.push_back(fmt::format("{}={}", info.name, value_text(value)));
   });
   std::size_t i = 0;
   passes::for_each_setting(settings, [&](const passes::SettingInfo& info, const auto& value) {
-    std::string now = fmt::format("{}={}", info.name, text_of(value));
+    std::string now = fmt::format("{}={}", info.name, value_text(value));
     if (now != before[i++] && info.group != passes::SettingGroup::surface)
       result.push_back(std::move(now));
   });
@@ -54,17 +47,18 @@ std::vector<std::string> changes(Quality quality, const OcclusionSettings& setti
 
 void append_camera(const Camera& camera, std::vector<std::string>& to) {
   const auto position = [&](const glm::vec3& p) {
-    return fmt::format("{},{},{}", shown_coordinate(p.x, camera.origin.x),
-                       shown_coordinate(p.y, camera.origin.y),
-                       shown_coordinate(p.z, camera.origin.z));
+    return fmt::format("{},{},{}", coordinate_text(p.x, camera.origin.x),
+                       coordinate_text(p.y, camera.origin.y),
+                       coordinate_text(p.z, camera.origin.z));
   };
   to.insert(to.end(), {"--eye", position(camera.eye_ws), "--target", position(camera.target_ws),
-                       "--up", text_of(camera.up_ws)});
+                       "--up", vector_text(camera.up_ws)});
   if (camera.orthographic)
-    to.insert(to.end(), {"--ortho-height", text_of(camera.ortho_height)});
+    to.insert(to.end(), {"--ortho-height", number_text(camera.ortho_height)});
   else
     to.insert(to.end(), {"--fov-y", degrees_text(camera.fov_y)});
-  to.insert(to.end(), {"--near", text_of(camera.near_plane), "--far", text_of(camera.far_plane)});
+  to.insert(to.end(),
+            {"--near", number_text(camera.near_plane), "--far", number_text(camera.far_plane)});
   if (camera.reversed_z == camera.orthographic)  // not the default
     to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
 }
@@ -82,7 +76,7 @@ void append_settings(const OcclusionSettings& settings, std::vector<std::string>
     }
   }
   to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
-                       text_of(settings.radius)});
+                       number_text(settings.radius)});
   for (const std::string& change : fewest) to.insert(to.end(), {"--set", change});
 }
 
@@ -102,11 +96,12 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
   }
-  if (shot.roughness) arguments.insert(arguments.end(), {"--roughness", text_of(*shot.roughness)});
+  if (shot.roughness)
+    arguments.insert(arguments.end(), {"--roughness", number_text(*shot.roughness)});
   if (!options.environment.empty())
     arguments.insert(arguments.end(), {"--environment", options.environment.string()});
   const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
-  if (frames > 1) arguments.insert(arguments.end(), {"--frames", text_of(frames)});
+  if (frames > 1) arguments.insert(arguments.end(), {"--frames", number_text(frames)});
   if (options.device >= 0)
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   return arguments;

@@ -48,7 +48,7 @@ Json costs_json(const Costs& costs) {
 
 }  // namespace
 
-Json report_of(const Rendering& rendering, const Options& options) {
+Json rendering_report(const Rendering& rendering, const Options& options) {
   Json report;
   report["scene"] = rendering.scene.name;
   report["device"] = {{"name", rendering.device}, {"driver", rendering.driver}};

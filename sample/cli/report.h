@@ -9,7 +9,8 @@ namespace alcove::sample {
 
 // Returns the contents of `report.json` for a rendering: device, settings, view, timings and
 // memory. Commands that compute a truth add `errors`.
-[[nodiscard]] nlohmann::ordered_json report_of(const Rendering& rendering, const Options& options);
+[[nodiscard]] nlohmann::ordered_json rendering_report(const Rendering& rendering,
+                                                      const Options& options);
 
 // The times of a rendering as a table.
 [[nodiscard]] std::string time_table(const Rendering& rendering);

@@ -1,12 +1,11 @@
 #include "cli/settings.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "alcove/passes/setting_table.h"
@@ -23,49 +22,31 @@ using passes::SettingGroup;
 using passes::SettingInfo;
 using Failure = tl::unexpected<std::string>;
 
-// Parses `text` as the value of a setting. Each overload is for one type of value. Returns an empty
-// text, or, if `text` is not allowed, the allowed values for the error sentence.
-template <typename Number>
-std::string parse_number(const std::string& text, const SettingInfo& info, const char* kind,
-                         Number& value) {
-  Number read = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  if (!whole || !info.range.contains(read)) return kind + info.range.text();
-  value = read;
+// Returns the allowed values of a setting.
+template <typename Value>
+std::string allowed(const SettingInfo& info, Value /*value*/) {
+  if constexpr (passes::kNames<Value>.empty())
+    return info.range.text();
+  else
+    return passes::names_text<Value>();
+}
+
+// Parses `text` as the value of a setting. Returns an empty text, or, if `text` is not allowed, the
+// allowed values for the error sentence.
+template <typename Value>
+std::string parse(const std::string& text, const SettingInfo& info, Value& value) {
+  if constexpr (passes::kNames<Value>.empty()) {
+    const auto number = parse_number<Value>(text);
+    if (!number || !info.range.contains(*number))
+      return (std::is_integral_v<Value> ? "a whole number, " : "a number, ") + info.range.text();
+    value = *number;
+  } else {
+    const auto& names = passes::kNames<Value>;
+    const auto found = std::ranges::find(names, text);
+    if (found == names.end()) return allowed(info, value);
+    value = static_cast<Value>(found - names.begin());
+  }
   return "";
-}
-
-std::string parse(const std::string& text, const SettingInfo& info, float& value) {
-  return parse_number(text, info, "a number, ", value);
-}
-
-std::string parse(const std::string& text, const SettingInfo& info, std::uint32_t& value) {
-  return parse_number(text, info, "a whole number, ", value);
-}
-
-template <typename Choice>
-std::string parse(const std::string& text, const SettingInfo& /*info*/, Choice& value) {
-  const auto& names = passes::kNames<Choice>;
-  const auto found = std::ranges::find(names, text);
-  if (found == names.end()) return passes::names_text<Choice>();
-  value = static_cast<Choice>(found - names.begin());
-  return "";
-}
-
-// The allowed values of a setting, for the help.
-std::string allowed(const SettingInfo& info, float /*value*/) { return info.range.text(); }
-std::string allowed(const SettingInfo& info, std::uint32_t /*value*/) { return info.range.text(); }
-template <typename Choice>
-std::string allowed(const SettingInfo& /*info*/, Choice /*value*/) {
-  return passes::names_text<Choice>();
-}
-
-std::string value_text(float value) { return shown(value); }
-std::string value_text(std::uint32_t value) { return std::to_string(value); }
-template <typename Choice>
-std::string value_text(Choice value) {
-  return std::string(passes::name_of(value));
 }
 
 // Calls `visit(info, field)` for each setting that --set accepts: all except those of surfaces,
@@ -147,7 +128,7 @@ Result<std::vector<std::pair<std::string, std::string>>> read_settings(const std
   std::vector<std::pair<std::string, std::string>> found;
   for (const auto& [name, value] : json["settings"].items()) {
     const std::string shown_value = value.is_string()         ? value.get<std::string>()
-                                    : value.is_number_float() ? shown(value.get<float>())
+                                    : value.is_number_float() ? number_text(value.get<float>())
                                                               : value.dump();
     if (const auto wanted = wanted_instead(name, shown_value)) {
       return Failure(printable(file) + ": " + printable(name) + " is " + printable(shown_value) +

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "alcove/passes/setting_names.h"
+#include "cli/option_value.h"
 #include "cli/options.h"
 #include "support/result.h"
 
@@ -21,6 +23,15 @@ namespace alcove::sample {
 // on each other are checked by occlusion_settings().
 [[nodiscard]] std::optional<std::string> wanted_instead(const std::string& name,
                                                         const std::string& value);
+
+// Returns the text of a setting's value, from which --set reads the same value.
+template <typename Value>
+std::string value_text(Value value) {
+  if constexpr (passes::kNames<Value>.empty())
+    return number_text(value);
+  else
+    return std::string(passes::name_of(value));
+}
 
 // Returns a text with one line for each setting: name, meaning, range, default.
 [[nodiscard]] std::string settings_help();

@@ -27,7 +27,7 @@ struct Camera {
   // A copy of Scene::origin. It is added to positions before they are printed, and subtracted from
   // positions that the user types.
   glm::dvec3 origin{0.0};
-  bool fit_planes = false;  // camera_of() still has to fit near and far plane to the view
+  bool fit_planes = false;  // choose_camera() still has to fit near and far plane to the view
 };
 
 // The matrices of a camera. To reproject the history, the caller keeps those of the previous frame.

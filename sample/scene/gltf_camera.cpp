@@ -72,7 +72,7 @@ void add_camera(const tinygltf::Model& model, const tinygltf::Node& node,
 Camera aimed(const PlacedCamera& placed, const Bounds& bounds_ws) {
   constexpr double kRounding =
       1e-3;  // of the distance from the origin, where floats are 1e-7 of it apart
-  constexpr double kNearest = 1e-15;  // scene units, the limit of camera_of()
+  constexpr double kNearest = 1e-15;  // scene units, the limit of choose_camera()
   Camera camera = placed.camera;
   const glm::dvec3 low(bounds_ws.low), high(bounds_ws.high), eye(camera.eye_ws);
   const double depth = glm::dot(0.5 * (low + high) - eye, placed.forward_ws);

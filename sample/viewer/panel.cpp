@@ -70,19 +70,6 @@ void widget(const SettingInfo& info, Choice& value, float /*unit*/) {
 }
 
 const ImVec4 kRefused{1.0f, 0.45f, 0.35f, 1.0f};
-constexpr const char* kKeys =
-    "left drag     orbit\n"
-    "right drag    pan (also middle drag)\n"
-    "wheel         move closer or away\n"
-    "1 to 9        choose the picture\n"
-    "Home          return to the first view\n"
-    "R             reset the settings\n"
-    "A             fit the radius to the view\n"
-    "P             screenshot and command\n"
-    "H             show or hide the panel\n"
-    "Escape        close\n"
-    "drop a file   open a .gltf or .glb";
-
 void lay_out_picture(ViewState& state, const PanelFacts& facts) {
   combo("picture", state.picture, kPictureNames);
   combo("compare with", state.comparison, kComparisonNames);
@@ -212,7 +199,7 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts, bool narrow) {
     }
     if (section("screenshot")) screenshot = ImGui::Button("screenshot and command (P)");
     if (narrow && section("cost")) lay_out_cost(facts);
-    if (section("mouse and keys")) ImGui::TextUnformatted(kKeys);
+    if (section("mouse and keys")) ImGui::TextUnformatted(kMouseAndKeys);
     ImGui::PopItemWidth();
   }
   ImGui::End();

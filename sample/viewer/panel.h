@@ -33,6 +33,20 @@ struct PanelFacts {
   passes::OcclusionSettings first_settings;  // settings that a reset restores
 };
 
+// The mouse and the keys of the window, a line each, for the panel and for the program's help.
+inline constexpr const char* kMouseAndKeys =
+    "left drag     orbit\n"
+    "right drag    pan (also middle drag)\n"
+    "wheel         move closer or away\n"
+    "1 to 9        choose the picture\n"
+    "Home          return to the first view\n"
+    "R             reset the settings\n"
+    "A             fit the radius to the view\n"
+    "P             screenshot and command\n"
+    "H             show or hide the panel\n"
+    "Escape        close\n"
+    "drop a file   open a .gltf or .glb";
+
 // Lays the panel out between Gui::begin() and Gui::end() and changes `state` as its widgets are
 // moved. Returns true if the user asks for a screenshot.
 [[nodiscard]] bool lay_out_panel(ViewState& state, const PanelFacts& facts);

@@ -75,7 +75,7 @@ TEST_F(Mistakes, RightFramesAreNotReported) {
   for (const RightCourse& right : right_courses(kQuick)) {
     auto run = EngineRun::create(*gpu_, builtin(), camera(), right.course);
     ASSERT_TRUE(run) << run.error();
-    const auto said = said_of_right_frames(**run);
+    const auto said = diagnose_right_frames(**run);
     ASSERT_TRUE(said) << said.error();
     EXPECT_EQ(*said, "") << right.name;
   }

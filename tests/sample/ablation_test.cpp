@@ -26,7 +26,7 @@ TEST(AblationVariants, EachVariantDiffersFromTheBaseSettingsAndHasAUniqueName) {
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
     const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
     std::set<std::string> names, parts;
-    for (const Variant& variant : variants_of(base)) {
+    for (const Variant& variant : ablation_variants(base)) {
       EXPECT_FALSE(variant.settings == base) << variant.name;
       EXPECT_TRUE(names.insert(variant.part + variant.name).second) << variant.name;
       EXPECT_EQ(variant.settings.radius, base.radius) << variant.name;
@@ -43,7 +43,7 @@ TEST(AblationVariants, OnlyVariantsWithHorizonEstimatorsHaveAFalloff) {
   OcclusionSettings base = passes::quality_settings(Quality::medium, 0.5f);
   base.advanced.estimator = passes::Estimator::horizons;
   base.advanced.falloff = 0.5f;
-  for (const Variant& variant : variants_of(base)) {
+  for (const Variant& variant : ablation_variants(base)) {
     const bool has_falloff = variant.settings.advanced.estimator == passes::Estimator::horizons;
     EXPECT_EQ(variant.settings.advanced.falloff, has_falloff ? 0.5f : 0.0f) << variant.name;
   }
@@ -110,7 +110,7 @@ TEST_F(AblationTest, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
 }
 
 TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
-  std::vector<Variant> estimators = variants_of(base_);
+  std::vector<Variant> estimators = ablation_variants(base_);
   std::erase_if(estimators, [](const Variant& v) { return v.part != "estimator"; });
   ASSERT_GE(estimators.size(), 2u);
   Session session{scene_, setup_.camera, base_};
@@ -118,22 +118,26 @@ TEST_F(AblationTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
   auto gpu = open_gpu(session.device);
   ASSERT_TRUE(gpu) << gpu.error();
   session.gpu = std::move(*gpu);
-  const auto report = run_variants(session, setup_, {64, 1, false}, estimators, "estimators", 3);
-  ASSERT_TRUE(report) << report.error();
-  const VariantErrors& connected = report->rows.front();
+  const ChosenClock clock{Clock::processor, {}};
+  const auto rows =
+      measure_variants(session, setup_, {64, 1, false}, estimators, "estimators", &clock);
+  ASSERT_TRUE(rows) << rows.error();
+  const Measurement& connected = rows->front();
   EXPECT_GT(connected.scene.rmse, 0.01);
-  EXPECT_GT(report->base_times.processor_ms, 0.0);
-  for (std::size_t i = 1; i < report->rows.size(); ++i) {
-    const VariantErrors& other = report->rows[i];
+  EXPECT_GT(connected.time_ms, 0.0);
+  for (std::size_t i = 1; i < rows->size(); ++i) {
+    const Measurement& other = (*rows)[i];
     EXPECT_GT(other.scene.rmse, 1.02 * connected.scene.rmse) << other.variant.name;
-    EXPECT_GT(other.cost.processor, 0.0) << other.variant.name;
+    EXPECT_GT(other.time_ms, 0.0) << other.variant.name;
     EXPECT_EQ(other.cost.bytes, connected.cost.bytes) << other.variant.name;
   }
   Variant without_history{"history", "none", base_};
   without_history.settings.history_frames = 0;
-  const auto less = run_variants(session, setup_, {64, 1, false}, {without_history}, "history", 0);
+  const auto less =
+      measure_variants(session, setup_, {64, 1, false}, {without_history}, "history", nullptr);
   ASSERT_TRUE(less) << less.error();
-  EXPECT_LT(less->rows[1].cost.bytes, less->rows[0].cost.bytes / 2);
+  EXPECT_LT((*less)[1].cost.bytes, (*less)[0].cost.bytes / 2);
+  EXPECT_EQ((*less)[1].time_ms, 0.0);
 }
 
 // The noise of few traces per pixel must not form a regular pattern. The limit is an eighth of the
@@ -144,7 +148,7 @@ TEST_F(AblationTest, FirstFramesOfAHistoryHaveNoWeave) {
   setup_.frames = 8;
   const FrameImages images = draw(base_);
   const TracedTruth truth = truth_of(images);
-  const Weave weave = weave_of(images.visibility, truth.visibility, truth.surfaces);
+  const Weave weave = measure_weave(images.visibility, truth.visibility, truth.surfaces);
   EXPECT_GT(weave.windows, 30u);
   EXPECT_LT(weave.rms(), 0.0024);
 }
@@ -232,7 +236,7 @@ TEST_F(AblationTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThe
 }
 
 TEST_F(AblationTest, PairsOfViewsThatShouldLookEqualGiveNearlyEqualImages) {
-  for (const InvariancePair& pair : invariance_pairs_of(setup_.camera, setup_.height)) {
+  for (const InvariancePair& pair : invariance_pairs(setup_.camera, setup_.height)) {
     if (pair.scale != 1 || pair.further > 0.0f) continue;
     StaticSetup second = setup_;
     setup_.camera = pair.first;

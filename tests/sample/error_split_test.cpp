@@ -36,11 +36,11 @@ class ErrorSplitTest : public GpuTest {
   static void expect_largest(const ErrorSplit& split, std::size_t expected) {
     const auto largest = std::ranges::max_element(split.causes, {}, &ErrorCause::share);
     EXPECT_EQ(static_cast<std::size_t>(largest - split.causes.begin()), expected)
-        << table_of(split);
+        << format_table(split);
   }
 };
 
-OcclusionSettings settings_of(float radius) {
+OcclusionSettings medium_settings(float radius) {
   return passes::quality_settings(passes::Quality::medium, radius);
 }
 
@@ -51,7 +51,7 @@ Scene scene_of(SceneBuilder& builder, const Camera& camera) {
 }
 
 TEST_F(ErrorSplitTest, SingleSliceInEachPixelWithoutHistoryIsMostlyNoise) {
-  OcclusionSettings settings = settings_of(0.5f);
+  OcclusionSettings settings = medium_settings(0.5f);
   settings.tile_size = 1;
   settings.slices = 1;
   settings.history_frames = 0;
@@ -67,7 +67,7 @@ TEST_F(ErrorSplitTest, OnePixelInSixtyFourOfThinBarsIsMostlyFilterAndTiles) {
     const float x = 0.08f * static_cast<float>(i);
     builder.box({x, 0.0f, -1.0f}, {x + 0.04f, 0.04f, 1.5f});
   }
-  OcclusionSettings settings = settings_of(0.15f);
+  OcclusionSettings settings = medium_settings(0.15f);
   settings.tile_size = 8;
   settings.half_resolution = true;
   settings.slices = 16;
@@ -84,7 +84,7 @@ TEST_F(ErrorSplitTest, WallBehindAPlateIsMostlyAHiddenSurface) {
   builder.box({-5.0f, 0.0f, -0.3f}, {5.0f, 1.5f, -0.2f});
   builder.box({-2.0f, 0.965f, 2.39f}, {2.0f, 2.0f, 2.4f});
   const Camera camera{.eye_ws = {0.0f, 1.2f, 3.0f}, .target_ws = {0.0f, 0.0f, 0.2f}, .fov_y = 0.8f};
-  expect_largest(split(scene_of(builder, camera), settings_of(0.5f), 16), 2);
+  expect_largest(split(scene_of(builder, camera), medium_settings(0.5f), 16), 2);
 }
 
 // The eye looks down at a floor; the wall beside it begins just outside the image.
@@ -95,7 +95,7 @@ TEST_F(ErrorSplitTest, WallBesideTheImageIsMostlyOutside) {
   builder.box({1.1f, 0.0f, -5.0f}, {1.2f, 0.6f, 5.0f});
   const Camera camera{
       .eye_ws = {0.0f, 1.0f, 0.0f}, .target_ws = {0.0f, 0.0f, 0.0f}, .up_ws = {0.0f, 0.0f, -1.0f}};
-  expect_largest(split(scene_of(builder, camera), settings_of(0.6f), 16), 4);
+  expect_largest(split(scene_of(builder, camera), medium_settings(0.6f), 16), 4);
 }
 
 }  // namespace

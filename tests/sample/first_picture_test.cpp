@@ -9,7 +9,7 @@
 #include <iterator>
 #include <random>
 
-#include "cli/camera_of.h"
+#include "cli/choose_camera.h"
 #include "model_maker.h"
 #include "scene/framing.h"
 
@@ -359,7 +359,7 @@ TEST_P(FirstPicture, SubjectFillsTheImageAndRadiusIsATwentiethOfItsSize) {
   file.make(maker);
   const Scene scene = parsed(maker.gltf.glb());
   ViewOptions view;
-  const auto camera = camera_of(view, scene);
+  const auto camera = choose_camera(view, scene);
   ASSERT_TRUE(camera);
   const double aspect = static_cast<double>(view.width) / view.height;
   const RadiusChoice choice = radius_for_view(scene, *camera, aspect);
@@ -407,7 +407,7 @@ TEST_P(TypedViews, RadiusIsATwentiethOfTheExtentOfTheSurfacesInView) {
   ViewOptions view;
   view.eye = GetParam().eye;
   view.target = GetParam().target;
-  const auto camera = camera_of(view, scene);
+  const auto camera = choose_camera(view, scene);
   ASSERT_TRUE(camera);
   const RadiusChoice choice =
       radius_for_view(scene, *camera, static_cast<double>(view.width) / view.height);

@@ -56,9 +56,9 @@ CompiledShader shader_of(const char* aco, const char* assembly = "not supported"
 }
 
 TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
-  const auto blocks = blocks_of(shader_of(kNestedLoops));
+  const auto blocks = parse_blocks(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
-  const std::vector<Loop> loops = loops_of(*blocks);
+  const std::vector<Loop> loops = find_loops(*blocks);
   ASSERT_EQ(loops.size(), 2u);
   EXPECT_EQ(loops[0].first, 1u);
   EXPECT_EQ(loops[0].last, 3u);
@@ -69,9 +69,12 @@ TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
 }
 
 TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
-  const auto blocks = blocks_of(shader_of(kNestedLoops));
+  const auto blocks = parse_blocks(shader_of(kNestedLoops));
   ASSERT_TRUE(blocks) << blocks.error();
-  const WaveWork work = wave_work(*blocks, loops_of(*blocks), {3, 5}, {}, false, 64);
+  std::vector<Loop> loops = find_loops(*blocks);
+  loops[0].iterations = 3;
+  loops[1].iterations = 5;
+  const WaveWork work = wave_work(*blocks, loops, {}, false, 64);
   EXPECT_EQ(work.loads, 15);
   EXPECT_EQ(work.stores, 1);
   EXPECT_EQ(work.transcendentals, 3);
@@ -83,16 +86,19 @@ TEST(GpuCost, InstructionsAreMultipliedByTheIterationsOfAllLoopsAroundThem) {
 }
 
 TEST(GpuCost, InstructionsAreCountedInTheDisassemblyIfTheCompilerGivesOne) {
-  const auto blocks = blocks_of(shader_of(kNestedLoops,
-                                          "BB0:\n"
-                                          "\tv_cndmask_b32_e32 v0, v1, v2, vcc ; 02000300\n"
-                                          "BB2:\n"
-                                          "\timage_load v[0:3], v[2:3], s[0:7] dmask:0xf ; f000\n"
-                                          "\tds_read2_b64 v[0:3], v4 ; d8ee\n"
-                                          "BB4:\n"
-                                          "\ts_endpgm ; bf810000\n"));
+  const auto blocks =
+      parse_blocks(shader_of(kNestedLoops,
+                             "BB0:\n"
+                             "\tv_cndmask_b32_e32 v0, v1, v2, vcc ; 02000300\n"
+                             "BB2:\n"
+                             "\timage_load v[0:3], v[2:3], s[0:7] dmask:0xf ; f000\n"
+                             "\tds_read2_b64 v[0:3], v4 ; d8ee\n"
+                             "BB4:\n"
+                             "\ts_endpgm ; bf810000\n"));
   ASSERT_TRUE(blocks) << blocks.error();
-  const WaveWork work = wave_work(*blocks, loops_of(*blocks), {1, 2}, {}, true, 64);
+  std::vector<Loop> loops = find_loops(*blocks);
+  loops[1].iterations = 2;
+  const WaveWork work = wave_work(*blocks, loops, {}, true, 64);
   EXPECT_EQ(work.selects, 1);
   EXPECT_EQ(work.loads, 2);
   EXPECT_EQ(work.shared_operations, 2);
@@ -103,10 +109,10 @@ TEST(GpuCost, InstructionsAreCountedInTheDisassemblyIfTheCompilerGivesOne) {
 TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
   CompiledShader shader;
   shader.texts = {{"Final Assembly", "mov r0, r1\n"}};
-  const auto none = blocks_of(shader);
+  const auto none = parse_blocks(shader);
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error(), HasSubstr("Mesa's AMD driver is needed"));
-  EXPECT_FALSE(blocks_of(shader_of("no blocks here")));
+  EXPECT_FALSE(parse_blocks(shader_of("no blocks here")));
 }
 
 // The number of times that each loop of the search runs; empty if one is not known.
@@ -179,15 +185,15 @@ constexpr const char* kBranch =
     "\ts_endpgm\n";
 
 TEST(GpuCost, BranchCountsByTheShareOfWavesThatExecuteIt) {
-  const auto blocks = blocks_of(shader_of(kBranch));
+  const auto blocks = parse_blocks(shader_of(kBranch));
   ASSERT_TRUE(blocks) << blocks.error();
-  std::vector<Branch> branches = branches_of(*blocks);
+  std::vector<Branch> branches = find_branches(*blocks);
   ASSERT_EQ(branches.size(), 2u);
   EXPECT_EQ(branches[0].summary.instructions, 2u);
   EXPECT_EQ(branches[0].summary.loads, 1u);
   EXPECT_EQ(branches[1].summary.instructions, 1u);
   branches[0].share = 0.25;
-  const WaveWork work = wave_work(*blocks, {}, {}, branches, false, 64);
+  const WaveWork work = wave_work(*blocks, {}, branches, false, 64);
   EXPECT_EQ(work.loads, 0.25);
   EXPECT_EQ(work.instructions, 1 + 0.25 * 2 + 1 + 1);
 }
@@ -221,10 +227,10 @@ TEST(CacheTraffic, LoadsOfNeighbouringTexelsTouchFewerLinesThanScatteredOnes) {
         cache_traffic(part, over_image({at_invocation(kImage)}), kWaves);
     const CacheTraffic far_traffic =
         cache_traffic(part, over_image({{kImage, 1, scattered}}), kWaves);
-    EXPECT_EQ(near_traffic.lines_per_load, 8 * 8 * 4 / part.line_bytes) << part.family;
-    EXPECT_GT(far_traffic.lines_per_load, 60) << part.family;
-    EXPECT_GT(far_traffic.texture_cycles, 3.5 * near_traffic.texture_cycles) << part.family;
-    EXPECT_GT(far_traffic.l2_bytes, 10 * near_traffic.l2_bytes) << part.family;
+    EXPECT_EQ(near_traffic.lines_per_load, 8 * 8 * 4 / part.line_bytes) << part.name;
+    EXPECT_GT(far_traffic.lines_per_load, 60) << part.name;
+    EXPECT_GT(far_traffic.texture_cycles, 3.5 * near_traffic.texture_cycles) << part.name;
+    EXPECT_GT(far_traffic.l2_bytes, 10 * near_traffic.l2_bytes) << part.name;
   }
 }
 
@@ -232,13 +238,13 @@ TEST(CacheTraffic, RepeatedLoadsAreServedByCachesAndMovedFromMemoryOnce) {
   for (const GpuPart& part : kGpuParts) {
     const double bytes = 4.0 * kSide * kSide;
     const CacheTraffic once = cache_traffic(part, over_image({at_invocation(kImage)}), kWaves);
-    EXPECT_DOUBLE_EQ(once.memory_bytes, bytes) << part.family;
+    EXPECT_DOUBLE_EQ(once.memory_bytes, bytes) << part.name;
     const CacheTraffic often = cache_traffic(
         part, over_image({at_invocation(kImage), at_invocation(kImage), at_invocation(kImage)}),
         kWaves);
-    EXPECT_DOUBLE_EQ(often.memory_bytes, bytes) << part.family;
-    EXPECT_LT(often.l2_bytes, 1.1 * once.l2_bytes) << part.family;
-    EXPECT_GT(often.texture_cycles, 2.5 * once.texture_cycles) << part.family;
+    EXPECT_DOUBLE_EQ(often.memory_bytes, bytes) << part.name;
+    EXPECT_LT(often.l2_bytes, 1.1 * once.l2_bytes) << part.name;
+    EXPECT_GT(often.texture_cycles, 2.5 * once.texture_cycles) << part.name;
   }
 }
 
@@ -282,11 +288,11 @@ TEST(CacheTraffic, TrafficOfTheSearchAgreesWithAnotherModel) {
         kGpuParts[i],
         passes::cost::accesses_of({"gtao", settings, FrameState::moving, images, {1, 60, 34}}),
         expected.waves);
-    EXPECT_NEAR(found.lines_per_load / expected.lines, 1, 0.1) << kGpuParts[i].family;
+    EXPECT_NEAR(found.lines_per_load / expected.lines, 1, 0.1) << kGpuParts[i].name;
     EXPECT_NEAR(found.l2_bytes / kPixels / expected.l2_bytes_per_pixel, 1, 0.1)
-        << kGpuParts[i].family;
+        << kGpuParts[i].name;
     EXPECT_NEAR(found.memory_bytes / kPixels / expected.memory_bytes_per_pixel, 1, 0.1)
-        << kGpuParts[i].family;
+        << kGpuParts[i].name;
   }
 }
 
@@ -299,11 +305,11 @@ TEST(CostReport, TimeOfXeGtaoIsThatOfItsShadersAndGrowsWithTheImage) {
       const double tolerance = j == 0 ? 0.1 : 0.015;
       EXPECT_NEAR(xegtao_ms(part, kXeGtao[j], 1920, 1080) - 3e3 * part.dispatch_seconds,
                   kMeasured[i][j], tolerance * kMeasured[i][j])
-          << part.family << ", " << kXeGtao[j].name;
+          << part.name << ", " << kXeGtao[j].name;
     }
     EXPECT_NEAR(xegtao_ms(part, kXeGtaoHigh, 1920, 1080) / xegtao_ms(part, kXeGtaoHigh, 960, 540),
                 4.0, 0.4)
-        << part.family;
+        << part.name;
   }
 }
 
@@ -318,7 +324,7 @@ SettingsCost one_pass(double instructions, double registers, double waves, doubl
 }
 
 TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
-  const std::string budget = budget_of({one_pass(100, 64, 8, 0)}, "compiler");
+  const std::string budget = format_budget({one_pass(100, 64, 8, 0)}, "compiler");
   const auto complaints = [&](const SettingsCost& cost) {
     return over_budget(budget, "compiler", {cost}).value();
   };
@@ -327,7 +333,7 @@ TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
   EXPECT_THAT(complaints(one_pass(80, 48, 10, 0)),
               ElementsAre(HasSubstr("instructions_per_pixel[0] is 80")));
   EXPECT_THAT(complaints(one_pass(101.5, 64, 8, 0)),
-              ElementsAre("navi21, medium, gtao: instructions_per_pixel[0] is 101.5, the budget is "
+              ElementsAre("rdna2, medium, gtao: instructions_per_pixel[0] is 101.5, the budget is "
                           "100."));
   EXPECT_THAT(complaints(one_pass(100, 68, 8, 0)), ElementsAre(HasSubstr("registers[2] is 68")));
   EXPECT_THAT(complaints(one_pass(100, 64, 7, 0)), ElementsAre(HasSubstr("waves")));
@@ -335,18 +341,18 @@ TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
 }
 
 TEST(GpuBudget, PassWithoutABudgetAndBudgetOfAnotherCompilerAreReported) {
-  const std::string budget = budget_of({}, "compiler");
+  const std::string budget = format_budget({}, "compiler");
   EXPECT_THAT(over_budget(budget, "compiler", {one_pass(1, 1, 1, 0)}).value(),
               testing::Contains(HasSubstr("the budget is missing")));
-  for (const std::string& other : {budget_of({}, "another"), std::string(), std::string("{")})
+  for (const std::string& other : {format_budget({}, "another"), std::string(), std::string("{")})
     EXPECT_FALSE(over_budget(other, "compiler", {one_pass(1, 1, 1, 0)})) << other;
 }
 
 SettingsCost frames_of(const std::string& label, const GpuPart& part, double moving_ms,
                        double static_ms, const std::string& label_without = "") {
   ModelledPass moving, unchanged;
-  moving.alu_ms = moving_ms;
-  unchanged.alu_ms = static_ms;
+  moving.limits_ms[0] = moving_ms;
+  unchanged.limits_ms[0] = static_ms;
   return {{label, {}, label_without},
           &part,
           {{FrameState::moving, {moving}}, {FrameState::unchanged, {unchanged}}},
@@ -362,9 +368,9 @@ TEST(CostReport, TimeWithAnOptionalOutputIsComparedWithTheTimeWithoutItOnTheSame
   EXPECT_THAT(output_ratios(costs[2], costs), IsEmpty()) << "medium is compared with nothing";
   EXPECT_THAT(output_ratios(costs[3], std::span(costs).first(2)), IsEmpty())
       << "medium is not among the costs of this GPU";
-  EXPECT_THAT(table_of(costs, false),
+  EXPECT_THAT(format_table(costs, false),
               HasSubstr("medium with bent normals                  1.500      1.250\n"));
-  EXPECT_THAT(table_of(std::span(costs).first(3), false), Not(HasSubstr("without the output")));
+  EXPECT_THAT(format_table(std::span(costs).first(3), false), Not(HasSubstr("without the output")));
   EXPECT_EQ(to_json(costs)[1]["settings"][2]["frames"][0]["of_time_without_output"], 1.5);
 }
 
@@ -409,9 +415,9 @@ TEST_P(CompiledPresets, ModelledCostOfEachPresetStaysWithinItsGpuBudget) {
   std::ifstream file(ALCOVE_GPU_BUDGET);
   const std::string budget{std::istreambuf_iterator<char>(file), {}};
   for (const LabelledSettings& settings : budgeted_settings()) {
-    const auto cost = cost_of(part_, device_, settings);
+    const auto cost = model_cost(part_, device_, settings);
     ASSERT_TRUE(cost) << settings.label << ": " << cost.error();
-    const auto complaints = over_budget(budget, compiler_name(device_), {*cost});
+    const auto complaints = over_budget(budget, device_.compiler, {*cost});
     if (!complaints) GTEST_SKIP() << complaints.error();
     for (const std::string& complaint : *complaints) {
       ADD_FAILURE() << complaint

@@ -17,7 +17,7 @@ SurfaceMaterials materials_of(const SurfacePoints& points, const glm::vec3& albe
 }
 
 // A view direction at about 50 degrees from every normal.
-Viewer viewer_of(const SurfacePoints& points) {
+Viewer make_viewer(const SurfacePoints& points) {
   const glm::vec3& n = points.normal_ws.at(0, 0);
   const glm::vec3 across = glm::normalize(glm::cross(n, glm::vec3(0.3f, 0.5f, -0.8f)));
   return {true, {}, glm::normalize(n + 1.2f * across)};
@@ -35,7 +35,7 @@ LitTruth light(const char* name, const glm::vec3& albedo, float roughness, float
   const auto rays = RayScene::create(analytic.scene);
   const SurfacePoints points = points_of(analytic);
   return lit_truth(*rays, points, materials_of(points, albedo, roughness, metallic),
-                   viewer_of(points), white(),
+                   make_viewer(points), white(),
                    {static_cast<float>(analytic.closed_form_radius), 2048, 1});
 }
 
@@ -72,7 +72,7 @@ TEST(LitTruth, PointWithoutANormalIsBlack) {
   const auto analytic = analytic_scene("plane:30").value();
   const auto rays = RayScene::create(analytic.scene);
   SurfacePoints points = points_of(analytic);
-  const Viewer viewer = viewer_of(points);
+  const Viewer viewer = make_viewer(points);
   points.normal_ws.at(0, 0) = glm::vec3(0.0f);
   const LitTruth lit = lit_truth(*rays, points, materials_of(points, glm::vec3(1.0f), 0.5f, 0.0f),
                                  viewer, white(), {1.0f, 16, 1});

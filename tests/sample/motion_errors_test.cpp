@@ -115,14 +115,14 @@ TEST(MotionErrors, SkyPixelsHaveNoAgeNoVisibilityChangeAndNoSpeed) {
   const Reprojection reprojection = reproject(sky, sky, unmoved);
   EXPECT_EQ(next_ages(sky, reprojection, first_ages(sky)).at(2, 2).frames, 0u);
   EXPECT_EQ(visibility_change(sky.visibility, sky.visibility, reprojection).count, 0u);
-  EXPECT_EQ(speed_of(reprojection).mean, 0.0);
+  EXPECT_EQ(measure_speed(reprojection).mean, 0.0);
 }
 
 TEST(MotionErrors, ImageMotionIsMeasuredInPixelsPerFrame) {
   const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
   const RenderedFrame now = walls(camera_at(0.5f), -100.0f);
   const float expected = 0.5f * 0.5f * kHeight / std::tan(0.5f * now.camera.fov_y) / 10.0f;
-  const Speed speed = speed_of(reproject(now, before, unmoved));
+  const Speed speed = measure_speed(reproject(now, before, unmoved));
   EXPECT_NEAR(speed.mean, expected, 1e-3);
   EXPECT_NEAR(speed.percentile_95, expected, 1e-3);
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/camera_of.h"
+#include "cli/choose_camera.h"
 #include "cli/option_value.h"
 #include "cli/settings.h"
 #include "scene/builtin_scene.h"
@@ -53,7 +53,7 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   const auto settings = occlusion_settings(read->occlusion, 1.0f);
   ASSERT_TRUE(settings) << settings.error();
   EXPECT_EQ(*settings, shot.settings);
-  const auto camera = camera_of(read->view, scene);
+  const auto camera = choose_camera(read->view, scene);
   ASSERT_TRUE(camera) << camera.error();
   EXPECT_EQ(camera->eye_ws, shot.camera.eye_ws);
   EXPECT_EQ(camera->target_ws, shot.camera.target_ws);
@@ -172,12 +172,12 @@ TEST(PrintedRenderCommand, PrintedCoordinatesFarFromTheOriginParseBackToTheSameP
   const glm::dvec3 origin(100000.0, -3.0, 2e7);
   for (const float value : {2.3f, -0.1f, 1e-7f, 12345.678f}) {
     for (int c = 0; c < 3; ++c) {
-      const double typed = std::stod(shown_coordinate(value, origin[c]));
+      const double typed = std::stod(coordinate_text(value, origin[c]));
       // The text gives the same float up to the rounding of a double at that distance.
       EXPECT_NEAR(typed - origin[c], value, 4e-9 + 6e-8 * std::abs(value));
     }
   }
-  EXPECT_EQ(shown_coordinate(2.3f, 100000.0), "100002.3");
+  EXPECT_EQ(coordinate_text(2.3f, 100000.0), "100002.3");
 }
 
 TEST(PrintedRenderCommand, AnyFieldOfViewInAPrintedCommandParsesBackUnchanged) {

@@ -19,8 +19,9 @@ namespace {
 
 using passes::OcclusionSettings;
 
-TradePoint point(const std::string& name, double time_ms, double rmse, double spread_ms = 0) {
-  return {name, {}, rmse, 0.5 * rmse, time_ms, spread_ms, 2.0 * time_ms, 1000};
+Measurement point(const std::string& name, double time_ms, double rmse, double spread_ms = 0) {
+  return {{"", name, {}}, {.rmse = rmse}, {.rmse = 0.5 * rmse}, {.bytes = 1000},
+          time_ms,        spread_ms,      2.0 * time_ms};
 }
 
 TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
@@ -74,18 +75,18 @@ TEST(PresetSweep, SweepChangesOnlyNumbersOfSamplesHalfResolutionAndDepthLayers) 
 
 TEST(SpeedErrorTrade, ParetoFrontOfTimeAndErrorExcludesDominatedSettings) {
   const Trade trade =
-      trade_of({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
-                point("fair", 3, 0.05), point("equal", 5, 0.05)});
+      find_pareto_front({point("slow", 9, 0.01), point("fast", 1, 0.1), point("worse", 4, 0.2),
+                         point("fair", 3, 0.05), point("equal", 5, 0.05)});
   std::vector<std::string> names;
-  for (const TradePoint& each : trade.points) names.push_back(each.name);
+  for (const Measurement& each : trade.points) names.push_back(each.variant.name);
   EXPECT_EQ(names, (std::vector<std::string>{"fast", "fair", "worse", "equal", "slow"}));
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, true, false, false, true}));
 }
 
 TEST(SpeedErrorTrade, LessAccurateSettingFasterOnlyWithinMeasurementSpreadIsNotOnTheParetoFront) {
   const Trade trade =
-      trade_of({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
-                point("surely faster", 9.0, 0.08, 0.3)});
+      find_pareto_front({point("no faster", 10.0, 0.06, 0.3), point("nearer", 10.4, 0.05, 0.2),
+                         point("surely faster", 9.0, 0.08, 0.3)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false, true}));
 }
 
@@ -93,11 +94,11 @@ TEST(SpeedErrorTrade, ParetoFrontDoesNotChangeWithTimingNoiseWithinTheMeasuredSp
   std::mt19937 random(3);
   std::uniform_real_distribution<double> noise(-0.07, 0.07);
   for (int run = 0; run < 100; ++run) {
-    const Trade trade = trade_of({point("a", 2.0 + noise(random), 0.06, 0.1),
-                                  point("b", 2.05 + noise(random), 0.05, 0.1),
-                                  point("c", 3.0 + noise(random), 0.04, 0.1)});
+    const Trade trade = find_pareto_front({point("a", 2.0 + noise(random), 0.06, 0.1),
+                                           point("b", 2.05 + noise(random), 0.05, 0.1),
+                                           point("c", 3.0 + noise(random), 0.04, 0.1)});
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].name != "a") << run;
+      EXPECT_EQ(trade.on_pareto_front[i], trade.points[i].variant.name != "a") << run;
   }
 }
 
@@ -111,8 +112,8 @@ struct TrueSetting {
 // Measures settings on a simulated machine on which other programs run. They slow down both frames
 // of a pair by a common factor, each frame by a few per cent, and one frame in ten by up to three
 // times. The base settings take 5 ms.
-std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> settings,
-                                                   std::mt19937& random) {
+std::vector<Measurement> measured_on_a_busy_machine(std::span<const TrueSetting> settings,
+                                                    std::mt19937& random) {
   std::lognormal_distribution<double> common(0.0, 0.4);
   std::normal_distribution<double> own(1.0, 0.04);
   std::uniform_real_distribution<double> stall(1.2, 3.0);
@@ -121,14 +122,14 @@ std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> 
     ms *= std::max(own(random), 0.5);
     return FrameTimes{0.0, stalls(random) ? ms * stall(random) : ms};
   };
-  std::vector<TradePoint> points;
+  std::vector<Measurement> points;
   for (const TrueSetting& setting : settings) {
     std::vector<TimedPair> pairs;
     for (std::uint32_t i = 0; i < kDecidingPairs; ++i) {
       const double base_ms = 5.0 * common(random);
       pairs.push_back({frame(base_ms), frame(base_ms * setting.time)});
     }
-    const VariantCost cost = cost_of(pairs, 1000);
+    const VariantCost cost = median_cost(pairs, 1000);
     points.push_back(
         point(setting.name, 5.0 * cost.processor, setting.rmse, 5.0 * cost.processor_spread));
   }
@@ -138,7 +139,7 @@ std::vector<TradePoint> measured_on_a_busy_machine(std::span<const TrueSetting> 
 std::vector<std::string> sorted_front(const Trade& trade) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < trade.points.size(); ++i)
-    if (trade.on_pareto_front[i]) names.push_back(trade.points[i].name);
+    if (trade.on_pareto_front[i]) names.push_back(trade.points[i].variant.name);
   std::ranges::sort(names);
   return names;
 }
@@ -153,7 +154,7 @@ constexpr std::array<TrueSetting, 6> kTrueSettings{{{"fast", 0.3, 0.08},
 TEST(SpeedErrorTrade, RepeatedMeasurementsOnABusyMachineGiveTheSameParetoFront) {
   std::mt19937 random(5);
   for (int run = 0; run < 200; ++run) {
-    EXPECT_THAT(sorted_front(trade_of(measured_on_a_busy_machine(kTrueSettings, random))),
+    EXPECT_THAT(sorted_front(find_pareto_front(measured_on_a_busy_machine(kTrueSettings, random))),
                 testing::ElementsAre("fair", "fast", "slow"));
   }
 }
@@ -164,7 +165,7 @@ TEST(SpeedErrorTrade, SettingThatBecomesFasterEntersTheParetoFrontOnABusyMachine
   settings[3] = {"faster but worse", 0.4, 0.06};
   settings[0].time = settings[1].time = 0.1;
   for (int run = 0; run < 200; ++run) {
-    EXPECT_THAT(sorted_front(trade_of(measured_on_a_busy_machine(settings, random))),
+    EXPECT_THAT(sorted_front(find_pareto_front(measured_on_a_busy_machine(settings, random))),
                 testing::ElementsAre("fair", "fast", "faster but worse", "slow"));
   }
 }
@@ -173,17 +174,17 @@ TEST(VariantCost, CostIsTheMedianRatioOfTimedPairsWithHalfTheInterquartileRangeA
   std::vector<TimedPair> pairs;
   for (const double ratio : {2.0, 1.0, 9.0, 3.0, 4.0})
     pairs.push_back({{10.0, 7.0}, {10.0 * ratio, 14.0 * ratio}});
-  const VariantCost cost = cost_of(pairs, 5);
+  const VariantCost cost = median_cost(pairs, 5);
   EXPECT_DOUBLE_EQ(cost.gpu, 3.0);
   EXPECT_DOUBLE_EQ(cost.gpu_spread, 1.0);
   EXPECT_DOUBLE_EQ(cost.processor, 6.0);
   EXPECT_DOUBLE_EQ(cost.processor_spread, 2.0);
   EXPECT_EQ(cost.bytes, 5u);
-  EXPECT_EQ(cost_of({}, 5).gpu, 1.0);
+  EXPECT_EQ(median_cost({}, 5).gpu, 1.0);
 }
 
 TEST(SpeedErrorTrade, OnlyOneOfSeveralEqualSettingsIsOnTheParetoFront) {
-  const Trade trade = trade_of({point("a", 1, 0.1), point("b", 1, 0.1)});
+  const Trade trade = find_pareto_front({point("a", 1, 0.1), point("b", 1, 0.1)});
   EXPECT_EQ(trade.on_pareto_front, (std::vector<bool>{true, false}));
 }
 
@@ -200,19 +201,19 @@ TEST(SamplingGrid, GridHasEveryPairOfStepsAndSlicesOrderedBySteps) {
 }
 
 TEST(SpeedErrorTrade, SeveralScenesAreCombinedByMeanTimeAndRootMeanSquareError) {
-  const std::vector<std::vector<TradePoint>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
-  const std::vector<TradePoint> all = over_scenes(scenes);
+  const std::vector<std::vector<Measurement>> scenes{{point("a", 1, 0.3)}, {point("a", 3, 0.4)}};
+  const std::vector<Measurement> all = over_scenes(scenes);
   ASSERT_EQ(all.size(), 1u);
   EXPECT_DOUBLE_EQ(all[0].time_ms, 2.0);
   EXPECT_DOUBLE_EQ(all[0].processor_ms, 4.0);
-  EXPECT_NEAR(all[0].rmse, std::sqrt(0.125), 1e-12);
-  EXPECT_EQ(all[0].bytes, 1000u);
+  EXPECT_NEAR(all[0].scene.rmse, std::sqrt(0.125), 1e-12);
+  EXPECT_EQ(all[0].cost.bytes, 1000u);
 }
 
 TEST(TradePlot, PlotLabelsOnlyPointsOnTheParetoFrontAndEscapesText) {
-  const std::string plot =
-      plot_of(trade_of({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
-              "scene & size", "modelled time");
+  const std::string plot = draw_plot(
+      find_pareto_front({point("fast", 1, 0.1), point("a < b", 30, 0.05), point("off", 40, 0.06)}),
+      "scene & size", "modelled time");
   EXPECT_NE(plot.find(">fast</text>"), std::string::npos);
   EXPECT_NE(plot.find(">a &lt; b</text>"), std::string::npos);
   EXPECT_NE(plot.find("scene &amp; size"), std::string::npos);
@@ -240,13 +241,13 @@ std::vector<PlacedName> placed_names(const std::string& plot, const std::string&
 }
 
 TEST(TradePlot, LabelsOfAdjacentPointsInThePlotDoNotOverlap) {
-  std::vector<TradePoint> points;
+  std::vector<Measurement> points;
   for (int i = 0; i < 9; ++i) {
     points.push_back(
         point("setting number " + std::to_string(i), 1.0 + 0.02 * i, 0.1 - 0.0005 * i));
   }
   const std::vector<PlacedName> names =
-      placed_names(plot_of(trade_of(points), "close", "time"), "setting number");
+      placed_names(draw_plot(find_pareto_front(points), "close", "time"), "setting number");
   ASSERT_EQ(names.size(), points.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -259,7 +260,7 @@ TEST(TradePlot, LabelsOfAdjacentPointsInThePlotDoNotOverlap) {
 }
 
 TEST(TradePlot, PlotOfASinglePointIsValid) {
-  const std::string plot = plot_of(trade_of({point("only", 1, 0.0)}), "one", "time");
+  const std::string plot = draw_plot(find_pareto_front({point("only", 1, 0.0)}), "one", "time");
   EXPECT_NE(plot.find("<circle"), std::string::npos);
   EXPECT_EQ(plot.find("nan"), std::string::npos);
 }

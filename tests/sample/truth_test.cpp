@@ -160,7 +160,7 @@ TEST(RayTracedTruth, SpecularVisibilityOfAnUnoccludedPlaneIsOne) {
   const View view = view_of(*rays, analytic->scene.cameras[0], 16, 9);
   for (const float r : {0.05f, 0.3f, 1.0f}) {
     const auto truth = specular_truth(*rays, view.points, Image<float>(16, 9, r),
-                                      viewer_of(analytic->scene.cameras[0]), {1.0f, 64, 1});
+                                      make_viewer(analytic->scene.cameras[0]), {1.0f, 64, 1});
     for (const float v : truth.pixels) ASSERT_EQ(v, 1.0f) << r;
   }
 }

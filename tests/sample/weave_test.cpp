@@ -28,10 +28,10 @@ const Image<float>& smooth_truth() {
 const Mask kEverywhere(kSize, kSize, 1);
 
 Weave weave_of_error(const std::function<float(std::uint32_t x, std::uint32_t y)>& error) {
-  return weave_of(image_of([&](std::uint32_t x, std::uint32_t y) {
-                    return smooth_truth().at(x, y) + error(x, y);
-                  }),
-                  smooth_truth(), kEverywhere);
+  return measure_weave(image_of([&](std::uint32_t x, std::uint32_t y) {
+                         return smooth_truth().at(x, y) + error(x, y);
+                       }),
+                       smooth_truth(), kEverywhere);
 }
 
 // The first window begins at 0 and the next ones every 16 pixels.
@@ -161,12 +161,12 @@ TEST(WeavePattern, ImageWindowsWithSkyOrWithDetailInTheTruthAreNotCounted) {
   Image<float> truth = smooth_truth();
   for (std::uint32_t y = 0; y < 32; ++y)
     for (std::uint32_t x = 0; x < 10; ++x) truth.at(x, y) *= 0.5f;  // a crease in two others
-  EXPECT_EQ(weave_of(truth, truth, surfaces).windows, kWindowsOnASide * kWindowsOnASide - 6);
+  EXPECT_EQ(measure_weave(truth, truth, surfaces).windows, kWindowsOnASide * kWindowsOnASide - 6);
 }
 
 TEST(WeavePattern, ImageSmallerThanAMeasuringWindowHasNoWindows) {
   const Image<float> small(31, 31, 0.5f);
-  const Weave weave = weave_of(small, small, Mask(31, 31, 1));
+  const Weave weave = measure_weave(small, small, Mask(31, 31, 1));
   EXPECT_EQ(weave.windows, 0u);
   EXPECT_EQ(weave.rms(), 0.0);
   EXPECT_EQ(weave.visible_fraction(), 0.0);
@@ -175,7 +175,7 @@ TEST(WeavePattern, ImageSmallerThanAMeasuringWindowHasNoWindows) {
 TEST(WeavePattern, PixelThatIsNaNDoesNotAffectOtherWindows) {
   Image<float> result = smooth_truth();
   result.at(5, 5) = NAN;
-  const Weave weave = weave_of(result, smooth_truth(), kEverywhere);
+  const Weave weave = measure_weave(result, smooth_truth(), kEverywhere);
   EXPECT_EQ(weave.windows, kWindowsOnASide * kWindowsOnASide - 1);
   EXPECT_LT(weave.rms(), 1e-6);
 }

@@ -73,38 +73,25 @@ Result<InvariancePairRow> run_invariance_pair(Gpu& gpu, const Session& session,
                                           common_surfaces(pair, images, others))};
 }
 
-// Replaces the ratios of device timestamps by those of the modelled times of a moving frame.
-Result<void> model_times(const Options& options, std::vector<VariantErrors>& rows) {
-  ALCOVE_TRY(const auto times, modelled_times(options));
-  constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
-  double base_ms = 0;
-  for (VariantErrors& row : rows) {
-    ALCOVE_TRY(const auto ms, times.measure(row.variant.settings));
-    base_ms = &row == rows.data() ? ms[kMoving] : base_ms;
-    row.cost.gpu = ms[kMoving] / base_ms;
-  }
-  return {};
-}
-
-std::string table_of(const std::vector<VariantErrors>& rows, Clock clock) {
+std::string format_table(const std::vector<Measurement>& rows, Clock clock) {
   std::string out = fmt::format(
       "RMSE of visibility over {} pixels, and cost relative to the first row\n"
       "  {:47}scene truth   height field    bias {:>5}   processor   MiB\n",
       rows.front().scene.count, "", clock == Clock::modelled ? "model" : "GPU");
   std::string part;
-  for (const VariantErrors& row : rows) {
+  for (const Measurement& row : rows) {
     const bool begins = row.variant.part != part;
     part = row.variant.part;
-    out += fmt::format("  {:15}{:32}{:10.4f}{:15.4f}{:+10.3f}{:>6}{:10.2f}{:9.1f}\n",
-                       begins ? part : "", row.variant.name, row.scene.rmse, row.height_field.rmse,
-                       row.scene.bias,
-                       clock == Clock::processor ? "-" : fmt::format("{:.2f}", row.cost.gpu),
-                       row.cost.processor, mib(row.cost.bytes));
+    out += fmt::format(
+        "  {:15}{:32}{:10.4f}{:15.4f}{:+10.3f}{:>6}{:10.2f}{:9.1f}\n", begins ? part : "",
+        row.variant.name, row.scene.rmse, row.height_field.rmse, row.scene.bias,
+        clock == Clock::processor ? "-" : fmt::format("{:.2f}", row.time_ms / rows.front().time_ms),
+        row.cost.processor, mib(row.cost.bytes));
   }
   return out;
 }
 
-std::string table_of(const std::vector<InvariancePairRow>& rows) {
+std::string format_table(const std::vector<InvariancePairRow>& rows) {
   std::string out =
       "Difference of visibility between equal views              RMS   95 % within    pixels\n";
   for (const InvariancePairRow& row : rows) {
@@ -114,12 +101,12 @@ std::string table_of(const std::vector<InvariancePairRow>& rows) {
   return out;
 }
 
-Json to_json(const VariantErrors& row) {
+Json to_json(const Measurement& row, const Measurement& base) {
   return {{"part", row.variant.part},
           {"change", row.variant.name},
           {"scene_truth", to_json(row.scene)},
           {"height_field_truth", to_json(row.height_field)},
-          {"gpu_time_ratio", row.cost.gpu},
+          {"time_ratio", row.time_ms / base.time_ms},
           {"processor_time_ratio", row.cost.processor},
           {"bytes", row.cost.bytes}};
 }
@@ -131,15 +118,16 @@ Result<void> run_ablate(const Options& options) {
   // The folder is created first, because the measurement takes minutes.
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   ALCOVE_TRY(const auto clock,
-             choose_clock(session.gpu->device().properties(), *options.gpu, options.clock));
-  ALCOVE_TRY(auto variants,
-             run_variants(session, static_setup(options, session.camera), truth_options(options),
-                          variants_of(session.settings), "changes"));
-  if (clock == Clock::modelled) ALCOVE_TRY_VOID(model_times(options, variants.rows));
-  std::cout << table_of(variants.rows, clock) << std::flush;
+             choose_clock(
+                 session.gpu->device(), [&] { return modelled_times(options); }, options.clock));
+  ALCOVE_TRY(
+      const auto rows,
+      measure_variants(session, static_setup(options, session.camera), truth_options(options),
+                       ablation_variants(session.settings), "changes", &clock));
+  std::cout << format_table(rows, clock.clock) << std::flush;
   std::vector<InvariancePairRow> invariance_pair_rows;
   const std::uint32_t largest = session.gpu->device().properties().limits.maxImageDimension2D;
-  for (const InvariancePair& pair : invariance_pairs_of(session.camera, options.view.height)) {
+  for (const InvariancePair& pair : invariance_pairs(session.camera, options.view.height)) {
     if (pair.scale * std::max(options.view.width, options.view.height) > largest) {
       std::cout << "Skipped: " << pair.name
                 << ": the device does not support images of that size\n";
@@ -149,12 +137,12 @@ Result<void> run_ablate(const Options& options) {
     invariance_pair_rows.push_back(std::move(row));
   }
   ALCOVE_TRY_VOID(check_validation(*session.gpu));
-  std::cout << table_of(invariance_pair_rows);
+  std::cout << format_table(invariance_pair_rows);
   Json report;
   report["device"] = session.gpu->device().properties().deviceName;
   report["settings"] = to_json(session.settings);
   report["frames"] = options.view.frames;
-  for (const VariantErrors& row : variants.rows) report["changes"].push_back(to_json(row));
+  for (const Measurement& row : rows) report["changes"].push_back(to_json(row, rows.front()));
   for (const InvariancePairRow& row : invariance_pair_rows) {
     report["differences"].push_back(
         {{"between", row.name}, {"visibility", to_json(row.difference)}});

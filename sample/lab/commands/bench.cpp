@@ -2,10 +2,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "cli/camera_of.h"
+#include "cli/choose_camera.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
-#include "evaluate/measured_trade.h"
+#include "evaluate/trade.h"
 #include "evaluate/trade_plot.h"
 #include "scene/load_scene.h"
 #include "support/printable.h"
@@ -27,7 +27,7 @@ std::string title_of(const Options& options, const std::string& scene) {
 Result<void> check_scenes(const std::vector<std::string>& scenes, const ViewOptions& view) {
   for (const std::string& name : scenes) {
     ALCOVE_TRY(const auto scene, load_scene(name));
-    ALCOVE_TRY_VOID(camera_of(view, scene));
+    ALCOVE_TRY_VOID(choose_camera(view, scene));
   }
   return {};
 }
@@ -35,7 +35,7 @@ Result<void> check_scenes(const std::vector<std::string>& scenes, const ViewOpti
 // Prints a trade and adds it to `report`.
 void print_trade(const Trade& trade, const std::string& title, const std::string& clock,
                  Json& report) {
-  std::cout << title << "\n" << table_of(trade, clock) << std::flush;
+  std::cout << title << "\n" << format_table(trade, clock) << std::flush;
   report["trades"].push_back({{"of", title}, {"points", to_json(trade)}});
 }
 
@@ -60,7 +60,7 @@ Result<void> run_bench(const Options& options) {
   Json report;
   report["frames"] = options.view.frames;
   std::string clock;
-  std::vector<std::vector<TradePoint>> measured;
+  std::vector<std::vector<Measurement>> measured;
   for (const std::string& scene : scenes) {
     Options one = options;
     one.scene = scene;
@@ -71,18 +71,18 @@ Result<void> run_bench(const Options& options) {
       ALCOVE_TRY_VOID(print_grid(session, setup, one, report));
       continue;
     }
-    ALCOVE_TRY(auto trade, measure_trade(session, setup, truth_options(one), one.clock));
+    ALCOVE_TRY(auto trade, measure_trade(session, setup, truth_options(one), *one.gpu, one.clock));
     report["time"] = clock = trade.clock_title;
     std::cout << trade.note;
-    print_trade(trade_of(trade.points), title_of(options, scene), clock, report);
+    print_trade(find_pareto_front(trade.points), title_of(options, scene), clock, report);
     measured.push_back(std::move(trade.points));
   }
   if (options.grid) return write_text(options.out / "report.json", report.dump(2) + "\n");
-  const Trade overall = trade_of(over_scenes(measured));
+  const Trade overall = find_pareto_front(over_scenes(measured));
   const std::string title = scenes.size() == 1 ? title_of(options, scenes.front())
                                                : fmt::format("mean of {} scenes", scenes.size());
   if (scenes.size() > 1) print_trade(overall, title, clock, report);
-  ALCOVE_TRY_VOID(write_text(options.out / "trade.svg", plot_of(overall, title, clock)));
+  ALCOVE_TRY_VOID(write_text(options.out / "trade.svg", draw_plot(overall, title, clock)));
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
     std::cout << "trade.svg and report.json are in " << options.out.string() << "\n";
   });

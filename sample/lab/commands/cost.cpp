@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "alcove/passes/setting_names.h"
@@ -17,53 +19,42 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 
 // The preset with the changes of --set. With --outputs, also with each further output.
-Result<std::vector<LabelledSettings>> settings_of(const Options& options, passes::Quality quality) {
+Result<std::vector<LabelledSettings>> labelled_settings(const Options& options,
+                                                        passes::Quality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
   one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
   const auto settings = occlusion_settings(one, 1.0f);
   if (!settings) return Failure(settings.error());
-  LabelledSettings given{std::string(passes::name_of(quality)),
-                         {.width = options.view.width,
-                          .height = options.view.height,
-                          .normals = options.occlusion.normals != NormalSource::depth,
-                          .motion = options.cost.motion_vectors,
-                          .area = options.cost.area,
-                          .mask = options.cost.mask,
-                          .samples = options.cost.samples,
-                          .settings = *settings},
-                         ""};
-  for (const auto& [name, value] : options.occlusion.set) given.label += " " + name + "=" + value;
-  if (!options.cost.outputs) return std::vector{std::move(given)};
+  LabelledSettings plain{std::string(passes::name_of(quality)), options.cost.inputs, ""};
+  plain.inputs.width = options.view.width;
+  plain.inputs.height = options.view.height;
+  plain.inputs.normals = options.occlusion.normals != NormalSource::depth;
+  plain.inputs.settings = *settings;
+  for (const auto& [name, value] : options.occlusion.set) plain.label += " " + name + "=" + value;
+  if (!options.cost.outputs) return std::vector{std::move(plain)};
   if (settings->bent_normal || settings->specular != passes::Specular::none) {
     return Failure(
         "--outputs compares settings with and without bent normals and specular occlusion; leave "
         "bent_normal and specular out of --set.");
   }
-  auto [bent, specular] = with_each_output(given);
-  return std::vector{std::move(given), std::move(bent), std::move(specular)};
+  auto [bent, specular] = with_each_output(plain);
+  return std::vector{std::move(plain), std::move(bent), std::move(specular)};
 }
 
 Result<std::vector<SettingsCost>> measure(const Options& options) {
-  std::vector<SettingsCost> costs;
-  for (const GpuPart& part : kGpuParts) {
-    if (!options.cost.family.empty() && options.cost.family != part.family) continue;
-    ALCOVE_TRY(const auto device, create_null_device(part.family));
-    for (const passes::Quality quality : chosen_presets(options.occlusion)) {
-      ALCOVE_TRY(const auto all, settings_of(options, quality));
-      for (const LabelledSettings& settings : all) {
-        ALCOVE_TRY(auto cost, cost_of(part, device, settings));
-        costs.push_back(std::move(cost));
-      }
-    }
+  std::vector<LabelledSettings> settings;
+  for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+    ALCOVE_TRY(auto all, labelled_settings(options, quality));
+    std::ranges::move(all, std::back_inserter(settings));
   }
-  return costs;
+  return model_costs(settings, options.gpu);
 }
 
 Result<void> write_budget(const std::filesystem::path& file) {
   ALCOVE_TRY(const auto device, create_null_device(kGpuParts.front().family));
-  ALCOVE_TRY(const auto costs, budgeted_costs());
-  return write_text(file, budget_of(costs, compiler_name(device)));
+  ALCOVE_TRY(const auto costs, model_costs(budgeted_settings()));
+  return write_text(file, format_budget(costs, device.compiler));
 }
 
 }  // namespace
@@ -71,12 +62,12 @@ Result<void> write_budget(const std::filesystem::path& file) {
 Result<void> run_cost(const Options& options) {
   if (!options.cost.budget.empty()) return write_budget(options.cost.budget);
   ALCOVE_TRY(const auto costs, measure(options));
-  std::cout << table_of(costs, options.cost.loops);
+  std::cout << format_table(costs, options.cost.loops);
   Result<void> written;
   if (!options.cost.json.empty())
     written = write_text(options.cost.json, to_json(costs).dump(2) + "\n");
   if (written && !options.cost.chart.empty())
-    written = write_text(options.cost.chart, chart_of(costs));
+    written = write_text(options.cost.chart, draw_chart(costs));
   return written;
 }
 

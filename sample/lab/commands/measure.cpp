@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -8,10 +9,10 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/settings.h"
-#include "commands/dispatch_cost.h"
 #include "gpu/pipeline_capture.h"
 #include "gpu_cost/cost_report.h"
 #include "render/frame_renderer.h"
+#include "spirv/empty.h"
 #include "support/median.h"
 #include "support/result.h"
 #include "support/whole_file.h"
@@ -21,7 +22,88 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr float kOrbit = 0.007f;  // radians per frame
+constexpr float kOrbit = 0.007f;            // radians per frame
+constexpr std::uint32_t kDispatches = 256;  // empty ones of a pass
+constexpr std::uint32_t kRuns = 20;         // of these passes
+
+// A pipeline that does nothing. Its handles are null until they are created.
+struct EmptyPipeline {
+  explicit EmptyPipeline(VkDevice of) : device(of) {}
+  ~EmptyPipeline() {
+    vkDestroyPipeline(device, pipeline, nullptr);
+    vkDestroyPipelineLayout(device, layout, nullptr);
+    vkDestroyShaderModule(device, module, nullptr);
+  }
+  EmptyPipeline(const EmptyPipeline&) = delete;
+  EmptyPipeline& operator=(const EmptyPipeline&) = delete;
+
+  VkResult create() {
+    const VkShaderModuleCreateInfo code{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = sizeof kEmpty,
+                                        .pCode = kEmpty};
+    const VkPipelineLayoutCreateInfo empty{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+    VkResult result = vkCreateShaderModule(device, &code, nullptr, &module);
+    if (result == VK_SUCCESS) result = vkCreatePipelineLayout(device, &empty, nullptr, &layout);
+    if (result != VK_SUCCESS) return result;
+    const VkComputePipelineCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main"},
+        .layout = layout};
+    return vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);
+  }
+
+  VkDevice device;
+  VkShaderModule module = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+void record(VkCommandBuffer commands, VkPipeline pipeline, bool barriers) {
+  const VkMemoryBarrier2 written{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                 .srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                 .srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                                 .dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                 .dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+  const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                    .memoryBarrierCount = 1,
+                                    .pMemoryBarriers = &written};
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+  for (std::uint32_t i = 0; i < kDispatches; ++i) {
+    if (barriers) vkCmdPipelineBarrier2(commands, &dependency);
+    vkCmdDispatch(commands, 1, 1, 1);
+  }
+}
+
+// The GPU time of dispatches of one workgroup that does nothing, in microseconds; medians.
+struct DispatchCost {
+  double alone_us = 0;           // of one in a row of dispatches without barriers
+  double behind_barrier_us = 0;  // of one that waits for the memory writes of the one before
+};
+
+Result<DispatchCost> measure_dispatch_cost(Gpu& gpu) {
+  EmptyPipeline empty(gpu.device().device());
+  ALCOVE_TRY_VOID(check(empty.create(), "create an empty pipeline"));
+  std::array<std::vector<double>, 2> microseconds;
+  for (std::uint32_t run = 0; run < kRuns; ++run) {
+    ALCOVE_TRY_VOID(gpu.run([&](Graph& graph) -> Result<void> {
+      for (const bool barriers : {false, true}) {
+        auto pass = graph.add_pass("empty dispatches");
+        pass.side_effect();
+        pass.record([pipeline = empty.pipeline, barriers](RecordContext& context) {
+          record(context.commands, pipeline, barriers);
+        });
+      }
+      return {};
+    }));
+    const auto timings = gpu.timings();
+    for (std::size_t i = 0; i < timings.size(); ++i)
+      microseconds.at(i).push_back(timings[i].milliseconds * 1e3 / kDispatches);
+  }
+  return DispatchCost{median(microseconds[0]), median(microseconds[1])};
+}
 
 // The median GPU times of the passes of one choice of settings at one size, in milliseconds.
 struct MeasuredFrame {
@@ -91,7 +173,7 @@ Json print(const MeasuredFrame& frame) {
   std::cout << fmt::format("{}, {}x{}, moving camera: measured ms", frame.settings.label,
                            inputs.width, inputs.height);
   for (const auto& [part, model] : models)
-    std::cout << fmt::format("; modelled {} ms, measured / modelled", part->family);
+    std::cout << fmt::format("; modelled {} ms, measured / modelled", part->name);
   std::cout << "\n";
   Json passes = Json::array();
   for (const PassTime& pass : frame.passes) {
@@ -102,8 +184,8 @@ Json print(const MeasuredFrame& frame) {
       if (own != model.passes.end()) {
         const double ratio = pass.milliseconds / own->milliseconds();
         std::cout << fmt::format("{:12.4f}{:8.2f}", own->milliseconds(), ratio);
-        row["modelled"][std::string(part->family)] = {{"ms", own->milliseconds()},
-                                                      {"quotient", ratio}};
+        row["modelled"][std::string(part->name)] = {{"ms", own->milliseconds()},
+                                                    {"quotient", ratio}};
       }
     }
     std::cout << "\n";
@@ -156,7 +238,7 @@ Result<void> run_measure(const Options& options) {
   ALCOVE_TRY(session.gpu, open_gpu(session.device));
   const VulkanDevice& device = session.gpu->device();
   std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
-  ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(device));
+  ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(*session.gpu));
   std::cout << fmt::format("An empty dispatch takes {:.2f} microseconds, behind a barrier {:.2f}\n",
                            dispatch.alone_us, dispatch.behind_barrier_us);
   Json report{{"device", device.properties().deviceName},

@@ -134,7 +134,7 @@ class ScenePage {
     json_["split"] = to_json(split);
     for (const ErrorCause& cause : split.causes) {
       const std::string name = fmt::format("{}: {:.1f} %", cause.name, 100.0 * cause.share);
-      ALCOVE_TRY_VOID(add_picture("causes", name, picture_of(cause)));
+      ALCOVE_TRY_VOID(add_picture("causes", name, cause_picture(cause)));
     }
     return {};
   }

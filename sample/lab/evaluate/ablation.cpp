@@ -138,7 +138,7 @@ InvariancePair orthographic_pair(const Camera& camera, std::uint32_t height) {
 
 }  // namespace
 
-std::vector<Variant> variants_of(const OcclusionSettings& base) {
+std::vector<Variant> ablation_variants(const OcclusionSettings& base) {
   VariantList list(base);
   add_estimators(list);
   add_occluders(list, base);
@@ -147,7 +147,7 @@ std::vector<Variant> variants_of(const OcclusionSettings& base) {
   return list.take();
 }
 
-std::vector<InvariancePair> invariance_pairs_of(const Camera& camera, std::uint32_t height) {
+std::vector<InvariancePair> invariance_pairs(const Camera& camera, std::uint32_t height) {
   std::vector<InvariancePair> all;
   all.push_back({"reversed depth, and standard depth", camera, camera});
   all.back().first.reversed_z = true;

@@ -13,7 +13,7 @@
 namespace alcove::sample {
 
 // `base` with each part replaced or disabled, one at a time. No variant equals `base`.
-[[nodiscard]] std::vector<Variant> variants_of(const passes::OcclusionSettings& base);
+[[nodiscard]] std::vector<Variant> ablation_variants(const passes::OcclusionSettings& base);
 
 // Two descriptions of one view, which should give the same image.
 struct InvariancePair {
@@ -28,7 +28,7 @@ struct InvariancePair {
 };
 
 // `height`: height of the image in pixels.
-[[nodiscard]] std::vector<InvariancePair> invariance_pairs_of(const Camera& camera,
-                                                              std::uint32_t height);
+[[nodiscard]] std::vector<InvariancePair> invariance_pairs(const Camera& camera,
+                                                           std::uint32_t height);
 
 }  // namespace alcove::sample

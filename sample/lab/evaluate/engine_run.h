@@ -1,12 +1,16 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "alcove/alcove.h"
 #include "gpu/gpu.h"
+#include "gpu/gpu_image.h"
+#include "render/gbuffer.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/image.h"
@@ -71,6 +75,7 @@ class EngineRun {
   [[nodiscard]] static Result<std::unique_ptr<EngineRun>> create(Gpu& gpu, const Scene& scene,
                                                                  const Camera& camera,
                                                                  const EngineCourse& course);
+
   ~EngineRun();
   EngineRun(const EngineRun&) = delete;
   EngineRun& operator=(const EngineRun&) = delete;
@@ -82,9 +87,44 @@ class EngineRun {
                                           bool submit_late = false);
 
  private:
-  struct State;
-  explicit EngineRun(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  static constexpr std::uint32_t kSlots = 2;
+  // A frame of the course, before a mistake is made.
+  struct DrawnFrame {
+    AlcoveView view{};
+    OtherInputs other;
+  };
+  struct DestroyContext {
+    void operator()(AlcoveContext* context) const { alcoveDestroyContext(context); }
+  };
+
+  EngineRun(Gpu& gpu, const Camera& camera, const EngineCourse& course)
+      : gpu_(gpu), camera_(camera), course_(course) {}
+  Result<void> create_commands();
+  Result<void> create_context();
+  Result<AlcoveImage> create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usage);
+  template <typename Texel>
+  Result<AlcoveImage> create_filled(VkFormat format, VkExtent2D size,
+                                    const std::vector<Texel>& texels);
+  framegraph::Texture import(Graph& graph, const AlcoveImage& image, bool fill) const;
+  template <typename Texel>
+  Result<std::vector<Texel>> read(const AlcoveImage& image);
+  VkExtent2D size_at(std::uint32_t frame) const;
+  CameraMatrices matrices_at(std::uint32_t frame, bool with_jitter) const;
+  Result<void> draw_frame(std::uint32_t frame);
+  Result<void> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
+  EngineFrame describe(std::uint32_t frame) const;
+  VkResult submit(VkCommandBuffer recorded) const;  // and waits until it has finished
+
+  Gpu& gpu_;
+  Camera camera_;
+  EngineCourse course_;
+  std::unique_ptr<GbufferRenderer> gbuffer_;
+  std::vector<std::unique_ptr<GpuImage>> images_;
+  std::vector<DrawnFrame> frames_;
+  std::unique_ptr<AlcoveContext, DestroyContext> context_;
+  std::uint32_t next_id_ = 0;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::array<VkCommandBuffer, kSlots> commands_{};
 };
 
 }  // namespace alcove::sample

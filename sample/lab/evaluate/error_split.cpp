@@ -133,7 +133,7 @@ Result<ErrorSplit> split_error(Gpu& gpu, const Scene& scene, const StaticSetup& 
   return Splitter(gpu, scene, truth, surfaces).split(setup, settings);
 }
 
-std::string table_of(const ErrorSplit& split) {
+std::string format_table(const ErrorSplit& split) {
   std::string out = fmt::format("Causes of the squared error, RMSE {:.4f}\n", split.rmse);
   for (const ErrorCause& cause : split.causes) {
     out += fmt::format("  {:46}{:7.1f} %{}\n", cause.name, 100.0 * cause.share,
@@ -149,13 +149,13 @@ nlohmann::ordered_json to_json(const ErrorSplit& split) {
   return list;
 }
 
-Image<glm::vec3> picture_of(const ErrorCause& cause) {
+Image<glm::vec3> cause_picture(const ErrorCause& cause) {
   return error_colours(cause.before, cause.after);
 }
 
 Result<void> write_pictures(const ErrorSplit& split, const std::filesystem::path& folder) {
   for (const ErrorCause& cause : split.causes)
-    ALCOVE_TRY_VOID(write_png(folder / ("split_" + cause.key + ".png"), picture_of(cause)));
+    ALCOVE_TRY_VOID(write_png(folder / ("split_" + cause.key + ".png"), cause_picture(cause)));
   return {};
 }
 

@@ -45,12 +45,12 @@ struct ErrorSplit {
                                              const Image<float>& truth, const Mask& surfaces);
 
 // A line for each cause.
-[[nodiscard]] std::string table_of(const ErrorSplit& split);
+[[nodiscard]] std::string format_table(const ErrorSplit& split);
 [[nodiscard]] nlohmann::ordered_json to_json(const ErrorSplit& split);
 
 // Returns the change of visibility that the remedy causes, in the colours of error_colours(). The
 // changes of all remedies that lower the error add up to the error.
-[[nodiscard]] Image<glm::vec3> picture_of(const ErrorCause& cause);
+[[nodiscard]] Image<glm::vec3> cause_picture(const ErrorCause& cause);
 // Writes the picture of each cause as split_*.png.
 [[nodiscard]] Result<void> write_pictures(const ErrorSplit& split,
                                           const std::filesystem::path& folder);

@@ -28,8 +28,8 @@ Image<glm::vec3> grey(const Image<float>& values) {
 
 // Returns the specular occlusion that `model` derives from visibility and bent normal. The model
 // `slices` also uses the slices themselves, which do not exist here, so the table is used instead.
-float specular_of(passes::Specular model, float visibility, const glm::vec3& bent,
-                  const glm::vec3& normal, const glm::vec3& view, float roughness) {
+float modelled_specular(passes::Specular model, float visibility, const glm::vec3& bent,
+                        const glm::vec3& normal, const glm::vec3& view, float roughness) {
   const float alpha = roughness * roughness;
   const glm::vec3 mirror = maths::mirror_direction(normal, view);
   const glm::vec3 raised = maths::raised_bent_normal(bent, normal, visibility);
@@ -44,16 +44,16 @@ float specular_of(passes::Specular model, float visibility, const glm::vec3& ben
 }
 
 // The rendering's model applied to the true visibility and bent normal.
-Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth& truth,
-                               const IndirectTruths& light, const Image<float>& roughness) {
-  const Viewer viewer = viewer_of(rendering.camera);
+Image<float> specular_from_truth(const Rendering& rendering, const OcclusionTruth& truth,
+                                 const IndirectTruths& light, const Image<float>& roughness) {
+  const Viewer viewer = make_viewer(rendering.camera);
   Image<float> result(roughness.width, roughness.height, 1.0f);
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     if (light.sampled.pixels[i] != 0) {
       const glm::vec3 view = view_from(viewer, light.points.position_ws.pixels[i]);
-      result.pixels[i] = specular_of(rendering.settings.specular, truth.visibility.pixels[i],
-                                     truth.bent_normal_ws.pixels[i],
-                                     light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
+      result.pixels[i] = modelled_specular(
+          rendering.settings.specular, truth.visibility.pixels[i], truth.bent_normal_ws.pixels[i],
+          light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
     }
   }
   return result;
@@ -62,8 +62,8 @@ Image<float> specular_of_truth(const Rendering& rendering, const OcclusionTruth&
 // Returns the smallest RMSE that any function of visibility and albedo can have. Values (channels
 // of pixels) whose visibility and albedo are equal after quantisation form a cell. The result is
 // the RMS deviation of the truth from the mean of its cell.
-double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
-                 const Image<glm::vec3>& truth, const Mask& mask) {
+double least_spread(const Image<float>& visibility, const Image<glm::vec3>& albedo,
+                    const Image<glm::vec3>& truth, const Mask& mask) {
   constexpr int kVisibilities = 64;
   constexpr int kAlbedos = 16;
   struct Cell {
@@ -97,8 +97,8 @@ double spread_of(const Image<float>& visibility, const Image<glm::vec3>& albedo,
 
 }  // namespace
 
-IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& truths,
-                                  const IndirectTruths& light) {
+IndirectErrors measure_indirect_errors(const Rendering& rendering, const Truths& truths,
+                                       const IndirectTruths& light) {
   const FrameImages& images = rendering.images;
   const Image<float>& visibility = truths.scene.visibility;
   IndirectErrors errors;
@@ -106,7 +106,8 @@ IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& trut
   errors.bounced_truth =
       compare_images(bounced(visibility, images.albedo), light.interreflection, light.sampled);
   errors.unbounced_truth = compare_images(grey(visibility), light.interreflection, light.sampled);
-  errors.bounced_best = spread_of(visibility, images.albedo, light.interreflection, light.sampled);
+  errors.bounced_best =
+      least_spread(visibility, images.albedo, light.interreflection, light.sampled);
   const std::vector<Image<float>> roughness = roughness_images(rendering);
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   for (std::size_t i = 0; i < roughness.size(); ++i) {
@@ -114,7 +115,7 @@ IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& trut
     errors.specular.push_back(
         {roughness_name(rendering.light, i),
          compare_images(images.specular_occlusion[i], truth, light.sampled),
-         compare_images(specular_of_truth(rendering, truths.scene, light, roughness[i]), truth,
+         compare_images(specular_from_truth(rendering, truths.scene, light, roughness[i]), truth,
                         light.sampled),
          compare_images(open, truth, light.sampled)});
   }

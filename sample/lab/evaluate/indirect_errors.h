@@ -27,8 +27,9 @@ struct IndirectErrors {
   std::vector<SpecularErrors> specular;
 };
 
-[[nodiscard]] IndirectErrors indirect_errors_of(const Rendering& rendering, const Truths& truths,
-                                                const IndirectTruths& light);
+[[nodiscard]] IndirectErrors measure_indirect_errors(const Rendering& rendering,
+                                                     const Truths& truths,
+                                                     const IndirectTruths& light);
 // The members of `errors` in report.json: `multi_bounce` and `specular_occlusion`.
 [[nodiscard]] nlohmann::ordered_json to_json(const IndirectErrors& errors);
 [[nodiscard]] std::string indirect_error_table(const IndirectErrors& errors);

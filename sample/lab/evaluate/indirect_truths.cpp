@@ -69,7 +69,7 @@ class CachedTracer {
     key.add("specular", roughness);
     Image<float> truth(points_.normal_ws.width, points_.normal_ws.height);
     if (!cache_.read(key, truth)) {
-      truth = specular_truth(rays_, points_, roughness, viewer_of(rendering_.camera), settings_,
+      truth = specular_truth(rays_, points_, roughness, make_viewer(rendering_.camera), settings_,
                              print_progress("specular truth"));
       cache_.write(key, truth);
     }
@@ -87,7 +87,7 @@ class CachedTracer {
     LitTruth truth{{width, height}, {width, height}, {width, height}, {width, height}};
     if (!cache_.read_all(key, truth.diffuse, truth.specular, truth.diffuse_noise,
                          truth.specular_noise)) {
-      truth = lit_truth(rays_, points_, materials, viewer_of(rendering_.camera),
+      truth = lit_truth(rays_, points_, materials, make_viewer(rendering_.camera),
                         rendering_.light.environment, settings_, print_progress("lit truth"));
       cache_.write_all(key, truth.diffuse, truth.specular, truth.diffuse_noise,
                        truth.specular_noise);
@@ -115,7 +115,8 @@ std::vector<Image<float>> roughness_images(const Rendering& rendering) {
   return images;
 }
 
-Result<IndirectTruths> indirect_truths_of(const Rendering& rendering, const TruthOptions& options) {
+Result<IndirectTruths> compute_indirect_truths(const Rendering& rendering,
+                                               const TruthOptions& options) {
   ALCOVE_TRY(const auto rays, RayScene::create(rendering.scene));
   const Image<float> depth = linear_depth(rendering);
   IndirectTruths truths;

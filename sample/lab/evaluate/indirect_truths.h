@@ -28,7 +28,7 @@ struct IndirectTruths {
 [[nodiscard]] std::vector<Image<float>> roughness_images(const Rendering& rendering);
 
 // Computes them, or takes them from the cache on disk. Progress on stderr.
-[[nodiscard]] Result<IndirectTruths> indirect_truths_of(const Rendering& rendering,
-                                                        const TruthOptions& options);
+[[nodiscard]] Result<IndirectTruths> compute_indirect_truths(const Rendering& rendering,
+                                                             const TruthOptions& options);
 
 }  // namespace alcove::sample

@@ -34,8 +34,8 @@ double mean_over(const Mask& mask, const Image<glm::vec3>& image, const Value& v
 }
 
 // An image with one pixel for each block: the traced one, or a sky pixel if none was traced.
-Image<glm::vec3> of_blocks(const Image<glm::vec3>& picture, const IndirectTruths& light,
-                           const Image<float>& depth) {
+Image<glm::vec3> block_pixels(const Image<glm::vec3>& picture, const IndirectTruths& light,
+                              const Image<float>& depth) {
   const std::uint32_t block = light.block;
   Image<glm::vec3> small((picture.width + block - 1) / block, (picture.height + block - 1) / block);
   for (const bool sky : {true, false}) {
@@ -68,7 +68,7 @@ Image<glm::vec3> error_colours(const Image<glm::vec3>& result, const Image<glm::
 
 }  // namespace
 
-LitErrors lit_errors_of(const Rendering& rendering, const IndirectTruths& light) {
+LitErrors measure_lit_errors(const Rendering& rendering, const IndirectTruths& light) {
   const LitImages& images = rendering.images.lit;
   const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
   LitErrors errors;
@@ -134,16 +134,16 @@ Result<void> write_lit_steps(const Rendering& rendering, const IndirectTruths& l
   const double mean = mean_over(light.sampled, truth, [](double x) { return x; });
   const Image<float> depth = linear_depth(rendering);
   const auto tile = [&](const Image<glm::vec3>& picture) {
-    return display_colours(of_blocks(with_sky(rendering, picture), light, depth), exposure);
+    return display_colours(block_pixels(with_sky(rendering, picture), light, depth), exposure);
   };
-  const std::array tiles{
-      tile(images.unoccluded),
-      tile(images.occluded),
-      tile(images.bounced),
-      tile(images.all),
-      tile(images.unbent),
-      tile(truth),
-      error_colours(of_blocks(images.all, light, depth), of_blocks(truth, light, depth), mean)};
+  const std::array tiles{tile(images.unoccluded),
+                         tile(images.occluded),
+                         tile(images.bounced),
+                         tile(images.all),
+                         tile(images.unbent),
+                         tile(truth),
+                         error_colours(block_pixels(images.all, light, depth),
+                                       block_pixels(truth, light, depth), mean)};
   constexpr std::size_t kTruth = 5;
   constexpr std::uint32_t kColumns = 4;
   const std::uint32_t width = tiles[0].width + 2;

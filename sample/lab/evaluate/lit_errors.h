@@ -30,7 +30,7 @@ struct LitErrors {
 };
 
 // The rendering was made with IndirectRequest::lit_steps, and `light.lit` has a value.
-[[nodiscard]] LitErrors lit_errors_of(const Rendering& rendering, const IndirectTruths& light);
+[[nodiscard]] LitErrors measure_lit_errors(const Rendering& rendering, const IndirectTruths& light);
 [[nodiscard]] nlohmann::ordered_json to_json(const LitErrors& errors);
 [[nodiscard]] std::string lit_error_table(const LitErrors& errors);
 

@@ -347,7 +347,7 @@ std::vector<RightCourse> right_courses(const EngineCourse& base) {
   return courses;
 }
 
-Result<std::string> said_of_right_frames(EngineRun& run) {
+Result<std::string> diagnose_right_frames(EngineRun& run) {
   const ChangeFrame ways[] = {{},
                               [](F& f) { scale_motion(f, 1.0f, 1.0f); },
                               [](F& f) { f.view.normals = {}; },

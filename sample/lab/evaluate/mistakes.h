@@ -30,7 +30,7 @@ struct RightCourse {
 
 // Returns what alcoveDiagnose says of frames without a mistake: as they are, with motion vectors,
 // without normals, and with dynamic resolution. It should be nothing.
-[[nodiscard]] Result<std::string> said_of_right_frames(EngineRun& run);
+[[nodiscard]] Result<std::string> diagnose_right_frames(EngineRun& run);
 
 // Draws frames without and with mistakes, of a camera that moves and has jitter.
 class MistakeRun {

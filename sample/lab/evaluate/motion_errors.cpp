@@ -213,7 +213,7 @@ Mask surfaces_where(const RenderedFrame& seen,
   return mask;
 }
 
-Speed speed_of(const Reprojection& reprojection) {
+Speed measure_speed(const Reprojection& reprojection) {
   std::vector<float> speeds;
   RunningMean mean;
   for (std::size_t i = 0; i < reprojection.texels.pixels.size(); ++i) {
@@ -231,7 +231,7 @@ Speed speed_of(const Reprojection& reprojection) {
   return {mean.mean(), percentile(std::move(speeds), 0.95)};
 }
 
-Image<float> mean_of(const SplitTruth<float>& truth) {
+Image<float> mean_image(const SplitTruth<float>& truth) {
   Image<float> mean = truth.first;
   for (std::size_t i = 0; i < mean.pixels.size(); ++i)
     mean.pixels[i] = 0.5f * (truth.first.pixels[i] + truth.second.pixels[i]);

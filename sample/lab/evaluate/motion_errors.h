@@ -67,7 +67,7 @@ struct Speed {
   double mean = 0;
   double percentile_95 = 0;
 };
-[[nodiscard]] Speed speed_of(const Reprojection& reprojection);
+[[nodiscard]] Speed measure_speed(const Reprojection& reprojection);
 
 // A ray-traced image in two halves with independent rays, whose difference gives its noise.
 template <class T>
@@ -75,7 +75,7 @@ struct SplitTruth {
   Image<T> first;
   Image<T> second;
 };
-[[nodiscard]] Image<float> mean_of(const SplitTruth<float>& truth);
+[[nodiscard]] Image<float> mean_image(const SplitTruth<float>& truth);
 
 // Returns a lower bound of visibility_change() for a truth that is traced in two halves. The change
 // in each half is counted with the sign of the change in the other half, so that noise adds nothing

@@ -39,7 +39,7 @@ struct Axes {
   glm::vec3 forward;
 };
 
-Axes axes_of(const Camera& camera) {
+Axes view_axes(const Camera& camera) {
   const glm::mat4 world_from_view = camera_matrices(camera, 1, 1).world_from_view;
   return {glm::vec3(world_from_view[0]), glm::vec3(world_from_view[1]),
           -glm::vec3(world_from_view[2])};
@@ -57,7 +57,7 @@ Camera moved(Camera camera, const glm::vec3& by) {
 }
 
 // The distance from the middle of the path, in frames.
-float from_middle(std::uint32_t frame, std::uint32_t frames) {
+float frames_from_middle(std::uint32_t frame, std::uint32_t frames) {
   return static_cast<float>(frame) - 0.5f * static_cast<float>(frames - 1);
 }
 
@@ -71,7 +71,7 @@ Mesh block_mesh(float half) {
 }
 
 Mesh column_mesh(const MotionStart& start, std::uint32_t frames) {
-  const Axes axes = axes_of(start.camera);
+  const Axes axes = view_axes(start.camera);
   const float depth = kColumnDepth * start.depth;
   const float step = kStrafeStep * height_at(start.camera, start.depth);
   const float radius = kColumnRadius * height_at(start.camera, depth);
@@ -93,7 +93,7 @@ Mesh column_mesh(const MotionStart& start, std::uint32_t frames) {
 
 float object_half_width(const MotionStart& start) {
   const float depth =
-      glm::dot(start.ground_ws - start.camera.eye_ws, axes_of(start.camera).forward);
+      glm::dot(start.ground_ws - start.camera.eye_ws, view_axes(start.camera).forward);
   return kObjectSize * height_at(start.camera, depth);
 }
 
@@ -144,12 +144,12 @@ Result<MotionStart> motion_start(const RayScene& rays, const Camera& camera, flo
 
 MotionPath::MotionPath(MotionKind kind, const MotionStart& start, std::uint32_t frames)
     : kind_(kind), start_(start), frames_(frames) {
-  const Axes axes = axes_of(start.camera);
+  const Axes axes = view_axes(start.camera);
   start_.camera.target_ws = start.camera.eye_ws + axes.forward * start.depth;
 }
 
 Camera MotionPath::camera(std::uint32_t frame) const {
-  const Axes axes = axes_of(start_.camera);
+  const Axes axes = view_axes(start_.camera);
   const auto steps = static_cast<float>(frame);
   switch (kind_) {
     case MotionKind::orbit:
@@ -173,7 +173,7 @@ Camera MotionPath::camera(std::uint32_t frame) const {
 
 glm::mat4 MotionPath::world_from_moving(std::uint32_t frame) const {
   if (kind_ != MotionKind::object) return glm::mat4(1.0f);
-  const Axes axes = axes_of(start_.camera);
+  const Axes axes = view_axes(start_.camera);
   const glm::vec3& up = start_.ground_normal_ws;
   // Rightwards along the ground, or upwards if the ground faces right or left.
   const glm::vec3 sideways = axes.right - up * glm::dot(axes.right, up);
@@ -182,7 +182,7 @@ glm::mat4 MotionPath::world_from_moving(std::uint32_t frame) const {
   const float step = kObjectStep / kObjectSize * half;
   glm::mat4 placed(glm::mat3(direction, up, glm::cross(direction, up)));
   placed[3] = glm::vec4(start_.ground_ws + up * (half + kObjectGap * start_.radius) +
-                            direction * (step * from_middle(frame, frames_)),
+                            direction * (step * frames_from_middle(frame, frames_)),
                         1.0f);
   return glm::rotate(placed, kObjectRotation * static_cast<float>(frame), glm::vec3(0, 1, 0));
 }

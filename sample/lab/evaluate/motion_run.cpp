@@ -11,6 +11,7 @@
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
 #include "render/frame_renderer.h"
+#include "support/progress.h"
 
 namespace alcove::sample {
 namespace {
@@ -44,12 +45,13 @@ class MotionRenderer {
  public:
   static Result<MotionRenderer> create(Gpu& gpu, const Scene& scene, const MotionPath& path,
                                        const MotionSetup& setup) {
-    MotionRenderer made(path, setup);
-    made.scene_ = std::make_unique<Scene>(scene);
-    path.add_to(*made.scene_);
-    ALCOVE_TRY(made.renderer_, FrameRenderer::create(gpu, *made.scene_, {setup.width, setup.height},
-                                                     setup.normals));
-    return made;
+    MotionRenderer renderer(path, setup);
+    renderer.scene_ = std::make_unique<Scene>(scene);
+    path.add_to(*renderer.scene_);
+    ALCOVE_TRY(renderer.renderer_,
+               FrameRenderer::create(gpu, *renderer.scene_, {setup.view.width, setup.view.height},
+                                     setup.view.normals));
+    return renderer;
   }
 
   Result<RenderedFrame> draw_and_read(const Step& step) {
@@ -66,16 +68,13 @@ class MotionRenderer {
   Result<MotionTruth> truth(std::uint32_t frame, const RenderedFrame& seen);
 
   const MotionPath& path() const { return path_; }
-  Progress progress(const std::string& name) const {
-    return setup_.progress ? setup_.progress(name) : Progress([](double) {});
-  }
 
  private:
   MotionRenderer(const MotionPath& path, const MotionSetup& setup) : path_(path), setup_(setup) {}
 
   FrameRequest request(const Step& step) const {
     const auto matrices = [&](std::uint32_t frame) {
-      return camera_matrices(path_.camera(frame), setup_.width, setup_.height);
+      return camera_matrices(path_.camera(frame), setup_.view.width, setup_.view.height);
     };
     const CameraMatrices now = matrices(step.frame);
     const CameraMatrices before = matrices(step.before);
@@ -106,13 +105,14 @@ class MotionRenderer {
 
 Result<MotionTruth> MotionRenderer::truth(std::uint32_t frame, const RenderedFrame& seen) {
   path_.pose(*scene_, frame);
-  const TruthCache cache(setup_.cache);
-  const std::uint32_t half = std::max(setup_.spp / 2, 1u);
+  const TruthCache cache(setup_.truth.use_cache ? TruthCache::default_folder()
+                                                : std::filesystem::path());
+  const std::uint32_t half = std::max(setup_.truth.spp / 2, 1u);
   CacheKey key;
   key.add("motion truth", kMotionTruthVersion, *scene_, seen.camera, setup_.occlusion.radius, half,
           seen.depth, seen.normal_ws);
-  const Image<float> no_visibility(setup_.width, setup_.height);
-  const Image<glm::vec3> no_directions(setup_.width, setup_.height);
+  const Image<float> no_visibility(setup_.view.width, setup_.view.height);
+  const Image<glm::vec3> no_directions(setup_.view.width, setup_.view.height);
   MotionTruth truth{{no_visibility, no_visibility}, {no_directions, no_directions}};
   auto& [visibility, bent_normal_ws] = truth;
   if (cache.read_all(key, visibility.first, visibility.second, bent_normal_ws.first,
@@ -120,7 +120,7 @@ Result<MotionTruth> MotionRenderer::truth(std::uint32_t frame, const RenderedFra
     return truth;
   ALCOVE_TRY(const auto rays, RayScene::create(*scene_));
   const SurfacePoints points = surface_points(rays, seen.camera, seen.normal_ws, seen.depth);
-  const Progress whole = progress(fmt::format("truth of frame {}", frame));
+  const Progress whole = print_progress(fmt::format("truth of frame {}", frame));
   const auto trace = [&](std::uint32_t index) {
     const TruthSettings settings{.radius = setup_.occlusion.radius, .spp = half, .seed = 1 + index};
     return occlusion_truth(rays, points, settings,
@@ -135,11 +135,11 @@ Result<MotionTruth> MotionRenderer::truth(std::uint32_t frame, const RenderedFra
   return truth;
 }
 
-Mask surfaces_of(const RenderedFrame& seen) {
+Mask surface_mask(const RenderedFrame& seen) {
   return surfaces_where(seen, [](const glm::vec3&) { return true; });
 }
 
-Mask pixels_of_age(const Image<Age>& ages, bool uncovered) {
+Mask pixels_with_age(const Image<Age>& ages, bool uncovered) {
   Mask mask(ages.width, ages.height);
   for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
     const Age& age = ages.pixels[i];
@@ -149,7 +149,7 @@ Mask pixels_of_age(const Image<Age>& ages, bool uncovered) {
 }
 
 // A rendered frame that will be compared with the truth.
-struct Compared {
+struct ComparedFrame {
   std::uint32_t frame = 0;
   RenderedFrame seen;
   Image<Age> ages;
@@ -162,7 +162,7 @@ struct PathResult {
   RunningMean change;
   RunningMean speed;
   RunningMean fast;
-  std::vector<Compared> compared;
+  std::vector<ComparedFrame> compared;
 };
 
 std::uint32_t first_converged(const MotionPath& path) { return path.frames() / kCompared; }
@@ -179,10 +179,10 @@ constexpr std::array<const char*, 3> kFilteringNames{" without history and filte
 
 Result<PathResult> render_path(MotionRenderer& renderer, Filtering filtering) {
   const bool history = filtering == Filtering::spatial_and_temporal;
-  PathResult passed;
+  PathResult path_result;
   const MotionPath& path = renderer.path();
-  const Progress progress = renderer.progress(
-      std::string(name_of(path.kind())) + kFilteringNames.at(static_cast<std::size_t>(filtering)));
+  const Progress progress = print_progress(std::string(name_of(path.kind())) +
+                                           kFilteringNames.at(static_cast<std::size_t>(filtering)));
   // Frames before the first measured one are rendered only if there is a history to fill.
   const std::uint32_t first = history ? 0 : first_converged(path) - 1;
   RenderedFrame before;
@@ -200,17 +200,17 @@ Result<PathResult> render_path(MotionRenderer& renderer, Filtering filtering) {
       });
       ages = next_ages(seen, reprojection, ages);
       if (frame >= first_converged(path))
-        passed.change += visibility_change(seen.visibility, before.visibility, reprojection);
-      const Speed speed = speed_of(reprojection);
-      passed.speed += {speed.mean, 1};
-      passed.fast += {speed.percentile_95, 1};
+        path_result.change += visibility_change(seen.visibility, before.visibility, reprojection);
+      const Speed speed = measure_speed(reprojection);
+      path_result.speed += {speed.mean, 1};
+      path_result.fast += {speed.percentile_95, 1};
       if (history && is_compared(path, frame))
-        passed.compared.push_back({frame, seen, ages, std::move(before), reprojection});
+        path_result.compared.push_back({frame, seen, ages, std::move(before), reprojection});
     }
     before = std::move(seen);
     progress(static_cast<double>(frame + 1 - first) / (path.frames() - first));
   }
-  return passed;
+  return path_result;
 }
 
 // The last of a number of frames without motion, and its change since the frame before.
@@ -231,13 +231,13 @@ Result<StaticResult> render_static(MotionRenderer& renderer, std::uint32_t frame
   };
   ALCOVE_TRY(const auto before, read(frame - 1));
   ALCOVE_TRY(auto last, read(frame));
-  StaticResult standing;
+  StaticResult still;
   for (std::size_t i = 0; i < last.depth.pixels.size(); ++i)
     if (std::isfinite(last.depth.pixels[i]))
-      standing.change += {std::abs(last.visibility.pixels[i] - before.visibility.pixels[i]), 1};
-  standing.visibility = std::move(last.visibility);
-  standing.bent_normal_ws = std::move(last.bent_normal_ws);
-  return standing;
+      still.change += {std::abs(last.visibility.pixels[i] - before.visibility.pixels[i]), 1};
+  still.visibility = std::move(last.visibility);
+  still.bent_normal_ws = std::move(last.bent_normal_ws);
+  return still;
 }
 
 // Squared errors with and without motion over the same pixels.
@@ -254,46 +254,43 @@ struct SquaresPair {
   ErrorPair errors() const { return {moving.count, root(moving), root(static_camera)}; }
 };
 
-// Sums over the compared frames.
+// Sums over the compared frames. Those of bent normals are in radians.
 struct Comparison {
-  SquaresPair all;
-  SquaresPair uncovered;
-  SquaresPair entered;
-  SquaresPair near_object;
-  SquaresPair bent_normals;
+  std::array<SquaresPair, kMotionErrorNames.size()> errors;
   RunningMean static_change;
   RunningMean truth_change;
-  Weave weave;
-  Weave static_weave;
-  std::vector<MotionPicture> pictures;
+
+  SquaresPair& operator[](MotionError kind) { return errors[static_cast<std::size_t>(kind)]; }
 };
 
-Result<void> compare(MotionRenderer& renderer, const Compared& compared, Comparison& sums) {
-  ALCOVE_TRY(auto standing, render_static(renderer, compared.frame));
+// Adds a compared frame to the sums and to `report`.
+Result<void> compare(MotionRenderer& renderer, const ComparedFrame& compared, Comparison& sums,
+                     MotionReport& report) {
+  ALCOVE_TRY(auto still, render_static(renderer, compared.frame));
   ALCOVE_TRY(const auto truth, renderer.truth(compared.frame, compared.seen));
   ALCOVE_TRY(const auto truth_before, renderer.truth(compared.frame - 1, compared.before));
   const auto is_near_object = [&](const glm::vec3& position) {
     return renderer.path().is_near_object(position, compared.frame, kTrailFrames);
   };
   const RenderedFrame& seen = compared.seen;
-  const Mask surfaces = surfaces_of(seen);
-  const auto add = [&](SquaresPair& squares, const Mask& mask) {
-    squares.add(seen.visibility, standing.visibility, truth.visibility, mask);
+  const Mask surfaces = surface_mask(seen);
+  const auto add = [&](MotionError kind, const Mask& mask) {
+    sums[kind].add(seen.visibility, still.visibility, truth.visibility, mask);
   };
-  add(sums.all, surfaces);
-  add(sums.uncovered, pixels_of_age(compared.ages, true));
-  add(sums.entered, pixels_of_age(compared.ages, false));
-  add(sums.near_object, surfaces_where(seen, is_near_object));
-  sums.bent_normals.add(seen.bent_normal_ws, standing.bent_normal_ws, truth.bent_normal_ws,
-                        surfaces);
-  sums.static_change += standing.change;
+  add(MotionError::all, surfaces);
+  add(MotionError::uncovered, pixels_with_age(compared.ages, true));
+  add(MotionError::entered, pixels_with_age(compared.ages, false));
+  add(MotionError::near_object, surfaces_where(seen, is_near_object));
+  sums[MotionError::bent_normals].add(seen.bent_normal_ws, still.bent_normal_ws,
+                                      truth.bent_normal_ws, surfaces);
+  sums.static_change += still.change;
   sums.truth_change +=
       change_lower_bound(truth.visibility, truth_before.visibility, compared.reprojection);
-  Image<float> mean_truth = mean_of(truth.visibility);
-  sums.weave += weave_of(seen.visibility, mean_truth, surfaces);
-  sums.static_weave += weave_of(standing.visibility, mean_truth, surfaces);
-  sums.pictures.push_back(
-      {compared.frame, seen.visibility, std::move(standing.visibility), std::move(mean_truth)});
+  Image<float> mean_truth = mean_image(truth.visibility);
+  report.weave += measure_weave(seen.visibility, mean_truth, surfaces);
+  report.static_weave += measure_weave(still.visibility, mean_truth, surfaces);
+  report.pictures.push_back(
+      {compared.frame, seen.visibility, std::move(still.visibility), std::move(mean_truth)});
   return {};
 }
 
@@ -319,50 +316,45 @@ Result<std::vector<RenderedFrame>> after_cut(MotionRenderer& renderer, bool rest
   return seen;
 }
 
-}  // namespace
-
-Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
-                                const MotionSetup& setup) {
-  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
-  ALCOVE_TRY(const auto passed, render_path(renderer, Filtering::spatial_and_temporal));
-  ALCOVE_TRY(const auto unkept, render_path(renderer, Filtering::spatial));
-  ALCOVE_TRY(const auto unfiltered, render_path(renderer, Filtering::none));
-  Comparison sums;
-  for (const Compared& compared : passed.compared)
-    ALCOVE_TRY_VOID(compare(renderer, compared, sums));
-  return MotionReport{
-      .speed = {passed.speed.mean(), passed.fast.mean()},
-      .all = sums.all.errors(),
-      .uncovered = sums.uncovered.errors(),
-      .entered = sums.entered.errors(),
-      .near_object = sums.near_object.errors(),
-      .bent_normals = sums.bent_normals.errors(),
-      .flicker = {passed.change.mean(), unkept.change.mean(), unfiltered.change.mean(),
-                  sums.static_change.mean(), sums.truth_change.mean()},
-      .weave = sums.weave,
-      .static_weave = sums.static_weave,
-      .pictures = std::move(sums.pictures)};
-}
-
-Result<CutReport> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
-                          const MotionSetup& setup) {
-  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
+Result<MotionReport> run_cut(MotionRenderer& renderer) {
   ALCOVE_TRY(auto kept_frames, after_cut(renderer, false));
   ALCOVE_TRY(auto restarted_frames, after_cut(renderer, true));
-  const std::uint32_t cut = path.cut().value_or(0);
+  const std::uint32_t cut = renderer.path().cut().value_or(0);
   ALCOVE_TRY(const auto truth, renderer.truth(cut, kept_frames.front()));
-  CutReport report;
-  const Mask surfaces = surfaces_of(kept_frames.front());
+  MotionReport report;
+  const Mask surfaces = surface_mask(kept_frames.front());
   for (std::size_t i = 0; i < kept_frames.size(); ++i) {
     RenderedFrame& kept = kept_frames[i];
     RenderedFrame& restarted = restarted_frames[i];
     const std::uint32_t frames = 1u << i;
     const SplitTruth<float>& visibility = truth.visibility;
-    report.after.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
-                            root(squared_error(restarted.visibility, visibility, surfaces))});
+    report.after_cut.push_back({frames, root(squared_error(kept.visibility, visibility, surfaces)),
+                                root(squared_error(restarted.visibility, visibility, surfaces))});
     report.pictures.push_back({cut + frames - 1, std::move(kept.visibility),
-                               std::move(restarted.visibility), mean_of(visibility)});
+                               std::move(restarted.visibility), mean_image(visibility)});
   }
+  return report;
+}
+
+}  // namespace
+
+Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                                const MotionSetup& setup) {
+  ALCOVE_TRY(auto renderer, MotionRenderer::create(gpu, scene, path, setup));
+  if (path.cut()) return run_cut(renderer);
+  ALCOVE_TRY(const auto path_result, render_path(renderer, Filtering::spatial_and_temporal));
+  ALCOVE_TRY(const auto without_history, render_path(renderer, Filtering::spatial));
+  ALCOVE_TRY(const auto raw, render_path(renderer, Filtering::none));
+  MotionReport report{.speed = {path_result.speed.mean(), path_result.fast.mean()}};
+  Comparison sums;
+  for (const ComparedFrame& compared : path_result.compared)
+    ALCOVE_TRY_VOID(compare(renderer, compared, sums, report));
+  std::ranges::transform(sums.errors, report.errors.begin(), &SquaresPair::errors);
+  ErrorPair& angles = report.errors.back();
+  angles.moving = glm::degrees(angles.moving);
+  angles.static_camera = glm::degrees(angles.static_camera);
+  report.flicker = {path_result.change.mean(), without_history.change.mean(), raw.change.mean(),
+                    sums.static_change.mean(), sums.truth_change.mean()};
   return report;
 }
 

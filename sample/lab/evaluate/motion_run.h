@@ -1,38 +1,33 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
+#include "evaluate/truths.h"
+#include "evaluate/variant.h"
 #include "evaluate/weave.h"
 #include "gpu/gpu.h"
-#include "render/normal_source.h"
 #include "scene/scene.h"
 #include "support/image.h"
-#include "support/progress.h"
 #include "support/result.h"
 
 namespace alcove::sample {
 
-// The inputs of a run other than its path.
+// The inputs of a run other than its path, which has the cameras and the number of frames.
 struct MotionSetup {
   passes::OcclusionSettings occlusion;  // with a history
-  NormalSource normals = NormalSource::shading;
-  std::uint32_t width = 960;
-  std::uint32_t height = 540;
-  std::uint32_t spp = 256;                        // rays per pixel of the truth, at least 2
-  std::filesystem::path cache;                    // folder of cached truths; empty: no cache
-  std::function<Progress(std::string)> progress;  // makes the progress of a named task; may be null
+  StaticSetup view;
+  TruthOptions truth;  // at least 2 rays per pixel
 };
 
 // The number of frames after which surfaces that were uncovered are measured. Their errors should
 // then be nearly as small as those of other surfaces.
-inline constexpr std::uint32_t kUncoveredFrames = 4;
+inline constexpr std::uint32_t kUncoveredFrames = 4;  // as in kMotionErrorTitles
 
 // Surfaces that a moving object passed within this many last frames are measured separately,
 // because a history could leave a trail of the object there for that long.
@@ -67,24 +62,19 @@ struct MotionPicture {
   Image<float> truth;
 };
 
-struct MotionReport {
-  Speed speed;  // of surfaces on the image; mean over the frames
-  ErrorPair all;
-  ErrorPair uncovered;     // surfaces that another one stopped hiding kUncoveredFrames ago
-  ErrorPair entered;       // surfaces that entered the image kUncoveredFrames ago
-  ErrorPair near_object;   // surfaces that a moving object passed in the last kTrailFrames
-  ErrorPair bent_normals;  // radians, on all surfaces
-  Flicker flicker;
-  Weave weave;         // in the frames with motion
-  Weave static_weave;  // in the same views without motion
-  std::vector<MotionPicture> pictures;
+// The kinds of error that are measured. Names and titles are in the order of the enumerators.
+enum class MotionError : std::uint8_t {
+  all,
+  uncovered,     // of surfaces that another one stopped hiding kUncoveredFrames ago
+  entered,       // of surfaces that entered the image kUncoveredFrames ago
+  near_object,   // of surfaces that a moving object passed in the last kTrailFrames
+  bent_normals,  // in degrees, on all surfaces
 };
-
-// Renders a path other than a cut. Three of its frames are compared with the truth: one after a
-// third of the path, one after two thirds, and the last. Flicker is measured over the last two
-// thirds.
-[[nodiscard]] Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
-                                              const MotionSetup& setup);
+inline constexpr std::array<const char*, 5> kMotionErrorNames{
+    "all", "uncovered", "entered", "near_object", "bent_normals_degrees"};
+inline constexpr std::array<const char*, 5> kMotionErrorTitles{
+    "whole frames", "uncovered 4 frames ago", "entered the image 4 frames ago",
+    "near the moving object", "bent normals, degrees"};
 
 // RMSE of visibility a number of frames after a cut.
 struct CutErrors {
@@ -92,11 +82,27 @@ struct CutErrors {
   double kept = 0;       // with the history kept: the pass itself rejects samples that do not match
   double restarted = 0;  // the history is discarded at the cut
 };
-struct CutReport {
-  std::vector<CutErrors> after;         // after 1, 2, 4, ... frames
-  std::vector<MotionPicture> pictures;  // `static_camera` holds the image of the restarted history
+
+// The results of a path. Those of a cut are `after_cut` and the pictures only.
+struct MotionReport {
+  Speed speed;  // of surfaces on the image; mean over the frames
+  std::array<ErrorPair, kMotionErrorNames.size()> errors;
+  Flicker flicker;
+  Weave weave;                       // in the frames with motion
+  Weave static_weave;                // in the same views without motion
+  std::vector<CutErrors> after_cut;  // after 1, 2, 4, ... frames
+  // After a cut, `static_camera` holds the image of the restarted history.
+  std::vector<MotionPicture> pictures;
+
+  const ErrorPair& operator[](MotionError kind) const {
+    return errors[static_cast<std::size_t>(kind)];
+  }
 };
-[[nodiscard]] Result<CutReport> run_cut(Gpu& gpu, const Scene& scene, const MotionPath& path,
-                                        const MotionSetup& setup);
+
+// Renders a path. Unless it is a cut, three of its frames are compared with the truth: one after a
+// third of the path, one after two thirds, and the last. Flicker is measured over the last two
+// thirds.
+[[nodiscard]] Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
+                                              const MotionSetup& setup);
 
 }  // namespace alcove::sample

@@ -16,7 +16,7 @@ using passes::OcclusionSettings;
 // Materials that cover a smaller part of the surfaces in view do not decide.
 constexpr double kShare = 0.05;
 
-double share_of(const Mask& part, const Mask& whole) {
+double covered_share(const Mask& part, const Mask& whole) {
   const auto count = [](const Mask& mask) {
     return static_cast<double>(std::ranges::count_if(mask.pixels, [](auto p) { return p != 0; }));
   };
@@ -52,11 +52,11 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   ALCOVE_TRY(const double specular_time,
              time_increase([](OcclusionSettings& s) { s.specular = passes::Specular::slices; }));
-  add(share_of(glossy, surfaces) > kShare, "specular occlusion (specular=slices)",
+  add(covered_share(glossy, surfaces) > kShare, "specular occlusion (specular=slices)",
       fmt::format("{:.0f} % of the surfaces have a roughness below 0.5, and their visibility is "
                   "{:.2f} less than 1 on average; {:.0f} % more time",
-                  100.0 * share_of(glossy, surfaces), compare_images(open, visibility, glossy).bias,
-                  100.0 * specular_time));
+                  100.0 * covered_share(glossy, surfaces),
+                  compare_images(open, visibility, glossy).bias, 100.0 * specular_time));
   const AngleSummary angle =
       compare_directions(seen.shading_normal_ws, truths.scene.bent_normal_ws, surfaces);
   ALCOVE_TRY(const double bent_time,
@@ -79,15 +79,15 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
 
   // The inputs.
   const Mask mapped = where([&](std::size_t i) { return material(i).normal_texture.image >= 0; });
-  add(share_of(mapped, surfaces) > kShare, "normals as an input",
+  add(covered_share(mapped, surfaces) > kShare, "normals as an input",
       fmt::format("{:.0f} % of the surfaces have a normal map, which depth does not show",
-                  100.0 * share_of(mapped, surfaces)));
+                  100.0 * covered_share(mapped, surfaces)));
   const Mask thin = where([&](std::size_t i) { return material(i).alpha_mode == AlphaMode::mask; });
-  add(share_of(thin, surfaces) > kShare, "settings for thin occluders",
+  add(covered_share(thin, surfaces) > kShare, "settings for thin occluders",
       fmt::format(
           "{:.0f} % of the surfaces are cut out by their alpha; thickness, hidden occlusion "
           "and back faces above are measured with them",
-          100.0 * share_of(thin, surfaces)));
+          100.0 * covered_share(thin, surfaces)));
   add(scene.has_animations, "motion vectors as an input",
       scene.has_animations
           ? "the file has animations, and motion vectors follow what moves"
@@ -102,10 +102,10 @@ Result<std::vector<std::string>> view_needs(const Session& session, const Situat
   ALCOVE_TRY(const auto band_rmse, errors.measure_with_guard_band(chosen.settings));
   ALCOVE_TRY(const auto band_ms, times.measure(chosen.settings, true));
   const Achievement with{chosen.settings, band_rmse, band_ms};
-  FeatureEffect band =
-      effect_of(fmt::format("a guard band of {:g} % of the height, by AlcoveView::written_area",
-                            100.0 * kGuardBand),
-                goal, with, chosen);
+  FeatureEffect band = measure_effect(
+      fmt::format("a guard band of {:g} % of the height, by AlcoveView::written_area",
+                  100.0 * kGuardBand),
+      goal, with, chosen);
   if (goal.prefers(with, chosen, kWorthwhile)) band.verdict = "worth it";
   const Image<float>& visibility = errors.truths().scene.visibility;
   ALCOVE_TRY(const auto rays, RayScene::create(session.scene));

@@ -38,7 +38,7 @@ constexpr Feature kFeatures[] = {
     {"no history", [](OcclusionSettings& s) { s.history_frames = 0; }},
 };
 
-void use_samples_of(const OcclusionSettings& from, OcclusionSettings& settings) {
+void copy_samples(const OcclusionSettings& from, OcclusionSettings& settings) {
   settings.tile_size = from.tile_size;
   settings.slices = from.slices;
   settings.steps = from.steps;
@@ -57,7 +57,7 @@ struct Rung {
 };
 
 // The number of samples for each pixel of the image.
-double samples_of(const OcclusionSettings& settings) {
+double samples_per_pixel(const OcclusionSettings& settings) {
   const double pixels =
       settings.tile_size * settings.tile_size * (settings.half_resolution ? 4 : 1);
   return settings.slices * settings.steps / pixels;
@@ -74,7 +74,8 @@ class Search {
       variant.settings.depth_layers = base_.depth_layers;  // a second depth layer is a feature
       ladder_.push_back({variant.settings, {}});
     }
-    std::ranges::stable_sort(ladder_, {}, [](const Rung& r) { return samples_of(r.settings); });
+    std::ranges::stable_sort(ladder_, {},
+                             [](const Rung& r) { return samples_per_pixel(r.settings); });
     ALCOVE_TRY_VOID(choose_samples());
     for (const Feature& feature : kFeatures) try_feature(feature);
     if (goal_.tolerance && goal_.met(found_.chosen)) try_with_fewer_samples(found_.chosen.settings);
@@ -160,7 +161,7 @@ class Search {
       found_.features.push_back({.name = feature.name, .problem = result.error()});
       return;
     }
-    FeatureEffect effect = effect_of(feature.name, goal_, *result, before);
+    FeatureEffect effect = measure_effect(feature.name, goal_, *result, before);
     if (effect.rmse_change < -kWorthwhile) try_with_fewer_samples(with, kWorthwhile);
     OcclusionSettings chosen = found_.chosen.settings;
     feature.use(chosen);
@@ -178,7 +179,7 @@ class Search {
     std::size_t count = 0;
     for (const OcclusionSettings& samples : *within) {
       OcclusionSettings fewer = with;
-      use_samples_of(samples, fewer);
+      copy_samples(samples, fewer);
       count += consider_if_promising(fewer, margin) ? 1 : 0;
       if (count == most) return;
     }
@@ -207,7 +208,7 @@ class Search {
       const auto change = [&](auto OcclusionSettings::*field, auto value) {
         OcclusionSettings changed = from;
         changed.*field = value;
-        const double more = samples_of(changed) / samples_of(from) - 1.0;
+        const double more = samples_per_pixel(changed) / samples_per_pixel(from) - 1.0;
         const bool too_slow = more > 0 && goal_.ms(before) * (1.0 + 0.1 * more) > limit;
         if (!goal_.met(before) || !too_slow) consider_if_promising(changed);
       };
@@ -257,8 +258,8 @@ std::string FeatureEffect::sentence() const {
                      change(ms_change, "time"), verdict);
 }
 
-FeatureEffect effect_of(const std::string& feature, const RecommendationGoal& goal,
-                        const Achievement& with, const Achievement& without) {
+FeatureEffect measure_effect(const std::string& feature, const RecommendationGoal& goal,
+                             const Achievement& with, const Achievement& without) {
   FeatureEffect effect{feature, goal.rmse(with) / goal.rmse(without) - 1.0,
                        goal.ms(with) / goal.ms(without) - 1.0};
   if (effect.rmse_change < -kWorthwhile && goal.budget_ms && !goal.met(with))

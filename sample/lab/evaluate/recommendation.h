@@ -55,8 +55,9 @@ struct FeatureEffect {
 };
 
 // Compares results with and without a feature.
-[[nodiscard]] FeatureEffect effect_of(const std::string& feature, const RecommendationGoal& goal,
-                                      const Achievement& with, const Achievement& without);
+[[nodiscard]] FeatureEffect measure_effect(const std::string& feature,
+                                           const RecommendationGoal& goal, const Achievement& with,
+                                           const Achievement& without);
 
 // A feature is not used unless it lowers the error, or the time within a tolerance, by more than
 // this fraction.

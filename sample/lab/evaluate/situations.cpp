@@ -70,23 +70,23 @@ Result<std::array<double, 3>> cached(const TruthCache& cache, const CacheKey& ke
 
 Result<SituationErrors> SituationErrors::create(const Session& session, const StaticSetup& setup,
                                                 const TruthOptions& truth_options) {
-  SituationErrors made(session, setup);
+  SituationErrors errors(session, setup);
   ALCOVE_TRY(auto renderer, FrameRenderer::create(*session.gpu, session.scene,
                                                   {setup.width, setup.height}, setup.normals));
-  made.renderer_ = std::move(renderer);
+  errors.renderer_ = std::move(renderer);
   ALCOVE_TRY(const auto images, draw_static(*session.gpu, session.scene, setup, session.settings));
-  ALCOVE_TRY(auto truths, truths_of({session.scene, setup.camera, session.settings.radius,
-                                     images.depth_ndc, images.normal_ws},
-                                    truth_options));
-  made.truths_ = std::move(truths);
+  ALCOVE_TRY(auto truths, compute_truths({session.scene, setup.camera, session.settings.radius,
+                                          images.depth_ndc, images.normal_ws},
+                                         truth_options));
+  errors.truths_ = std::move(truths);
   if (truth_options.use_cache && !program_hash().empty())
-    made.cache_ = TruthCache(TruthCache::default_folder());
+    errors.cache_ = TruthCache(TruthCache::default_folder());
   const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
-  made.key_.add(std::string_view("situation errors"), std::string_view(program_hash()),
-                std::string_view(device.deviceName), device.driverVersion, session.scene,
-                setup.camera, setup.width, setup.height, setup.frames,
-                static_cast<std::uint8_t>(setup.normals), truth_options.spp);
-  return made;
+  errors.key_.add(std::string_view("situation errors"), std::string_view(program_hash()),
+                  std::string_view(device.deviceName), device.driverVersion, session.scene,
+                  setup.camera, setup.width, setup.height, setup.frames,
+                  static_cast<std::uint8_t>(setup.normals), truth_options.spp);
+  return errors;
 }
 
 Result<Image<float>> SituationErrors::draw(const OcclusionSettings& settings, std::uint32_t frames,
@@ -136,9 +136,9 @@ Result<std::array<double, 3>> SituationErrors::compute(const Draw& draw) const {
 Result<ModelledTimes> ModelledTimes::create(const GpuPart& part, const CostInputs& inputs,
                                             bool use_cache) {
   ALCOVE_TRY(auto device, create_null_device(part.family));
-  ModelledTimes made(part, inputs, use_cache && !program_hash().empty());
-  made.device_ = std::move(device);
-  return made;
+  ModelledTimes times(part, inputs, use_cache && !program_hash().empty());
+  times.device_ = std::move(device);
+  return times;
 }
 
 Result<std::array<double, 3>> ModelledTimes::measure(const OcclusionSettings& settings,
@@ -171,14 +171,20 @@ RecommendationWorld recommendation_world(SituationErrors& errors, const Modelled
           [&](const OcclusionSettings& settings) { return times.measure(settings); }};
 }
 
-Result<Clock> choose_clock(const VkPhysicalDeviceProperties& device, const GpuPart& part,
-                           std::optional<Clock> wanted) {
-  const bool software = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+Result<ChosenClock> choose_clock(const VulkanDevice& device,
+                                 const std::function<Result<ModelledTimes>()>& create_model,
+                                 std::optional<Clock> wanted) {
+  const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const Clock clock = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
-  if (clock != Clock::modelled) return clock;
-  const auto driver = create_null_device(part.family);
-  if (!driver && wanted) return Failure(driver.error());
-  return driver ? Clock::modelled : Clock::processor;
+  if (clock != Clock::modelled) return ChosenClock{clock, {}};
+  auto created = create_model();
+  if (!created && wanted) return Failure(created.error());
+  if (!created) return ChosenClock{Clock::processor, {}};
+  return ChosenClock{clock, [model = std::move(*created)](const OcclusionSettings& settings) {
+                       return model.measure(settings).map([](const std::array<double, 3>& ms) {
+                         return ms[static_cast<std::size_t>(Situation::moving)];
+                       });
+                     }};
 }
 
 }  // namespace alcove::sample

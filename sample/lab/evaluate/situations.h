@@ -90,8 +90,10 @@ class ModelledTimes {
 
 // Returns the clock for times on a device. Without `wanted`, it is `timestamps` on a GPU; on a
 // software device, whose timestamps are noise, it is `modelled`, or `processor` if Mesa's AMD
-// driver is not installed. Error: `wanted` is `modelled` and the driver is not installed.
-[[nodiscard]] Result<Clock> choose_clock(const VkPhysicalDeviceProperties& device,
-                                         const GpuPart& part, std::optional<Clock> wanted);
+// driver is not installed. `create_model` is called if the clock is `modelled`. Error: `wanted` is
+// `modelled` and the driver is not installed.
+[[nodiscard]] Result<ChosenClock> choose_clock(
+    const VulkanDevice& device, const std::function<Result<ModelledTimes>()>& create_model,
+    std::optional<Clock> wanted);
 
 }  // namespace alcove::sample

@@ -3,13 +3,18 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "evaluate/clock.h"
+#include "evaluate/truths.h"
 #include "evaluate/variant.h"
+#include "gpu_cost/gpu_part.h"
+#include "render/session.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -25,30 +30,45 @@ inline constexpr std::array<std::uint32_t, 4> kGridSteps{8, 16, 32, 64};
 inline constexpr std::array<std::uint32_t, 4> kGridSlices{1, 2, 4, 8};
 [[nodiscard]] std::vector<Variant> sampling_grid(const passes::OcclusionSettings& base);
 
-// Settings, what they cost, and the error of their visibility.
-struct TradePoint {
-  std::string name;
-  passes::OcclusionSettings settings;
-  double rmse = 0;               // against ray-traced scene truth
-  double height_field_rmse = 0;  // against brute force on the same depth buffer
-  double time_ms = 0;            // of the occlusion passes of a frame, by the trade's clock
-  double spread_ms = 0;          // of that time; 0 if it is modelled
-  double processor_ms = 0;       // processor time of all threads for them; 0 if it was not measured
-  std::uint64_t bytes = 0;       // of transients at their peak, and histories
-};
-
 // Points in order of time. `on_pareto_front[i]` is true if every point with an error no larger than
 // that of point i is slower by more than the spreads of both, because a smaller difference may be
 // chance.
 struct Trade {
-  std::vector<TradePoint> points;
+  std::vector<Measurement> points;
   std::vector<bool> on_pareto_front;
 };
-[[nodiscard]] Trade trade_of(std::vector<TradePoint> points);
+[[nodiscard]] Trade find_pareto_front(std::vector<Measurement> points);
 
 // Combines the points of the same settings in several scenes: the mean of times and spreads, the
-// root mean square of errors, and the largest number of bytes. There must be at least one list. All
-// lists must have one length and one order of settings.
-[[nodiscard]] std::vector<TradePoint> over_scenes(std::span<const std::vector<TradePoint>> scenes);
+// root mean square of the RMSEs, and the largest number of bytes. There must be at least one list.
+// All lists must have one length and one order of settings.
+[[nodiscard]] std::vector<Measurement> over_scenes(
+    std::span<const std::vector<Measurement>> scenes);
+
+// The points of a trade.
+struct MeasuredTrade {
+  std::vector<Measurement> points;
+  std::string clock_title;  // for headings, such as "modelled time on ..."
+  std::string note;         // a line about settings that were left out; empty: none were
+};
+
+// Renders the session's view with every variant of preset_sweep() and compares each with the
+// truths. choose_clock() says by which clock; modelled times are those of `part` at the size of the
+// view. Leaves out half resolution if the device cannot store its format. Errors: `clock` is
+// `modelled` and the driver is not installed, or a rendering fails.
+[[nodiscard]] Result<MeasuredTrade> measure_trade(const Session& session, const StaticSetup& setup,
+                                                  const TruthOptions& truth_options,
+                                                  const GpuPart& part, std::optional<Clock> clock);
+
+// The errors of sampling_grid() against scene truth, in its order. Nothing is timed.
+[[nodiscard]] Result<std::vector<double>> measure_grid(const Session& session,
+                                                       const StaticSetup& setup,
+                                                       const TruthOptions& truth_options);
+[[nodiscard]] std::string grid_table(const std::vector<double>& rmse);
+
+// A line for each point; points on the Pareto front are marked.
+[[nodiscard]] std::string format_table(const Trade& trade, const std::string& clock_title);
+
+[[nodiscard]] nlohmann::ordered_json to_json(const Trade& trade);
 
 }  // namespace alcove::sample

@@ -29,10 +29,11 @@ struct Axes {
 
   explicit Axes(const Trade& trade)
       : first_ms(trade.points.front().time_ms / 1.2), last_ms(trade.points.back().time_ms * 1.2) {
-    const auto [low, high] = std::ranges::minmax(trade.points, {}, &TradePoint::rmse);
-    const double margin = std::max(0.08 * (high.rmse - low.rmse), 1e-4);
-    least = std::max(low.rmse - margin, 0.0);
-    most = high.rmse + margin;
+    const auto [low, high] = std::ranges::minmax(
+        trade.points, {}, [](const Measurement& point) { return point.scene.rmse; });
+    const double margin = std::max(0.08 * (high.scene.rmse - low.scene.rmse), 1e-4);
+    least = std::max(low.scene.rmse - margin, 0.0);
+    most = high.scene.rmse + margin;
   }
   double x(double ms) const {
     return kLeft + kPlotWidth * std::log(ms / first_ms) / std::log(last_ms / first_ms);
@@ -77,7 +78,7 @@ void draw_pareto_front(Svg& svg, const Trade& trade, const Axes& axes) {
   std::vector<glm::vec2> points;
   for (std::size_t i = 0; i < trade.points.size(); ++i)
     if (trade.on_pareto_front[i])
-      points.emplace_back(axes.x(trade.points[i].time_ms), axes.y(trade.points[i].rmse));
+      points.emplace_back(axes.x(trade.points[i].time_ms), axes.y(trade.points[i].scene.rmse));
   svg.polyline(points, "stroke=\"#1f6f8b\" stroke-width=\"2\"");
 }
 
@@ -132,35 +133,37 @@ class Labels {
 
 void draw_points(Svg& svg, const Trade& trade, const Axes& axes) {
   std::vector<Box> circles;
-  for (const TradePoint& point : trade.points) {
+  for (const Measurement& point : trade.points) {
     const double x = axes.x(point.time_ms);
-    const double y = axes.y(point.rmse);
+    const double y = axes.y(point.scene.rmse);
     circles.push_back({x - 5, y - 5, x + 5, y + 5});
   }
   Labels labels(circles);
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
-    const TradePoint& point = trade.points[i];
+    const Measurement& point = trade.points[i];
     const double x = axes.x(point.time_ms);
-    const double y = axes.y(point.rmse);
+    const double y = axes.y(point.scene.rmse);
     const char* colour = trade.on_pareto_front[i] ? "#1f6f8b" : "#bbb";
     if (point.spread_ms > 0 && point.spread_ms < point.time_ms) {
       svg.line({axes.x(point.time_ms - point.spread_ms), y},
                {axes.x(point.time_ms + point.spread_ms), y}, fmt::format("stroke=\"{}\"", colour));
     }
-    svg.circle({x, y}, 4, fmt::format("fill=\"{}\"", colour),
-               fmt::format("{}, {:.3g}, {:.3g} ms", point.name, point.rmse, point.time_ms));
+    svg.circle(
+        {x, y}, 4, fmt::format("fill=\"{}\"", colour),
+        fmt::format("{}, {:.3g}, {:.3g} ms", point.variant.name, point.scene.rmse, point.time_ms));
   }
   for (std::size_t i = 0; i < trade.points.size(); ++i) {
     if (trade.on_pareto_front[i]) {
-      labels.draw(svg, axes.x(trade.points[i].time_ms), axes.y(trade.points[i].rmse),
-                  trade.points[i].name);
+      labels.draw(svg, axes.x(trade.points[i].time_ms), axes.y(trade.points[i].scene.rmse),
+                  trade.points[i].variant.name);
     }
   }
 }
 
 }  // namespace
 
-std::string plot_of(const Trade& trade, const std::string& title, const std::string& clock_title) {
+std::string draw_plot(const Trade& trade, const std::string& title,
+                      const std::string& clock_title) {
   const Axes axes(trade);
   Svg svg;
   svg.text({0.5 * kWidth, 20}, "middle", title);

@@ -48,7 +48,7 @@ HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthCache& cache,
 
 }  // namespace
 
-Result<Truths> truths_of(const TruthFrame& frame, const TruthOptions& options) {
+Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& options) {
   const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
   Truths truths;
   truths.surfaces = Mask(depth.width, depth.height);

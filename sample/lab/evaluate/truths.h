@@ -38,6 +38,6 @@ struct Truths {
 // Computes the truths, or reads them from the cache on disk. They are computed at the points where
 // primary rays through the pixel centres hit the scene, with the normals that the occlusion pass
 // was given. Prints progress on stderr. Error: the view shows nothing but sky.
-[[nodiscard]] Result<Truths> truths_of(const TruthFrame& frame, const TruthOptions& options);
+[[nodiscard]] Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& options);
 
 }  // namespace alcove::sample

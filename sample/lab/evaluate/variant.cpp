@@ -13,8 +13,8 @@ namespace {
 
 using passes::OcclusionSettings;
 
-FrameRequest request_of(const StaticSetup& setup, const OcclusionSettings& settings,
-                        std::uint32_t frame) {
+FrameRequest make_request(const StaticSetup& setup, const OcclusionSettings& settings,
+                          std::uint32_t frame) {
   const auto matrices = [&](std::uint32_t at) {
     const float angle =
         setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1));
@@ -39,8 +39,8 @@ Result<std::unique_ptr<FrameRenderer>> create_renderer(Gpu& gpu, const Scene& sc
   return FrameRenderer::create(gpu, scene, {setup.width, setup.height}, setup.normals);
 }
 
-VariantErrors errors_of(const Variant& variant, const Image<float>& visibility,
-                        const Truths& truths, const VariantCost& cost) {
+Measurement measure_errors(const Variant& variant, const Image<float>& visibility,
+                           const Truths& truths, const VariantCost& cost) {
   return {variant, compare_images(visibility, truths.scene.visibility, truths.surfaces),
           compare_images(visibility, truths.height_field.visibility, truths.surfaces), cost};
 }
@@ -48,55 +48,60 @@ VariantErrors errors_of(const Variant& variant, const Image<float>& visibility,
 // Renders variants of a view alternately with its base.
 class Experiment {
  public:
-  Experiment(const Session& session, const StaticSetup& setup, std::uint32_t timed_pairs)
-      : session_(session), setup_(setup), timed_pairs_(timed_pairs) {}
+  Experiment(const Session& session, const StaticSetup& setup, const ChosenClock* clock)
+      : session_(session), setup_(setup), clock_(clock) {}
 
-  Result<VariantReport> run(const TruthOptions& truth_options, const std::vector<Variant>& variants,
-                            const std::string& progress) {
+  Result<std::vector<Measurement>> run(const TruthOptions& truth_options,
+                                       const std::vector<Variant>& variants,
+                                       const std::string& progress) {
     ALCOVE_TRY(base_, create_renderer(*session_.gpu, session_.scene, setup_));
     ALCOVE_TRY(const FrameImages images, draw_frames(*base_, setup_, session_.settings));
-    ALCOVE_TRY(truths_, truths_of({session_.scene, setup_.camera, session_.settings.radius,
-                                   images.depth_ndc, images.normal_ws},
-                                  truth_options));
-    VariantReport report;
-    report.rows.push_back(errors_of({"", "base settings", session_.settings}, images.visibility,
-                                    truths_, {.bytes = bytes_of(*base_)}));
+    ALCOVE_TRY(truths_, compute_truths({session_.scene, setup_.camera, session_.settings.radius,
+                                        images.depth_ndc, images.normal_ws},
+                                       truth_options));
+    std::vector<Measurement> rows{measure_errors({"", "base settings", session_.settings},
+                                                 images.visibility, truths_,
+                                                 {.bytes = used_bytes(*base_)})};
     const Progress print = print_progress(progress);
     for (const Variant& variant : variants) {
       ALCOVE_TRY(auto row, measure(variant));
-      report.rows.push_back(std::move(row));
-      print(static_cast<double>(report.rows.size() - 1) / static_cast<double>(variants.size()));
+      rows.push_back(std::move(row));
+      print(static_cast<double>(rows.size() - 1) / static_cast<double>(variants.size()));
     }
-    report.base_times = {median(base_gpu_ms_), median(base_processor_ms_)};
     ALCOVE_TRY_VOID(check_validation(*session_.gpu));
-    return report;
+    if (clock_ != nullptr) ALCOVE_TRY_VOID(set_times(rows));
+    return rows;
   }
 
  private:
-  static std::uint64_t bytes_of(const FrameRenderer& renderer) {
+  static std::uint64_t used_bytes(const FrameRenderer& renderer) {
     return renderer.memory().aliased + renderer.memory().history;
   }
 
   // Renders a variant on a device of its own, so that its histories start empty.
-  Result<VariantErrors> measure(const Variant& variant) {
+  Result<Measurement> measure(const Variant& variant) {
     ALCOVE_TRY(const auto gpu, open_gpu(session_.device));
     ALCOVE_TRY(const auto renderer, create_renderer(*gpu, session_.scene, setup_));
     ALCOVE_TRY(const FrameImages images, draw_frames(*renderer, setup_, variant.settings));
-    const std::uint64_t bytes = bytes_of(*renderer);
+    const std::uint64_t bytes = used_bytes(*renderer);
     ALCOVE_TRY(const auto pairs, time_pairs(*renderer, variant.settings));
     ALCOVE_TRY_VOID(check_validation(*gpu));
-    return errors_of(variant, images.visibility, truths_, cost_of(pairs, bytes));
+    return measure_errors(variant, images.visibility, truths_, median_cost(pairs, bytes));
   }
 
   Result<std::vector<TimedPair>> time_pairs(FrameRenderer& variant,
                                             const OcclusionSettings& settings) {
+    // Times that are only printed beside modelled ones need fewer pairs.
+    const std::uint32_t count = clock_ == nullptr                  ? 0
+                                : clock_->clock == Clock::modelled ? 11
+                                                                   : kDecidingPairs;
     std::vector<TimedPair> pairs;
     // One pair before the timed ones is not counted, because it compiles shaders.
-    for (std::uint32_t i = 0; timed_pairs_ > 0 && i <= timed_pairs_; ++i) {
-      ALCOVE_TRY(const FrameCost base, base_->draw(request_of(setup_, session_.settings,
-                                                              setup_.frames + base_frames_++)));
+    for (std::uint32_t i = 0; count > 0 && i <= count; ++i) {
+      ALCOVE_TRY(const FrameCost base, base_->draw(make_request(setup_, session_.settings,
+                                                                setup_.frames + base_frames_++)));
       ALCOVE_TRY(const FrameCost other,
-                 variant.draw(request_of(setup_, settings, setup_.frames + i)));
+                 variant.draw(make_request(setup_, settings, setup_.frames + i)));
       if (i == 0) continue;
       base_gpu_ms_.push_back(base.occlusion_ms);
       base_processor_ms_.push_back(base.cpu_ms);
@@ -105,9 +110,27 @@ class Experiment {
     return pairs;
   }
 
+  // Times are ratios to the base times the median of the base over all pairs.
+  Result<void> set_times(std::vector<Measurement>& rows) const {
+    const FrameTimes base{median(base_gpu_ms_), median(base_processor_ms_)};
+    for (Measurement& row : rows) {
+      row.processor_ms = row.cost.processor * base.processor_ms;
+      if (clock_->clock == Clock::modelled) {
+        ALCOVE_TRY(row.time_ms, clock_->model(row.variant.settings));
+      } else if (clock_->clock == Clock::timestamps) {
+        row.time_ms = row.cost.gpu * base.gpu_ms;
+        row.spread_ms = row.cost.gpu_spread * base.gpu_ms;
+      } else {
+        row.time_ms = row.processor_ms;
+        row.spread_ms = row.cost.processor_spread * base.processor_ms;
+      }
+    }
+    return {};
+  }
+
   const Session& session_;
   const StaticSetup& setup_;
-  std::uint32_t timed_pairs_;
+  const ChosenClock* clock_;
   std::unique_ptr<FrameRenderer> base_;
   std::uint32_t base_frames_ = 0;  // drawn after StaticSetup::frames
   Truths truths_;
@@ -120,8 +143,8 @@ class Experiment {
 Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
                                 const OcclusionSettings& settings) {
   for (std::uint32_t i = 0; i + 1 < setup.frames; ++i)
-    ALCOVE_TRY_VOID(renderer.draw(request_of(setup, settings, i)));
-  return renderer.draw_and_read(request_of(setup, settings, setup.frames - 1));
+    ALCOVE_TRY_VOID(renderer.draw(make_request(setup, settings, i)));
+  return renderer.draw_and_read(make_request(setup, settings, setup.frames - 1));
 }
 
 Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
@@ -147,7 +170,7 @@ Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const St
   return middle;
 }
 
-VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes) {
+VariantCost median_cost(std::span<const TimedPair> pairs, std::uint64_t bytes) {
   VariantCost cost{.bytes = bytes};
   if (pairs.empty()) return cost;
   std::vector<double> gpu, processor;
@@ -162,11 +185,12 @@ VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes) {
   return cost;
 }
 
-Result<VariantReport> run_variants(const Session& session, const StaticSetup& setup,
-                                   const TruthOptions& truth_options,
-                                   const std::vector<Variant>& variants,
-                                   const std::string& progress, std::uint32_t timed_pairs) {
-  return Experiment(session, setup, timed_pairs).run(truth_options, variants, progress);
+Result<std::vector<Measurement>> measure_variants(const Session& session, const StaticSetup& setup,
+                                                  const TruthOptions& truth_options,
+                                                  const std::vector<Variant>& variants,
+                                                  const std::string& progress,
+                                                  const ChosenClock* clock) {
+  return Experiment(session, setup, clock).run(truth_options, variants, progress);
 }
 
 }  // namespace alcove::sample

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "evaluate/clock.h"
 #include "evaluate/errors.h"
 #include "evaluate/truths.h"
 #include "render/frame_renderer.h"
@@ -56,7 +58,7 @@ struct VariantCost {
   double gpu = 1;           // ratio of the GPU times of the occlusion
   double processor = 1;     // ratio of the processor times of all threads
   std::uint64_t bytes = 0;  // transient images at their peak, and histories
-  double gpu_spread = 0;    // of the ratios, as cost_of() defines it
+  double gpu_spread = 0;    // of the ratios, as median_cost() defines it
   double processor_spread = 0;
 };
 
@@ -76,33 +78,35 @@ struct TimedPair {
 // Returns the cost of a variant relative to the base: the median over the pairs of the ratio of its
 // time to that of the base. The spread is half the distance between the quartiles of these ratios.
 // Without pairs, the ratios are 1 and the spreads 0.
-[[nodiscard]] VariantCost cost_of(std::span<const TimedPair> pairs, std::uint64_t bytes);
+[[nodiscard]] VariantCost median_cost(std::span<const TimedPair> pairs, std::uint64_t bytes);
 
-// Two numbers of timed pairs. kDecidingPairs is for times that decide between settings: with 21
-// pairs, the quartiles are a confidence interval of 97 % for the median. Times that are only
-// printed need fewer pairs.
+// The number of timed pairs for times that decide between settings: with 21 pairs, the quartiles
+// are a confidence interval of 97 % for the median.
 inline constexpr std::uint32_t kDecidingPairs = 21;
-inline constexpr std::uint32_t kInformativePairs = 11;
 
-// The errors of a variant's visibility against both truths, and its cost.
-struct VariantErrors {
+// What a variant achieves in a view: a row of the tables of `ablate`, `bench` and `recommend`.
+struct Measurement {
   Variant variant;
-  ErrorSummary scene;
-  ErrorSummary height_field;
-  VariantCost cost;
+  ErrorSummary scene;         // of visibility against ray-traced truth
+  ErrorSummary height_field;  // against brute force on the same depth buffer
+  VariantCost cost;           // relative to the first row
+  // Of the occlusion passes of a frame, by the clock of the measurement.
+  double time_ms = 0;
+  double spread_ms = 0;     // of that time; 0 if it is modelled
+  double processor_ms = 0;  // processor time of all threads; 0 if it was not measured
 };
 
-struct VariantReport {
-  std::vector<VariantErrors> rows;  // the base first, then the variants
-  FrameTimes base_times;            // medians over the frames of all pairs; zero without pairs
+// The clock of a measurement's times, and the model if it is `modelled`.
+struct ChosenClock {
+  Clock clock = Clock::processor;
+  // The modelled time of a frame with a moving camera in milliseconds.
+  std::function<Result<double>(const passes::OcclusionSettings&)> model;
 };
 
-// Measures the session's own settings and the variants. `progress` is the name in progress
-// messages. With `timed_pairs` of 0 no times are measured.
-[[nodiscard]] Result<VariantReport> run_variants(const Session& session, const StaticSetup& setup,
-                                                 const TruthOptions& truth_options,
-                                                 const std::vector<Variant>& variants,
-                                                 const std::string& progress,
-                                                 std::uint32_t timed_pairs = kInformativePairs);
+// Measures the session's own settings, which are the first row, and the variants. `progress` is the
+// name in progress messages. Without a clock no times are measured.
+[[nodiscard]] Result<std::vector<Measurement>> measure_variants(
+    const Session& session, const StaticSetup& setup, const TruthOptions& truth_options,
+    const std::vector<Variant>& variants, const std::string& progress, const ChosenClock* clock);
 
 }  // namespace alcove::sample

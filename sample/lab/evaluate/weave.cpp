@@ -52,7 +52,7 @@ Window without_plane(const Window& values) {
 }
 
 // The image in the window whose upper left pixel is (left, top).
-Window window_of(const Image<float>& image, std::uint32_t left, std::uint32_t top) {
+Window read_window(const Image<float>& image, std::uint32_t left, std::uint32_t top) {
   Window window;
   for (std::uint32_t y = 0; y < kWindow; ++y)
     for (std::uint32_t x = 0; x < kWindow; ++x)
@@ -79,48 +79,43 @@ bool is_smooth(const Window& truth) {
   return std::sqrt(squares / means.size()) <= kSmooth;
 }
 
+using Spectrum = std::array<std::complex<double>, kBins>;
+
+// Returns the Fourier transforms of the columns, as rows.
+Spectrum transformed_columns(const Spectrum& values) {
+  static const auto kWaves = [] {
+    std::array<std::complex<double>, kWindow> waves;
+    for (std::uint32_t i = 0; i < kWindow; ++i)
+      waves[i] = std::polar(1.0 / kWindow, -2.0 * kPi * i / kWindow);
+    return waves;
+  }();
+  Spectrum transforms{};
+  for (std::uint32_t i = 0; i < kBins; ++i)
+    for (std::uint32_t u = 0; u < kWindow; ++u)
+      transforms[i % kWindow * kWindow + u] += values[i] * kWaves[u * (i / kWindow) % kWindow];
+  return transforms;
+}
+
 // The power at each frequency: element v * 32 + u is the part of the variance of `values` that
 // waves of u/32 cycles per pixel in x and v/32 in y have. Frequencies from 16/32 on stand for
 // negative ones. A Hann window keeps what is not periodic in the window from leaking into all
 // frequencies; it spreads a wave over 3x3 of them.
 std::vector<double> power_spectrum(const Window& values) {
-  static const auto kHann = [] {
-    std::array<double, kWindow> hann;
-    for (std::uint32_t i = 0; i < kWindow; ++i) {
-      // The factor keeps the variance of white noise.
-      hann[i] = std::sqrt(2.0 / 3.0) * (1.0 - std::cos(2.0 * kPi * (i + 0.5) / kWindow));
-    }
-    return hann;
-  }();
-  static const auto kWaves = [] {
-    std::array<std::complex<double>, kWindow> waves;
-    for (std::uint32_t i = 0; i < kWindow; ++i) {
-      waves[i] = std::polar(1.0 / kWindow, -2.0 * kPi * i / kWindow);
-    }
-    return waves;
-  }();
-  std::array<std::complex<double>, kBins> rows{};
-  for (std::uint32_t y = 0; y < kWindow; ++y) {
-    for (std::uint32_t x = 0; x < kWindow; ++x) {
-      const double value = values[y * kWindow + x] * kHann[x] * kHann[y];
-      for (std::uint32_t u = 0; u < kWindow; ++u)
-        rows[y * kWindow + u] += value * kWaves[u * x % kWindow];
-    }
-  }
+  // The factor keeps the variance of white noise.
+  const auto hann = [](std::uint32_t i) {
+    return std::sqrt(2.0 / 3.0) * (1.0 - std::cos(2.0 * kPi * (i + 0.5) / kWindow));
+  };
+  Spectrum weighted;
+  for (std::uint32_t i = 0; i < kBins; ++i)
+    weighted[i] = values[i] * hann(i % kWindow) * hann(i / kWindow);
+  const Spectrum spectrum = transformed_columns(transformed_columns(weighted));
   std::vector<double> powers(kBins);
-  for (std::uint32_t v = 0; v < kWindow; ++v) {
-    for (std::uint32_t u = 0; u < kWindow; ++u) {
-      std::complex<double> sum = 0;
-      for (std::uint32_t y = 0; y < kWindow; ++y)
-        sum += rows[y * kWindow + u] * kWaves[v * y % kWindow];
-      powers[v * kWindow + u] = std::norm(sum);
-    }
-  }
+  std::ranges::transform(spectrum, powers.begin(), [](auto wave) { return std::norm(wave); });
   return powers;
 }
 
 // Cycles per pixel of a frequency.
-double cycles_of(std::size_t bin) {
+double cycles_per_pixel(std::size_t bin) {
   const auto signed_cycles = [](std::size_t i) {
     return (static_cast<double>(i) - (i >= kWindow / 2 ? kWindow : 0)) / kWindow;
   };
@@ -133,9 +128,10 @@ const std::vector<std::size_t>& sorted_frequencies() {
   static const std::vector<std::size_t> sorted = [] {
     std::vector<std::size_t> all(kBins);
     std::iota(all.begin(), all.end(), std::size_t{0});
-    std::erase_if(all, [](std::size_t bin) { return cycles_of(bin) * kWindow < 1.5; });
-    std::stable_sort(all.begin(), all.end(),
-                     [](std::size_t a, std::size_t b) { return cycles_of(a) < cycles_of(b); });
+    std::erase_if(all, [](std::size_t bin) { return cycles_per_pixel(bin) * kWindow < 1.5; });
+    std::stable_sort(all.begin(), all.end(), [](std::size_t a, std::size_t b) {
+      return cycles_per_pixel(a) < cycles_per_pixel(b);
+    });
     return all;
   }();
   return sorted;
@@ -180,7 +176,7 @@ struct Pattern {
 };
 
 // The pattern in the mean of the spectra of `windows` windows, whose sum is `sums`.
-Pattern pattern_of(const std::vector<double>& sums, double windows) {
+Pattern find_pattern(const std::vector<double>& sums, double windows) {
   const std::vector<std::size_t>& frequencies = sorted_frequencies();
   std::vector<double> powers(frequencies.size());
   std::transform(frequencies.begin(), frequencies.end(), powers.begin(),
@@ -205,7 +201,7 @@ Pattern pattern_of(const std::vector<double>& sums, double windows) {
                                   lower_quartile({at(i + 1), at(i + 1 + kSimilar)})) /
                          quartile;
     if (powers[i] <= limit * noise) continue;
-    const double cycles = cycles_of(peak_near(sums, frequencies[i]));
+    const double cycles = cycles_per_pixel(peak_near(sums, frequencies[i]));
     if (cycles * kLongestPeriod < 1.0) continue;
     pattern.variance += powers[i] - noise;
     if (powers[i] > strongest) {
@@ -219,11 +215,11 @@ Pattern pattern_of(const std::vector<double>& sums, double windows) {
 }  // namespace
 
 double Weave::rms() const {
-  return windows > 0 ? std::sqrt(pattern_of(powers, static_cast<double>(windows)).variance) : 0.0;
+  return windows > 0 ? std::sqrt(find_pattern(powers, static_cast<double>(windows)).variance) : 0.0;
 }
 
 double Weave::period() const {
-  return windows > 0 ? pattern_of(powers, static_cast<double>(windows)).period : 0.0;
+  return windows > 0 ? find_pattern(powers, static_cast<double>(windows)).period : 0.0;
 }
 
 double Weave::visible_fraction() const {
@@ -233,7 +229,7 @@ double Weave::visible_fraction() const {
 double Weave::grain() const {
   double variance = 0.0;
   for (std::size_t bin = 0; bin < powers.size(); ++bin) {
-    const double cycles = cycles_of(bin);
+    const double cycles = cycles_per_pixel(bin);
     const bool in_band = cycles * kShortestGrain <= 1.0 && cycles * kLongestGrain >= 1.0;
     variance += in_band ? powers[bin] / static_cast<double>(windows) : 0.0;
   }
@@ -249,13 +245,13 @@ Weave& Weave::operator+=(const Weave& more) {
   return *this;
 }
 
-Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask& surfaces) {
+Weave measure_weave(const Image<float>& result, const Image<float>& truth, const Mask& surfaces) {
   Weave weave;
   for (std::uint32_t top = 0; top + kWindow <= truth.height; top += kStep) {
     for (std::uint32_t left = 0; left + kWindow <= truth.width; left += kStep) {
       if (!all_surfaces(surfaces, left, top)) continue;
-      const Window true_values = window_of(truth, left, top);
-      Window error = window_of(result, left, top);
+      const Window true_values = read_window(truth, left, top);
+      Window error = read_window(result, left, top);
       std::transform(error.begin(), error.end(), true_values.begin(), error.begin(),
                      std::minus<>());
       // The comparisons are false for NaN.
@@ -263,7 +259,7 @@ Weave weave_of(const Image<float>& result, const Image<float>& truth, const Mask
           !std::isfinite(std::accumulate(error.begin(), error.end(), 0.0)))
         continue;
       std::vector<double> powers = power_spectrum(without_plane(error));
-      const bool visible = pattern_of(powers, 1.0).variance > Weave::kVisible * Weave::kVisible;
+      const bool visible = find_pattern(powers, 1.0).variance > Weave::kVisible * Weave::kVisible;
       weave += {1, visible ? 1u : 0u, std::move(powers)};
     }
   }

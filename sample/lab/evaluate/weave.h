@@ -41,8 +41,8 @@ struct Weave {
 
 // All images have the same size. Windows with a pixel outside `surfaces`, or with a value that is
 // not finite, do not count.
-[[nodiscard]] Weave weave_of(const Image<float>& result, const Image<float>& truth,
-                             const Mask& surfaces);
+[[nodiscard]] Weave measure_weave(const Image<float>& result, const Image<float>& truth,
+                                  const Mask& surfaces);
 
 // One line of a table, with its line break: weave and grain.
 [[nodiscard]] std::string weave_line(const Weave& weave);

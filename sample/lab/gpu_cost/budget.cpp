@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -19,7 +20,7 @@ using passes::Quality;
 constexpr double kTolerance =
     0.01;                        // relative difference of instructions per pixel that is allowed
 constexpr float kRadius = 0.5f;  // scene units; the instructions do not depend on it
-constexpr const char* kKeys[] = {"part", "settings", "pass"};
+constexpr const char* kKeys[] = {"gpu", "settings", "pass"};
 
 LabelledSettings preset(Quality quality) {
   LabelledSettings settings;
@@ -29,14 +30,14 @@ LabelledSettings preset(Quality quality) {
 }
 
 // The figures of a pass: instructions in each frame, and registers for each kind of projection.
-Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
+Json budget_row(const SettingsCost& cost, const Occupancy& occupancy) {
   Json instructions = Json::array();
   for (const ModelledFrame& frame : cost.frames) {
     for (const ModelledPass& pass : frame.passes)
       if (pass.pass == occupancy.pass)
         instructions.push_back(std::ceil(10 * pass.instructions_per_pixel) / 10);
   }
-  return {{"part", cost.part->family},
+  return {{"gpu", cost.part->name},
           {"settings", cost.settings.label},
           {"pass", occupancy.pass},
           {"instructions_per_pixel", std::move(instructions)},
@@ -45,31 +46,18 @@ Json row_of(const SettingsCost& cost, const Occupancy& occupancy) {
           {"spilled_registers", occupancy.spills}};
 }
 
-enum class Bound { at_most, at_least, near };
-
-bool keeps(Bound bound, double value, double limit) {
-  switch (bound) {
-    case Bound::at_most:
-      return value <= limit;
-    case Bound::at_least:
-      return value >= limit;
-    case Bound::near:
-      return std::abs(value - limit) <= kTolerance * limit;
-  }
-  return false;
-}
-
-// Compares each number of a list with its limit.
-void check(const Json& limits, const Json& row, const char* key, Bound bound,
+// Compares each number of a list with its limit: `keeps(value, limit)`.
+template <typename Keeps>
+void check(const Json& limits, const Json& row, const char* key, const Keeps& keeps,
            std::vector<std::string>& complaints) {
   const Json& found = row[key];
   const Json limit = limits.value(key, Json::array());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double value = found[i];
     const bool known = i < limit.size() && limit[i].is_number();
-    if (!known || !keeps(bound, value, limit[i].get<double>())) {
+    if (!known || !keeps(value, limit[i].get<double>())) {
       complaints.push_back(fmt::format(
-          "{}, {}, {}: {}[{}] is {:g}, the budget is {}.", row["part"].get<std::string>(),
+          "{}, {}, {}: {}[{}] is {:g}, the budget is {}.", row["gpu"].get<std::string>(),
           row["settings"].get<std::string>(), row["pass"].get<std::string>(), key, i, value,
           known ? fmt::format("{:g}", limit[i].get<double>()) : "missing"));
     }
@@ -85,33 +73,12 @@ std::vector<LabelledSettings> budgeted_settings() {
   return all;
 }
 
-Result<std::vector<SettingsCost>> budgeted_costs() {
-  std::vector<SettingsCost> costs;
-  for (const GpuPart& part : kGpuParts) {
-    ALCOVE_TRY(const auto device, create_null_device(part.family));
-    for (const LabelledSettings& settings : budgeted_settings()) {
-      ALCOVE_TRY(auto cost, cost_of(part, device, settings));
-      costs.push_back(std::move(cost));
-    }
-  }
-  return costs;
-}
-
-std::string compiler_name(const NullDevice& device) {
-  VkPhysicalDeviceDriverProperties driver{.sType =
-                                              VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-                                         .pNext = &driver};
-  vkGetPhysicalDeviceProperties2(device.physical_device, &properties);
-  return std::string(driver.driverName) + ", " + driver.driverInfo;
-}
-
-std::string budget_of(const std::vector<SettingsCost>& costs, const std::string& compiler) {
+std::string format_budget(const std::vector<SettingsCost>& costs, const std::string& compiler) {
   std::string lines =
       Json{{"written_by", "alcove cost --write-budget"}, {"compiler", compiler}}.dump();
   for (const SettingsCost& cost : costs)
     for (const Occupancy& occupancy : cost.occupancies)
-      (lines += "\n") += row_of(cost, occupancy).dump();
+      (lines += "\n") += budget_row(cost, occupancy).dump();
   return lines += "\n";
 }
 
@@ -125,10 +92,13 @@ Result<std::vector<std::string>> over_budget(const std::string& budget, const st
     return Failure("The budget was written with another compiler than " + compiler +
                    ", which makes other code.");
   }
+  const auto near = [](double value, double limit) {
+    return std::abs(value - limit) <= kTolerance * limit;
+  };
   std::vector<std::string> complaints;
   for (const SettingsCost& cost : costs) {
     for (const Occupancy& occupancy : cost.occupancies) {
-      const Json row = row_of(cost, occupancy);
+      const Json row = budget_row(cost, occupancy);
       const auto limits = std::ranges::find_if(rows, [&](const Json& other) {
         return std::ranges::all_of(kKeys, [&](const char* key) {
           return other.is_object() && other.value(key, "") == row[key];
@@ -136,10 +106,10 @@ Result<std::vector<std::string>> over_budget(const std::string& budget, const st
       });
       const Json none = Json::object();
       const Json& found = limits == rows.end() ? none : *limits;
-      check(found, row, "instructions_per_pixel", Bound::near, complaints);
-      check(found, row, "vector_registers", Bound::at_most, complaints);
-      check(found, row, "waves_per_simd", Bound::at_least, complaints);
-      check(found, row, "spilled_registers", Bound::at_most, complaints);
+      check(found, row, "instructions_per_pixel", near, complaints);
+      check(found, row, "vector_registers", std::less_equal<>(), complaints);
+      check(found, row, "waves_per_simd", std::greater_equal<>(), complaints);
+      check(found, row, "spilled_registers", std::less_equal<>(), complaints);
     }
   }
   return complaints;

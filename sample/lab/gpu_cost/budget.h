@@ -18,15 +18,8 @@ namespace alcove::sample {
 // bent normals and with specular occlusion.
 [[nodiscard]] std::vector<LabelledSettings> budgeted_settings();
 
-// Returns the costs of these settings on all modelled GPUs. Errors: those of create_null_device()
-// and modelled_frames().
-[[nodiscard]] Result<std::vector<SettingsCost>> budgeted_costs();
-
-// The name and version of the driver, whose compiler determines the costs.
-[[nodiscard]] std::string compiler_name(const NullDevice& device);
-
-[[nodiscard]] std::string budget_of(const std::vector<SettingsCost>& costs,
-                                    const std::string& compiler);
+[[nodiscard]] std::string format_budget(const std::vector<SettingsCost>& costs,
+                                        const std::string& compiler);
 
 // Returns a sentence for each figure that does not keep its budget: more than 1 % more or fewer
 // instructions per pixel (a model that forgets a loop finds fewer), more vector registers or

@@ -127,6 +127,6 @@ void Chart::draw_legend() {
 
 }  // namespace
 
-std::string chart_of(std::span<const SettingsCost> costs) { return Chart(costs).draw(); }
+std::string draw_chart(std::span<const SettingsCost> costs) { return Chart(costs).draw(); }
 
 }  // namespace alcove::sample

@@ -12,16 +12,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string pass_row(const ModelledPass& pass) {
+  const ShaderStatistics& shader = pass.statistics;
   return fmt::format(
       "    {:20}{:8.3f}  "
       "{:14}{:8.0f}{:8.1f}{:7.1f}{:7.1f}{:7.1f}{:7.0f}{:7.0f}{:8.0f}{:8.0f}{:8.0f}"
-      "{:7.1f}   {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
+      "{:7.1f}   {:.3f}\n",
       pass.pass, pass.milliseconds(), pass.limit(), pass.instructions_per_pixel,
       pass.fetches_per_pixel, pass.stores_per_pixel, pass.l2_bytes_per_pixel, pass.bytes_per_pixel,
-      pass.vector_registers, pass.waves_per_simd,
-      pass.spills > 0 ? pass.spills : pass.scratch_bytes, pass.code_bytes, pass.shared_bytes,
-      pass.cache_lines_per_load, pass.alu_ms, pass.texture_ms, pass.shared_ms, pass.l2_ms,
-      pass.memory_ms, pass.latency_ms);
+      shader.vector_registers, pass.waves_per_simd,
+      shader.spills > 0 ? shader.spills : shader.scratch_bytes, shader.code_bytes,
+      shader.shared_bytes, pass.cache_lines_per_load, fmt::join(pass.limits_ms, " "));
 }
 
 std::string wave_rows(const ModelledPass& pass) {
@@ -31,16 +31,17 @@ std::string wave_rows(const ModelledPass& pass) {
       pass.wave.instructions, pass.wave.vector_instructions, pass.wave.transcendentals,
       pass.wave.selects, pass.wave.scalar_instructions, pass.wave.loads, pass.wave.stores,
       pass.wave.shared_operations);
-  for (const auto& [loop, iterations] : pass.loops) {
+  for (const Loop& one : pass.loops) {
+    const passes::cost::CompiledLoop& loop = one.summary;
     out += fmt::format(
         "      loop {}, depth {}: {} instructions, {} fetches, {} stores, {} on shared memory; "
         "runs {:.1f} times\n",
         loop.index, loop.depth, loop.instructions, loop.loads, loop.stores, loop.shared,
-        iterations);
+        one.iterations);
   }
-  for (const auto& [branch, share] : pass.branches) {
+  for (const Branch& branch : pass.branches) {
     out += fmt::format("      branch: {} instructions, {} fetches; {:g} of the waves run it\n",
-                       branch.instructions, branch.loads, share);
+                       branch.summary.instructions, branch.summary.loads, branch.share);
   }
   return out;
 }
@@ -84,16 +85,18 @@ std::string ratio_rows(std::span<const SettingsCost> costs, const GpuPart& part)
 }
 
 Json to_json(const ModelledPass& pass) {
+  const auto& [alu, texture, shared, l2, memory, latency] = pass.limits_ms;
+  const ShaderStatistics& shader = pass.statistics;
   return {{"pass", pass.pass},
           {"ms", pass.milliseconds()},
           {"limit", pass.limit()},
           {"limits_ms",
-           {{"alu", pass.alu_ms},
-            {"texture", pass.texture_ms},
-            {"shared_memory", pass.shared_ms},
-            {"l2", pass.l2_ms},
-            {"memory", pass.memory_ms},
-            {"latency", pass.latency_ms}}},
+           {{"alu", alu},
+            {"texture", texture},
+            {"shared_memory", shared},
+            {"l2", l2},
+            {"memory", memory},
+            {"latency", latency}}},
           {"dispatch_ms", pass.dispatch_ms},
           {"instructions_per_pixel", pass.instructions_per_pixel},
           {"fetches_per_pixel", pass.fetches_per_pixel},
@@ -101,13 +104,13 @@ Json to_json(const ModelledPass& pass) {
           {"l2_bytes_per_pixel", pass.l2_bytes_per_pixel},
           {"bytes_per_pixel", pass.bytes_per_pixel},
           {"cache_lines_per_load", pass.cache_lines_per_load},
-          {"vector_registers", pass.vector_registers},
-          {"scalar_registers", pass.scalar_registers},
+          {"vector_registers", shader.vector_registers},
+          {"scalar_registers", shader.scalar_registers},
           {"waves_per_simd", pass.waves_per_simd},
-          {"spilled_registers", pass.spills},
-          {"scratch_bytes", pass.scratch_bytes},
-          {"code_bytes", pass.code_bytes},
-          {"shared_memory_bytes", pass.shared_bytes},
+          {"spilled_registers", shader.spills},
+          {"scratch_bytes", shader.scratch_bytes},
+          {"code_bytes", shader.code_bytes},
+          {"shared_memory_bytes", shader.shared_bytes},
           {"waves", pass.waves},
           {"wave",
            {{"instructions", pass.wave.instructions},
@@ -157,11 +160,25 @@ std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) 
   return {std::move(bent), std::move(specular)};
 }
 
-Result<SettingsCost> cost_of(const GpuPart& part, const NullDevice& device,
-                             const LabelledSettings& settings) {
+Result<SettingsCost> model_cost(const GpuPart& part, const NullDevice& device,
+                                const LabelledSettings& settings) {
   ALCOVE_TRY(auto frames, modelled_frames(part, device, settings.inputs));
   ALCOVE_TRY(auto found, occupancies(part, device, settings.inputs));
   return SettingsCost{settings, &part, std::move(frames), std::move(found)};
+}
+
+Result<std::vector<SettingsCost>> model_costs(std::span<const LabelledSettings> settings,
+                                              const GpuPart* only) {
+  std::vector<SettingsCost> costs;
+  for (const GpuPart& part : kGpuParts) {
+    if (only != nullptr && only != &part) continue;
+    ALCOVE_TRY(const auto device, create_null_device(part.family));
+    for (const LabelledSettings& one : settings) {
+      ALCOVE_TRY(auto cost, model_cost(part, device, one));
+      costs.push_back(std::move(cost));
+    }
+  }
+  return costs;
 }
 
 std::vector<double> output_ratios(const SettingsCost& cost, std::span<const SettingsCost> costs) {
@@ -177,14 +194,14 @@ std::vector<double> output_ratios(const SettingsCost& cost, std::span<const Sett
   return ratios;
 }
 
-std::string table_of(std::span<const SettingsCost> costs, bool loops) {
+std::string format_table(std::span<const SettingsCost> costs, bool loops) {
   std::string out;
   for (const GpuPart& part : kGpuParts) {
     const auto first = std::ranges::find(costs, &part, &SettingsCost::part);
     if (first == costs.end()) continue;
     const CostInputs& size = first->settings.inputs;
-    out += fmt::format("{}: {}. Modelled milliseconds at {}x{};", part.family, part.title,
-                       size.width, size.height);
+    out += fmt::format("{}: {}. Modelled milliseconds at {}x{};", part.name, part.title, size.width,
+                       size.height);
     for (const XeGtao& peer : kXeGtao) {
       out += fmt::format("{} {} {:.3f}", &peer == kXeGtao.data() ? "" : ",", peer.name,
                          xegtao_ms(part, peer, size.width, size.height));
@@ -214,7 +231,7 @@ Json to_json(std::span<const SettingsCost> costs) {
           to_json(cost, peers[std::string(kXeGtaoHigh.name)], output_ratios(cost, costs)));
     }
     if (!settings.empty()) {
-      parts.push_back({{"family", part.family},
+      parts.push_back({{"gpu", part.name},
                        {"part", part.title},
                        {"peers_ms", std::move(peers)},
                        {"settings", std::move(settings)}});

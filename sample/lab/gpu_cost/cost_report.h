@@ -34,14 +34,19 @@ struct SettingsCost {
 };
 
 // Errors: those of modelled_frames().
-[[nodiscard]] Result<SettingsCost> cost_of(const GpuPart& part, const NullDevice& device,
-                                           const LabelledSettings& settings);
+[[nodiscard]] Result<SettingsCost> model_cost(const GpuPart& part, const NullDevice& device,
+                                              const LabelledSettings& settings);
+
+// The costs of all these settings on each GPU of the model, or on `only`. Errors: those of
+// create_null_device() and modelled_frames().
+[[nodiscard]] Result<std::vector<SettingsCost>> model_costs(
+    std::span<const LabelledSettings> settings, const GpuPart* only = nullptr);
 
 // Returns the costs as text: a table for each GPU, with the passes of each frame and their sums.
 // With `loops`, also the instructions of a wave by kind, each loop of the compiled shader with its
 // number of iterations, and each branch that not every wave executes. The ratios of output_ratios()
 // follow, if there are any.
-[[nodiscard]] std::string table_of(std::span<const SettingsCost> costs, bool loops);
+[[nodiscard]] std::string format_table(std::span<const SettingsCost> costs, bool loops);
 [[nodiscard]] nlohmann::ordered_json to_json(std::span<const SettingsCost> costs);
 
 // Returns, for each frame of `cost`, its modelled time divided by the time of the same frame
@@ -50,6 +55,6 @@ struct SettingsCost {
 [[nodiscard]] std::vector<double> output_ratios(const SettingsCost& cost,
                                                 std::span<const SettingsCost> costs);
 // An SVG image: for each GPU, a bar of the passes' times for each frame of each label.
-[[nodiscard]] std::string chart_of(std::span<const SettingsCost> costs);
+[[nodiscard]] std::string draw_chart(std::span<const SettingsCost> costs);
 
 }  // namespace alcove::sample

@@ -88,7 +88,7 @@ Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs) {
   return frames;
 }
 
-std::vector<PassImage> images_of(const AlcoveWork& work, const AlcoveWorkDispatch& dispatch) {
+std::vector<PassImage> dispatch_images(const AlcoveWork& work, const AlcoveWorkDispatch& dispatch) {
   const auto bindings = std::span(dispatch.bindings).first(dispatch.binding_count);
   std::vector<PassImage> images;
   for (auto binding = bindings.begin(); binding != bindings.end(); ++binding) {

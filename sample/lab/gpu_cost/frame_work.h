@@ -38,7 +38,7 @@ struct CostInputs {
 [[nodiscard]] Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs);
 
 // Returns the images that a dispatch of `work` reads and writes, in the order of its bindings.
-[[nodiscard]] std::vector<passes::cost::PassImage> images_of(const AlcoveWork& work,
-                                                             const AlcoveWorkDispatch& dispatch);
+[[nodiscard]] std::vector<passes::cost::PassImage> dispatch_images(
+    const AlcoveWork& work, const AlcoveWorkDispatch& dispatch);
 
 }  // namespace alcove::sample

@@ -14,13 +14,7 @@ using passes::cost::FrameState;
 using passes::cost::PassWork;
 using Failure = tl::unexpected<std::string>;
 
-// The statistics that RADV reports for a shader.
-struct Statistics {
-  double vector_registers, scalar_registers, spills, scratch_bytes, code_bytes, shared_bytes;
-  double subgroups_per_simd, latency, inverse_throughput;
-};
-
-Result<Statistics> statistics_of(const CompiledShader& shader) {
+Result<ShaderStatistics> read_statistics(const CompiledShader& shader) {
   std::string missing;
   const auto get = [&](const char* name) {
     const auto found = shader.statistics.find(name);
@@ -30,7 +24,7 @@ Result<Statistics> statistics_of(const CompiledShader& shader) {
     }
     return found->second;
   };
-  const Statistics statistics{
+  const ShaderStatistics statistics{
       .vector_registers = get("VGPRs"),
       .scalar_registers = get("SGPRs"),
       .spills = get("Spilled VGPRs") + get("Spilled SGPRs"),
@@ -51,7 +45,7 @@ Result<Statistics> statistics_of(const CompiledShader& shader) {
 // Returns the latency of one wave in cycles. The compiler's latency assumes that each loop runs 8
 // times, so it is multiplied by the ratio of the work with the true counts to the work with these
 // assumed ones.
-double wave_latency(const Statistics& statistics, const WaveWork& work, double held,
+double wave_latency(const ShaderStatistics& statistics, const WaveWork& work, double held,
                     std::uint32_t wave, bool loops) {
   if (!loops) return statistics.latency;
   // The compiler's statistic "Inverse throughput" is in cycles for 64 lanes. If a single wave is
@@ -63,7 +57,7 @@ double wave_latency(const Statistics& statistics, const WaveWork& work, double h
 }
 
 // The waves that a SIMD holds. RDNA counts in subgroups of 32 lanes.
-double waves_held(const GpuPart& part, const Statistics& statistics, double wave) {
+double waves_held(const GpuPart& part, const ShaderStatistics& statistics, double wave) {
   return part.rdna ? std::floor(statistics.subgroups_per_simd * 32 / wave)
                    : statistics.subgroups_per_simd;
 }
@@ -75,7 +69,7 @@ bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const Alcove
          std::ranges::equal(std::span(a.constants).first(a.constant_count),
                             std::span(b.constants).first(b.constant_count), {},
                             &AlcoveWorkConstant::value, &AlcoveWorkConstant::value) &&
-         images_of(work_a, a) == images_of(work_b, b);
+         dispatch_images(work_a, a) == dispatch_images(work_b, b);
 }
 
 Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
@@ -83,83 +77,67 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
                            FrameState state) {
   ALCOVE_TRY(const auto compiled, compile_dispatch(device, dispatch));
   const CompiledShader& shader = *compiled;
-  const auto statistics = statistics_of(shader);
-  const auto blocks = blocks_of(shader);
+  const auto statistics = read_statistics(shader);
+  const auto blocks = parse_blocks(shader);
   if (!statistics || !blocks) return Failure(statistics ? blocks.error() : statistics.error());
-  const auto images = images_of(frame, dispatch);
+  const auto images = dispatch_images(frame, dispatch);
   const auto& groups = dispatch.groups;
   const PassWork work{
       dispatch.label, inputs.settings, state, images, {groups[0], groups[1], groups[2]},
       inputs.height};
-  const std::vector<Loop> loops = loops_of(*blocks);
-  std::vector<CompiledLoop> summaries;
-  for (const Loop& loop : loops) summaries.push_back(loop.summary);
-  ALCOVE_TRY(const auto iterations, passes::cost::iterations(work, summaries));
   ModelledPass cost;
   cost.pass = dispatch.label;
-  for (std::size_t i = 0; i < summaries.size(); ++i)
-    cost.loops.push_back({summaries[i], iterations[i]});
-  std::vector<Branch> branches = branches_of(*blocks);
+  cost.statistics = *statistics;
+  cost.loops = find_loops(*blocks);
+  std::vector<CompiledLoop> summaries;
+  for (const Loop& loop : cost.loops) summaries.push_back(loop.summary);
+  ALCOVE_TRY(const auto iterations, passes::cost::iterations(work, summaries));
+  for (std::size_t i = 0; i < iterations.size(); ++i) cost.loops[i].iterations = iterations[i];
+  std::vector<Branch> branches = find_branches(*blocks);
   for (Branch& branch : branches) {
     branch.summary.loops =
-        static_cast<std::uint32_t>(std::ranges::count_if(loops, [&](const Loop& loop) {
+        static_cast<std::uint32_t>(std::ranges::count_if(cost.loops, [&](const Loop& loop) {
           return branch.first <= loop.first && loop.last <= branch.last;
         }));
     branch.share = passes::cost::branch_share(work, branch.summary);
-    if (branch.share < 1.0) cost.branches.push_back({branch.summary, branch.share});
+    if (branch.share < 1.0) cost.branches.push_back(branch);
   }
   const double wave = shader.wave;
   constexpr double kGroup = 64;  // invocations, as alcove_work.h says
   const double pixels = static_cast<double>(inputs.width) * inputs.height;
   const auto milliseconds = [&](double cycles) { return cycles / part.hertz * 1e3; };
-  cost.wave = wave_work(*blocks, loops, iterations, branches, part.rdna, shader.wave);
+  cost.wave = wave_work(*blocks, cost.loops, branches, part.rdna, shader.wave);
   cost.waves = static_cast<double>(groups[0]) * groups[1] * groups[2] * std::ceil(kGroup / wave);
-  cost.vector_registers = statistics->vector_registers;
-  cost.scalar_registers = statistics->scalar_registers;
-  cost.spills = statistics->spills;
-  cost.scratch_bytes = statistics->scratch_bytes;
-  cost.code_bytes = statistics->code_bytes;
-  cost.shared_bytes = statistics->shared_bytes;
   cost.waves_per_simd = waves_held(part, *statistics, wave);
   const double lanes = cost.waves * wave;
   cost.instructions_per_pixel = cost.wave.instructions * lanes / pixels;
   cost.fetches_per_pixel = cost.wave.loads * lanes / pixels;
   cost.stores_per_pixel = cost.wave.stores * lanes / pixels;
-  // A SIMD executes whole waves, so that some SIMDs may execute one more than others.
-  cost.alu_ms = milliseconds(std::ceil(cost.waves / part.simds) * cost.wave.busiest());
-  cost.latency_ms = milliseconds(
-      std::ceil(cost.waves / part.simds / std::max(cost.waves_per_simd, 1.0)) *
-      wave_latency(*statistics, cost.wave, cost.waves_per_simd, shader.wave, !loops.empty()));
-  const double per_unit = std::ceil(cost.waves / part.compute_units);
-  // A compute unit's shared memory moves 32 words a cycle.
-  cost.shared_ms = milliseconds(per_unit * cost.wave.shared_words * wave / 32);
   const CacheTraffic traffic =
       cache_traffic(part, passes::cost::accesses_of(work), cost.waves_per_simd);
-  cost.texture_ms =
-      milliseconds(std::max(per_unit * cost.wave.texture_cycles, traffic.texture_cycles));
   cost.l2_bytes_per_pixel = traffic.l2_bytes / pixels;
   cost.bytes_per_pixel = traffic.memory_bytes / pixels;
-  cost.l2_ms = l2_ms(part, traffic);
-  cost.memory_ms = memory_ms(part, traffic);
   cost.cache_lines_per_load = traffic.lines_per_load;
+  const double per_unit = std::ceil(cost.waves / part.compute_units);
+  cost.limits_ms = {
+      // A SIMD executes whole waves, so that some SIMDs may execute one more than others.
+      milliseconds(std::ceil(cost.waves / part.simds) * cost.wave.busiest()),
+      milliseconds(std::max(per_unit * cost.wave.texture_cycles, traffic.texture_cycles)),
+      // A compute unit's shared memory moves 32 words a cycle.
+      milliseconds(per_unit * cost.wave.shared_words * wave / 32), l2_ms(part, traffic),
+      memory_ms(part, traffic),
+      milliseconds(std::ceil(cost.waves / part.simds / std::max(cost.waves_per_simd, 1.0)) *
+                   wave_latency(*statistics, cost.wave, cost.waves_per_simd, shader.wave,
+                                !cost.loops.empty()))};
   cost.dispatch_ms = 1e3 * part.dispatch_seconds;
   return cost;
 }
 
 }  // namespace
 
-double ModelledPass::busy_ms() const {
-  return std::max({alu_ms, texture_ms, shared_ms, l2_ms, memory_ms, latency_ms});
-}
-
 std::string_view ModelledPass::limit() const {
-  const double longest = busy_ms();
-  return longest <= alu_ms       ? "ALU"
-         : longest <= texture_ms ? "texture"
-         : longest <= shared_ms  ? "shared memory"
-         : longest <= l2_ms      ? "L2"
-         : longest <= memory_ms  ? "memory"
-                                 : "latency";
+  return kLimitNames.at(
+      static_cast<std::size_t>(std::ranges::max_element(limits_ms) - limits_ms.begin()));
 }
 
 double ModelledFrame::milliseconds() const {
@@ -207,7 +185,7 @@ Result<std::vector<Occupancy>> occupancies(const GpuPart& part, const NullDevice
       for (const AlcoveWorkDispatch& dispatch :
            std::span(frame.dispatches).first(frame.dispatch_count)) {
         ALCOVE_TRY(const auto shader, compile_dispatch(device, dispatch));
-        ALCOVE_TRY(const auto statistics, statistics_of(*shader));
+        ALCOVE_TRY(const auto statistics, read_statistics(*shader));
         auto own = std::ranges::find(found, std::string_view(dispatch.label), &Occupancy::pass);
         if (own == found.end()) own = found.insert(own, Occupancy{dispatch.label});
         const double held = waves_held(part, statistics, shader->wave);

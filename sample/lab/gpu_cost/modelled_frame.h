@@ -11,6 +11,7 @@
 // are the same on every run and on every machine. cache_traffic.h says what is left out.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -22,28 +23,30 @@
 
 namespace alcove::sample {
 
-struct CountedLoop {
-  passes::cost::CompiledLoop loop;
-  double iterations = 0;
-};
-
-struct CountedBranch {
-  passes::cost::CompiledBranch branch;
-  double share = 1;  // of the waves that execute it
-};
-
-struct ModelledPass {
-  std::string pass;
+// The statistics that RADV reports for a shader.
+struct ShaderStatistics {
   double vector_registers = 0;  // of an invocation
   double scalar_registers = 0;  // of a wave
-  double waves_per_simd = 0;    // of at most 10 on GCN and 16 on RDNA2
   double spills = 0;            // registers in memory
   double scratch_bytes = 0;
   double code_bytes = 0;
   double shared_bytes = 0;  // of a workgroup
-  WaveWork wave;            // of one wave
-  std::vector<CountedLoop> loops;
-  std::vector<CountedBranch> branches;  // those that not every wave executes
+  double subgroups_per_simd = 0;
+  double latency = 0;             // of a wave, cycles, with loops that run 8 times
+  double inverse_throughput = 0;  // cycles
+};
+
+// The times of which a pass takes the longest, in this order.
+inline constexpr std::array<std::string_view, 6> kLimitNames{"ALU", "texture", "shared memory",
+                                                             "L2",  "memory",  "latency"};
+
+struct ModelledPass {
+  std::string pass;
+  ShaderStatistics statistics;
+  double waves_per_simd = 0;  // of at most 10 on GCN and 16 on RDNA2
+  WaveWork wave;              // of one wave
+  std::vector<Loop> loops;
+  std::vector<Branch> branches;  // those that not every wave executes
   double waves = 0;
   // For each pixel of the full image.
   double instructions_per_pixel = 0;
@@ -52,16 +55,10 @@ struct ModelledPass {
   double l2_bytes_per_pixel = 0;
   double bytes_per_pixel = 0;  // from and to memory
   double cache_lines_per_load = 0;
-  double alu_ms = 0;
-  double texture_ms = 0;
-  double shared_ms = 0;
-  double l2_ms = 0;
-  double memory_ms = 0;
-  double latency_ms = 0;
+  std::array<double, kLimitNames.size()> limits_ms{};
   double dispatch_ms = 0;  // added to the longest of the others
 
-  double busy_ms() const;  // the longest of the six times
-  double milliseconds() const { return busy_ms() + dispatch_ms; }
+  double milliseconds() const { return *std::ranges::max_element(limits_ms) + dispatch_ms; }
   std::string_view limit() const;  // the name of the longest of the six times
 };
 

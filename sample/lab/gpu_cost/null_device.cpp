@@ -87,7 +87,7 @@ bool has_executable_properties(VkPhysicalDevice device) {
   return executable.pipelineExecutableInfo == VK_TRUE;
 }
 
-VkResult create_device(NullDevice& made) {
+VkResult create_device(NullDevice& null_device) {
   VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR executable{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
       .pipelineExecutableInfo = VK_TRUE};
@@ -106,7 +106,7 @@ VkResult create_device(NullDevice& made) {
                                 .pQueueCreateInfos = &queue,
                                 .enabledExtensionCount = 1,
                                 .ppEnabledExtensionNames = &extension};
-  return vkCreateDevice(made.physical_device, &info, nullptr, &made.device);
+  return vkCreateDevice(null_device.physical_device, &info, nullptr, &null_device.device);
 }
 
 double value_of(const VkPipelineExecutableStatisticKHR& statistic) {
@@ -137,18 +137,19 @@ VkDescriptorType descriptor_type(AlcoveBindingType type) {
   }
 }
 
-// Creates the layout of a dispatch's bindings. Samplers are part of it, as alcove_work.h says:
-// nearest and clamped.
-VkResult create_layout(VkDevice device, const AlcoveWorkDispatch& dispatch,
-                       VkPipelineLayout& layout) {
+// Creates the pipeline of a dispatch, and returns whether it could. Its objects live as long as the
+// device, until the process ends. Samplers are part of the layout, as alcove_work.h says: nearest
+// and clamped.
+bool create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch, VkPipeline& pipeline) {
   const VkSamplerCreateInfo sampler_info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                          .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                          .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                          .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
   VkSampler sampler = VK_NULL_HANDLE;
-  if (const VkResult result = vkCreateSampler(device, &sampler_info, nullptr, &sampler);
-      result != VK_SUCCESS)
-    return result;
+  AlcoveShader shader{};
+  if (alcoveGetShader(dispatch.shader, &shader) != ALCOVE_SUCCESS ||
+      vkCreateSampler(device, &sampler_info, nullptr, &sampler) != VK_SUCCESS)
+    return false;
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const AlcoveWorkBinding& binding :
        std::span(dispatch.bindings).first(dispatch.binding_count)) {
@@ -161,31 +162,19 @@ VkResult create_layout(VkDevice device, const AlcoveWorkDispatch& dispatch,
       .bindingCount = dispatch.binding_count,
       .pBindings = bindings.data()};
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
-  if (const VkResult result = vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set);
-      result != VK_SUCCESS)
-    return result;
-  const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                        .setLayoutCount = 1,
-                                        .pSetLayouts = &set};
-  return vkCreatePipelineLayout(device, &info, nullptr, &layout);
-}
-
-// Creates the pipeline of a dispatch. Its objects live as long as the device, until the process
-// ends.
-VkResult create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch,
-                         VkPipeline& pipeline) {
+  const VkPipelineLayoutCreateInfo layout_info{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+      .setLayoutCount = 1,
+      .pSetLayouts = &set};
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  AlcoveShader shader{};
-  if (alcoveGetShader(dispatch.shader, &shader) != ALCOVE_SUCCESS ||
-      create_layout(device, dispatch, layout) != VK_SUCCESS)
-    return VK_ERROR_INITIALIZATION_FAILED;
   const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                              .codeSize = shader.code_size,
                                              .pCode = shader.code};
   VkShaderModule module = VK_NULL_HANDLE;
-  if (const VkResult result = vkCreateShaderModule(device, &module_info, nullptr, &module);
-      result != VK_SUCCESS)
-    return result;
+  if (vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set) != VK_SUCCESS ||
+      vkCreatePipelineLayout(device, &layout_info, nullptr, &layout) != VK_SUCCESS ||
+      vkCreateShaderModule(device, &module_info, nullptr, &module) != VK_SUCCESS)
+    return false;
   std::vector<VkSpecializationMapEntry> entries;
   for (std::uint32_t i = 0; i < dispatch.constant_count; ++i) {
     entries.push_back({dispatch.constants[i].id,
@@ -207,7 +196,8 @@ VkResult create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch,
                 .pSpecializationInfo = &constants},
       .layout = layout};
   const SilentStandardError silent;  // ACO warns if it finds no disassembler for old GPUs
-  return vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);
+  return vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline) ==
+         VK_SUCCESS;
 }
 
 }  // namespace
@@ -224,24 +214,28 @@ Result<NullDevice> create_null_device(std::string_view family) {
   const ScopedVariable old_files("VK_ICD_FILENAMES", *manifest);
   const ScopedVariable forced("RADV_FORCE_FAMILY", std::string(family));
   const SilentStandardError silent;  // RADV warns that it does not conform
-  NullDevice made;
+  NullDevice null_device;
   const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                       .pApplicationName = "alcove",
                                       .apiVersion = VK_API_VERSION_1_3};
   const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                   .pApplicationInfo = &application};
   std::uint32_t count = 1;
-  if (vkCreateInstance(&info, nullptr, &made.instance) != VK_SUCCESS ||
-      vkEnumeratePhysicalDevices(made.instance, &count, &made.physical_device) < VK_SUCCESS ||
-      count == 0 || !has_executable_properties(made.physical_device) ||
-      create_device(made) != VK_SUCCESS) {
+  if (vkCreateInstance(&info, nullptr, &null_device.instance) != VK_SUCCESS ||
+      vkEnumeratePhysicalDevices(null_device.instance, &count, &null_device.physical_device) <
+          VK_SUCCESS ||
+      count == 0 || !has_executable_properties(null_device.physical_device) ||
+      create_device(null_device) != VK_SUCCESS) {
     return Failure("Mesa's AMD driver (RADV, " + *manifest + ") has no device of the family " +
                    std::string(family) + ".");
   }
-  VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(made.physical_device, &properties);
-  made.name = properties.deviceName;
-  return made;
+  VkPhysicalDeviceDriverProperties driver{.sType =
+                                              VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                         .pNext = &driver};
+  vkGetPhysicalDeviceProperties2(null_device.physical_device, &properties);
+  null_device.compiler = std::string(driver.driverName) + ", " + driver.driverInfo;
+  return null_device;
 }
 
 Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline) {
@@ -296,7 +290,7 @@ Result<const CompiledShader*> compile_dispatch(const NullDevice& device,
   const std::tuple key{device.device, std::string(dispatch.shader), std::move(constants)};
   if (const auto found = known.find(key); found != known.end()) return &found->second;
   VkPipeline pipeline = VK_NULL_HANDLE;
-  if (create_pipeline(device.device, dispatch, pipeline) != VK_SUCCESS) {
+  if (!create_pipeline(device.device, dispatch, pipeline)) {
     return Failure("Mesa's AMD driver could not compile the shader '" +
                    std::string(dispatch.shader) + "'.");
   }

@@ -20,7 +20,7 @@ struct NullDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
-  std::string name;
+  std::string compiler;  // name and version of the driver, whose compiler determines the costs
 };
 
 // Creates a device of the GPU family `family`, named as in the environment variable

@@ -44,10 +44,9 @@ bool is_slow_multiply(std::string_view operation) {
 }
 
 bool is_64_bit(std::string_view operation) {
-  constexpr std::array<std::string_view, 4> kTypes{"_f64", "_b64", "_u64", "_i64"};
-  return std::ranges::any_of(kTypes, [operation](std::string_view type) {
-    return operation.find(type) != std::string_view::npos;
-  });
+  return std::ranges::any_of(
+      std::array<std::string_view, 4>{"_f64", "_b64", "_u64", "_i64"},
+      [&](std::string_view type) { return operation.find(type) != std::string_view::npos; });
 }
 
 // Conversions on GCN run at a quarter of the rate, by LLVM's tables; unpacking bytes does not.
@@ -70,7 +69,7 @@ std::uint32_t number_at(std::string_view text, std::size_t at) {
 
 // Returns the number of 32-bit words of an operand: for example four for "v[4:7]", and four for
 // "v4:" in the compiler's text before registers are assigned.
-double words_of(std::string_view text) {
+double count_words(std::string_view text) {
   const std::string_view first = text.substr(0, text.find(','));
   if (const std::size_t range = first.find("v["); range != std::string_view::npos) {
     const std::size_t colon = first.find(':', range);
@@ -90,7 +89,7 @@ std::string_view first_word(std::string_view text) {
 }
 
 // A line of the compiler's text before registers are assigned: "results = operation operands".
-Instruction instruction_of_aco(std::string_view line) {
+Instruction parse_instruction(std::string_view line) {
   const std::size_t equals = line.find(" = ");
   const std::string_view results =
       equals == std::string_view::npos ? std::string_view{} : line.substr(0, equals);
@@ -107,12 +106,12 @@ Instruction instruction_of_aco(std::string_view line) {
   }
   if (operation == "p_cbranch_z" || operation == "p_cbranch_nz" || operation == "p_branch")
     operation = "s_cbranch";
-  return {std::move(operation), words_of(results.empty() ? line : results), 1};
+  return {std::move(operation), count_words(results.empty() ? line : results), 1};
 }
 
 // Decodes an instruction that LLVM's disassembler does not support: mostly image instructions with
 // their address in nonconsecutive registers.
-Instruction instruction_of_word(std::uint32_t word) {
+Instruction decode_instruction(std::uint32_t word) {
   constexpr std::uint32_t kImage = 0x3c;
   constexpr std::uint32_t kScalarMemory = 0x3d;
   if (word >> 26u == kImage) {
@@ -124,7 +123,7 @@ Instruction instruction_of_word(std::uint32_t word) {
 }
 
 // The block number of a line "BB12" or "BB12:"; none for any other line.
-std::optional<std::uint32_t> block_of_line(std::string_view line) {
+std::optional<std::uint32_t> parse_block_number(std::string_view line) {
   if (!line.starts_with("BB")) return std::nullopt;
   line.remove_prefix(2);
   std::uint32_t index = 0;
@@ -135,7 +134,7 @@ std::optional<std::uint32_t> block_of_line(std::string_view line) {
 }
 
 // "... linear preds: BB3, BB5, / kind: ..."
-std::vector<std::uint32_t> predecessors_of(std::string_view line) {
+std::vector<std::uint32_t> parse_predecessors(std::string_view line) {
   std::vector<std::uint32_t> found;
   const std::size_t begin = line.find("linear preds:");
   if (begin == std::string_view::npos) return found;
@@ -145,21 +144,21 @@ std::vector<std::uint32_t> predecessors_of(std::string_view line) {
   return found;
 }
 
-std::vector<BasicBlock> blocks_of_aco(const std::string& text, bool instructions) {
+std::vector<BasicBlock> parse_aco(const std::string& text, bool instructions) {
   std::vector<BasicBlock> blocks;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    if (const auto index = block_of_line(line)) {
+    if (const auto index = parse_block_number(line)) {
       blocks.push_back({.index = *index});
     } else if (!blocks.empty() && line.starts_with("/* logical preds:")) {
       const std::string_view kind =
           std::string_view(line).substr(std::min(line.find("kind:"), line.size()));
-      blocks.back().predecessors = predecessors_of(line);
+      blocks.back().predecessors = parse_predecessors(line);
       blocks.back().branches = kind.find("branch,") != std::string_view::npos;
       blocks.back().inverts = kind.find("invert,") != std::string_view::npos;
       blocks.back().merges = kind.find("merge,") != std::string_view::npos;
     } else if (!blocks.empty() && line.starts_with("\t") && instructions) {
-      blocks.back().instructions.push_back(instruction_of_aco(line));
+      blocks.back().instructions.push_back(parse_instruction(line));
     }
   }
   return blocks;
@@ -169,7 +168,7 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
   BasicBlock* block = nullptr;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    if (const auto index = block_of_line(line)) {
+    if (const auto index = parse_block_number(line)) {
       block = *index < blocks.size() ? &blocks[*index] : nullptr;
       continue;
     }
@@ -181,19 +180,13 @@ void add_disassembly(const std::string& text, std::vector<BasicBlock>& blocks) {
       const std::size_t words = line.rfind(';');
       const std::string word(first_word(std::string_view(line).substr(words + 1)));
       block->instructions.push_back(
-          instruction_of_word(static_cast<std::uint32_t>(std::stoul(word, nullptr, 16))));
+          decode_instruction(static_cast<std::uint32_t>(std::stoul(word, nullptr, 16))));
     } else if (line.starts_with("\t")) {
       const std::string_view code = std::string_view(line).substr(0, line.find(';'));
       block->instructions.push_back(
-          {std::string(without_encoding(first_word(code))), words_of(code), 1});
+          {std::string(without_encoding(first_word(code))), count_words(code), 1});
     }
   }
-}
-
-const std::string* text_of(const CompiledShader& shader, std::string_view name) {
-  for (const auto& [title, text] : shader.texts)
-    if (title == name) return &text;
-  return nullptr;
 }
 
 // Adds the cycles of a vector instruction by the rules of ACO's statistics (aco_statistics.cpp).
@@ -278,27 +271,27 @@ double WaveWork::busiest() const {
   return std::max({vector_cycles, complex_cycles, scalar_cycles, branch_cycles, memory_cycles});
 }
 
-Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader) {
-  const std::string* aco = text_of(shader, "ACO IR");
-  if (aco == nullptr)
+Result<std::vector<BasicBlock>> parse_blocks(const CompiledShader& shader) {
+  const auto aco = shader.texts.find("ACO IR");
+  if (aco == shader.texts.end())
     return Failure("The driver gives no 'ACO IR' for its pipelines; Mesa's AMD driver is needed.");
   // LLVM disassembles GFX8 and later; for older GPUs ACO's own text has the instructions.
-  const std::string* assembly = text_of(shader, "Assembly");
-  const bool disassembled = assembly != nullptr && assembly->starts_with("BB");
-  std::vector<BasicBlock> blocks = blocks_of_aco(*aco, !disassembled);
+  const auto assembly = shader.texts.find("Assembly");
+  const bool disassembled = assembly != shader.texts.end() && assembly->second.starts_with("BB");
+  std::vector<BasicBlock> blocks = parse_aco(aco->second, !disassembled);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (blocks[i].index != i) {
       return Failure(
           fmt::format("The driver's 'ACO IR' has an unknown format: block {} is missing.", i));
     }
   }
-  if (disassembled) add_disassembly(*assembly, blocks);
+  if (disassembled) add_disassembly(assembly->second, blocks);
   if (blocks.empty())
     return Failure("The driver's 'ACO IR' has an unknown format: it has no blocks.");
   return blocks;
 }
 
-std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks) {
+std::vector<Loop> find_loops(const std::vector<BasicBlock>& blocks) {
   // ACO stores the blocks of a loop consecutively, from the header to the last block that jumps
   // back to it.
   std::vector<Loop> loops;
@@ -321,7 +314,7 @@ std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks) {
   return loops;
 }
 
-std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks) {
+std::vector<Branch> find_branches(const std::vector<BasicBlock>& blocks) {
   // ACO stores the blocks of a divergent branch in order: the branch, one side, a block that
   // inverts the lanes, the other side, and the block in which both merge.
   std::vector<Branch> branches;
@@ -346,13 +339,12 @@ std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks) {
 }
 
 WaveWork wave_work(const std::vector<BasicBlock>& blocks, const std::vector<Loop>& loops,
-                   const std::vector<double>& iterations, const std::vector<Branch>& branches,
-                   bool rdna, std::uint32_t wave) {
+                   const std::vector<Branch>& branches, bool rdna, std::uint32_t wave) {
   WaveWork work;
   for (const BasicBlock& block : blocks) {
     double times = 1.0;
-    for (std::size_t i = 0; i < loops.size(); ++i)
-      if (loops[i].first <= block.index && block.index <= loops[i].last) times *= iterations[i];
+    for (const Loop& loop : loops)
+      if (loop.first <= block.index && block.index <= loop.last) times *= loop.iterations;
     for (const Branch& branch : branches)
       if (branch.first <= block.index && block.index <= branch.last) times *= branch.share;
     for (const Instruction& instruction : block.instructions)

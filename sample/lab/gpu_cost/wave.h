@@ -55,15 +55,16 @@ struct BasicBlock {
 
 // Returns the basic blocks of a shader in the order of the code. Errors: the driver gave no text,
 // or the text does not have the format of Mesa's AMD compiler (ACO).
-[[nodiscard]] Result<std::vector<BasicBlock>> blocks_of(const CompiledShader& shader);
+[[nodiscard]] Result<std::vector<BasicBlock>> parse_blocks(const CompiledShader& shader);
 
 // A loop, which consists of the blocks from `first` to `last`.
 struct Loop {
   passes::cost::CompiledLoop summary;
   std::uint32_t first = 0;
   std::uint32_t last = 0;
+  double iterations = 1;  // each time that it is entered
 };
-[[nodiscard]] std::vector<Loop> loops_of(const std::vector<BasicBlock>& blocks);
+[[nodiscard]] std::vector<Loop> find_loops(const std::vector<BasicBlock>& blocks);
 
 // One side of a divergent branch: the blocks from `first` to `last`.
 struct Branch {
@@ -72,12 +73,10 @@ struct Branch {
   std::uint32_t last = 0;
   double share = 1;  // of the waves that execute it
 };
-[[nodiscard]] std::vector<Branch> branches_of(const std::vector<BasicBlock>& blocks);
+[[nodiscard]] std::vector<Branch> find_branches(const std::vector<BasicBlock>& blocks);
 
-// `iterations[i]` is the number of iterations of loop i each time that it is entered.
 [[nodiscard]] WaveWork wave_work(const std::vector<BasicBlock>& blocks,
                                  const std::vector<Loop>& loops,
-                                 const std::vector<double>& iterations,
                                  const std::vector<Branch>& branches, bool rdna,
                                  std::uint32_t wave);
 

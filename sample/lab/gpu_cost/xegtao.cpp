@@ -33,7 +33,7 @@ struct Arithmetic {
   double search_waves, prefilter_waves, denoise_waves;  // in flight on a SIMD, by their registers
 };
 
-Arithmetic arithmetic_of(const GpuPart& part) {
+Arithmetic modelled_arithmetic(const GpuPart& part) {
   return part.rdna ? Arithmetic{.082, .0157, .0127, 10, 16, 10}
                    : Arithmetic{.91, .29, .18, 5, 9, 5};
 }
@@ -153,7 +153,7 @@ double xegtao_ms(const GpuPart& part, const XeGtao& preset, std::uint32_t width,
       known;
   double& ms = known[{part.family, preset.name, width, height}];
   if (ms > 0) return ms;
-  const Arithmetic arithmetic = arithmetic_of(part);
+  const Arithmetic arithmetic = modelled_arithmetic(part);
   const auto caches_ms = [&](const DispatchAccesses& dispatch, double waves) {
     return cache_ms(part, cache_traffic(part, dispatch, waves));
   };

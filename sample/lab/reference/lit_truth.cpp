@@ -78,7 +78,7 @@ ShadingPoint make_surface(const Reflectance& reflectance, const glm::vec3& norma
                           const glm::vec3& view, const glm::vec3& base, float roughness,
                           float metallic) {
   ShadingPoint surface;
-  surface.basis = basis_of(normal);
+  surface.basis = make_basis(normal);
   surface.view = surface.basis.to_local(view);
   surface.view.z = std::max(surface.view.z, 1e-3f);
   surface.view = glm::normalize(surface.view);

@@ -45,7 +45,7 @@ struct Basis {
     return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, n)};
   }
 };
-[[nodiscard]] inline Basis basis_of(const glm::vec3& n) {
+[[nodiscard]] inline Basis make_basis(const glm::vec3& n) {
   const glm::vec3 helper = std::abs(n.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
   const glm::vec3 x = glm::normalize(glm::cross(helper, n));
   return {x, glm::cross(n, x), n};

@@ -125,7 +125,7 @@ glm::vec3 trace_path(const RayScene::Impl& scene, glm::vec3 origin, glm::vec3 di
     }
     origin = scene.off_surface(origin + direction * hit->distance, hit->geometric_normal_ws);
     const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
-    direction = basis_of(hit->geometric_normal_ws).to_world(cosine_direction(u));
+    direction = make_basis(hit->geometric_normal_ws).to_world(cosine_direction(u));
   }
   return glm::vec3(0.0f);
 }
@@ -169,7 +169,7 @@ OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& point
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
     const OpenRays open = trace_hemisphere(scene.impl(), ray_start(scene, points, pixel),
-                                           basis_of(normal), settings, seed);
+                                           make_basis(normal), settings, seed);
     const float length = glm::length(open.sum);
     out.visibility.pixels[pixel] =
         static_cast<float>(open.count) / static_cast<float>(settings.spp);
@@ -178,7 +178,7 @@ OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& point
   return out;
 }
 
-Viewer viewer_of(const Camera& camera) {
+Viewer make_viewer(const Camera& camera) {
   return {camera.orthographic, camera.eye_ws, glm::normalize(camera.eye_ws - camera.target_ws)};
 }
 
@@ -194,7 +194,7 @@ Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
                             const TruthSettings& settings, const Progress& progress) {
   Image<float> out(points.normal_ws.width, points.normal_ws.height, 1.0f);
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
-    const Basis basis = basis_of(points.normal_ws.pixels[pixel]);
+    const Basis basis = make_basis(points.normal_ws.pixels[pixel]);
     const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
     out.pixels[pixel] =
         trace_lobe(scene.impl(), ray_start(scene, points, pixel), basis,
@@ -207,7 +207,7 @@ Image<glm::vec3> interreflection_truth(const RayScene& scene, const SurfacePoint
                                        const TruthSettings& settings, const Progress& progress) {
   Image<glm::vec3> out(points.normal_ws.width, points.normal_ws.height, glm::vec3(1.0f));
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
-    const Basis basis = basis_of(points.normal_ws.pixels[pixel]);
+    const Basis basis = make_basis(points.normal_ws.pixels[pixel]);
     const glm::vec3 origin = ray_start(scene, points, pixel);
     glm::dvec3 sum(0.0);
     for (uint32_t i = 0; i < settings.spp; ++i) {

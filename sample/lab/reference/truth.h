@@ -89,7 +89,7 @@ struct Viewer {
   glm::vec3 eye_ws{0.0f};
   glm::vec3 view_ws{0.0f, 0.0f, 1.0f};
 };
-[[nodiscard]] Viewer viewer_of(const Camera& camera);
+[[nodiscard]] Viewer make_viewer(const Camera& camera);
 // The unit direction from a point towards the eye.
 [[nodiscard]] glm::vec3 view_from(const Viewer& viewer, const glm::vec3& position_ws);
 // Computes specular occlusion S = integral V f <n,w> / integral f <n,w> over the hemisphere of n,

@@ -64,34 +64,34 @@ class TruthCache {
 
   template <class T>
   [[nodiscard]] bool read(const CacheKey& key, Image<T>& image) const {
-    auto values = read(key, floats_of(image).size());
+    auto values = read(key, as_floats(image).size());
     if (!values) return false;
     std::memcpy(image.pixels.data(), values->data(), values->size() * sizeof(float));
     return true;
   }
   template <class T>
   void write(const CacheKey& key, const Image<T>& image) const {
-    write(key, floats_of(image));
+    write(key, as_floats(image));
   }
   // Reads or writes several images, of which all but the first have keys derived from `key`.
   template <class... T>
   [[nodiscard]] bool read_all(const CacheKey& key, Image<T>&... images) const {
     std::uint32_t part = 0;
-    return (read(key_of(key, part++), images) && ...);
+    return (read(part_key(key, part++), images) && ...);
   }
   template <class... T>
   void write_all(const CacheKey& key, const Image<T>&... images) const {
     std::uint32_t part = 0;
-    (write(key_of(key, part++), images), ...);
+    (write(part_key(key, part++), images), ...);
   }
 
  private:
-  static CacheKey key_of(CacheKey key, std::uint32_t part) {
+  static CacheKey part_key(CacheKey key, std::uint32_t part) {
     if (part > 0) key.add(part);
     return key;
   }
   template <class T>
-  static std::span<const float> floats_of(const Image<T>& image) {
+  static std::span<const float> as_floats(const Image<T>& image) {
     const auto bytes = std::as_bytes(std::span(image.pixels));
     static_assert(sizeof(T) % sizeof(float) == 0);
     return {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)};

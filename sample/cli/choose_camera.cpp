@@ -1,4 +1,4 @@
-#include "cli/camera_of.h"
+#include "cli/choose_camera.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -21,7 +21,7 @@ bool has_axes(const Camera& camera) {
 }
 
 // Returns the first camera names and the number of the others, because a file may have thousands.
-std::string names_of(const std::vector<Camera>& cameras) {
+std::string list_names(const std::vector<Camera>& cameras) {
   constexpr std::size_t kMost = 10;
   const std::size_t listed = std::min(cameras.size(), kMost);
   std::string names;
@@ -33,12 +33,12 @@ std::string names_of(const std::vector<Camera>& cameras) {
 
 }  // namespace
 
-Result<Camera> camera_of(const ViewOptions& view, const Scene& scene) {
+Result<Camera> choose_camera(const ViewOptions& view, const Scene& scene) {
   const Camera* named = find_camera(scene, view.camera);
   if (!named && !view.camera.empty()) {
     return tl::unexpected(
         "the scene has no camera \"" + view.camera + "\"; it has " +
-        (scene.cameras.empty() ? "none: use --eye and --target" : names_of(scene.cameras)));
+        (scene.cameras.empty() ? "none: use --eye and --target" : list_names(scene.cameras)));
   }
   const double aspect = static_cast<double>(view.width) / view.height;
   Camera camera = named ? *named : framing_camera(scene, aspect);
@@ -71,13 +71,13 @@ Result<Camera> camera_of(const ViewOptions& view, const Scene& scene) {
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);
   if (!camera.orthographic && !(camera.near_plane > 0.0f)) {
-    return tl::unexpected("the near plane (" + shown(camera.near_plane) +
+    return tl::unexpected("the near plane (" + number_text(camera.near_plane) +
                           ") of a perspective view must lie before the eye: give --near");
   }
   if (!(camera.near_plane < camera.far_plane)) {
     return tl::unexpected(
         fmt::format("the near plane ({}) is not before the far plane ({}): give --near and --far",
-                    shown(camera.near_plane), shown(camera.far_plane)));
+                    number_text(camera.near_plane), number_text(camera.far_plane)));
   }
   return camera;
 }

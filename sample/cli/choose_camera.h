@@ -16,6 +16,6 @@ namespace alcove::sample {
 // perspective views unless the options say otherwise. Errors: the scene has no camera of that name
 // (its cameras are listed), the eye is at the target, the near plane is not in front of the far
 // plane or, in perspective, not in front of the eye.
-[[nodiscard]] Result<Camera> camera_of(const ViewOptions& view, const Scene& scene);
+[[nodiscard]] Result<Camera> choose_camera(const ViewOptions& view, const Scene& scene);
 
 }  // namespace alcove::sample
