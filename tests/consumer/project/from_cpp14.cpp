@@ -12,7 +12,8 @@ int main() {
   AlcoveMemory memory{};
   memory.struct_size = sizeof memory;
   const uint32_t outputs = ALCOVE_OUTPUT_VISIBILITY | ALCOVE_OUTPUT_BENT_NORMAL;
-  if (alcoveEstimateMemory(&settings, 1920, 1080, outputs, ALCOVE_INPUT_NORMALS, &memory) != ALCOVE_SUCCESS)
+  if (alcoveEstimateMemory(&settings, 1920, 1080, outputs, ALCOVE_INPUT_NORMALS, &memory) !=
+      ALCOVE_SUCCESS)
     return 1;
   std::printf("%.1f MB at 1080p\n", static_cast<double>(memory.allocated) * 1e-6);
 
