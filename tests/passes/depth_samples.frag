@@ -5,7 +5,7 @@ layout(push_constant) uniform Depths {
   float left;
   float right;
   float per_pixel;
-  float edge;  // pixels
+  float edge;   // pixels
   int samples;  // that are written, as bits
 };
 
