@@ -8,8 +8,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 using tinygltf::Value;
 
 // The members of the extension KHR_texture_transform, which gltf_properties.h has checked, or null.
@@ -45,7 +43,7 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
 
 // Converts a glTF sampler (glTF 2.0 section 5.26). Filters that the file does not give (-1) are
 // linear, also between mip levels. A value that glTF does not define is an error.
-tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
+Result<Sampler> read_sampler(const tinygltf::Sampler& in) {
   Sampler out;
   for (const auto& [mode, wrap] : {std::pair{in.wrapS, &out.wrap_u}, {in.wrapT, &out.wrap_v}}) {
     if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT && mode != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE &&
@@ -94,7 +92,7 @@ tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
 // Returns the matrix of KHR_texture_transform from the mesh's texture coordinates to those of the
 // image: scale, then rotation, then offset. A positive rotation is counter-clockwise in the image,
 // whose v points down. Numbers outside the range of a float are an error.
-tl::expected<glm::mat3x2, std::string> texture_transform(const Value& transform) {
+Result<glm::mat3x2> texture_transform(const Value& transform) {
   const auto pair = [&](const char* name, double otherwise) {
     if (!transform.Has(name)) return glm::dvec2(otherwise);
     const Value& values = transform.Get(name);
@@ -114,9 +112,8 @@ tl::expected<glm::mat3x2, std::string> texture_transform(const Value& transform)
 
 // Reads the texture of a reference. Samplers and images that cannot be used are left out with a
 // warning in the scene.
-tl::expected<TextureUse, std::string> read_texture(const tinygltf::Model& model,
-                                                   const TextureReference& reference,
-                                                   Scene& scene) {
+Result<TextureUse> read_texture(const tinygltf::Model& model, const TextureReference& reference,
+                                Scene& scene) {
   TextureUse use;
   use.uv_set = static_cast<uint32_t>(reference.set);
   const std::string name = std::to_string(reference.index);
@@ -135,9 +132,7 @@ tl::expected<TextureUse, std::string> read_texture(const tinygltf::Model& model,
     use.sampler = sampler.value_or(Sampler());
   }
   if (reference.transform != nullptr) {
-    const auto transform = texture_transform(*reference.transform);
-    if (!transform) return Failure(transform.error());
-    use.texture_from_mesh_uv = *transform;
+    ALCOVE_TRY(use.texture_from_mesh_uv, texture_transform(*reference.transform));
   }
   if (texture.source < 0) {
     // The texture may instead have its image in an extension that is not supported, such as
@@ -156,8 +151,8 @@ float clamped(double value, double low, double high) {
 }
 
 // The error text is the end of a sentence that begins with the material's name.
-tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
-                                                  const tinygltf::Material& in, Scene& scene) {
+Result<Material> read_material(const tinygltf::Model& model, const tinygltf::Material& in,
+                               Scene& scene) {
   Material out;
   out.name = in.name;
   const auto& pbr = in.pbrMetallicRoughness;
@@ -182,9 +177,7 @@ tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
                                ", neither 0 nor 1: it is left out.");
       continue;
     }
-    const auto use = read_texture(model, all[i], scene);
-    if (!use) return Failure(use.error());
-    *uses[i] = *use;
+    ALCOVE_TRY(*uses[i], read_texture(model, all[i], scene));
   }
   if (!std::isfinite(static_cast<float>(in.normalTexture.scale)))
     return Failure("has a normal map whose scale is not finite");
@@ -194,11 +187,11 @@ tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
 
 }  // namespace
 
-tl::expected<void, std::string> add_materials(const tinygltf::Model& model, Scene& scene) {
+Result<void> add_materials(const tinygltf::Model& model, Scene& scene) {
   for (const tinygltf::Material& in : model.materials) {
-    auto material = read_material(model, in, scene);
-    if (!material) return Failure("material \"" + in.name + "\" " + material.error());
-    scene.materials.push_back(std::move(*material));
+    ALCOVE_TRY(
+        scene.materials.emplace_back(),
+        read_material(model, in, scene).map_error(with_prefix("material \"" + in.name + "\" ")));
   }
   scene.materials.emplace_back();
   scene.materials.back().double_sided = false;

@@ -287,7 +287,7 @@ Checked copy(const Property& property, json& from, json& to) {
 
 }  // namespace
 
-tl::expected<json, std::string> checked_properties(json root) {
+Result<json> checked_properties(json root) {
   static const Property file = read_rule(Rule::parse(kFile), Rule::parse(kTypes));
   json out;
   if (auto copied = copy(file, root, out); !copied)

@@ -6,11 +6,11 @@
 #include <csetjmp>
 
 #include "support/image_rows.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using Bytes = std::span<const uint8_t>;
 
 constexpr const char* kDamaged = "is damaged";
@@ -139,7 +139,7 @@ bool is_jpeg(Bytes bytes) {
   return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
 }
 
-tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
+Result<ImageHeader> read_jpeg_header(Bytes bytes) {
   JpegReader reader(bytes);
   if (!reader.read_header()) return Failure(kDamaged);
   // The most pixels that one byte can encode: a Huffman code has at least one bit, and a block of
@@ -151,7 +151,7 @@ tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
   return ImageHeader{ImageFormat::jpeg, reader.width(), reader.height()};
 }
 
-tl::expected<DecodedImage, std::string> decode_jpeg(Bytes bytes, uint32_t reduction) {
+Result<DecodedImage> decode_jpeg(Bytes bytes, uint32_t reduction) {
   JpegReader reader(bytes);
   const unsigned scale = libjpeg_scale(reduction);
   if (!reader.read_header() || !reader.start(scale)) return failure_of(reader);
