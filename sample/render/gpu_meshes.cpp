@@ -1,9 +1,11 @@
 #include "render/gpu_meshes.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <unordered_map>
+#include <span>
 #include <utility>
 
 #include "maths/octahedral.h"
@@ -48,17 +50,26 @@ PackedTangent packed_tangent(const glm::vec4& tangent) {
 // Divides the triangles of a mesh into parts.
 class PartBuilder {
  public:
-  PartBuilder(const Mesh& mesh, const Material& material) : mesh_(mesh) {
-    if (material.normal_texture.image >= 0 && !mesh.normals.empty())
-      tangents_ = corner_tangents(mesh, material.normal_texture);
+  PartBuilder(const Mesh& mesh, const Material& material) : mesh_(mesh), numbers_(mesh.indices) {
+    if (material.normal_texture.image < 0 || mesh.normals.empty()) return;
+    const std::vector<glm::vec4> tangents = corner_tangents(mesh, material.normal_texture);
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+      corners_.push_back({mesh.indices[i], packed_tangent(tangents[i])});
+    const std::size_t count = corners_.size();
+    numbers_of_corners_.resize(count);
+    const std::size_t distinct = meshopt_generateVertexRemap(
+        numbers_of_corners_.data(), nullptr, count, corners_.data(), count, sizeof(Corner));
+    meshopt_remapVertexBuffer(corners_.data(), corners_.data(), count, sizeof(Corner),
+                              numbers_of_corners_.data());
+    corners_.resize(distinct);
+    numbers_ = numbers_of_corners_;
   }
 
   // Returns the next part, with at most `most_triangles` triangles. It has no indices if no
   // triangle is left. Triangles without an area are left out.
   Part next(std::size_t most_triangles) {
     part_ = {};
-    if (tangents_.empty()) copy_of_vertex_.assign(mesh_.positions.size(), kNone);
-    copy_of_corner_.clear();
+    copies_.assign(corners_.empty() ? mesh_.positions.size() : corners_.size(), kNone);
     is_first_.clear();
     const std::size_t left = (mesh_.indices.size() - at_) / 3;
     part_.indices.reserve(3 * std::min(most_triangles, left));
@@ -69,41 +80,26 @@ class PartBuilder {
   }
 
  private:
+  // A vertex of the mesh with the tangent that it has in some of its triangles.
   struct Corner {
     std::uint32_t vertex;
-    std::uint64_t tangent;
-    bool operator==(const Corner&) const = default;
+    PackedTangent tangent;
   };
-  struct CornerHash {
-    std::size_t operator()(const Corner& corner) const {
-      return std::hash<std::uint64_t>()((corner.tangent + corner.vertex) * 0x9e3779b97f4a7c15u);
-    }
-  };
+  static_assert(sizeof(Corner) == 12);  // without padding, because bytes are compared
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
-  std::uint32_t add_vertex(std::uint32_t source) {
-    part_.sources.push_back(source);
+  std::uint32_t add_vertex(std::uint32_t number) {
+    part_.sources.push_back(corners_.empty() ? number : corners_[number].vertex);
+    if (!corners_.empty()) part_.tangents.push_back(corners_[number].tangent);
     is_first_.push_back(false);
     return static_cast<std::uint32_t>(part_.sources.size() - 1);
   }
 
   // Returns the vertex of the part for an index of the mesh.
   std::uint32_t vertex_at(std::size_t index) {
-    const std::uint32_t source = mesh_.indices[index];
-    if (tangents_.empty()) {
-      std::uint32_t& known = copy_of_vertex_[source];
-      if (known == kNone) known = add_vertex(source);
-      return known;
-    }
-    const PackedTangent tangent = packed_tangent(tangents_[index]);
-    Corner corner{source, 0};
-    std::memcpy(&corner.tangent, &tangent, sizeof(tangent));
-    const auto [known, is_new] = copy_of_corner_.try_emplace(corner, 0);
-    if (is_new) {
-      known->second = add_vertex(source);
-      part_.tangents.push_back(tangent);
-    }
-    return known->second;
+    std::uint32_t& known = copies_[numbers_[index]];
+    if (known == kNone) known = add_vertex(numbers_[index]);
+    return known;
   }
 
   void add_triangle() {
@@ -112,13 +108,10 @@ class PartBuilder {
     if (!(length > 0.0)) return;
     std::array corners{vertex_at(at_), vertex_at(at_ + 1), vertex_at(at_ + 2)};
     const auto free = std::ranges::find_if(corners, [&](std::uint32_t v) { return !is_first_[v]; });
-    if (free != corners.end()) {
+    if (free != corners.end())
       std::rotate(corners.begin(), free, corners.end());
-    } else {
-      const std::uint32_t original = corners[0];
-      corners[0] = add_vertex(part_.sources[original]);
-      if (!tangents_.empty()) part_.tangents.push_back(part_.tangents[original]);
-    }
+    else
+      corners[0] = add_vertex(numbers_[at_]);
     is_first_[corners[0]] = true;
     part_.faces.resize(part_.sources.size());
     part_.faces[corners[0]] = packed_direction(glm::vec3(area / length));
@@ -126,12 +119,12 @@ class PartBuilder {
   }
 
   const Mesh& mesh_;
-  std::vector<glm::vec4> tangents_;  // one for each index; empty without a normal map
-  Part part_;                        // the current part
-  // For each vertex of the mesh, its copy in the current part.
-  std::vector<std::uint32_t> copy_of_vertex_;
-  // The copies of corners that differ in their tangents.
-  std::unordered_map<Corner, std::uint32_t, CornerHash> copy_of_corner_;
+  std::vector<Corner> corners_;  // distinct ones; empty without a normal map
+  std::vector<std::uint32_t> numbers_of_corners_;
+  // For each index of the mesh, its corner, or without a normal map its vertex.
+  std::span<const std::uint32_t> numbers_;
+  Part part_;                          // the current part
+  std::vector<std::uint32_t> copies_;  // for each of these numbers, its copy in the current part
   // For each vertex of the part, whether it is already the first vertex of a triangle.
   std::vector<bool> is_first_;
   std::size_t at_ = 0;  // position of the next triangle's indices

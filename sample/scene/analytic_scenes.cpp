@@ -24,14 +24,8 @@ Name split(const std::string& name) {
 }
 
 Camera camera(glm::vec3 eye, glm::vec3 target, glm::vec3 up = {0, 1, 0}) {
-  Camera out;
-  out.name = "front";
-  out.eye_ws = eye;
-  out.target_ws = target;
+  Camera out = scene_camera("front", eye, target, 50.0f, 50.0f);
   out.up_ws = up;
-  out.fov_y = glm::radians(50.0f);
-  out.near_plane = 0.05f;
-  out.far_plane = 50.0f;
   return out;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 namespace alcove::sample {
@@ -41,51 +43,41 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
           reference("normal map", material.normalTexture)};
 }
 
+// Sets `out` to the value for an enumerator of glTF. Returns false if there is none.
+template <class Value, size_t N>
+bool set(Value& out, int enumerator, const std::pair<int, Value> (&values)[N]) {
+  const auto found = std::ranges::find(values, enumerator, &std::pair<int, Value>::first);
+  if (found != std::end(values)) out = found->second;
+  return found != std::end(values);
+}
+
 // Converts a glTF sampler (glTF 2.0 section 5.26). Filters that the file does not give (-1) are
 // linear, also between mip levels. A value that glTF does not define is an error.
 Result<Sampler> read_sampler(const tinygltf::Sampler& in) {
-  Sampler out;
-  for (const auto& [mode, wrap] : {std::pair{in.wrapS, &out.wrap_u}, {in.wrapT, &out.wrap_v}}) {
-    if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT && mode != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE &&
-        mode != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)
-      return Failure("has a wrap mode unknown to glTF");
-    *wrap = mode == TINYGLTF_TEXTURE_WRAP_REPEAT          ? Wrap::repeat
-            : mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ? Wrap::clamp
-                                                          : Wrap::mirror;
-  }
-  switch (in.magFilter) {
-    case TINYGLTF_TEXTURE_FILTER_NEAREST:
-      out.magnify = Filter::nearest;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_LINEAR:
-    case -1:
-      break;
-    default:
-      return Failure("has a filter unknown to glTF");
-  }
+  constexpr auto kLinear = Filter::linear, kNearest = Filter::nearest;
+  constexpr std::pair<int, Wrap> kWraps[] = {{TINYGLTF_TEXTURE_WRAP_REPEAT, Wrap::repeat},
+                                             {TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE, Wrap::clamp},
+                                             {TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT, Wrap::mirror}};
+  constexpr std::pair<int, Filter> kFilters[] = {{-1, kLinear},
+                                                 {TINYGLTF_TEXTURE_FILTER_LINEAR, kLinear},
+                                                 {TINYGLTF_TEXTURE_FILTER_NEAREST, kNearest}};
   // One number gives the filter within a mip level and the filter between mip levels.
-  switch (in.minFilter) {
-    case TINYGLTF_TEXTURE_FILTER_NEAREST:
-      out.minify = Filter::nearest;
-      [[fallthrough]];
-    case TINYGLTF_TEXTURE_FILTER_LINEAR:
-      out.mips = MipFilter::none;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
-      out.minify = Filter::nearest;
-      [[fallthrough]];
-    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
-      out.mips = MipFilter::nearest;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
-      out.minify = Filter::nearest;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
-    case -1:
-      break;
-    default:
-      return Failure("has a filter unknown to glTF");
-  }
+  using Filters = std::pair<Filter, MipFilter>;
+  constexpr std::pair<int, Filters> kMinFilters[] = {
+      {-1, {kLinear, MipFilter::linear}},
+      {TINYGLTF_TEXTURE_FILTER_LINEAR, {kLinear, MipFilter::none}},
+      {TINYGLTF_TEXTURE_FILTER_NEAREST, {kNearest, MipFilter::none}},
+      {TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR, {kLinear, MipFilter::linear}},
+      {TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST, {kLinear, MipFilter::nearest}},
+      {TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR, {kNearest, MipFilter::linear}},
+      {TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST, {kNearest, MipFilter::nearest}}};
+  Sampler out;
+  Filters minify;
+  if (!set(out.wrap_u, in.wrapS, kWraps) || !set(out.wrap_v, in.wrapT, kWraps))
+    return Failure("has a wrap mode unknown to glTF");
+  if (!set(out.magnify, in.magFilter, kFilters) || !set(minify, in.minFilter, kMinFilters))
+    return Failure("has a filter unknown to glTF");
+  std::tie(out.minify, out.mips) = minify;
   return out;
 }
 
