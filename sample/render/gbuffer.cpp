@@ -30,7 +30,7 @@ void set_uv_rows(maths::GbufferMaterial& out, std::uint32_t lookup, const Textur
   }
 }
 
-maths::GbufferMaterial parameters_of(const Material& material) {
+maths::GbufferMaterial convert(const Material& material) {
   maths::GbufferMaterial out{};
   out.base_colour = material.base_color;
   out.emissive = glm::vec4(material.emissive, 0.0f);
@@ -86,7 +86,7 @@ Result<void> GbufferRenderer::upload(const Scene& scene) {
   ALCOVE_TRY(parameters_, uniform(kParameterStride, gpu_.frames_in_flight()));
   ALCOVE_TRY(textures_, GpuTextures::create(gpu_, scene));
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const maths::GbufferMaterial material = parameters_of(scene.materials[i]);
+    const maths::GbufferMaterial material = convert(scene.materials[i]);
     std::memcpy(materials_->bytes().data() + i * kMaterialStride, &material, sizeof(material));
     double_sided_.push_back(scene.materials[i].double_sided);
   }

@@ -29,7 +29,7 @@ VkFilter vulkan_filter(Filter filter) {
   return filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
 }
 
-std::span<const std::uint8_t> texels_of(const Scene& scene, std::int32_t image) {
+std::span<const std::uint8_t> find_texels(const Scene& scene, std::int32_t image) {
   return image < 0
              ? std::span<const std::uint8_t>(kWhite)
              : std::span<const std::uint8_t>(scene.images[static_cast<std::size_t>(image)].rgba);
@@ -37,7 +37,7 @@ std::span<const std::uint8_t> texels_of(const Scene& scene, std::int32_t image) 
 
 }  // namespace
 
-std::array<GpuTextures::Use, maths::kMaterialTextures> GpuTextures::uses_of(
+std::array<GpuTextures::Use, maths::kMaterialTextures> GpuTextures::texture_uses(
     const Material& material) {
   const auto use = [](const TextureUse& texture, bool srgb) {
     return Use{texture.image, srgb, texture.sampler};
@@ -135,7 +135,7 @@ Result<void> GpuTextures::add_use(const Scene& scene, const Use& use) {
 Result<void> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
   // Each texture is uploaded in its own frame, so that only one upload buffer exists at a time.
   for (const Texture& texture : textures_) {
-    const auto texels = std::as_bytes(texels_of(scene, texture.image));
+    const auto texels = std::as_bytes(find_texels(scene, texture.image));
     ALCOVE_TRY(auto source,
                HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
     std::ranges::copy(texels, source->bytes().begin());
@@ -153,7 +153,7 @@ Result<void> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
 Result<std::unique_ptr<GpuTextures>> GpuTextures::create(Gpu& gpu, const Scene& scene) {
   std::unique_ptr<GpuTextures> made(new GpuTextures(gpu.device()));
   for (const Material& material : scene.materials)
-    for (const Use& use : uses_of(material)) ALCOVE_TRY_VOID(made->add_use(scene, use));
+    for (const Use& use : texture_uses(material)) ALCOVE_TRY_VOID(made->add_use(scene, use));
   ALCOVE_TRY_VOID(made->upload(gpu, scene));
   return made;
 }
@@ -165,7 +165,7 @@ GpuTextures::~GpuTextures() {
 std::array<VkDescriptorImageInfo, maths::kMaterialTextures> GpuTextures::descriptors_of(
     const Material& material) const {
   std::array<VkDescriptorImageInfo, maths::kMaterialTextures> found;
-  std::ranges::transform(uses_of(material), found.begin(), [&](const Use& use) {
+  std::ranges::transform(texture_uses(material), found.begin(), [&](const Use& use) {
     const auto at = std::ranges::find(uses_, use);
     return descriptors_[static_cast<std::size_t>(at - uses_.begin())];
   });

@@ -46,7 +46,7 @@ class GpuTextures {
 
   explicit GpuTextures(const VulkanDevice& device) : device_(device) {}
   // Returns the uses of a material's textures, in the order of the g-buffer's shaders.
-  static std::array<Use, maths::kMaterialTextures> uses_of(const Material& material);
+  static std::array<Use, maths::kMaterialTextures> texture_uses(const Material& material);
   Result<void> add_use(const Scene& scene, const Use& use);
   Result<VkImageView> add_texture(const Scene& scene, const Use& use);
   Result<VkSampler> add_sampler(const Sampler& sampler);

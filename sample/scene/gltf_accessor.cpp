@@ -71,8 +71,8 @@ bool is_unsigned(int type) {
 
 // Returns the address of `count` elements of `size` bytes, `stride` bytes apart, which begin at
 // `offset` in a buffer view.
-Result<const uint8_t*> elements_of(const tinygltf::Model& model, int64_t view, uint64_t offset,
-                                   uint64_t count, uint64_t size, uint64_t stride) {
+Result<const uint8_t*> find_elements(const tinygltf::Model& model, int64_t view, uint64_t offset,
+                                     uint64_t count, uint64_t size, uint64_t stride) {
   ALCOVE_TRY(const auto bytes, view_bytes(model, view));
   const uint64_t length = bytes.size();
   // The last element must end within the view. The comparisons are written so that no term can
@@ -102,8 +102,8 @@ Result<Elements> resolve(const tinygltf::Model& model, const tinygltf::Accessor&
   const size_t stride = model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
   if (stride != 0) out.stride = stride;
   if (out.stride < size) return Failure("has a stride that is less than its element");
-  ALCOVE_TRY(out.first, elements_of(model, accessor.bufferView, accessor.byteOffset, out.count,
-                                    size, out.stride));
+  ALCOVE_TRY(out.first, find_elements(model, accessor.bufferView, accessor.byteOffset, out.count,
+                                      size, out.stride));
   return out;
 }
 
@@ -131,13 +131,13 @@ auto read_elements(const tinygltf::Model& model, const tinygltf::Accessor& acces
   if (!is_unsigned(sparse.indices.componentType))
     return Failure("has sparse indices that are not unsigned integers");
   const uint64_t index_size = component_size(sparse.indices.componentType);
-  ALCOVE_TRY(const uint8_t* indices, elements_of(model, sparse.indices.bufferView,
-                                                 static_cast<uint64_t>(sparse.indices.byteOffset),
-                                                 count, index_size, index_size));
-  ALCOVE_TRY(
-      const uint8_t* replacements,
-      elements_of(model, sparse.values.bufferView, static_cast<uint64_t>(sparse.values.byteOffset),
-                  count, width * step, width * step));
+  ALCOVE_TRY(const uint8_t* indices, find_elements(model, sparse.indices.bufferView,
+                                                   static_cast<uint64_t>(sparse.indices.byteOffset),
+                                                   count, index_size, index_size));
+  ALCOVE_TRY(const uint8_t* replacements,
+             find_elements(model, sparse.values.bufferView,
+                           static_cast<uint64_t>(sparse.values.byteOffset), count, width * step,
+                           width * step));
   for (uint64_t i = 0; i < count; ++i) {
     uint64_t target = unsigned_component(indices + i * index_size, sparse.indices.componentType);
     if (target >= elements.count) return Failure("has a sparse index out of range");

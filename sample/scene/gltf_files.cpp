@@ -84,7 +84,7 @@ bool is_data(const std::string& uri) {
 }
 
 // Returns the bytes of a data URI (RFC 2397): data:[media type][;base64],data
-Result<Bytes> data_of(const std::string& uri) {
+Result<Bytes> read_data_uri(const std::string& uri) {
   const size_t comma = uri.find(',');
   if (comma == std::string::npos) return Failure("is a data URI without data");
   const std::string header = lower_case(std::string_view(uri).substr(0, comma));
@@ -139,7 +139,7 @@ GltfFiles::GltfFiles(const fs::path& folder) : bytes_left_(kMostFileBytes) {
 }
 
 Result<Bytes> GltfFiles::read(const std::string& uri) {
-  if (is_data(uri)) return data_of(uri);
+  if (is_data(uri)) return read_data_uri(uri);
   if (has_scheme(uri)) return Failure("is no file in the scene's folder");
   if (folder_.empty()) return Failure("cannot be read: the scene is not in a folder");
   const std::string decoded = percent_decoded(uri);

@@ -14,8 +14,8 @@
 namespace alcove::sample {
 namespace {
 
-glm::dmat4 transform_of(const glm::dvec3& translation, const glm::dquat& rotation,
-                        const glm::dvec3& scale) {
+glm::dmat4 compose(const glm::dvec3& translation, const glm::dquat& rotation,
+                   const glm::dvec3& scale) {
   glm::dmat4 m(1.0);
   const double length = glm::length(rotation);
   if (length > 0.0) m = glm::mat4_cast(rotation / length);
@@ -33,7 +33,7 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
   };
   glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
   if (const auto& q = node.rotation; !q.empty()) rotation = {q[3], q[0], q[1], q[2]};
-  return transform_of(vector(node.translation, 0.0), rotation, vector(node.scale, 1.0));
+  return compose(vector(node.translation, 0.0), rotation, vector(node.scale, 1.0));
 }
 
 // Returns whether KHR_node_visibility hides the node. Its descendants are then hidden too.
@@ -250,7 +250,7 @@ glm::dmat4 NodeInstances::at(size_t instance) const {
     const float* q = &rotations_[4 * instance];
     rotation = {q[3], q[0], q[1], q[2]};
   }
-  return transform_of(vector(translations_, 0.0), rotation, vector(scales_, 1.0));
+  return compose(vector(translations_, 0.0), rotation, vector(scales_, 1.0));
 }
 
 }  // namespace alcove::sample

@@ -58,7 +58,7 @@ class NodeReader {
         apart.push_back(world);
     };
     for (const DrawnNode* drawn : nodes) {
-      const glm::dmat4 world = world_of(drawn->node);
+      const glm::dmat4 world = world_transform(drawn->node);
       if (drawn->instances.size() == 0) place(world);
       // Instances that coincide, such as those of attributes without data, are drawn once.
       glm::dmat4 previous(0.0);
@@ -74,27 +74,27 @@ class NodeReader {
     return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), nullptr, &shared});
   }
 
-  glm::dmat4 world_of(size_t node) const {
+  glm::dmat4 world_transform(size_t node) const {
     glm::dmat4 world = nodes_.world_from_node[node];
     world[3] -= glm::dvec4(scene_.origin, 0.0);
     return world;
   }
 
-  std::string name_of(const tinygltf::Node& node) const {
+  std::string mesh_name(const tinygltf::Node& node) const {
     const std::string& name = model_.meshes[static_cast<size_t>(node.mesh)].name;
     return !name.empty() ? "\"" + name + "\"" : std::to_string(node.mesh);
   }
 
   Result<void> add_skinned(const tinygltf::Node& node) {
     ALCOVE_TRY(const auto* joints,
-               joints_of(node.skin).map_error(with_prefix("mesh " + name_of(node) + " ")));
+               find_joints(node.skin).map_error(with_prefix("mesh " + mesh_name(node) + " ")));
     return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), joints});
   }
 
   // Returns the joint matrices of a skin relative to the scene's origin. They are computed once,
   // because many nodes may have the same skin.
-  Result<const std::vector<glm::dmat4>*> joints_of(int skin) {
-    const auto [known, is_new] = joints_of_skin_.try_emplace(skin);
+  Result<const std::vector<glm::dmat4>*> find_joints(int skin) {
+    const auto [known, is_new] = skin_joints_.try_emplace(skin);
     if (is_new) {
       ALCOVE_TRY(auto joints, joint_matrices(model_, skin, nodes_.world_from_node, budget_.joints));
       budget_.joints -= joints.size();
@@ -105,7 +105,7 @@ class NodeReader {
   }
 
   Result<void> add_mesh(const tinygltf::Node& node, PrimitivePlacement placement) {
-    const std::string name = name_of(node);
+    const std::string name = mesh_name(node);
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<size_t>(node.mesh)];
     placement.morph_weights = node.weights.empty() ? &mesh.weights : &node.weights;
     for (const auto& primitive : mesh.primitives)
@@ -119,7 +119,7 @@ class NodeReader {
   GltfLimits& budget_;
   Scene& scene_;
   std::vector<std::vector<const DrawnNode*>> nodes_of_;  // by mesh; those not added yet
-  std::map<int, std::vector<glm::dmat4>> joints_of_skin_;
+  std::map<int, std::vector<glm::dmat4>> skin_joints_;
 };
 
 }  // namespace

@@ -118,7 +118,7 @@ class JpegReader {
   jpeg_progress_mgr progress_{};
 };
 
-Failure failure_of(const JpegReader& reader) {
+Failure decoding_failure(const JpegReader& reader) {
   return Failure(reader.lacked_memory()
                      ? "is a progressive JPEG that needs over 512 MiB to decode (save it as a "
                        "baseline JPEG)"
@@ -154,9 +154,9 @@ Result<ImageHeader> read_jpeg_header(Bytes bytes) {
 Result<DecodedImage> decode_jpeg(Bytes bytes, uint32_t reduction) {
   JpegReader reader(bytes);
   const unsigned scale = libjpeg_scale(reduction);
-  if (!reader.read_header() || !reader.start(scale)) return failure_of(reader);
+  if (!reader.read_header() || !reader.start(scale)) return decoding_failure(reader);
   ImageRows rows(reader.output_width(), reader.output_height(), reduction / scale, false);
-  if (!reader.read_rows(rows)) return failure_of(reader);
+  if (!reader.read_rows(rows)) return decoding_failure(reader);
   return rows.take();
 }
 

@@ -106,7 +106,7 @@ Result<Image<Pixel>> read_exr_image(const std::filesystem::path& file,
           [&](const std::string& why) { return "cannot read " + file.string() + ": it " + why; });
 }
 
-uint8_t byte_of(float value) {
+uint8_t to_byte(float value) {
   if (!(value > 0.0f)) return 0;
   return static_cast<uint8_t>(std::lround(std::min(value, 1.0f) * 255.0f));
 }
@@ -114,7 +114,7 @@ uint8_t byte_of(float value) {
 Result<void> write_png_channels(const std::filesystem::path& file, const Channels& in) {
   if (!in.has_pixels()) return failure(file, "the image has no pixels");
   std::vector<uint8_t> pixels(in.values.size());
-  std::ranges::transform(in.values, pixels.begin(), byte_of);
+  std::ranges::transform(in.values, pixels.begin(), to_byte);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = in.width;

@@ -134,7 +134,7 @@ TEST(GltfFile, NamedPipesAndFoldersInPlaceOfInputFilesAreRefused) {
 tl::expected<Scene, std::string> scene_with_data(const std::string& uri, size_t length) {
   nlohmann::json json = GltfMaker::triangle().json;
   json["buffers"] = {{{"byteLength", length}, {"uri", uri}}};
-  return parse_gltf(bytes_of(json.dump()), "a.gltf", "");
+  return parse_gltf(text_bytes(json.dump()), "a.gltf", "");
 }
 
 TEST(GltfFile, EmbeddedDataUriMayHaveAnyMediaTypeAndBase64OrPercentEncoding) {
@@ -172,9 +172,9 @@ TEST(GltfFile, BufferWithoutDataIsAllowedUnlessABufferViewUsesIt) {
   nlohmann::json root = nlohmann::json::parse(maker.gltf());
   root["buffers"].push_back({{"byteLength", 1000}});
   root["buffers"].push_back({{"byteLength", 1000}});
-  EXPECT_EQ(corners(parsed(bytes_of(root.dump()))), corners(parsed(maker.gltf())));
+  EXPECT_EQ(corners(parsed(text_bytes(root.dump()))), corners(parsed(maker.gltf())));
   root["bufferViews"][0]["buffer"] = 1;
-  EXPECT_THAT(refusal(bytes_of(root.dump())),
+  EXPECT_THAT(refusal(text_bytes(root.dump())),
               HasSubstr("buffer view 0 lies in buffer 1, which has no data"));
 }
 

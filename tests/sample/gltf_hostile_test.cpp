@@ -240,7 +240,7 @@ TEST(GltfImage, DamagedJpegIsLeftOutWithAWarning) {
 
 TEST(GltfImage, ImagesOtherThanPngAndJpegAreLeftOutWithAWarning) {
   const std::string pgm = "P5 8000 8000 65535\n" + std::string(20'000, '\0');
-  const Scene scene = parsed(with_image(GltfMaker::base64(bytes_of(pgm))).gltf());
+  const Scene scene = parsed(with_image(GltfMaker::base64(text_bytes(pgm))).gltf());
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_THAT(scene.warnings[0], HasSubstr("image 0 (data:...) is not a PNG or JPEG"));
 }

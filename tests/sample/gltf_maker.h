@@ -90,7 +90,7 @@ class GltfMaker {
     nlohmann::json out = json;
     out["buffers"] = {{{"byteLength", bytes.size()},
                        {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
-    return bytes_of(out.dump());
+    return text_bytes(out.dump());
   }
 
   std::vector<uint8_t> glb() const {

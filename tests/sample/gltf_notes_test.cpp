@@ -47,7 +47,7 @@ TEST(GltfNotes, WarningsAndErrorsStayShortForLongNamesAndUris) {
   nlohmann::json json = maker.json;
   json["buffers"] = {
       {{"byteLength", 36}, {"uri", "data:nonsense;base64," + std::string(2000000, 'A')}}};
-  const std::string data = refusal(bytes_of(json.dump()));
+  const std::string data = refusal(text_bytes(json.dump()));
   EXPECT_LT(data.size(), 250u);
   EXPECT_THAT(data, testing::Not(HasSubstr("AAAA")));
   // The name consists of letters of two bytes, which must not be cut in the middle.

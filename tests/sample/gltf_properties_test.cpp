@@ -181,7 +181,7 @@ TEST(GltfProperties, WrongLengthAndUriOfABufferAreRefused) {
   const auto with = [&](const char* member, const json& value) {
     json root = json::parse(maker.gltf());
     root["buffers"][0][member] = value;
-    return refusal(bytes_of(root.dump()));
+    return refusal(text_bytes(root.dump()));
   };
   EXPECT_THAT(with("byteLength", -1), HasSubstr("buffers[0].byteLength is -1"));
   EXPECT_THAT(with("byteLength", "36"), HasSubstr("buffers[0].byteLength is \"36\""));
@@ -242,14 +242,14 @@ TEST(GltfProperties, JsonNestedAMillionLevelsDeepIsRead) {
   const std::vector<uint8_t> gltf = maker.gltf();
   std::string text(gltf.begin(), gltf.end() - 1);
   text += ",\"extras\":" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}";
-  EXPECT_EQ(corners(parsed(bytes_of(text))), corners(parsed(gltf)));
+  EXPECT_EQ(corners(parsed(text_bytes(text))), corners(parsed(gltf)));
 }
 
 TEST(GltfProperties, ErrorForDamagedJsonGivesTheBytePositionOfTheFault) {
   const std::string text = R"({"asset": {"version": "2.0"}, "nodes": [}])";
-  EXPECT_THAT(refusal(bytes_of(text)), HasSubstr("cannot be read at byte 41"));
+  EXPECT_THAT(refusal(text_bytes(text)), HasSubstr("cannot be read at byte 41"));
   const std::string number = R"({"asset": {"version": "2.0"}, "scene": 1e999})";
-  EXPECT_THAT(refusal(bytes_of(number)), HasSubstr("a number that is too large"));
+  EXPECT_THAT(refusal(text_bytes(number)), HasSubstr("a number that is too large"));
 }
 
 }  // namespace
