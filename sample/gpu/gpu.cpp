@@ -12,7 +12,7 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-framegraph::DeviceHandles handles_of(const VulkanDevice& device) {
+framegraph::DeviceHandles device_handles(const VulkanDevice& device) {
   framegraph::DeviceHandles handles;
   handles.instance = device.instance();
   handles.physical_device = device.physical_device();
@@ -74,7 +74,7 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
   made->executor_options_ = executor_options;
   if (auto opened = assign(made->device_, VulkanDevice::create(options)); !opened)
     return Failure(std::move(opened.error()));
-  made->handles_ = handles_of(*made->device_);
+  made->handles_ = device_handles(*made->device_);
   made->handles_.debug_utils = options.validation;
   if (auto started = made->restart(); !started) return Failure(std::move(started.error()));
   auto kernels = passes::Kernels::create(made->handles_, executor_options.frames_in_flight);

@@ -72,7 +72,7 @@ std::uint32_t find_queue_family(VkPhysicalDevice device) {
   return UINT32_MAX;
 }
 
-std::string driver_of(VkPhysicalDevice device) {
+std::string driver_name(VkPhysicalDevice device) {
   VkPhysicalDeviceDriverProperties driver{.sType =
                                               VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
@@ -85,7 +85,7 @@ DeviceSummary summarise(VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
   vkGetPhysicalDeviceProperties(device, &properties);
   DeviceSummary summary{.name = properties.deviceName,
-                        .driver = driver_of(device),
+                        .driver = driver_name(device),
                         .api_version = properties.apiVersion,
                         .type = properties.deviceType,
                         .missing = missing_features(device, properties.apiVersion)};
@@ -257,7 +257,7 @@ tl::expected<void, std::string> VulkanDevice::create_device(const DeviceOptions&
                                          .pNext = &limits};
   vkGetPhysicalDeviceProperties2(physical_device_, &properties);
   max_allocation_ = limits.maxMemoryAllocationSize;
-  driver_ = driver_of(physical_device_);
+  driver_ = driver_name(physical_device_);
   queue_family_ = find_queue_family(physical_device_);
   const float priority = 1.0f;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,

@@ -8,8 +8,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Returns the processor time that all threads of the process have used so far, in milliseconds.
 double processor_ms() {
   timespec time{};
@@ -19,16 +17,16 @@ double processor_ms() {
 
 }  // namespace
 
-tl::expected<void, std::string> FrameRenderer::create_target(std::size_t target) {
+Result<void> FrameRenderer::create_target(std::size_t target) {
   const VkFormat format = kGbufferTargets[target].format;
   const VkImageUsageFlags attachment = format == kDepthFormat
                                            ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                            : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-  return assign(
-      targets_[target],
-      GpuImage::create(gpu_.device(),
-                       {format, framegraph::Extent::absolute(size_.width, size_.height)},
-                       attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
+  ALCOVE_TRY(targets_[target],
+             GpuImage::create(
+                 gpu_.device(), {format, framegraph::Extent::absolute(size_.width, size_.height)},
+                 attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
+  return {};
 }
 
 bool FrameRenderer::is_drawn(const GbufferTarget& target, const HiddenDepths& hidden) {
@@ -43,19 +41,15 @@ void FrameRenderer::append_times(FrameCost& cost, bool occlusion) {
   }
 }
 
-tl::expected<void, std::string> FrameRenderer::draw_gbuffer(const FrameRequest& request,
-                                                            FrameCost& cost) {
+Result<void> FrameRenderer::draw_gbuffer(const FrameRequest& request, FrameCost& cost) {
   const HiddenDepths hidden = hidden_depths_of(request.occlusion);
   if (drawn_view_ == request.view && drawn_depths_.covers(hidden)) {
     cost.gpu = gbuffer_times_;
     return {};
   }
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (is_drawn(kGbufferTargets[i], hidden) && !targets_[i]) {
-      if (auto made = create_target(i); !made) return made;
-    }
-  }
-  const auto declare = [&](Graph& graph) -> tl::expected<void, std::string> {
+  for (std::size_t i = 0; i < targets_.size(); ++i)
+    if (is_drawn(kGbufferTargets[i], hidden) && !targets_[i]) ALCOVE_TRY_VOID(create_target(i));
+  const auto declare = [&](Graph& graph) -> Result<void> {
     Gbuffer gbuffer;
     for (std::size_t i = 0; i < targets_.size(); ++i)
       if (is_drawn(kGbufferTargets[i], hidden))
@@ -66,10 +60,7 @@ tl::expected<void, std::string> FrameRenderer::draw_gbuffer(const FrameRequest& 
   };
   // The first drawing also compiles shaders, so that only a second one is timed.
   const int drawings = compiled_ && compiled_->covers(hidden) ? 1 : 2;
-  for (int i = 0; i < drawings; ++i) {
-    auto report = gpu_.run(declare);
-    if (!report) return Failure(std::move(report.error()));
-  }
+  for (int i = 0; i < drawings; ++i) ALCOVE_TRY_VOID(gpu_.run(declare));
   compiled_ = hidden.with(compiled_.value_or(hidden));
   append_times(cost, false);
   drawn_view_ = request.view;
@@ -78,8 +69,8 @@ tl::expected<void, std::string> FrameRenderer::draw_gbuffer(const FrameRequest& 
   return {};
 }
 
-tl::expected<FrameRenderer::DeclaredFrame, std::string> FrameRenderer::declare_occlusion(
-    Graph& graph, const FrameRequest& request) {
+Result<FrameRenderer::DeclaredFrame> FrameRenderer::declare_occlusion(Graph& graph,
+                                                                      const FrameRequest& request) {
   const HiddenDepths hidden = hidden_depths_of(request.occlusion);
   const std::vector<float> roughness =
       request.light != nullptr ? request.light->roughness : std::vector<float>();
@@ -99,19 +90,17 @@ tl::expected<FrameRenderer::DeclaredFrame, std::string> FrameRenderer::declare_o
       surfaces,
       {},
       {}};
-  auto added = assign(declared.outputs, add_occlusion(declared.frame, surfaces, settings));
-  if (added && declared.outputs.specular)
-    declared.specular_occlusion.push_back(declared.outputs.specular);
+  ALCOVE_TRY(declared.outputs, add_occlusion(declared.frame, surfaces, settings));
+  if (declared.outputs.specular) declared.specular_occlusion.push_back(declared.outputs.specular);
   // Specular occlusion for each further roughness value runs all occlusion passes again, with its
   // own history.
-  for (std::size_t i = 1; added && i < roughness.size() && declared.outputs.specular; ++i) {
+  for (std::size_t i = 1; i < roughness.size() && declared.outputs.specular; ++i) {
     surfaces.roughness = roughness[i];
-    added = add_occlusion(declared.frame, surfaces, settings, "roughness " + std::to_string(i))
-                .map([&](const passes::OcclusionOutputs& more) {
-                  declared.specular_occlusion.push_back(more.specular);
-                });
+    ALCOVE_TRY(const auto more,
+               add_occlusion(declared.frame, surfaces, settings, "roughness " + std::to_string(i)));
+    declared.specular_occlusion.push_back(more.specular);
   }
-  return added.map([&] { return declared; });
+  return declared;
 }
 
 void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, ReadBack& read_back,
@@ -137,9 +126,9 @@ void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, 
 // Adds the passes that use visibility and bent normals: multi-bounce, and the lighting of the
 // surfaces with the environment, if `probe` is not null. Adds nothing if no bent normals are
 // computed. Emission is left out, because the ray-traced reference does not have it.
-tl::expected<void, std::string> FrameRenderer::declare_light(
-    Graph& graph, const FrameRequest& request, const DeclaredFrame& declared, const Probe* probe,
-    ReadBack& read_back, FrameImages& images) {
+Result<void> FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
+                                          const DeclaredFrame& declared, const Probe* probe,
+                                          ReadBack& read_back, FrameImages& images) {
   const passes::OcclusionOutputs& outputs = declared.outputs;
   if (!outputs.bent_normal || request.light == nullptr) return {};
   const auto bounced = passes::add_multi_bounce(
@@ -169,62 +158,59 @@ tl::expected<void, std::string> FrameRenderer::declare_light(
   passes::ApplyInputs bounced_light = bent, all = bent;
   bounced_light.specular_occlusion = outputs.visibility;
   all.specular_occlusion = declared.specular_occlusion.front();
-  auto done = light(all, true, &LitImages::all, true);
-  if (!done || !request.light->lit_steps) return done;
-  return light({}, false, &LitImages::unoccluded)
-      .and_then([&] { return light(unbent, false, &LitImages::unbent); })
-      .and_then([&] { return light(bent, false, &LitImages::occluded); })
-      .and_then([&] { return light(bounced_light, true, &LitImages::bounced); });
+  ALCOVE_TRY_VOID(light(all, true, &LitImages::all, true));
+  if (!request.light->lit_steps) return {};
+  ALCOVE_TRY_VOID(light({}, false, &LitImages::unoccluded));
+  ALCOVE_TRY_VOID(light(unbent, false, &LitImages::unbent));
+  ALCOVE_TRY_VOID(light(bent, false, &LitImages::occluded));
+  return light(bounced_light, true, &LitImages::bounced);
 }
 
-tl::expected<std::unique_ptr<FrameRenderer>, std::string> FrameRenderer::create(
-    Gpu& gpu, const Scene& scene, VkExtent2D size, NormalSource normals) {
+Result<std::unique_ptr<FrameRenderer>> FrameRenderer::create(Gpu& gpu, const Scene& scene,
+                                                             VkExtent2D size,
+                                                             NormalSource normals) {
   std::unique_ptr<FrameRenderer> made(new FrameRenderer(gpu, size, normals));
-  auto done = assign(made->gbuffer_,
-                     GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
-  for (std::size_t i = 0; done && i < made->targets_.size(); ++i)
-    if (is_drawn(kGbufferTargets[i], {})) done = made->create_target(i);
-  if (!done) return Failure(std::move(done.error()));
+  ALCOVE_TRY(made->gbuffer_,
+             GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
+  for (std::size_t i = 0; i < made->targets_.size(); ++i)
+    if (is_drawn(kGbufferTargets[i], {})) ALCOVE_TRY_VOID(made->create_target(i));
   return made;
 }
 
-tl::expected<FrameCost, std::string> FrameRenderer::draw(const FrameRequest& request) {
+Result<FrameCost> FrameRenderer::draw(const FrameRequest& request) {
   FrameCost cost;
-  if (auto drawn = draw_gbuffer(request, cost); !drawn) return Failure(std::move(drawn.error()));
+  ALCOVE_TRY_VOID(draw_gbuffer(request, cost));
   const double before = processor_ms();
-  auto report = gpu_.run([&](Graph& graph) {
-    return declare_occlusion(graph, request).map([&](const DeclaredFrame& declared) {
-      graph.output(declared.outputs.visibility);
-      if (request.occlusion.bent_normal) graph.output(declared.outputs.bent_normal);
-      for (const Texture specular : declared.specular_occlusion) graph.output(specular);
-    });
-  });
-  if (!report) return Failure(std::move(report.error()));
+  const auto declare = [&](Graph& graph) -> Result<void> {
+    ALCOVE_TRY(const auto declared, declare_occlusion(graph, request));
+    graph.output(declared.outputs.visibility);
+    if (request.occlusion.bent_normal) graph.output(declared.outputs.bent_normal);
+    for (const Texture specular : declared.specular_occlusion) graph.output(specular);
+    return {};
+  };
+  ALCOVE_TRY(const auto report, gpu_.run(declare));
   cost.cpu_ms = processor_ms() - before;
-  memory_ = report->memory;
+  memory_ = report.memory;
   append_times(cost, true);
   return cost;
 }
 
-tl::expected<FrameImages, std::string> FrameRenderer::draw_and_read(const FrameRequest& request) {
+Result<FrameImages> FrameRenderer::draw_and_read(const FrameRequest& request) {
   FrameCost ignored;
-  if (auto drawn = draw_gbuffer(request, ignored); !drawn) return Failure(std::move(drawn.error()));
+  ALCOVE_TRY_VOID(draw_gbuffer(request, ignored));
   std::unique_ptr<Probe> probe;
   if (request.light != nullptr && !request.light->environment.empty()) {
-    if (auto done = assign(probe, Probe::create(gpu_, request.light->environment)); !done)
-      return Failure(std::move(done.error()));
+    ALCOVE_TRY(probe, Probe::create(gpu_, request.light->environment));
   }
   FrameImages images;
   ReadBack read_back(gpu_.device());
-  auto report = gpu_.run([&](Graph& graph) -> tl::expected<void, std::string> {
-    const auto declared = declare_occlusion(graph, request);
-    if (!declared) return Failure(declared.error());
-    read_occlusion(graph, *declared, read_back, images);
-    return declare_light(graph, request, *declared, probe.get(), read_back, images).and_then([&] {
-      return read_back.added();
-    });
-  });
-  if (!report) return Failure(std::move(report.error()));
+  const auto declare = [&](Graph& graph) -> Result<void> {
+    ALCOVE_TRY(const auto declared, declare_occlusion(graph, request));
+    read_occlusion(graph, declared, read_back, images);
+    ALCOVE_TRY_VOID(declare_light(graph, request, declared, probe.get(), read_back, images));
+    return read_back.added();
+  };
+  ALCOVE_TRY_VOID(gpu_.run(declare));
   read_back.finish();
   // Eight bits hold no exact unit vectors.
   if (request.occlusion.precision == passes::Precision::unorm8)

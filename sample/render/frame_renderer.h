@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/framegraph/executor.h"
@@ -18,6 +17,7 @@
 #include "render/surfaces.h"
 #include "scene/environment.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -82,14 +82,15 @@ struct FrameImages {
 // Each is submitted separately, so that the time of the occlusion can be measured.
 class FrameRenderer {
  public:
-  [[nodiscard]] static tl::expected<std::unique_ptr<FrameRenderer>, std::string> create(
-      Gpu& gpu, const Scene& scene, VkExtent2D size, NormalSource normals);
+  [[nodiscard]] static Result<std::unique_ptr<FrameRenderer>> create(Gpu& gpu, const Scene& scene,
+                                                                     VkExtent2D size,
+                                                                     NormalSource normals);
 
   // Draws a frame without reading images back. It is used for the frames before the one whose
   // images are needed.
-  [[nodiscard]] tl::expected<FrameCost, std::string> draw(const FrameRequest& request);
+  [[nodiscard]] Result<FrameCost> draw(const FrameRequest& request);
   // Draws a frame, lights it and reads its images back. It returns no times.
-  [[nodiscard]] tl::expected<FrameImages, std::string> draw_and_read(const FrameRequest& request);
+  [[nodiscard]] Result<FrameImages> draw_and_read(const FrameRequest& request);
 
   // Returns the memory of the occlusion passes' transients in the most recent frame.
   const framegraph::MemoryStatistics& memory() const { return memory_; }
@@ -105,20 +106,18 @@ class FrameRenderer {
 
   FrameRenderer(Gpu& gpu, VkExtent2D size, NormalSource normals)
       : gpu_(gpu), size_(size), normals_(normals) {}
-  tl::expected<void, std::string> create_target(std::size_t target);
+  Result<void> create_target(std::size_t target);
   // Returns whether the texture of this target is drawn for these hidden depths.
   static bool is_drawn(const GbufferTarget& target, const HiddenDepths& hidden);
   // Draws the g-buffer, unless it was already drawn with the same view and the same previous view.
-  tl::expected<void, std::string> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
-  tl::expected<DeclaredFrame, std::string> declare_occlusion(framegraph::Graph& graph,
-                                                             const FrameRequest& request);
+  Result<void> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
+  Result<DeclaredFrame> declare_occlusion(framegraph::Graph& graph, const FrameRequest& request);
   // Reads back the textures of declare_occlusion() and, below, of the passes that it adds.
   static void read_occlusion(framegraph::Graph& graph, const DeclaredFrame& declared,
                              ReadBack& read_back, FrameImages& images);
-  tl::expected<void, std::string> declare_light(framegraph::Graph& graph,
-                                                const FrameRequest& request,
-                                                const DeclaredFrame& declared, const Probe* probe,
-                                                ReadBack& read_back, FrameImages& images);
+  Result<void> declare_light(framegraph::Graph& graph, const FrameRequest& request,
+                             const DeclaredFrame& declared, const Probe* probe, ReadBack& read_back,
+                             FrameImages& images);
   void append_times(FrameCost& cost, bool occlusion);
 
   Gpu& gpu_;

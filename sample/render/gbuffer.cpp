@@ -15,8 +15,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // The distances in bytes, within their buffers, between the parameters of two frames and between
 // those of two materials: multiples of 256, the largest alignment that a device may require.
 constexpr std::uint32_t kParameterStride = 512;
@@ -32,7 +30,7 @@ void set_uv_rows(maths::GbufferMaterial& out, std::uint32_t lookup, const Textur
   }
 }
 
-maths::GbufferMaterial parameters_of(const Material& material) {
+maths::GbufferMaterial convert(const Material& material) {
   maths::GbufferMaterial out{};
   out.base_colour = material.base_color;
   out.emissive = glm::vec4(material.emissive, 0.0f);
@@ -77,26 +75,22 @@ constexpr std::size_t kDepthAttributes = 7;
 
 }  // namespace
 
-tl::expected<void, std::string> GbufferRenderer::upload(const Scene& scene) {
+Result<void> GbufferRenderer::upload(const Scene& scene) {
   const VulkanDevice& device = gpu_.device();
   const auto uniform = [&](std::size_t stride, std::size_t count) {
     return HostBuffer::create(device, VkDeviceSize{stride} * std::max<std::size_t>(count, 1),
                               VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   };
-  auto done = assign(meshes_, GpuMeshes::create(device, scene))
-                  .and_then([&] {
-                    return assign(materials_, uniform(kMaterialStride, scene.materials.size()));
-                  })
-                  .and_then([&] {
-                    return assign(parameters_, uniform(kParameterStride, gpu_.frames_in_flight()));
-                  })
-                  .and_then([&] { return assign(textures_, GpuTextures::create(gpu_, scene)); });
-  for (std::size_t i = 0; done && i < scene.materials.size(); ++i) {
-    const maths::GbufferMaterial material = parameters_of(scene.materials[i]);
+  ALCOVE_TRY(meshes_, GpuMeshes::create(device, scene));
+  ALCOVE_TRY(materials_, uniform(kMaterialStride, scene.materials.size()));
+  ALCOVE_TRY(parameters_, uniform(kParameterStride, gpu_.frames_in_flight()));
+  ALCOVE_TRY(textures_, GpuTextures::create(gpu_, scene));
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const maths::GbufferMaterial material = convert(scene.materials[i]);
     std::memcpy(materials_->bytes().data() + i * kMaterialStride, &material, sizeof(material));
     double_sided_.push_back(scene.materials[i].double_sided);
   }
-  return done;
+  return {};
 }
 
 VkResult GbufferRenderer::create_layout(const Scene& scene) {
@@ -205,10 +199,10 @@ void GbufferRenderer::record(RecordContext& context, const Gbuffer& gbuffer,
   vkCmdEndRendering(commands);
 }
 
-tl::expected<std::unique_ptr<GbufferRenderer>, std::string> GbufferRenderer::create(
-    Gpu& gpu, const Scene& scene, bool geometric_normals) {
+Result<std::unique_ptr<GbufferRenderer>> GbufferRenderer::create(Gpu& gpu, const Scene& scene,
+                                                                 bool geometric_normals) {
   std::unique_ptr<GbufferRenderer> made(new GbufferRenderer(gpu));
-  if (auto done = made->upload(scene); !done) return Failure(std::move(done.error()));
+  ALCOVE_TRY_VOID(made->upload(scene));
   VkResult result = made->create_layout(scene);
   for (const bool second_layer : {false, true})
     if (result == VK_SUCCESS) result = made->create_pipelines(second_layer, geometric_normals);

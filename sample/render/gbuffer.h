@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
@@ -13,6 +12,7 @@
 #include "render/gpu_textures.h"
 #include "render/graphics.h"
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -72,8 +72,8 @@ class GbufferRenderer {
   // Uploads the scene. If `geometric_normals` is true, each triangle is drawn with its own
   // geometric normal instead of the interpolated normal with the normal map. Both references must
   // outlive the renderer.
-  [[nodiscard]] static tl::expected<std::unique_ptr<GbufferRenderer>, std::string> create(
-      Gpu& gpu, const Scene& scene, bool geometric_normals);
+  [[nodiscard]] static Result<std::unique_ptr<GbufferRenderer>> create(Gpu& gpu, const Scene& scene,
+                                                                       bool geometric_normals);
   ~GbufferRenderer();
 
   // Adds the passes that fill `targets`, and returns their filled versions. All calls in one frame
@@ -93,7 +93,7 @@ class GbufferRenderer {
   };
 
   explicit GbufferRenderer(Gpu& gpu) : gpu_(gpu), layout_(gpu.device().device()) {}
-  tl::expected<void, std::string> upload(const Scene& scene);
+  Result<void> upload(const Scene& scene);
   VkResult create_layout(const Scene& scene);
   VkResult create_pipelines(bool second_layer, bool geometric_normals);
   // Writes the parameters of a view, and returns their offset in the parameter buffer.

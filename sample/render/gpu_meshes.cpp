@@ -1,9 +1,11 @@
 #include "render/gpu_meshes.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <unordered_map>
+#include <span>
 #include <utility>
 
 #include "maths/octahedral.h"
@@ -11,8 +13,6 @@
 
 namespace alcove::sample {
 namespace {
-
-using Failure = tl::unexpected<std::string>;
 
 // The sizes of the buffers (pages) that hold the meshes. Each new page is larger than the one
 // before, up to kLargestPage, so that many small meshes share few device allocations.
@@ -50,17 +50,26 @@ PackedTangent packed_tangent(const glm::vec4& tangent) {
 // Divides the triangles of a mesh into parts.
 class PartBuilder {
  public:
-  PartBuilder(const Mesh& mesh, const Material& material) : mesh_(mesh) {
-    if (material.normal_texture.image >= 0 && !mesh.normals.empty())
-      tangents_ = corner_tangents(mesh, material.normal_texture);
+  PartBuilder(const Mesh& mesh, const Material& material) : mesh_(mesh), numbers_(mesh.indices) {
+    if (material.normal_texture.image < 0 || mesh.normals.empty()) return;
+    const std::vector<glm::vec4> tangents = corner_tangents(mesh, material.normal_texture);
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+      corners_.push_back({mesh.indices[i], packed_tangent(tangents[i])});
+    const std::size_t count = corners_.size();
+    numbers_of_corners_.resize(count);
+    const std::size_t distinct = meshopt_generateVertexRemap(
+        numbers_of_corners_.data(), nullptr, count, corners_.data(), count, sizeof(Corner));
+    meshopt_remapVertexBuffer(corners_.data(), corners_.data(), count, sizeof(Corner),
+                              numbers_of_corners_.data());
+    corners_.resize(distinct);
+    numbers_ = numbers_of_corners_;
   }
 
   // Returns the next part, with at most `most_triangles` triangles. It has no indices if no
   // triangle is left. Triangles without an area are left out.
   Part next(std::size_t most_triangles) {
     part_ = {};
-    if (tangents_.empty()) copy_of_vertex_.assign(mesh_.positions.size(), kNone);
-    copy_of_corner_.clear();
+    copies_.assign(corners_.empty() ? mesh_.positions.size() : corners_.size(), kNone);
     is_first_.clear();
     const std::size_t left = (mesh_.indices.size() - at_) / 3;
     part_.indices.reserve(3 * std::min(most_triangles, left));
@@ -71,41 +80,26 @@ class PartBuilder {
   }
 
  private:
+  // A vertex of the mesh with the tangent that it has in some of its triangles.
   struct Corner {
     std::uint32_t vertex;
-    std::uint64_t tangent;
-    bool operator==(const Corner&) const = default;
+    PackedTangent tangent;
   };
-  struct CornerHash {
-    std::size_t operator()(const Corner& corner) const {
-      return std::hash<std::uint64_t>()((corner.tangent + corner.vertex) * 0x9e3779b97f4a7c15u);
-    }
-  };
+  static_assert(sizeof(Corner) == 12);  // without padding, because bytes are compared
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
-  std::uint32_t add_vertex(std::uint32_t source) {
-    part_.sources.push_back(source);
+  std::uint32_t add_vertex(std::uint32_t number) {
+    part_.sources.push_back(corners_.empty() ? number : corners_[number].vertex);
+    if (!corners_.empty()) part_.tangents.push_back(corners_[number].tangent);
     is_first_.push_back(false);
     return static_cast<std::uint32_t>(part_.sources.size() - 1);
   }
 
   // Returns the vertex of the part for an index of the mesh.
   std::uint32_t vertex_at(std::size_t index) {
-    const std::uint32_t source = mesh_.indices[index];
-    if (tangents_.empty()) {
-      std::uint32_t& known = copy_of_vertex_[source];
-      if (known == kNone) known = add_vertex(source);
-      return known;
-    }
-    const PackedTangent tangent = packed_tangent(tangents_[index]);
-    Corner corner{source, 0};
-    std::memcpy(&corner.tangent, &tangent, sizeof(tangent));
-    const auto [known, is_new] = copy_of_corner_.try_emplace(corner, 0);
-    if (is_new) {
-      known->second = add_vertex(source);
-      part_.tangents.push_back(tangent);
-    }
-    return known->second;
+    std::uint32_t& known = copies_[numbers_[index]];
+    if (known == kNone) known = add_vertex(numbers_[index]);
+    return known;
   }
 
   void add_triangle() {
@@ -114,13 +108,10 @@ class PartBuilder {
     if (!(length > 0.0)) return;
     std::array corners{vertex_at(at_), vertex_at(at_ + 1), vertex_at(at_ + 2)};
     const auto free = std::ranges::find_if(corners, [&](std::uint32_t v) { return !is_first_[v]; });
-    if (free != corners.end()) {
+    if (free != corners.end())
       std::rotate(corners.begin(), free, corners.end());
-    } else {
-      const std::uint32_t original = corners[0];
-      corners[0] = add_vertex(part_.sources[original]);
-      if (!tangents_.empty()) part_.tangents.push_back(part_.tangents[original]);
-    }
+    else
+      corners[0] = add_vertex(numbers_[at_]);
     is_first_[corners[0]] = true;
     part_.faces.resize(part_.sources.size());
     part_.faces[corners[0]] = packed_direction(glm::vec3(area / length));
@@ -128,12 +119,12 @@ class PartBuilder {
   }
 
   const Mesh& mesh_;
-  std::vector<glm::vec4> tangents_;  // one for each index; empty without a normal map
-  Part part_;                        // the current part
-  // For each vertex of the mesh, its copy in the current part.
-  std::vector<std::uint32_t> copy_of_vertex_;
-  // The copies of corners that differ in their tangents.
-  std::unordered_map<Corner, std::uint32_t, CornerHash> copy_of_corner_;
+  std::vector<Corner> corners_;  // distinct ones; empty without a normal map
+  std::vector<std::uint32_t> numbers_of_corners_;
+  // For each index of the mesh, its corner, or without a normal map its vertex.
+  std::span<const std::uint32_t> numbers_;
+  Part part_;                          // the current part
+  std::vector<std::uint32_t> copies_;  // for each of these numbers, its copy in the current part
   // For each vertex of the part, whether it is already the first vertex of a triangle.
   std::vector<bool> is_first_;
   std::size_t at_ = 0;  // position of the next triangle's indices
@@ -152,7 +143,7 @@ class GpuMeshes::Builder {
   Builder(const VulkanDevice& device, VkDeviceSize most_bytes, GpuMeshes& meshes)
       : device_(device), most_bytes_(most_bytes), meshes_(meshes) {}
 
-  tl::expected<void, std::string> add_constants() {
+  Result<void> add_constants() {
     struct Constants {
       std::array<float, 4> zero{};
       std::array<std::uint8_t, 16> white{};
@@ -167,7 +158,7 @@ class GpuMeshes::Builder {
     });
   }
 
-  tl::expected<void, std::string> add(const Mesh& mesh, const Material& material) {
+  Result<void> add(const Mesh& mesh, const Material& material) {
     // With this limit on the number of triangles, the largest stream of a part fits into a page
     // even if no two triangles share a vertex.
     const std::size_t most_triangles =
@@ -176,7 +167,7 @@ class GpuMeshes::Builder {
     std::vector<MeshDraw> parts;
     for (Part part = builder.next(most_triangles); !part.indices.empty();
          part = builder.next(most_triangles))
-      if (auto done = add_part(mesh, part, parts); !done) return done;
+      ALCOVE_TRY_VOID(add_part(mesh, part, parts));
     return add_instances(mesh, parts);
   }
 
@@ -185,19 +176,19 @@ class GpuMeshes::Builder {
     return static_cast<std::size_t>(stream);
   }
 
-  tl::expected<Place, std::string> reserve(VkDeviceSize bytes, std::byte*& data) {
+  Result<Place> reserve(VkDeviceSize bytes, std::byte*& data) {
     auto& pages = meshes_.pages_;
     VkDeviceSize at = (used_ + kAlignment - 1) / kAlignment * kAlignment;
     if (pages.empty() || at > pages.back()->bytes().size() ||
         bytes > pages.back()->bytes().size() - at) {
       const VkDeviceSize size = std::max(std::min(next_page_, most_bytes_), bytes);
-      auto page = HostBuffer::create(
-          device_, size, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
-      if (!page) {
-        return Failure("the device has no memory for the scene's triangles after " +
-                       std::to_string(meshes_.bytes()) + " bytes: " + page.error());
-      }
-      pages.push_back(std::move(*page));
+      constexpr auto kUsage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+      ALCOVE_TRY(
+          auto page,
+          HostBuffer::create(device_, size, kUsage)
+              .map_error(with_prefix("the device has no memory for the scene's triangles after " +
+                                     std::to_string(meshes_.bytes()) + " bytes: ")));
+      pages.push_back(std::move(page));
       next_page_ = std::min(2 * next_page_, kLargestPage);
       at = 0;
     }
@@ -208,11 +199,11 @@ class GpuMeshes::Builder {
 
   // Copies element(i) for each i below `count` into a page.
   template <class Element>
-  tl::expected<Place, std::string> store(std::size_t count, const Element& element) {
+  Result<Place> store(std::size_t count, const Element& element) {
     using Value = decltype(element(std::size_t{}));
     std::byte* data = nullptr;
-    auto place = reserve(count * sizeof(Value), data);
-    for (std::size_t i = 0; place && i < count; ++i) {
+    ALCOVE_TRY(const Place place, reserve(count * sizeof(Value), data));
+    for (std::size_t i = 0; i < count; ++i) {
       const Value value = element(i);
       std::memcpy(data + i * sizeof(Value), &value, sizeof(Value));
     }
@@ -220,8 +211,8 @@ class GpuMeshes::Builder {
   }
 
   template <class Element>
-  tl::expected<void, std::string> stream(MeshDraw& draw, VertexStream which, std::size_t count,
-                                         const Element& element) {
+  Result<void> stream(MeshDraw& draw, VertexStream which, std::size_t count,
+                      const Element& element) {
     return store(count, element).map([&](const Place& place) {
       draw.buffers[index_of(which)] = place.buffer;
       draw.offsets[index_of(which)] = place.offset;
@@ -229,8 +220,7 @@ class GpuMeshes::Builder {
     });
   }
 
-  tl::expected<void, std::string> add_part(const Mesh& mesh, const Part& part,
-                                           std::vector<MeshDraw>& draws) {
+  Result<void> add_part(const Mesh& mesh, const Part& part, std::vector<MeshDraw>& draws) {
     MeshDraw draw = constants_;
     draw.material = mesh.material;
     draw.index_count = static_cast<std::uint32_t>(part.indices.size());
@@ -240,37 +230,32 @@ class GpuMeshes::Builder {
     const std::size_t count = part.sources.size();
     // Stores one value for each vertex of the mesh, unless the mesh has none.
     const auto add_values = [&](VertexStream which, const auto& values) {
-      return values.empty() ? tl::expected<void, std::string>()
-                            : stream(draw, which, count,
-                                     [&](std::size_t i) { return values[part.sources[i]]; });
+      return values.empty() ? Result<void>() : stream(draw, which, count, [&](std::size_t i) {
+        return values[part.sources[i]];
+      });
     };
     const auto normals = [&](std::size_t i) {
       return PackedNormals{
           draw.faceted ? PackedDirection{} : packed_direction(mesh.normals[part.sources[i]]),
           part.faces[i]};
     };
-    return add_values(VertexStream::position, mesh.positions)
-        .and_then([&] { return stream(draw, VertexStream::normals, count, normals); })
-        .and_then([&] { return add_values(VertexStream::uv, mesh.uvs); })
-        .and_then([&] { return add_values(VertexStream::second_uv, mesh.second_uvs); })
-        .and_then([&] {
-          return part.tangents.empty() ? tl::expected<void, std::string>()
-                                       : stream(draw, VertexStream::tangent, count,
-                                                [&](std::size_t i) { return part.tangents[i]; });
-        })
-        .and_then([&] { return add_values(VertexStream::color, mesh.colors); })
-        .and_then([&] {
-          return store(part.indices.size(), [&](std::size_t i) { return part.indices[i]; });
-        })
-        .map([&](const Place& indices) {
-          draw.index_buffer = indices.buffer;
-          draw.index_offset = indices.offset;
-          draws.push_back(draw);
-        });
+    const auto tangents = [&](std::size_t i) { return part.tangents[i]; };
+    ALCOVE_TRY_VOID(add_values(VertexStream::position, mesh.positions));
+    ALCOVE_TRY_VOID(stream(draw, VertexStream::normals, count, normals));
+    ALCOVE_TRY_VOID(add_values(VertexStream::uv, mesh.uvs));
+    ALCOVE_TRY_VOID(add_values(VertexStream::second_uv, mesh.second_uvs));
+    if (!part.tangents.empty())
+      ALCOVE_TRY_VOID(stream(draw, VertexStream::tangent, count, tangents));
+    ALCOVE_TRY_VOID(add_values(VertexStream::color, mesh.colors));
+    ALCOVE_TRY(const Place indices,
+               store(part.indices.size(), [&](std::size_t i) { return part.indices[i]; }));
+    draw.index_buffer = indices.buffer;
+    draw.index_offset = indices.offset;
+    draws.push_back(draw);
+    return {};
   }
 
-  tl::expected<void, std::string> add_instances(const Mesh& mesh,
-                                                const std::vector<MeshDraw>& parts) {
+  Result<void> add_instances(const Mesh& mesh, const std::vector<MeshDraw>& parts) {
     if (mesh.instances.empty()) {
       meshes_.draws_.insert(meshes_.draws_.end(), parts.begin(), parts.end());
       return {};
@@ -284,9 +269,8 @@ class GpuMeshes::Builder {
       for (std::size_t first = 0; first < chosen.size(); first += most) {
         const std::size_t count = std::min(most, chosen.size() - first);
         MeshDraw instanced;
-        const auto done = stream(instanced, VertexStream::instance, count,
-                                 [&](std::size_t i) { return mesh.instances[chosen[first + i]]; });
-        if (!done) return done;
+        ALCOVE_TRY_VOID(stream(instanced, VertexStream::instance, count,
+                               [&](std::size_t i) { return mesh.instances[chosen[first + i]]; }));
         constexpr std::size_t kAt = index_of(VertexStream::instance);
         for (MeshDraw draw : parts) {
           draw.mirrored = mirrored;
@@ -309,16 +293,14 @@ class GpuMeshes::Builder {
   MeshDraw constants_;  // with every stream bound to its constant
 };
 
-tl::expected<std::unique_ptr<GpuMeshes>, std::string> GpuMeshes::create(const VulkanDevice& device,
-                                                                        const Scene& scene,
-                                                                        VkDeviceSize most_bytes) {
+Result<std::unique_ptr<GpuMeshes>> GpuMeshes::create(const VulkanDevice& device, const Scene& scene,
+                                                     VkDeviceSize most_bytes) {
   std::unique_ptr<GpuMeshes> made(new GpuMeshes);
   const VkDeviceSize limit = device.max_allocation();
   Builder builder(device, most_bytes == 0 ? limit : std::min(most_bytes, limit), *made);
-  auto done = builder.add_constants();
-  for (std::size_t i = 0; done && i < scene.meshes.size(); ++i)
-    done = builder.add(scene.meshes[i], scene.materials[scene.meshes[i].material]);
-  if (!done) return Failure(done.error());
+  ALCOVE_TRY_VOID(builder.add_constants());
+  for (const Mesh& mesh : scene.meshes)
+    ALCOVE_TRY_VOID(builder.add(mesh, scene.materials[mesh.material]));
   return made;
 }
 

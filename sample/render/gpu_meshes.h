@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu/gpu.h"
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -67,8 +67,9 @@ class GpuMeshes {
   // Uploads the meshes. `most_bytes` is the largest size of a buffer, at least 4096; zero selects
   // the device's limit. If the device has not enough memory, the error is one sentence with the
   // sizes.
-  [[nodiscard]] static tl::expected<std::unique_ptr<GpuMeshes>, std::string> create(
-      const VulkanDevice& device, const Scene& scene, VkDeviceSize most_bytes = 0);
+  [[nodiscard]] static Result<std::unique_ptr<GpuMeshes>> create(const VulkanDevice& device,
+                                                                 const Scene& scene,
+                                                                 VkDeviceSize most_bytes = 0);
 
   [[nodiscard]] const std::vector<MeshDraw>& draws() const { return draws_; }
   // Returns the size of all buffers in bytes.

@@ -9,8 +9,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 constexpr VkImageUsageFlags kUsage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
@@ -31,7 +29,7 @@ VkFilter vulkan_filter(Filter filter) {
   return filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
 }
 
-std::span<const std::uint8_t> texels_of(const Scene& scene, std::int32_t image) {
+std::span<const std::uint8_t> find_texels(const Scene& scene, std::int32_t image) {
   return image < 0
              ? std::span<const std::uint8_t>(kWhite)
              : std::span<const std::uint8_t>(scene.images[static_cast<std::size_t>(image)].rgba);
@@ -39,7 +37,7 @@ std::span<const std::uint8_t> texels_of(const Scene& scene, std::int32_t image) 
 
 }  // namespace
 
-std::array<GpuTextures::Use, maths::kMaterialTextures> GpuTextures::uses_of(
+std::array<GpuTextures::Use, maths::kMaterialTextures> GpuTextures::texture_uses(
     const Material& material) {
   const auto use = [](const TextureUse& texture, bool srgb) {
     return Use{texture.image, srgb, texture.sampler};
@@ -61,8 +59,7 @@ std::array<GpuTextures::Use, maths::kMaterialTextures> GpuTextures::uses_of(
   return uses;
 }
 
-tl::expected<VkImageView, std::string> GpuTextures::add_texture(const Scene& scene,
-                                                                const Use& use) {
+Result<VkImageView> GpuTextures::add_texture(const Scene& scene, const Use& use) {
   const auto found = std::ranges::find_if(textures_, [&](const Texture& texture) {
     return texture.image == use.image && texture.srgb == use.srgb;
   });
@@ -79,18 +76,18 @@ tl::expected<VkImageView, std::string> GpuTextures::add_texture(const Scene& sce
                    std::to_string(largest) + " a side.");
   }
   // Mips are made by linear blits, which Vulkan guarantees for both formats.
-  auto made = GpuImage::create(
-      device_,
-      {use.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-       framegraph::Extent::absolute(size.width, size.height),
-       static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height)))},
-      kUsage);
-  if (!made) return Failure(std::move(made.error()));
-  textures_.push_back({use.image, use.srgb, std::move(*made)});
+  ALCOVE_TRY(auto image,
+             GpuImage::create(
+                 device_,
+                 {use.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+                  framegraph::Extent::absolute(size.width, size.height),
+                  static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height)))},
+                 kUsage));
+  textures_.push_back({use.image, use.srgb, std::move(image)});
   return textures_.back().gpu->view();
 }
 
-tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sampler) {
+Result<VkSampler> GpuTextures::add_sampler(const Sampler& sampler) {
   constexpr float kMostAnisotropy = 8.0f;
   // Anisotropic filtering is used only if the file asks for linear filters and mips.
   const bool smooth = sampler.magnify == Filter::linear && sampler.minify == Filter::linear &&
@@ -118,49 +115,46 @@ tl::expected<VkSampler, std::string> GpuTextures::add_sampler(const Sampler& sam
   return made;
 }
 
-tl::expected<void, std::string> GpuTextures::add_use(const Scene& scene, const Use& use) {
+Result<void> GpuTextures::add_use(const Scene& scene, const Use& use) {
   if (std::ranges::find(uses_, use) != uses_.end()) return {};
   // Uses with equal samplers share one VkSampler. A linear search is enough, because a scene has
   // few different samplers.
   VkDescriptorImageInfo descriptor{.imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  auto done = assign(descriptor.imageView, add_texture(scene, use));
+  ALCOVE_TRY(descriptor.imageView, add_texture(scene, use));
   const auto like = std::ranges::find(uses_, use.sampler, &Use::sampler);
-  if (done && like != uses_.end())
+  if (like != uses_.end()) {
     descriptor.sampler = descriptors_[static_cast<std::size_t>(like - uses_.begin())].sampler;
-  else if (done)
-    done = assign(descriptor.sampler, add_sampler(use.sampler));
+  } else {
+    ALCOVE_TRY(descriptor.sampler, add_sampler(use.sampler));
+  }
   uses_.push_back(use);
   descriptors_.push_back(descriptor);
-  return done;
+  return {};
 }
 
-tl::expected<void, std::string> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
+Result<void> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
   // Each texture is uploaded in its own frame, so that only one upload buffer exists at a time.
   for (const Texture& texture : textures_) {
-    const auto texels = std::as_bytes(texels_of(scene, texture.image));
-    auto source = HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-    if (!source) return Failure(std::move(source.error()));
-    std::ranges::copy(texels, (*source)->bytes().begin());
-    const auto declare = [&](framegraph::Graph& graph) -> tl::expected<void, std::string> {
+    const auto texels = std::as_bytes(find_texels(scene, texture.image));
+    ALCOVE_TRY(auto source,
+               HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
+    std::ranges::copy(texels, source->bytes().begin());
+    const auto declare = [&](framegraph::Graph& graph) -> Result<void> {
       const auto target =
           graph.import_texture("scene texture", texture.gpu->import_to_fill(kSampledState));
-      add_mips(graph, add_copy(graph, **source, target), texture.gpu->mips());
+      add_mips(graph, add_copy(graph, *source, target), texture.gpu->mips());
       return {};
     };
-    if (auto done = gpu.run(declare); !done) return Failure(std::move(done.error()));
+    ALCOVE_TRY_VOID(gpu.run(declare));
   }
   return {};
 }
 
-tl::expected<std::unique_ptr<GpuTextures>, std::string> GpuTextures::create(Gpu& gpu,
-                                                                            const Scene& scene) {
+Result<std::unique_ptr<GpuTextures>> GpuTextures::create(Gpu& gpu, const Scene& scene) {
   std::unique_ptr<GpuTextures> made(new GpuTextures(gpu.device()));
-  tl::expected<void, std::string> done;
   for (const Material& material : scene.materials)
-    for (const Use& use : uses_of(material))
-      done = done.and_then([&] { return made->add_use(scene, use); });
-  done = done.and_then([&] { return made->upload(gpu, scene); });
-  if (!done) return Failure(std::move(done.error()));
+    for (const Use& use : texture_uses(material)) ALCOVE_TRY_VOID(made->add_use(scene, use));
+  ALCOVE_TRY_VOID(made->upload(gpu, scene));
   return made;
 }
 
@@ -171,7 +165,7 @@ GpuTextures::~GpuTextures() {
 std::array<VkDescriptorImageInfo, maths::kMaterialTextures> GpuTextures::descriptors_of(
     const Material& material) const {
   std::array<VkDescriptorImageInfo, maths::kMaterialTextures> found;
-  std::ranges::transform(uses_of(material), found.begin(), [&](const Use& use) {
+  std::ranges::transform(texture_uses(material), found.begin(), [&](const Use& use) {
     const auto at = std::ranges::find(uses_, use);
     return descriptors_[static_cast<std::size_t>(at - uses_.begin())];
   });

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu/gpu.h"
 #include "gpu/gpu_image.h"
 #include "render/shaders/gbuffer.h"
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -21,8 +21,7 @@ namespace alcove::sample {
 class GpuTextures {
  public:
   // Uploads the images in separate frames.
-  [[nodiscard]] static tl::expected<std::unique_ptr<GpuTextures>, std::string> create(
-      Gpu& gpu, const Scene& scene);
+  [[nodiscard]] static Result<std::unique_ptr<GpuTextures>> create(Gpu& gpu, const Scene& scene);
   ~GpuTextures();
   GpuTextures(const GpuTextures&) = delete;
   GpuTextures& operator=(const GpuTextures&) = delete;
@@ -47,11 +46,11 @@ class GpuTextures {
 
   explicit GpuTextures(const VulkanDevice& device) : device_(device) {}
   // Returns the uses of a material's textures, in the order of the g-buffer's shaders.
-  static std::array<Use, maths::kMaterialTextures> uses_of(const Material& material);
-  tl::expected<void, std::string> add_use(const Scene& scene, const Use& use);
-  tl::expected<VkImageView, std::string> add_texture(const Scene& scene, const Use& use);
-  tl::expected<VkSampler, std::string> add_sampler(const Sampler& sampler);
-  tl::expected<void, std::string> upload(Gpu& gpu, const Scene& scene);
+  static std::array<Use, maths::kMaterialTextures> texture_uses(const Material& material);
+  Result<void> add_use(const Scene& scene, const Use& use);
+  Result<VkImageView> add_texture(const Scene& scene, const Use& use);
+  Result<VkSampler> add_sampler(const Sampler& sampler);
+  Result<void> upload(Gpu& gpu, const Scene& scene);
 
   const VulkanDevice& device_;
   std::vector<Texture> textures_;

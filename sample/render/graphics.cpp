@@ -14,7 +14,7 @@ VkResult create_module(VkDevice device, std::span<const std::uint32_t> code,
   return vkCreateShaderModule(device, &info, nullptr, &module);
 }
 
-VkResult create_pipeline_of(VkDevice device, const PipelineDescription& description,
+VkResult create_from_stages(VkDevice device, const PipelineDescription& description,
                             std::span<const VkPipelineShaderStageCreateInfo> stages,
                             VkPipeline& pipeline) {
   const VkPipelineVertexInputStateCreateInfo vertices{
@@ -92,7 +92,7 @@ VkResult create_pipeline(VkDevice device, PipelineDescription description, VkPip
          .module = modules[1],
          .pName = "main",
          .pSpecializationInfo = description.fragment_constants}};
-    result = create_pipeline_of(device, description, stages, pipeline);
+    result = create_from_stages(device, description, stages, pipeline);
   }
   for (const VkShaderModule module : modules) vkDestroyShaderModule(device, module, nullptr);
   return result;

@@ -9,8 +9,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 constexpr passes::EnvironmentSettings kSettings;
 
 // Adds a pass that copies every mip of a transient texture to an image that is kept after the
@@ -35,13 +33,11 @@ void add_image_copy(Graph& graph, Texture from, const GpuImage& to, std::uint32_
 
 // Adds the passes that compute a probe. `upload` receives the buffer that they read: it must
 // outlive the frame.
-tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& frame, Gpu& gpu,
-                                                         const EnvironmentImage& image,
-                                                         std::unique_ptr<HostBuffer>& upload) {
-  auto created =
-      assign(upload, HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
+Result<passes::Environment> add_probe(const passes::Frame& frame, Gpu& gpu,
+                                      const EnvironmentImage& image,
+                                      std::unique_ptr<HostBuffer>& upload) {
+  ALCOVE_TRY(upload, HostBuffer::create(gpu.device(), image.pixels.size() * sizeof(glm::vec4),
                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
-  if (!created) return Failure(std::move(created.error()));
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::vec4 texel(image.pixels[i], 1.0f);
     std::memcpy(upload->bytes().data() + i * sizeof(texel), &texel, sizeof(texel));
@@ -55,30 +51,25 @@ tl::expected<passes::Environment, std::string> add_probe(const passes::Frame& fr
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Probe>, std::string> Probe::create(Gpu& gpu,
-                                                                const EnvironmentImage& image) {
+Result<std::unique_ptr<Probe>> Probe::create(Gpu& gpu, const EnvironmentImage& image) {
   constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   std::unique_ptr<Probe> made(new Probe);
-  const auto create = [&](std::unique_ptr<GpuImage>& target, const framegraph::TextureDesc& desc) {
-    return assign(target, GpuImage::create(gpu.device(), desc, kUsage));
-  };
   using framegraph::Extent;
-  auto created = create(made->harmonics_, {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(9, 1)})
-                     .and_then([&] {
-                       return create(made->map_, {VK_FORMAT_R16G16B16A16_SFLOAT,
-                                                  Extent::absolute(kSettings.size, kSettings.size),
-                                                  kSettings.levels});
-                     });
-  if (!created) return Failure(std::move(created.error()));
+  ALCOVE_TRY(made->harmonics_,
+             GpuImage::create(gpu.device(), {VK_FORMAT_R32G32B32A32_SFLOAT, Extent::absolute(9, 1)},
+                              kUsage));
+  ALCOVE_TRY(made->map_,
+             GpuImage::create(gpu.device(),
+                              {VK_FORMAT_R16G16B16A16_SFLOAT,
+                               Extent::absolute(kSettings.size, kSettings.size), kSettings.levels},
+                              kUsage));
   std::unique_ptr<HostBuffer> upload;
-  auto report = gpu.run([&](Graph& graph) {
-    return add_probe({graph, gpu.kernels(), {}}, gpu, image, upload)
-        .map([&](const passes::Environment& light) {
-          add_image_copy(graph, light.harmonics, *made->harmonics_, 1);
-          add_image_copy(graph, light.map, *made->map_, kSettings.levels);
-        });
-  });
-  if (!report) return Failure(std::move(report.error()));
+  ALCOVE_TRY_VOID(gpu.run([&](Graph& graph) -> Result<void> {
+    ALCOVE_TRY(const auto light, add_probe({graph, gpu.kernels(), {}}, gpu, image, upload));
+    add_image_copy(graph, light.harmonics, *made->harmonics_, 1);
+    add_image_copy(graph, light.map, *made->map_, kSettings.levels);
+    return {};
+  }));
   return made;
 }
 

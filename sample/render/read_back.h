@@ -3,13 +3,13 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
 #include "gpu/gpu.h"
 #include "support/glm.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -26,7 +26,7 @@ class ReadBack {
   void add(framegraph::Graph& graph, framegraph::Texture texture,
            std::function<void(const Texels&)> store);
   // Returns the first error of add().
-  [[nodiscard]] const tl::expected<void, std::string>& added() const { return added_; }
+  [[nodiscard]] const Result<void>& added() const { return added_; }
   // Converts the texels. The device must have finished the frame.
   void finish() const;
 
@@ -39,7 +39,7 @@ class ReadBack {
   };
   const VulkanDevice& device_;
   std::vector<Copy> copies_;
-  tl::expected<void, std::string> added_;
+  Result<void> added_;
 };
 
 // Returns one channel of an image, or its first three channels.

@@ -16,8 +16,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Number of frames, the last ones of a run, over which the median time is taken. At least one frame
 // is drawn before them and is not timed, because the first frame also compiles shaders.
 constexpr std::uint32_t kTimedFrames = 9;
@@ -68,13 +66,12 @@ class Run {
 
   // Draws the frames and returns the median times of the last kTimedFrames frames. If the run is
   // shorter, its last frame is drawn several times.
-  tl::expected<Costs, std::string> time(Outputs outputs) {
+  Result<Costs> time(Outputs outputs) {
     std::vector<FrameCost> costs;
     for (std::uint32_t i = 0; i < timed_frames_; ++i) {
-      auto cost = renderer_.draw(request(std::min(i, request_.frames - 1), outputs));
-      if (!cost) return Failure(std::move(cost.error()));
+      ALCOVE_TRY(auto cost, renderer_.draw(request(std::min(i, request_.frames - 1), outputs)));
       count();
-      if (i + kTimedFrames >= timed_frames_) costs.push_back(std::move(*cost));
+      if (i + kTimedFrames >= timed_frames_) costs.push_back(std::move(cost));
     }
     return medians(costs);
   }
@@ -83,7 +80,7 @@ class Run {
   // GGX lobe, which makes visibility noisier. If the settings have no specular occlusion,
   // visibility is therefore taken from a second run without it, which is also the run that is
   // timed.
-  tl::expected<FrameImages, std::string> draw() {
+  Result<FrameImages> draw() {
     auto all = draw(Outputs::all);
     if (!all || one_run_) return all;
     auto images = draw(Outputs::bent_normals);
@@ -116,10 +113,9 @@ class Run {
     return request;
   }
 
-  tl::expected<FrameImages, std::string> draw(Outputs outputs) {
+  Result<FrameImages> draw(Outputs outputs) {
     for (std::uint32_t i = 0; i + 1 < request_.frames; ++i) {
-      if (auto cost = renderer_.draw(request(i, outputs)); !cost)
-        return Failure(std::move(cost.error()));
+      ALCOVE_TRY_VOID(renderer_.draw(request(i, outputs)));
       count();
     }
     return renderer_.draw_and_read(request(request_.frames - 1, outputs));
@@ -147,7 +143,7 @@ passes::Specular specular_model(const passes::OcclusionSettings& settings) {
   return settings.specular == passes::Specular::none ? passes::Specular::slices : settings.specular;
 }
 
-tl::expected<Rendering, std::string> render(Session session, const RenderRequest& request) {
+Result<Rendering> render(Session session, const RenderRequest& request) {
   Rendering result;
   result.scene = std::move(session.scene);
   result.load_seconds = session.load_seconds;
@@ -158,16 +154,16 @@ tl::expected<Rendering, std::string> render(Session session, const RenderRequest
   result.driver = gpu.device().driver();
 
   result.camera = frame_camera(request, session.camera, request.frames - 1);
-  auto renderer =
-      FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals);
-  if (!renderer) return Failure(std::move(renderer.error()));
-  Run run(**renderer, request, session.camera, result.settings);
-  return assign(result.costs, run.time(Outputs::visibility))
-      .map([&] { result.memory = (*renderer)->memory(); })
-      .and_then([&] { return assign(result.costs_with_specular, run.time(Outputs::specular)); })
-      .and_then([&] { return assign(result.images, run.draw()); })
-      .and_then([&] { return check_validation(gpu); })
-      .map([&] { return std::move(result); });
+  ALCOVE_TRY(
+      const auto renderer,
+      FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals));
+  Run run(*renderer, request, session.camera, result.settings);
+  ALCOVE_TRY(result.costs, run.time(Outputs::visibility));
+  result.memory = renderer->memory();
+  ALCOVE_TRY(result.costs_with_specular, run.time(Outputs::specular));
+  ALCOVE_TRY(result.images, run.draw());
+  ALCOVE_TRY_VOID(check_validation(gpu));
+  return result;
 }
 
 Image<float> linear_depth(const Rendering& rendering) {
@@ -208,7 +204,7 @@ Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
 // Writes images to a folder, until one cannot be written.
 struct ImageWriter {
   const std::filesystem::path& folder;
-  tl::expected<void, std::string> written;
+  Result<void> written;
 
   template <typename Pixel>
   void exr(const std::string& name, const Image<Pixel>& image) {
@@ -240,8 +236,7 @@ std::string specular_name(const IndirectRequest& light, std::size_t i) {
   return name;
 }
 
-tl::expected<void, std::string> write_images(const Rendering& rendering,
-                                             const std::filesystem::path& folder) {
+Result<void> write_images(const Rendering& rendering, const std::filesystem::path& folder) {
   const FrameImages& images = rendering.images;
   const LitImages& lit = images.lit;
   const float exposure = exposure_of(rendering.light.environment);

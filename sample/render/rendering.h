@@ -1,13 +1,13 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu/gpu.h"
 #include "render/frame_renderer.h"
 #include "render/session.h"
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -51,8 +51,7 @@ struct RenderRequest {
 };
 
 // Draws the frames and reads the last one back.
-[[nodiscard]] tl::expected<Rendering, std::string> render(Session session,
-                                                          const RenderRequest& request);
+[[nodiscard]] Result<Rendering> render(Session session, const RenderRequest& request);
 
 // Returns the distance along the view axis at each pixel, infinity at pixels of the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
@@ -72,7 +71,7 @@ struct RenderRequest {
 [[nodiscard]] std::string specular_name(const IndirectRequest& light, std::size_t i);
 
 // Writes the images of a rendering to a folder that exists.
-[[nodiscard]] tl::expected<void, std::string> write_images(const Rendering& rendering,
-                                                           const std::filesystem::path& folder);
+[[nodiscard]] Result<void> write_images(const Rendering& rendering,
+                                        const std::filesystem::path& folder);
 
 }  // namespace alcove::sample

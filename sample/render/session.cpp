@@ -4,7 +4,7 @@
 
 namespace alcove::sample {
 
-tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const DeviceRequest& request) {
+Result<std::unique_ptr<Gpu>> open_gpu(const DeviceRequest& request) {
   framegraph::ExecutorOptions executor;
   if (request.validation) executor.verify = framegraph::verify;
   executor.check_uses = executor.check_uses || request.validation;
@@ -15,9 +15,9 @@ tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(const DeviceRequest& re
                      executor);
 }
 
-tl::expected<void, std::string> check_validation(const Gpu& gpu) {
+Result<void> check_validation(const Gpu& gpu) {
   for (const std::string& message : gpu.device().validation_messages())
-    return tl::unexpected<std::string>("The validation layer says: " + message);
+    return Failure("The validation layer says: " + message);
   return {};
 }
 

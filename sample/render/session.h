@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
 #include "gpu/gpu.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -45,10 +45,9 @@ struct Shot {
 };
 
 // Opens the device. Each call creates a new Gpu with its own histories.
-[[nodiscard]] tl::expected<std::unique_ptr<Gpu>, std::string> open_gpu(
-    const DeviceRequest& request);
+[[nodiscard]] Result<std::unique_ptr<Gpu>> open_gpu(const DeviceRequest& request);
 
 // Returns an error with the first message if the validation layers reported any.
-[[nodiscard]] tl::expected<void, std::string> check_validation(const Gpu& gpu);
+[[nodiscard]] Result<void> check_validation(const Gpu& gpu);
 
 }  // namespace alcove::sample

@@ -41,9 +41,9 @@ passes::Frame pass_frame(Graph& graph, Gpu& gpu, const GbufferView& view, std::u
           static_frames};
 }
 
-tl::expected<passes::OcclusionOutputs, std::string> add_occlusion(
-    const passes::Frame& frame, const Surfaces& surfaces, passes::OcclusionSettings settings,
-    std::string_view history_name) {
+Result<passes::OcclusionOutputs> add_occlusion(const passes::Frame& frame, const Surfaces& surfaces,
+                                               passes::OcclusionSettings settings,
+                                               std::string_view history_name) {
   const Gbuffer& gbuffer = surfaces.gbuffer;
   passes::OcclusionInputs inputs{.depth_ndc = gbuffer.depth};
   inputs.back_depth_ndc = gbuffer.back_depth;
@@ -59,12 +59,11 @@ tl::expected<passes::OcclusionOutputs, std::string> add_occlusion(
   return passes::add_occlusion(frame, inputs, settings, history_name).map_error(message);
 }
 
-tl::expected<passes::AppliedLight, std::string> add_light(const passes::Frame& frame,
-                                                          const Surfaces& surfaces,
-                                                          const passes::OcclusionOutputs& outputs,
-                                                          const passes::Environment& probe,
-                                                          passes::ApplyInputs occlusion,
-                                                          passes::ApplySettings settings) {
+Result<passes::AppliedLight> add_light(const passes::Frame& frame, const Surfaces& surfaces,
+                                       const passes::OcclusionOutputs& outputs,
+                                       const passes::Environment& probe,
+                                       passes::ApplyInputs occlusion,
+                                       passes::ApplySettings settings) {
   passes::ApplyInputs& inputs = occlusion;
   inputs.depth = outputs.linear_depth;
   inputs.normals = outputs.normals;

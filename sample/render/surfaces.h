@@ -3,13 +3,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 
 #include "alcove/passes/apply.h"
 #include "alcove/passes/environment.h"
 #include "alcove/passes/occlusion.h"
 #include "render/gbuffer.h"
 #include "render/normal_source.h"
+#include "support/result.h"
 
 // The passes of a frame, as all programs of the sample add them.
 namespace alcove::sample {
@@ -38,15 +38,17 @@ struct HiddenDepths {
                                        std::uint32_t index = 0, std::uint32_t static_frames = 0);
 
 // Adds the occlusion passes. The roughness of the surfaces replaces that of the settings.
-[[nodiscard]] tl::expected<passes::OcclusionOutputs, std::string> add_occlusion(
+[[nodiscard]] Result<passes::OcclusionOutputs> add_occlusion(
     const passes::Frame& frame, const Surfaces& surfaces, passes::OcclusionSettings settings,
     std::string_view history_name = "occlusion");
 
 // Adds the pass that lights the surfaces with a probe. `occlusion` has the textures of the
 // occlusion that is applied, and nothing else.
-[[nodiscard]] tl::expected<passes::AppliedLight, std::string> add_light(
-    const passes::Frame& frame, const Surfaces& surfaces, const passes::OcclusionOutputs& outputs,
-    const passes::Environment& probe, passes::ApplyInputs occlusion,
-    passes::ApplySettings settings = {});
+[[nodiscard]] Result<passes::AppliedLight> add_light(const passes::Frame& frame,
+                                                     const Surfaces& surfaces,
+                                                     const passes::OcclusionOutputs& outputs,
+                                                     const passes::Environment& probe,
+                                                     passes::ApplyInputs occlusion,
+                                                     passes::ApplySettings settings = {});
 
 }  // namespace alcove::sample

@@ -24,14 +24,8 @@ Name split(const std::string& name) {
 }
 
 Camera camera(glm::vec3 eye, glm::vec3 target, glm::vec3 up = {0, 1, 0}) {
-  Camera out;
-  out.name = "front";
-  out.eye_ws = eye;
-  out.target_ws = target;
+  Camera out = scene_camera("front", eye, target, 50.0f, 50.0f);
   out.up_ws = up;
-  out.fov_y = glm::radians(50.0f);
-  out.near_plane = 0.05f;
-  out.far_plane = 50.0f;
   return out;
 }
 
@@ -141,16 +135,16 @@ AnalyticScene step() {
   return out;
 }
 
-tl::expected<float, std::string> angle_of(const std::string& name, const std::string& number,
-                                          float low, float high, float otherwise) {
+Result<float> read_angle(const std::string& name, const std::string& number, float low, float high,
+                         float otherwise) {
   float degrees = otherwise;
   if (!number.empty() || name.back() == ':') {
     const char* end = number.data() + number.size();
     const auto [stop, error] = std::from_chars(number.data(), end, degrees);
     if (error != std::errc{} || stop != end || !(degrees >= low && degrees <= high)) {
-      return tl::unexpected<std::string>(
-          "scene " + name + ": the angle must be a number of degrees from " +
-          std::to_string(static_cast<int>(low)) + " to " + std::to_string(static_cast<int>(high)));
+      return Failure("scene " + name + ": the angle must be a number of degrees from " +
+                     std::to_string(static_cast<int>(low)) + " to " +
+                     std::to_string(static_cast<int>(high)));
     }
   }
   return glm::radians(degrees);
@@ -165,26 +159,18 @@ bool is_analytic_name(const std::string& name) {
   return false;
 }
 
-tl::expected<AnalyticScene, std::string> analytic_scene(const std::string& name) {
+Result<AnalyticScene> analytic_scene(const std::string& name) {
   const auto [kind, number] = split(name);
-  if (kind == "plane") {
-    const auto angle = angle_of(name, number, 0.0f, 89.0f, 0.0f);
-    return angle ? tl::expected<AnalyticScene, std::string>(plane(*angle))
-                 : tl::unexpected(angle.error());
-  }
-  if (kind == "groove") {
-    const auto angle = angle_of(name, number, 10.0f, 170.0f, 90.0f);
-    return angle ? tl::expected<AnalyticScene, std::string>(groove(*angle))
-                 : tl::unexpected(angle.error());
-  }
+  if (kind == "plane") return read_angle(name, number, 0.0f, 89.0f, 0.0f).map(plane);
+  if (kind == "groove") return read_angle(name, number, 10.0f, 170.0f, 90.0f).map(groove);
   if (name.find(':') != std::string::npos)
-    return tl::unexpected<std::string>("scene " + name + ": " + kind + " takes no angle");
+    return Failure("scene " + name + ": " + kind + " takes no angle");
   if (kind == "corner") return corner();
   if (kind == "sphere") return sphere();
   if (kind == "pit") return pit();
   if (kind == "step") return step();
-  return tl::unexpected<std::string>("there is no scene " + name +
-                                     "; try plane:60, groove:90, corner, sphere, pit or step");
+  return Failure("there is no scene " + name +
+                 "; try plane:60, groove:90, corner, sphere, pit or step");
 }
 
 double visibility_under_sphere(double radius, double distance, double cosine) {

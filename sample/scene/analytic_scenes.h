@@ -1,10 +1,10 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -28,7 +28,7 @@ struct AnalyticScene {
 // 0), `groove:DEG` (DEG is the opening angle between the walls, 10..170, default 90), `corner`,
 // `sphere`, `pit` or `step`. Lengths are metres. Unknown names and angles out of range are errors
 // that list the valid ones.
-[[nodiscard]] tl::expected<AnalyticScene, std::string> analytic_scene(const std::string& name);
+[[nodiscard]] Result<AnalyticScene> analytic_scene(const std::string& name);
 
 // Returns whether `name` begins like a name of analytic_scene(). Its angle may be out of range.
 [[nodiscard]] bool is_analytic_name(const std::string& name);

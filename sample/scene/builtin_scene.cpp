@@ -43,7 +43,6 @@ Palette add_palette(SceneBuilder& b) {
   return p;
 }
 
-glm::mat4 moved(glm::vec3 by) { return glm::translate(glm::mat4(1.0f), by); }
 glm::mat4 turned(const glm::mat4& m, float degrees) {
   return glm::rotate(m, glm::radians(degrees), glm::vec3(0, 1, 0));
 }
@@ -74,7 +73,7 @@ void add_floor(SceneBuilder& b, const Palette& p) {
 
 // A round column on a square plinth, in the axis of the arcade.
 void add_column(SceneBuilder& b, const Palette& p, float x) {
-  b.world_from_shape = moved({x, 0, 0});
+  b.world_from_shape = translation({x, 0, 0});
   b.use(p.step);
   b.box({-0.25f, 0.0f, -0.25f}, {0.25f, 0.14f, 0.25f});
   b.use(p.marble);
@@ -93,7 +92,7 @@ void add_arcade(SceneBuilder& b, const Palette& p) {
   b.use(p.plaster);
   for (int bay = 0; bay < kBays; ++bay) {
     const float x = -kEnd + kBay * (static_cast<float>(bay) + 0.5f);
-    b.world_from_shape = moved({x, 0, 0});
+    b.world_from_shape = translation({x, 0, 0});
     b.arch({-0.5f * kBay, kSpring}, {0.5f * kBay, kEaves}, 0.5f * kBay - 0.22f, kThickness, 28);
   }
   b.world_from_shape = glm::mat4(1.0f);
@@ -110,7 +109,7 @@ void add_back_wall(SceneBuilder& b, const Palette& p) {
   for (int bay = 0; bay < kBays; ++bay) {
     const float x = -kEnd + kBay * (static_cast<float>(bay) + 0.5f);
     const float half = 0.5f * kBay;
-    b.world_from_shape = moved({x, 0, kWall - 0.5f * kNiche});
+    b.world_from_shape = translation({x, 0, kWall - 0.5f * kNiche});
     b.arch({-half, 1.7f}, {half, kEaves}, 0.62f, kNiche, 24);
     b.box({-half, 0.0f, -0.5f * kNiche}, {-0.62f, 1.7f, 0.5f * kNiche});
     b.box({0.62f, 0.0f, -0.5f * kNiche}, {half, 1.7f, 0.5f * kNiche});
@@ -119,7 +118,7 @@ void add_back_wall(SceneBuilder& b, const Palette& p) {
            {half, kEaves, -0.5f * kNiche}, {-half, kEaves, -0.5f * kNiche});
   }
   for (int i = 0; i <= kBays; ++i) {
-    b.world_from_shape = moved({-kEnd + kBay * static_cast<float>(i), 0, kWall});
+    b.world_from_shape = translation({-kEnd + kBay * static_cast<float>(i), 0, kWall});
     b.use(p.plaster);
     b.box({-0.2f, 0.0f, 0.0f}, {0.2f, 2.38f, 0.14f});
     b.use(p.step);
@@ -134,7 +133,8 @@ void add_ceiling(SceneBuilder& b, const Palette& p) {
   const float span = -kWall - 0.14f - 0.21f;
   b.use(p.plaster);
   for (int i = 0; i <= kBays; ++i) {
-    b.world_from_shape = turned(moved({-kEnd + kBay * static_cast<float>(i), 0, middle}), 90.0f);
+    b.world_from_shape =
+        turned(translation({-kEnd + kBay * static_cast<float>(i), 0, middle}), 90.0f);
     b.arch({-0.5f * span, kSpring}, {0.5f * span, kEaves - 0.02f}, 0.5f * span - 0.02f, 0.3f, 28);
   }
   b.world_from_shape = glm::mat4(1.0f);
@@ -167,7 +167,7 @@ void add_balustrade(SceneBuilder& b, const Palette& p, int bay) {
   constexpr int kBalusters = 9;
   for (int i = 0; i < kBalusters; ++i) {
     const float x = left + (right - left) * (static_cast<float>(i) + 0.5f) / kBalusters;
-    b.world_from_shape = moved({x, 0, 0});
+    b.world_from_shape = translation({x, 0, 0});
     b.lathe(profile, 10);
   }
 }
@@ -189,7 +189,7 @@ void add_railing(SceneBuilder& b, const Palette& p, int bay) {
 void add_lattice(SceneBuilder& b, const Palette& p, int bay) {
   const float left = -kEnd + kBay * static_cast<float>(bay) + 0.24f;
   const float width = kBay - 0.48f, height = 2.1f;
-  b.world_from_shape = moved({left, 0.08f, 0});
+  b.world_from_shape = translation({left, 0.08f, 0});
   b.use(p.wood);
   b.bar({0, 0, 0}, {0, height, 0}, 0.05f);
   b.bar({width, 0, 0}, {width, height, 0}, 0.05f);
@@ -206,7 +206,7 @@ void add_lattice(SceneBuilder& b, const Palette& p, int bay) {
 
 // Leaves bent outwards on stems from a pot. The spread follows the golden angle.
 void add_plant(SceneBuilder& b, const Palette& p, glm::vec3 at, int leaves) {
-  b.world_from_shape = moved(at);
+  b.world_from_shape = translation(at);
   b.use(p.terracotta);
   const std::vector<glm::vec2> pot = {{0.0f, 0.0f},   {0.17f, 0.0f},  {0.24f, 0.32f},
                                       {0.27f, 0.33f}, {0.27f, 0.40f}, {0.23f, 0.40f},
@@ -217,7 +217,7 @@ void add_plant(SceneBuilder& b, const Palette& p, glm::vec3 at, int leaves) {
     const float angle = 137.508f * static_cast<float>(i);
     const float rise = 0.35f + 0.6f * static_cast<float>(i) / static_cast<float>(leaves);
     const float length = 0.75f - 0.45f * static_cast<float>(i) / static_cast<float>(leaves);
-    b.world_from_shape = turned(moved(at + glm::vec3(0, 0.34f, 0)), angle);
+    b.world_from_shape = turned(translation(at + glm::vec3(0, 0.34f, 0)), angle);
     glm::vec3 before(0.02f, 0, 0);
     constexpr int kParts = 5;
     for (int k = 1; k <= kParts; ++k) {
@@ -234,7 +234,7 @@ void add_plant(SceneBuilder& b, const Palette& p, glm::vec3 at, int leaves) {
 }
 
 void add_vase(SceneBuilder& b, const Palette& p, glm::vec3 at) {
-  b.world_from_shape = moved(at);
+  b.world_from_shape = translation(at);
   b.use(p.step);
   b.box({-0.22f, 0.0f, -0.22f}, {0.22f, 0.7f, 0.22f});
   b.box({-0.26f, 0.7f, -0.26f}, {0.26f, 0.76f, 0.26f});
@@ -250,7 +250,7 @@ void add_vase(SceneBuilder& b, const Palette& p, glm::vec3 at) {
 void add_furniture(SceneBuilder& b, const Palette& p) {
   for (const int bay : {1, 4, 6}) {
     const float x = -kEnd + kBay * (static_cast<float>(bay) + 0.5f);
-    b.world_from_shape = moved({x, 0, kWall + 0.32f});
+    b.world_from_shape = translation({x, 0, kWall + 0.32f});
     b.use(p.wood);
     b.box({-0.6f, 0.40f, -0.18f}, {0.6f, 0.46f, 0.18f});
     for (const float side : {-0.5f, 0.5f})
@@ -269,17 +269,6 @@ void add_furniture(SceneBuilder& b, const Palette& p) {
     b.use(bay % 2 ? p.ceramic : p.terracotta);
     b.sphere({x, 0.55f + 0.2f, kWall - 0.17f}, 0.2f, 16, 24);
   }
-}
-
-Camera camera(const char* name, glm::vec3 eye, glm::vec3 target, float fov_degrees) {
-  Camera out;
-  out.name = name;
-  out.eye_ws = eye;
-  out.target_ws = target;
-  out.fov_y = glm::radians(fov_degrees);
-  out.near_plane = 0.05f;
-  out.far_plane = 100.0f;
-  return out;
 }
 
 }  // namespace
@@ -303,9 +292,10 @@ Scene builtin_scene() {
   add_furniture(b, p);
   Scene scene = b.finish("builtin");
   scene.suggested_radius = 0.5f;
-  scene.cameras = {camera("arcade", {-7.4f, 1.55f, -1.9f}, {0.0f, 1.35f, -1.2f}, 60.0f),
-                   camera("court", {-5.2f, 1.5f, 6.2f}, {0.4f, 1.3f, -1.0f}, 50.0f),
-                   camera("plant", {-5.6f, 1.1f, -1.9f}, {-4.2f, 0.65f, -0.7f}, 55.0f)};
+  scene.cameras = {
+      scene_camera("arcade", {-7.4f, 1.55f, -1.9f}, {0.0f, 1.35f, -1.2f}, 60.0f, 100.0f),
+      scene_camera("court", {-5.2f, 1.5f, 6.2f}, {0.4f, 1.3f, -1.0f}, 50.0f, 100.0f),
+      scene_camera("plant", {-5.6f, 1.1f, -1.9f}, {-4.2f, 0.65f, -0.7f}, 55.0f, 100.0f)};
   return scene;
 }
 

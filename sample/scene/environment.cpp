@@ -13,8 +13,6 @@
 namespace alcove::sample {
 namespace {
 
-using Loaded = tl::expected<EnvironmentImage, std::string>;
-
 constexpr float kLargestHalf = 65504.0f;  // of the 16-bit floats in which the device stores light
 constexpr uint32_t kLargestSide = 2048;   // pixels, of an environment in memory
 
@@ -34,10 +32,6 @@ glm::vec3 sky_radiance(const glm::vec3& d) {
                          1.2f * std::exp(5.0f * near_sun) * glm::vec3(1.0f, 0.9f, 0.75f);
   const float above = glm::smoothstep(-0.04f, 0.04f, d.y);
   return glm::mix(ground, haze + glow, above);
-}
-
-Loaded refuse(const std::filesystem::path& file, const std::string& why) {
-  return tl::unexpected("The environment " + file.string() + " cannot be used: it " + why + ".");
 }
 
 // Collects the rows of a file, and reduces the image by a whole factor to at most kLargestSide
@@ -83,6 +77,18 @@ std::string lower_case_ending(const std::filesystem::path& file) {
   return ending;
 }
 
+// The error text is the end of a sentence that begins with the file's name.
+Result<EnvironmentImage> read_environment(const std::filesystem::path& file) {
+  const std::string ending = lower_case_ending(file);
+  if (ending != ".hdr" && ending != ".exr")
+    return Failure("is no .hdr or .exr file; give an equirectangular image of these formats");
+  ALCOVE_TRY(const FilePointer opened, open_regular_file(file));
+  EnvironmentRows rows;
+  ALCOVE_TRY_VOID(ending == ".hdr" ? read_hdr(opened.get(), rows.receiver())
+                                   : read_exr(opened.get(), colour_channels, rows.receiver()));
+  return rows.take();
+}
+
 }  // namespace
 
 EnvironmentImage procedural_sky() {
@@ -93,18 +99,11 @@ EnvironmentImage procedural_sky() {
   return sky;
 }
 
-tl::expected<EnvironmentImage, std::string> load_environment(const std::filesystem::path& file) {
+Result<EnvironmentImage> load_environment(const std::filesystem::path& file) {
   if (file.empty()) return procedural_sky();
-  const std::string ending = lower_case_ending(file);
-  if (ending != ".hdr" && ending != ".exr")
-    return refuse(file, "is no .hdr or .exr file; give an equirectangular image of these formats");
-  const auto opened = open_regular_file(file);
-  if (!opened) return refuse(file, opened.error());
-  EnvironmentRows rows;
-  const auto read = ending == ".hdr" ? read_hdr(opened->get(), rows.receiver())
-                                     : read_exr(opened->get(), colour_channels, rows.receiver());
-  if (!read) return refuse(file, read.error());
-  return rows.take();
+  return read_environment(file).map_error([&](const std::string& why) {
+    return "The environment " + file.string() + " cannot be used: it " + why + ".";
+  });
 }
 
 glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction) {

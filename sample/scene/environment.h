@@ -2,10 +2,10 @@
 
 #include <filesystem>
 #include <string>
-#include <tl/expected.hpp>
 
 #include "support/glm.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -22,8 +22,7 @@ using EnvironmentImage = Image<glm::vec3>;
 // factor to at most 2048. An empty name gives the procedural sky. Radiance that is negative or not
 // finite becomes 0, and radiance above the largest 16-bit float, 65504, becomes that. The error is
 // a sentence with the file's name: unreadable, damaged, or another format.
-[[nodiscard]] tl::expected<EnvironmentImage, std::string> load_environment(
-    const std::filesystem::path& file);
+[[nodiscard]] Result<EnvironmentImage> load_environment(const std::filesystem::path& file);
 
 // Returns the radiance from a unit direction in world space, interpolated bilinearly.
 [[nodiscard]] glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction);

@@ -57,7 +57,7 @@ struct Block {
   Bounds bounds;  // in mesh space
 };
 
-std::vector<Block> blocks_of(const Mesh& mesh) {
+std::vector<Block> split(const Mesh& mesh) {
   constexpr size_t kIndices = size_t{3} << 16;
   std::vector<Block> blocks;
   const size_t count = mesh.indices.size() / 3 * 3;
@@ -88,7 +88,7 @@ class DepthDrawing {
     const double width = std::clamp(std::round(kPictureHeight * aspect), 16.0, 1024.0);
     depth_ = Image<float>(static_cast<uint32_t>(width), kPictureHeight,
                           std::numeric_limits<float>::infinity());
-    for (const Mesh& mesh : scene.meshes) blocks_.push_back(blocks_of(mesh));
+    for (const Mesh& mesh : scene.meshes) blocks_.push_back(split(mesh));
   }
 
   DepthPicture run() {
@@ -177,7 +177,7 @@ class DepthDrawing {
     if (!depths) return;
     range_ = united(range_, *depths);
     const glm::dvec3 centre(view * glm::dvec4(0.5f * (bounds.low + bounds.high), 1.0));
-    set_pixel(pixel_of(homogeneous(centre)), -centre.z);
+    set_pixel(to_pixel(homogeneous(centre)), -centre.z);
   }
 
   void extend_range(const Triangle& triangle) {
@@ -194,7 +194,7 @@ class DepthDrawing {
     return {p.x, p.y, perspective_ ? -p.z : 1.0};
   }
   // Returns the position in the image, in pixels from the top left corner.
-  glm::dvec2 pixel_of(const glm::dvec3& point) const {
+  glm::dvec2 to_pixel(const glm::dvec3& point) const {
     const glm::dvec2 ndc = glm::dvec2(point) / point.z / half_size_;
     return {0.5 * (1.0 + ndc.x) * depth_.width, 0.5 * (1.0 - ndc.y) * depth_.height};
   }
@@ -213,7 +213,7 @@ class DepthDrawing {
                      p2 = homogeneous(triangle[2]);
     glm::dvec2 low(0.0), high(depth_.width, depth_.height);
     if (p0.z > 0.0 && p1.z > 0.0 && p2.z > 0.0) {
-      const glm::dvec2 a = pixel_of(p0), b = pixel_of(p1), c = pixel_of(p2);
+      const glm::dvec2 a = to_pixel(p0), b = to_pixel(p1), c = to_pixel(p2);
       const glm::dvec2 first = glm::min(a, glm::min(b, c)), last = glm::max(a, glm::max(b, c));
       if (last.x - first.x < 1.0 && last.y - first.y < 1.0)
         return set_pixel((a + b + c) / 3.0, -(triangle[0].z + triangle[1].z + triangle[2].z) / 3.0);

@@ -20,7 +20,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 namespace fs = std::filesystem;
 
 constexpr size_t kMostOfASentence = 200;  // bytes
@@ -55,17 +54,15 @@ void add_subject(Scene& scene) {
                            "radius and near plane are chosen without them.");
 }
 
-tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& limits,
-                                             const Progress& progress) {
+Result<Scene> build_scene(GltfModel read, const GltfLimits& limits, const Progress& progress) {
   make_names_readable(read.model);
   const tinygltf::Model& model = read.model;
   Scene scene;
   scene.warnings = std::move(read.warnings);
-  if (auto added = add_materials(model, scene); !added) return Failure(added.error());
+  ALCOVE_TRY_VOID(add_materials(model, scene));
   GltfLimits budget = limits;
   std::vector<PlacedCamera> cameras;
-  if (auto added = add_nodes(model, budget, cameras, scene, progress); !added)
-    return Failure(added.error());
+  ALCOVE_TRY_VOID(add_nodes(model, budget, cameras, scene, progress));
   if (scene.meshes.empty()) {
     return Failure(
         "it has no triangles to draw; points, lines, triangles without an area and materials with "
@@ -89,9 +86,8 @@ tl::expected<Scene, std::string> build_scene(GltfModel read, const GltfLimits& l
   return scene;
 }
 
-tl::expected<Scene, std::string> parse(std::vector<uint8_t> bytes, const std::string& name,
-                                       const fs::path& folder, const GltfLimits& limits,
-                                       const Progress& progress) {
+Result<Scene> parse(std::vector<uint8_t> bytes, const std::string& name, const fs::path& folder,
+                    const GltfLimits& limits, const Progress& progress) {
   const auto refuse = [&](const std::string& why) {
     return Failure("cannot read " + name + ": " + shortened(why, kMostOfASentence));
   };
@@ -111,13 +107,13 @@ tl::expected<Scene, std::string> parse(std::vector<uint8_t> bytes, const std::st
 
 }  // namespace
 
-tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
-                                            const fs::path& folder, const GltfLimits& limits,
-                                            const Progress& progress) {
+Result<Scene> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
+                         const fs::path& folder, const GltfLimits& limits,
+                         const Progress& progress) {
   return parse({bytes.begin(), bytes.end()}, name, folder, limits, progress);
 }
 
-tl::expected<Scene, std::string> load_gltf(const fs::path& file, const Progress& progress) {
+Result<Scene> load_gltf(const fs::path& file, const Progress& progress) {
   const auto refuse = [&](const std::string& why) {
     return Failure("cannot read " + printable(file.string()) + ": " + why);
   };

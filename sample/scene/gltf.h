@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 
 #include "scene/gltf_images.h"
 #include "scene/scene.h"
 #include "support/progress.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -50,15 +50,14 @@ struct GltfLimits {
   uint64_t drawn_triangles = uint64_t{1} << 28;  // counted once for each instance
   ImageLimits images;
 };
-[[nodiscard]] tl::expected<Scene, std::string> load_gltf(const std::filesystem::path& file,
-                                                         const Progress& progress = {});
+[[nodiscard]] Result<Scene> load_gltf(const std::filesystem::path& file,
+                                      const Progress& progress = {});
 
 // Reads a file that is in memory. `name` is the name of the file in messages. External files must
 // be in `folder`; if `folder` is empty, they are refused.
-[[nodiscard]] tl::expected<Scene, std::string> parse_gltf(std::span<const uint8_t> bytes,
-                                                          const std::string& name,
-                                                          const std::filesystem::path& folder,
-                                                          const GltfLimits& limits = {},
-                                                          const Progress& progress = {});
+[[nodiscard]] Result<Scene> parse_gltf(std::span<const uint8_t> bytes, const std::string& name,
+                                       const std::filesystem::path& folder,
+                                       const GltfLimits& limits = {},
+                                       const Progress& progress = {});
 
 }  // namespace alcove::sample

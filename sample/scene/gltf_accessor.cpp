@@ -6,8 +6,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Elements of one type in memory, `stride` bytes apart, all of them within their buffer view.
 struct Elements {
   const uint8_t* first = nullptr;  // null if there is no buffer view: all elements are zero
@@ -73,27 +71,19 @@ bool is_unsigned(int type) {
 
 // Returns the address of `count` elements of `size` bytes, `stride` bytes apart, which begin at
 // `offset` in a buffer view.
-tl::expected<const uint8_t*, std::string> elements_of(const tinygltf::Model& model, int64_t view,
-                                                      uint64_t offset, uint64_t count,
-                                                      uint64_t size, uint64_t stride) {
-  const auto bytes = view_bytes(model, view);
-  if (!bytes) return Failure(bytes.error());
-  const uint64_t length = bytes->size();
+Result<const uint8_t*> find_elements(const tinygltf::Model& model, int64_t view, uint64_t offset,
+                                     uint64_t count, uint64_t size, uint64_t stride) {
+  ALCOVE_TRY(const auto bytes, view_bytes(model, view));
+  const uint64_t length = bytes.size();
   // The last element must end within the view. The comparisons are written so that no term can
   // overflow.
   if (count > 0 && (offset > length || size > length - offset ||
                     (count - 1) > (length - offset - size) / stride))
     return Failure("reads past the end of buffer view " + std::to_string(view));
-  return bytes->data() + std::min(offset, length);
+  return bytes.data() + std::min(offset, length);
 }
 
-tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_t index) {
-  const auto refuse = [&](const std::string& why) {
-    return Failure("accessor " + std::to_string(index) + " " + why);
-  };
-  if (index < 0 || static_cast<uint64_t>(index) >= model.accessors.size())
-    return refuse("does not exist");
-  const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
+Result<Elements> resolve(const tinygltf::Model& model, const tinygltf::Accessor& accessor) {
   Elements out;
   out.count = accessor.count;
   out.component_type = accessor.componentType;
@@ -103,58 +93,78 @@ tl::expected<Elements, std::string> resolve(const tinygltf::Model& model, int64_
   const bool padded =
       out.components == 16 && accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT;
   if (component == 0 || out.components == 0 || padded)
-    return refuse("has a type that is not read here");
+    return Failure("has a type that is not read here");
   const uint64_t size = component * static_cast<uint64_t>(out.components);
   out.stride = size;
   if (accessor.bufferView < 0) return out;
   if (static_cast<size_t>(accessor.bufferView) >= model.bufferViews.size())
-    return refuse("has no buffer view " + std::to_string(accessor.bufferView));
+    return Failure("has no buffer view " + std::to_string(accessor.bufferView));
   const size_t stride = model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
   if (stride != 0) out.stride = stride;
-  if (out.stride < size) return refuse("has a stride that is less than its element");
-  const auto first =
-      elements_of(model, accessor.bufferView, accessor.byteOffset, out.count, size, out.stride);
-  if (!first) return refuse(first.error());
-  out.first = *first;
+  if (out.stride < size) return Failure("has a stride that is less than its element");
+  ALCOVE_TRY(out.first, find_elements(model, accessor.bufferView, accessor.byteOffset, out.count,
+                                      size, out.stride));
   return out;
 }
 
-// Calls `put(target, bytes)` for each element that the sparse part of an accessor replaces.
-// `target` is below the accessor's count.
-template <class Put>
-tl::expected<void, std::string> for_each_sparse(const tinygltf::Model& model, int64_t index,
-                                                const Elements& elements, const Put& put) {
-  const auto& sparse = model.accessors[static_cast<size_t>(index)].sparse;
-  if (!sparse.isSparse) return {};
-  const std::string name = "accessor " + std::to_string(index) + " ";
+// Reads elements of an accessor: all if `only` is null, otherwise those of its ascending indices.
+// `convert` returns the value of a component at an address. Sparse values replace those of the
+// buffer view.
+template <class Convert>
+auto read_elements(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+                   const Elements& elements, const std::vector<uint32_t>* only,
+                   const Convert& convert)
+    -> Result<std::vector<decltype(convert(elements.first))>> {
+  const auto width = static_cast<size_t>(elements.components);
+  const uint64_t step = component_size(elements.component_type);
+  std::vector<decltype(convert(elements.first))> values(width *
+                                                        (only ? only->size() : elements.count));
+  const auto put = [&](uint64_t i, const uint8_t* at) {
+    for (size_t c = 0; c < width; ++c) values[i * width + c] = convert(at + c * step);
+  };
+  for (uint64_t i = 0; elements.first && i < values.size() / width; ++i)
+    put(i, elements.first + (only ? (*only)[i] : i) * elements.stride);
+  const auto& sparse = accessor.sparse;
+  if (!sparse.isSparse) return values;
   const auto count = static_cast<uint64_t>(sparse.count);
-  if (count > elements.count) return Failure(name + "has more sparse values than elements");
+  if (count > elements.count) return Failure("has more sparse values than elements");
   if (!is_unsigned(sparse.indices.componentType))
-    return Failure(name + "has sparse indices that are not unsigned integers");
+    return Failure("has sparse indices that are not unsigned integers");
   const uint64_t index_size = component_size(sparse.indices.componentType);
-  const uint64_t value_size =
-      component_size(elements.component_type) * static_cast<uint64_t>(elements.components);
-  const auto targets =
-      elements_of(model, sparse.indices.bufferView,
-                  static_cast<uint64_t>(sparse.indices.byteOffset), count, index_size, index_size);
-  if (!targets) return Failure(name + targets.error());
-  const auto values =
-      elements_of(model, sparse.values.bufferView, static_cast<uint64_t>(sparse.values.byteOffset),
-                  count, value_size, value_size);
-  if (!values) return Failure(name + values.error());
+  ALCOVE_TRY(const uint8_t* indices, find_elements(model, sparse.indices.bufferView,
+                                                   static_cast<uint64_t>(sparse.indices.byteOffset),
+                                                   count, index_size, index_size));
+  ALCOVE_TRY(const uint8_t* replacements,
+             find_elements(model, sparse.values.bufferView,
+                           static_cast<uint64_t>(sparse.values.byteOffset), count, width * step,
+                           width * step));
   for (uint64_t i = 0; i < count; ++i) {
-    const uint32_t target =
-        unsigned_component(*targets + i * index_size, sparse.indices.componentType);
-    if (target >= elements.count) return Failure(name + "has a sparse index out of range");
-    put(target, *values + i * value_size);
+    uint64_t target = unsigned_component(indices + i * index_size, sparse.indices.componentType);
+    if (target >= elements.count) return Failure("has a sparse index out of range");
+    if (only) {
+      const auto found = std::ranges::lower_bound(*only, target);
+      if (found == only->end() || *found != target) continue;
+      target = static_cast<uint64_t>(found - only->begin());
+    }
+    put(target, replacements + i * width * step);
   }
-  return {};
+  return values;
+}
+
+// Calls `read(accessor)`, and puts the accessor's name before an error.
+template <class Read>
+auto with_accessor(const tinygltf::Model& model, int64_t index, const Read& read)
+    -> decltype(read(model.accessors[0])) {
+  const std::string name = "accessor " + std::to_string(index) + " ";
+  if (index < 0 || static_cast<uint64_t>(index) >= model.accessors.size())
+    return Failure(name + "does not exist");
+  return read(model.accessors[static_cast<size_t>(index)]).map_error(with_prefix(name));
 }
 
 }  // namespace
 
-tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::Model& model,
-                                                               const tinygltf::BufferView& v) {
+Result<std::span<const uint8_t>> view_bytes(const tinygltf::Model& model,
+                                            const tinygltf::BufferView& v) {
   if (v.buffer < 0 || static_cast<size_t>(v.buffer) >= model.buffers.size())
     return Failure("has no buffer " + std::to_string(v.buffer));
   const auto& data = model.buffers[static_cast<size_t>(v.buffer)].data;
@@ -165,8 +175,7 @@ tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::M
   return std::span<const uint8_t>(data.data() + v.byteOffset, v.byteLength);
 }
 
-tl::expected<std::span<const uint8_t>, std::string> view_bytes(const tinygltf::Model& model,
-                                                               int64_t view) {
+Result<std::span<const uint8_t>> view_bytes(const tinygltf::Model& model, int64_t view) {
   const std::string name = "buffer view " + std::to_string(view) + " ";
   if (view < 0 || static_cast<uint64_t>(view) >= model.bufferViews.size())
     return Failure(name + "does not exist");
@@ -179,68 +188,44 @@ int attribute(const std::map<std::string, int>& attributes, const std::string& n
   return found == attributes.end() ? -1 : found->second;
 }
 
-tl::expected<std::vector<float>, std::string> read_floats(const tinygltf::Model& model,
-                                                          int64_t accessor, int components,
-                                                          uint64_t most,
-                                                          const std::vector<uint32_t>* only) {
-  const auto elements = resolve(model, accessor);
-  if (!elements) return Failure(elements.error());
-  const std::string name = "accessor " + std::to_string(accessor) + " has ";
-  if (elements->components != components) {
-    return Failure(name + std::to_string(elements->components) + " components where " +
-                   std::to_string(components) + " belong");
-  }
-  if (!only && elements->count > most)
-    return Failure(name + "too many elements: " + std::to_string(elements->count));
-  if (only && !only->empty() && only->back() >= elements->count) {
-    return Failure(name + std::to_string(elements->count) + " elements, and element " +
-                   std::to_string(only->back()) + " is used");
-  }
-  const auto width = static_cast<size_t>(components);
-  const uint64_t step = component_size(elements->component_type);
-  const uint64_t count = only ? only->size() : elements->count;
-  std::vector<float> values(count * width, 0.0f);
-  const auto put = [&](uint64_t i, const uint8_t* at) {
-    for (size_t c = 0; c < width; ++c)
-      values[i * width + c] =
-          float_component(at + c * step, elements->component_type, elements->normalized);
-  };
-  for (uint64_t i = 0; elements->first && i < count; ++i)
-    put(i, elements->first + (only ? (*only)[i] : i) * elements->stride);
-  const auto put_sparse = [&](uint64_t target, const uint8_t* at) {
-    if (!only) return put(target, at);
-    const auto found = std::ranges::lower_bound(*only, target);
-    if (found != only->end() && *found == target)
-      put(static_cast<uint64_t>(found - only->begin()), at);
-  };
-  if (auto sparse = for_each_sparse(model, accessor, *elements, put_sparse); !sparse)
-    return Failure(sparse.error());
-  return values;
+Result<std::vector<float>> read_floats(const tinygltf::Model& model, int64_t index, int components,
+                                       uint64_t most, const std::vector<uint32_t>* only) {
+  using Floats = Result<std::vector<float>>;
+  return with_accessor(model, index, [&](const tinygltf::Accessor& accessor) -> Floats {
+    ALCOVE_TRY(const Elements elements, resolve(model, accessor));
+    if (elements.components != components) {
+      return Failure("has " + std::to_string(elements.components) + " components where " +
+                     std::to_string(components) + " belong");
+    }
+    if (!only && elements.count > most)
+      return Failure("has too many elements: " + std::to_string(elements.count));
+    if (only && !only->empty() && only->back() >= elements.count) {
+      return Failure("has " + std::to_string(elements.count) + " elements, and element " +
+                     std::to_string(only->back()) + " is used");
+    }
+    return read_elements(model, accessor, elements, only, [&](const uint8_t* at) {
+      return float_component(at, elements.component_type, elements.normalized);
+    });
+  });
 }
 
-tl::expected<std::vector<uint32_t>, std::string> read_indices(const tinygltf::Model& model,
-                                                              int64_t accessor, uint64_t bound,
-                                                              uint64_t most) {
-  const auto elements = resolve(model, accessor);
-  if (!elements) return Failure(elements.error());
-  const std::string name = "accessor " + std::to_string(accessor) + " ";
-  if (elements->count > most)
-    return Failure(name + "has too many elements: " + std::to_string(elements->count));
-  if (elements->components != 1 || !is_unsigned(elements->component_type))
-    return Failure(name + "is used for indices and does not hold unsigned integers");
-  std::vector<uint32_t> values(elements->count, 0);
-  const auto put = [&](uint64_t target, const uint8_t* at) {
-    values[target] = unsigned_component(at, elements->component_type);
-  };
-  if (elements->first)
-    for (uint64_t i = 0; i < elements->count; ++i) put(i, elements->first + i * elements->stride);
-  if (auto sparse = for_each_sparse(model, accessor, *elements, put); !sparse)
-    return Failure(sparse.error());
-  const auto past =
-      std::find_if(values.begin(), values.end(), [&](uint32_t v) { return v >= bound; });
-  if (past != values.end())
-    return Failure(name + "has the index " + std::to_string(*past) + ", past the last vertex");
-  return values;
+Result<std::vector<uint32_t>> read_indices(const tinygltf::Model& model, int64_t index,
+                                           uint64_t bound, uint64_t most) {
+  using Indices = Result<std::vector<uint32_t>>;
+  return with_accessor(model, index, [&](const tinygltf::Accessor& accessor) -> Indices {
+    ALCOVE_TRY(const Elements elements, resolve(model, accessor));
+    if (elements.count > most)
+      return Failure("has too many elements: " + std::to_string(elements.count));
+    if (elements.components != 1 || !is_unsigned(elements.component_type))
+      return Failure("is used for indices and does not hold unsigned integers");
+    auto values = read_elements(model, accessor, elements, nullptr, [&](const uint8_t* at) {
+      return unsigned_component(at, elements.component_type);
+    });
+    if (!values) return values;
+    const auto past = std::ranges::find_if(*values, [&](uint32_t v) { return v >= bound; });
+    if (past == values->end()) return values;
+    return Failure("has the index " + std::to_string(*past) + ", past the last vertex");
+  });
 }
 
 }  // namespace alcove::sample

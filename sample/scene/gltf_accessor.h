@@ -6,8 +6,9 @@
 #include <map>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -16,10 +17,10 @@ namespace alcove::sample {
 // the end of a sentence that starts with the file's name.
 
 // Returns the bytes of a buffer view, which is given or is one of the model.
-[[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
-    const tinygltf::Model& model, const tinygltf::BufferView& view);
-[[nodiscard]] tl::expected<std::span<const uint8_t>, std::string> view_bytes(
-    const tinygltf::Model& model, int64_t view);
+[[nodiscard]] Result<std::span<const uint8_t>> view_bytes(const tinygltf::Model& model,
+                                                          const tinygltf::BufferView& view);
+[[nodiscard]] Result<std::span<const uint8_t>> view_bytes(const tinygltf::Model& model,
+                                                          int64_t view);
 
 // Returns the accessor of an attribute of a primitive or of a morph target, or -1 without it.
 [[nodiscard]] int attribute(const std::map<std::string, int>& attributes, const std::string& name);
@@ -29,13 +30,14 @@ namespace alcove::sample {
 // integers are mapped to [0,1] or [-1,1]; other integers keep their value. Sparse values replace
 // those of the buffer view. An accessor with another number of components, or without one of the
 // elements, is an error, and so are more than `most` elements without `only`.
-[[nodiscard]] tl::expected<std::vector<float>, std::string> read_floats(
-    const tinygltf::Model& model, int64_t accessor, int components, uint64_t most,
-    const std::vector<uint32_t>* only = nullptr);
+[[nodiscard]] Result<std::vector<float>> read_floats(const tinygltf::Model& model, int64_t accessor,
+                                                     int components, uint64_t most,
+                                                     const std::vector<uint32_t>* only = nullptr);
 
 // Reads a scalar accessor of unsigned integers. A value that is not below `bound`, or more than
 // `most` values, is an error.
-[[nodiscard]] tl::expected<std::vector<uint32_t>, std::string> read_indices(
-    const tinygltf::Model& model, int64_t accessor, uint64_t bound, uint64_t most);
+[[nodiscard]] Result<std::vector<uint32_t>> read_indices(const tinygltf::Model& model,
+                                                         int64_t accessor, uint64_t bound,
+                                                         uint64_t most);
 
 }  // namespace alcove::sample

@@ -5,7 +5,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using Bytes = std::span<const uint8_t>;
 
 constexpr uint32_t kMagic = 0x46546c67;   // "glTF"
@@ -20,7 +19,7 @@ uint32_t word(Bytes bytes, size_t at) {
          uint32_t{bytes[at + 3]} << 24;
 }
 
-tl::expected<void, std::string> check_header(Bytes file) {
+Result<void> check_header(Bytes file) {
   if (file.size() < kHeader) return Failure("its header is cut short");
   if (const uint32_t version = word(file, 4); version != 2) {
     return Failure("it is binary glTF of version " + std::to_string(version) +
@@ -36,9 +35,9 @@ tl::expected<void, std::string> check_header(Bytes file) {
 
 }  // namespace
 
-tl::expected<GltfParts, std::string> split_gltf(Bytes file) {
+Result<GltfParts> split_gltf(Bytes file) {
   if (file.size() < 4 || word(file, 0) != kMagic) return GltfParts{file, {}, false};
-  if (auto fine = check_header(file); !fine) return Failure(fine.error());
+  ALCOVE_TRY_VOID(check_header(file));
   GltfParts parts;
   size_t index = 0;
   for (size_t at = kHeader; at < file.size(); ++index) {

@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -18,6 +19,6 @@ struct GltfParts {
 // Chunks of unknown types are skipped. A header or chunk that is cut short, has a wrong length, or
 // is unaligned, repeated or out of order is an error. The error text is the end of a sentence whose
 // beginning the caller adds.
-[[nodiscard]] tl::expected<GltfParts, std::string> split_gltf(std::span<const uint8_t> file);
+[[nodiscard]] Result<GltfParts> split_gltf(std::span<const uint8_t> file);
 
 }  // namespace alcove::sample

@@ -18,7 +18,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using Bytes = std::span<const uint8_t>;
 
 // The triangles and bytes that may still be decoded.
@@ -123,8 +122,7 @@ int add_indices(tinygltf::Model& model, const draco::Mesh& mesh) {
 }
 
 // `stated` is the attribute's accessor in the file.
-tl::expected<int, std::string> add_attribute(tinygltf::Model& model, const draco::Mesh& mesh,
-                                             int id, size_t stated) {
+Result<int> add_attribute(tinygltf::Model& model, const draco::Mesh& mesh, int id, size_t stated) {
   const auto* attribute = mesh.GetAttributeByUniqueId(static_cast<uint32_t>(id));
   if (attribute == nullptr) return Failure("is missing");
   const int components = attribute->num_components(), type = component_type(attribute->data_type());
@@ -144,13 +142,12 @@ tl::expected<int, std::string> add_attribute(tinygltf::Model& model, const draco
   return add_accessor(model, std::move(data), std::move(accessor));
 }
 
-tl::expected<void, std::string> decompress(tinygltf::Model& model, const tinygltf::Value& extension,
-                                           Budget& budget, tinygltf::Primitive& primitive) {
+Result<void> decompress(tinygltf::Model& model, const tinygltf::Value& extension, Budget& budget,
+                        tinygltf::Primitive& primitive) {
   const int view = extension.Get("bufferView").GetNumberAsInt();
-  const auto bytes = view_bytes(model, view);
-  if (!bytes) return Failure(bytes.error());
+  ALCOVE_TRY(const auto bytes, view_bytes(model, view));
   draco::Mesh mesh;
-  if (!decode(*bytes, budget, mesh)) {
+  if (!decode(bytes, budget, mesh)) {
     return Failure("buffer view " + std::to_string(view) +
                    " is no Draco mesh of version 2.2, or is damaged or too large");
   }
@@ -160,12 +157,10 @@ tl::expected<void, std::string> decompress(tinygltf::Model& model, const tinyglt
   const tinygltf::Value& attributes = extension.Get("attributes");
   for (const std::string& name : attributes.Keys()) {
     const auto stated = static_cast<size_t>(attribute(primitive.attributes, name));
-    const auto added = add_attribute(model, mesh, attributes.Get(name).GetNumberAsInt(), stated);
-    if (!added) {
-      return Failure("buffer view " + std::to_string(view) + " is a Draco mesh whose " + name +
-                     " " + added.error());
-    }
-    primitive.attributes[name] = *added;
+    ALCOVE_TRY(primitive.attributes[name],
+               add_attribute(model, mesh, attributes.Get(name).GetNumberAsInt(), stated)
+                   .map_error(with_prefix("buffer view " + std::to_string(view) +
+                                          " is a Draco mesh whose " + name + " ")));
     size += model.buffers.back().data.size();
   }
   budget.faces -= mesh.num_faces();
@@ -175,14 +170,14 @@ tl::expected<void, std::string> decompress(tinygltf::Model& model, const tinyglt
 
 }  // namespace
 
-tl::expected<void, std::string> decompress_primitives(tinygltf::Model& model) {
+Result<void> decompress_primitives(tinygltf::Model& model) {
   Budget budget;
   for (tinygltf::Mesh& mesh : model.meshes) {
     for (tinygltf::Primitive& primitive : mesh.primitives) {
       const auto found = primitive.extensions.find("KHR_draco_mesh_compression");
       if (found == primitive.extensions.end()) continue;
       const tinygltf::Value extension = found->second;
-      if (auto done = decompress(model, extension, budget, primitive); !done) return done;
+      ALCOVE_TRY_VOID(decompress(model, extension, budget, primitive));
     }
   }
   return {};

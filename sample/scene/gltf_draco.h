@@ -3,7 +3,8 @@
 #include <tiny_gltf.h>
 
 #include <string>
-#include <tl/expected.hpp>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -11,6 +12,6 @@ namespace alcove::sample {
 // new accessors. The extension's own properties are known to be of the right type
 // (gltf_properties.h). Together they may have at most 2^24 triangles and 1 GiB, and one at most 64
 // triangles for each byte. The error text is the end of a sentence whose beginning the caller adds.
-[[nodiscard]] tl::expected<void, std::string> decompress_primitives(tinygltf::Model& model);
+[[nodiscard]] Result<void> decompress_primitives(tinygltf::Model& model);
 
 }  // namespace alcove::sample

@@ -12,7 +12,6 @@ namespace alcove::sample {
 namespace {
 
 namespace fs = std::filesystem;
-using Failure = tl::unexpected<std::string>;
 using Bytes = std::vector<uint8_t>;
 
 int hexadecimal(char c) {
@@ -47,7 +46,7 @@ int base64_digit(char c) {
 }
 
 // Decodes base64 (RFC 4648 section 4). White space is skipped, and the padding may be missing.
-tl::expected<Bytes, std::string> base64_decoded(std::string_view text) {
+Result<Bytes> base64_decoded(std::string_view text) {
   Bytes out;
   out.reserve(text.size() / 4 * 3 + 2);
   uint32_t group = 0;
@@ -85,7 +84,7 @@ bool is_data(const std::string& uri) {
 }
 
 // Returns the bytes of a data URI (RFC 2397): data:[media type][;base64],data
-tl::expected<Bytes, std::string> data_of(const std::string& uri) {
+Result<Bytes> read_data_uri(const std::string& uri) {
   const size_t comma = uri.find(',');
   if (comma == std::string::npos) return Failure("is a data URI without data");
   const std::string header = lower_case(std::string_view(uri).substr(0, comma));
@@ -119,10 +118,9 @@ bool lies_within(const fs::path& file, const fs::path& folder) {
 
 }  // namespace
 
-tl::expected<Bytes, std::string> read_regular_file(const fs::path& file, uint64_t most) {
-  const auto opened = open_regular_file(file);
-  if (!opened) return Failure(opened.error());
-  std::FILE* stream = opened->get();
+Result<Bytes> read_regular_file(const fs::path& file, uint64_t most) {
+  ALCOVE_TRY(const auto opened, open_regular_file(file));
+  std::FILE* stream = opened.get();
   const long end = std::fseek(stream, 0, SEEK_END) == 0 ? std::ftell(stream) : -1;
   if (end < 0 || std::fseek(stream, 0, SEEK_SET) != 0) return Failure("cannot be read");
   const auto size = static_cast<uint64_t>(end);
@@ -140,8 +138,8 @@ GltfFiles::GltfFiles(const fs::path& folder) : bytes_left_(kMostFileBytes) {
   if (!folder.empty()) folder_ = fs::canonical(folder, ignored);
 }
 
-tl::expected<Bytes, std::string> GltfFiles::read(const std::string& uri) {
-  if (is_data(uri)) return data_of(uri);
+Result<Bytes> GltfFiles::read(const std::string& uri) {
+  if (is_data(uri)) return read_data_uri(uri);
   if (has_scheme(uri)) return Failure("is no file in the scene's folder");
   if (folder_.empty()) return Failure("cannot be read: the scene is not in a folder");
   const std::string decoded = percent_decoded(uri);
@@ -159,7 +157,7 @@ tl::expected<Bytes, std::string> GltfFiles::read(const std::string& uri) {
   return Failure(outside ? "lies outside the scene's folder" : "is not in the scene's folder");
 }
 
-tl::expected<Bytes, std::string> GltfFiles::read_file(const fs::path& file) {
+Result<Bytes> GltfFiles::read_file(const fs::path& file) {
   auto bytes = read_regular_file(file, bytes_left_);
   if (bytes) bytes_left_ -= bytes->size();
   return bytes;

@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -21,13 +22,13 @@ class GltfFiles {
   // without decoding, and then with every \ replaced by /, because exporters on Windows write \.
   // `data:` URIs may have any media type, and be base64 or percent-encoded. Error texts are the end
   // of a sentence that begins with the URI.
-  [[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read(const std::string& uri);
+  [[nodiscard]] Result<std::vector<uint8_t>> read(const std::string& uri);
 
   // Returns the URI for a message, without embedded data and shortened to 80 bytes.
   [[nodiscard]] static std::string shown(const std::string& uri);
 
  private:
-  tl::expected<std::vector<uint8_t>, std::string> read_file(const std::filesystem::path& file);
+  Result<std::vector<uint8_t>> read_file(const std::filesystem::path& file);
 
   std::filesystem::path folder_;  // canonical
   uint64_t bytes_left_;
@@ -35,8 +36,8 @@ class GltfFiles {
 
 // Reads a whole regular file. A file of more than `most` bytes is an error. Error texts are the end
 // of a sentence whose beginning the caller adds.
-[[nodiscard]] tl::expected<std::vector<uint8_t>, std::string> read_regular_file(
-    const std::filesystem::path& file, uint64_t most);
+[[nodiscard]] Result<std::vector<uint8_t>> read_regular_file(const std::filesystem::path& file,
+                                                             uint64_t most);
 
 // The limit on the size of a file, and on the sum of the sizes of all files of a scene.
 constexpr uint64_t kMostFileBytes = INT32_MAX;

@@ -10,7 +10,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
 #include <vector>
 
@@ -18,11 +17,10 @@
 #include "support/decode_image.h"
 #include "support/parallel.h"
 #include "support/printable.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 namespace {
-
-using Failure = tl::unexpected<std::string>;
 
 // How large an image appears. Apparent areas are areas of surfaces, divided by the square of their
 // distance from the centre of the subject, which counts as at least the size of the subject.
@@ -40,7 +38,7 @@ struct Entry {
   Appearance appearance = {};
   ImageHeader header = {};
   uint32_t reduction = 1;  // every block of so many pixels a side becomes one
-  tl::expected<DecodedImage, std::string> decoded = Failure("");
+  Result<DecodedImage> decoded = Failure("");
 
   uint64_t pixels() const {
     const auto reduced = [&](uint32_t side) {
@@ -123,26 +121,21 @@ std::map<size_t, Appearance> appearances(const Scene& scene) {
 
 // Finds the bytes of an image and reads its header. The error is the end of a sentence that begins
 // with the entry's name.
-tl::expected<void, std::string> read_header(const tinygltf::Model& model, GltfFiles& files,
-                                            Entry& entry) {
+Result<void> read_header(const tinygltf::Model& model, GltfFiles& files, Entry& entry) {
   const tinygltf::Image& image = model.images[entry.index];
   if (image.bufferView >= 0) {
-    const auto view = view_bytes(model, image.bufferView);
-    if (!view) return Failure("is in a view that cannot be read: " + view.error());
-    entry.bytes = *view;
+    ALCOVE_TRY(entry.bytes, view_bytes(model, image.bufferView)
+                                .map_error(with_prefix("is in a view that cannot be read: ")));
   } else {
     if (image.uri.empty()) return Failure("has neither a uri nor a bufferView");
-    auto bytes = files.read(image.uri);
-    if (!bytes) return Failure(bytes.error());
-    entry.file = std::move(*bytes);
+    ALCOVE_TRY(entry.file, files.read(image.uri));
     entry.bytes = entry.file;
   }
   if (entry.bytes.empty()) return Failure("is empty");
-  const auto header = read_image_header(entry.bytes);
-  if (!header) return Failure(header.error());
-  entry.header = *header;
-  if (std::max(header->width, header->height) > kLargestImageSide) {
-    return Failure("is " + std::to_string(header->width) + "x" + std::to_string(header->height) +
+  ALCOVE_TRY(entry.header, read_image_header(entry.bytes));
+  const auto& [format, width, height] = entry.header;
+  if (std::max(width, height) > kLargestImageSide) {
+    return Failure("is " + std::to_string(width) + "x" + std::to_string(height) +
                    " pixels, more than " + std::to_string(kLargestImageSide) + " a side,");
   }
   return {};

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 namespace alcove::sample {
 namespace {
-
-using Failure = tl::unexpected<std::string>;
 
 using tinygltf::Value;
 
@@ -43,58 +43,48 @@ std::array<TextureReference, 4> references(const tinygltf::Material& material) {
           reference("normal map", material.normalTexture)};
 }
 
+// Sets `out` to the value for an enumerator of glTF. Returns false if there is none.
+template <class Value, size_t N>
+bool set(Value& out, int enumerator, const std::pair<int, Value> (&values)[N]) {
+  const auto found = std::ranges::find(values, enumerator, &std::pair<int, Value>::first);
+  if (found != std::end(values)) out = found->second;
+  return found != std::end(values);
+}
+
 // Converts a glTF sampler (glTF 2.0 section 5.26). Filters that the file does not give (-1) are
 // linear, also between mip levels. A value that glTF does not define is an error.
-tl::expected<Sampler, std::string> read_sampler(const tinygltf::Sampler& in) {
-  Sampler out;
-  for (const auto& [mode, wrap] : {std::pair{in.wrapS, &out.wrap_u}, {in.wrapT, &out.wrap_v}}) {
-    if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT && mode != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE &&
-        mode != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)
-      return Failure("has a wrap mode unknown to glTF");
-    *wrap = mode == TINYGLTF_TEXTURE_WRAP_REPEAT          ? Wrap::repeat
-            : mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ? Wrap::clamp
-                                                          : Wrap::mirror;
-  }
-  switch (in.magFilter) {
-    case TINYGLTF_TEXTURE_FILTER_NEAREST:
-      out.magnify = Filter::nearest;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_LINEAR:
-    case -1:
-      break;
-    default:
-      return Failure("has a filter unknown to glTF");
-  }
+Result<Sampler> read_sampler(const tinygltf::Sampler& in) {
+  constexpr auto kLinear = Filter::linear, kNearest = Filter::nearest;
+  constexpr std::pair<int, Wrap> kWraps[] = {{TINYGLTF_TEXTURE_WRAP_REPEAT, Wrap::repeat},
+                                             {TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE, Wrap::clamp},
+                                             {TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT, Wrap::mirror}};
+  constexpr std::pair<int, Filter> kFilters[] = {{-1, kLinear},
+                                                 {TINYGLTF_TEXTURE_FILTER_LINEAR, kLinear},
+                                                 {TINYGLTF_TEXTURE_FILTER_NEAREST, kNearest}};
   // One number gives the filter within a mip level and the filter between mip levels.
-  switch (in.minFilter) {
-    case TINYGLTF_TEXTURE_FILTER_NEAREST:
-      out.minify = Filter::nearest;
-      [[fallthrough]];
-    case TINYGLTF_TEXTURE_FILTER_LINEAR:
-      out.mips = MipFilter::none;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
-      out.minify = Filter::nearest;
-      [[fallthrough]];
-    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
-      out.mips = MipFilter::nearest;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
-      out.minify = Filter::nearest;
-      break;
-    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
-    case -1:
-      break;
-    default:
-      return Failure("has a filter unknown to glTF");
-  }
+  using Filters = std::pair<Filter, MipFilter>;
+  constexpr std::pair<int, Filters> kMinFilters[] = {
+      {-1, {kLinear, MipFilter::linear}},
+      {TINYGLTF_TEXTURE_FILTER_LINEAR, {kLinear, MipFilter::none}},
+      {TINYGLTF_TEXTURE_FILTER_NEAREST, {kNearest, MipFilter::none}},
+      {TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR, {kLinear, MipFilter::linear}},
+      {TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST, {kLinear, MipFilter::nearest}},
+      {TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR, {kNearest, MipFilter::linear}},
+      {TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST, {kNearest, MipFilter::nearest}}};
+  Sampler out;
+  Filters minify;
+  if (!set(out.wrap_u, in.wrapS, kWraps) || !set(out.wrap_v, in.wrapT, kWraps))
+    return Failure("has a wrap mode unknown to glTF");
+  if (!set(out.magnify, in.magFilter, kFilters) || !set(minify, in.minFilter, kMinFilters))
+    return Failure("has a filter unknown to glTF");
+  std::tie(out.minify, out.mips) = minify;
   return out;
 }
 
 // Returns the matrix of KHR_texture_transform from the mesh's texture coordinates to those of the
 // image: scale, then rotation, then offset. A positive rotation is counter-clockwise in the image,
 // whose v points down. Numbers outside the range of a float are an error.
-tl::expected<glm::mat3x2, std::string> texture_transform(const Value& transform) {
+Result<glm::mat3x2> texture_transform(const Value& transform) {
   const auto pair = [&](const char* name, double otherwise) {
     if (!transform.Has(name)) return glm::dvec2(otherwise);
     const Value& values = transform.Get(name);
@@ -114,9 +104,8 @@ tl::expected<glm::mat3x2, std::string> texture_transform(const Value& transform)
 
 // Reads the texture of a reference. Samplers and images that cannot be used are left out with a
 // warning in the scene.
-tl::expected<TextureUse, std::string> read_texture(const tinygltf::Model& model,
-                                                   const TextureReference& reference,
-                                                   Scene& scene) {
+Result<TextureUse> read_texture(const tinygltf::Model& model, const TextureReference& reference,
+                                Scene& scene) {
   TextureUse use;
   use.uv_set = static_cast<uint32_t>(reference.set);
   const std::string name = std::to_string(reference.index);
@@ -135,9 +124,7 @@ tl::expected<TextureUse, std::string> read_texture(const tinygltf::Model& model,
     use.sampler = sampler.value_or(Sampler());
   }
   if (reference.transform != nullptr) {
-    const auto transform = texture_transform(*reference.transform);
-    if (!transform) return Failure(transform.error());
-    use.texture_from_mesh_uv = *transform;
+    ALCOVE_TRY(use.texture_from_mesh_uv, texture_transform(*reference.transform));
   }
   if (texture.source < 0) {
     // The texture may instead have its image in an extension that is not supported, such as
@@ -156,8 +143,8 @@ float clamped(double value, double low, double high) {
 }
 
 // The error text is the end of a sentence that begins with the material's name.
-tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
-                                                  const tinygltf::Material& in, Scene& scene) {
+Result<Material> read_material(const tinygltf::Model& model, const tinygltf::Material& in,
+                               Scene& scene) {
   Material out;
   out.name = in.name;
   const auto& pbr = in.pbrMetallicRoughness;
@@ -182,9 +169,7 @@ tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
                                ", neither 0 nor 1: it is left out.");
       continue;
     }
-    const auto use = read_texture(model, all[i], scene);
-    if (!use) return Failure(use.error());
-    *uses[i] = *use;
+    ALCOVE_TRY(*uses[i], read_texture(model, all[i], scene));
   }
   if (!std::isfinite(static_cast<float>(in.normalTexture.scale)))
     return Failure("has a normal map whose scale is not finite");
@@ -194,11 +179,11 @@ tl::expected<Material, std::string> read_material(const tinygltf::Model& model,
 
 }  // namespace
 
-tl::expected<void, std::string> add_materials(const tinygltf::Model& model, Scene& scene) {
+Result<void> add_materials(const tinygltf::Model& model, Scene& scene) {
   for (const tinygltf::Material& in : model.materials) {
-    auto material = read_material(model, in, scene);
-    if (!material) return Failure("material \"" + in.name + "\" " + material.error());
-    scene.materials.push_back(std::move(*material));
+    ALCOVE_TRY(
+        scene.materials.emplace_back(),
+        read_material(model, in, scene).map_error(with_prefix("material \"" + in.name + "\" ")));
   }
   scene.materials.emplace_back();
   scene.materials.back().double_sided = false;

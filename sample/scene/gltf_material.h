@@ -3,9 +3,9 @@
 #include <tiny_gltf.h>
 
 #include <string>
-#include <tl/expected.hpp>
 
 #include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -14,7 +14,6 @@ namespace alcove::sample {
 // use a third or later set of coordinates, and samplers with values unknown to glTF are left out
 // with a warning: an image reads as white, a normal map has no effect, and a sampler has linear
 // filters. References to missing elements, and numbers that are not finite are errors.
-[[nodiscard]] tl::expected<void, std::string> add_materials(const tinygltf::Model& model,
-                                                            Scene& scene);
+[[nodiscard]] Result<void> add_materials(const tinygltf::Model& model, Scene& scene);
 
 }  // namespace alcove::sample

@@ -13,8 +13,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Converts strips and fans to lists. Every second triangle of a strip is reversed, so that all
 // triangles have the same winding.
 std::vector<uint32_t> as_list(std::vector<uint32_t> in, int mode) {
@@ -123,8 +121,6 @@ bool is_invisible(const Material& material) {
 // Reads one primitive as a mesh. The steps are called in the order of their declaration.
 class PrimitiveReader {
  public:
-  using Read = tl::expected<void, std::string>;
-
   PrimitiveReader(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                   const PrimitivePlacement& placement, GltfLimits& budget, Scene& scene, Mesh begun)
       : mesh(std::move(begun)),
@@ -137,24 +133,24 @@ class PrimitiveReader {
         transforms_(placement.world_from_mesh) {}
 
   // Reads the indices as a list of triangles, and takes its size from the budget.
-  Read read_triangles(int mode);
-  Read read_positions();
+  Result<void> read_triangles(int mode);
+  Result<void> read_positions();
   // Reads the sets of texture coordinates that the textures of the material use.
-  Read read_uvs();
+  Result<void> read_uvs();
   // Reads COLOR_0. Colours without alpha get an alpha of 1. If all are white, none are kept.
-  Read read_colors();
+  Result<void> read_colors();
   // Reads normals and tangents. Without normals, triangles have geometric normals and tangents are
   // ignored (glTF 2.0 section 3.7.2.1).
-  Read read_normals();
+  Result<void> read_normals();
 
   Mesh mesh;
 
  private:
-  Read read_indices_of(const tinygltf::Accessor& positions);
-  Read charge_budget();
+  Result<void> read_indices_of(const tinygltf::Accessor& positions);
+  Result<void> charge_budget();
   // Returns the values of an attribute for all vertices, with the deltas of the morph targets,
   // which have three components. The attribute must exist.
-  tl::expected<std::vector<float>, std::string> values(const std::string& name, int components);
+  Result<std::vector<float>> values(const std::string& name, int components);
 
   const tinygltf::Model& model_;
   const tinygltf::Primitive& primitive_;
@@ -166,22 +162,20 @@ class PrimitiveReader {
   std::vector<uint32_t> vertices_;  // the vertices of the file that the triangles use
 };
 
-PrimitiveReader::Read PrimitiveReader::read_triangles(int mode) {
+Result<void> PrimitiveReader::read_triangles(int mode) {
   const auto position = static_cast<size_t>(attribute(primitive_.attributes, "POSITION"));
   if (position >= model_.accessors.size())
     return Failure("accessor " + std::to_string(position) + " does not exist");
-  if (auto read = read_indices_of(model_.accessors[position]); !read) return read;
+  ALCOVE_TRY_VOID(read_indices_of(model_.accessors[position]));
   mesh.indices = as_list(std::move(mesh.indices), mode);
   vertices_ = compacted(mesh.indices);
   return charge_budget();
 }
 
-PrimitiveReader::Read PrimitiveReader::read_indices_of(const tinygltf::Accessor& positions) {
+Result<void> PrimitiveReader::read_indices_of(const tinygltf::Accessor& positions) {
   const uint64_t vertices = positions.count;
   if (primitive_.indices >= 0) {
-    auto read = read_indices(model_, primitive_.indices, vertices, budget_.indices);
-    if (!read) return Failure(read.error());
-    mesh.indices = std::move(*read);
+    ALCOVE_TRY(mesh.indices, read_indices(model_, primitive_.indices, vertices, budget_.indices));
     return {};
   }
   // A few bytes of a file can name any number of vertices without data.
@@ -194,7 +188,7 @@ PrimitiveReader::Read PrimitiveReader::read_indices_of(const tinygltf::Accessor&
   return {};
 }
 
-PrimitiveReader::Read PrimitiveReader::charge_budget() {
+Result<void> PrimitiveReader::charge_budget() {
   if (mesh.indices.size() > budget_.indices || vertices_.size() > budget_.vertices)
     return Failure("takes the scene past the number of triangles that is read here");
   if (placement_.instances != nullptr) {
@@ -216,11 +210,11 @@ PrimitiveReader::Read PrimitiveReader::charge_budget() {
   return {};
 }
 
-tl::expected<std::vector<float>, std::string> PrimitiveReader::values(const std::string& name,
-                                                                      int components) {
-  auto sum = read_floats(model_, attribute(primitive_.attributes, name), components, 0, &vertices_);
+Result<std::vector<float>> PrimitiveReader::values(const std::string& name, int components) {
+  ALCOVE_TRY(auto sum, read_floats(model_, attribute(primitive_.attributes, name), components, 0,
+                                   &vertices_));
   const bool morphs = name == "POSITION" || name == "NORMAL" || name == "TANGENT";
-  if (!sum || !morphs || placement_.morph_weights == nullptr) return sum;
+  if (!morphs || placement_.morph_weights == nullptr) return sum;
   const size_t targets = std::min(primitive_.targets.size(), placement_.morph_weights->size());
   for (size_t t = 0; t < targets; ++t) {
     const int delta = attribute(primitive_.targets[t], name);
@@ -229,29 +223,25 @@ tl::expected<std::vector<float>, std::string> PrimitiveReader::values(const std:
     if (budget_.vertices < vertices_.size())
       return Failure("takes the scene past the number of vertices of morph targets");
     charge(budget_.vertices, vertices_.size());
-    const auto deltas = read_floats(model_, delta, 3, 0, &vertices_);
-    if (!deltas) return deltas;
+    ALCOVE_TRY(const auto deltas, read_floats(model_, delta, 3, 0, &vertices_));
     for (size_t v = 0; v < vertices_.size(); ++v)
       for (size_t c = 0; c < 3; ++c)
-        (*sum)[v * static_cast<size_t>(components) + c] += weight * (*deltas)[3 * v + c];
+        sum[v * static_cast<size_t>(components) + c] += weight * deltas[3 * v + c];
   }
   return sum;
 }
 
-PrimitiveReader::Read PrimitiveReader::read_positions() {
+Result<void> PrimitiveReader::read_positions() {
   // The squares of larger lengths overflow a float.
   constexpr float kFarthest = 1e15f;
   if (placement_.joints != nullptr) {
-    auto skinned = VertexTransforms::skinned(model_, primitive_, vertices_, *placement_.joints,
-                                             budget_.vertices);
-    if (!skinned) return Failure(skinned.error());
-    transforms_ = std::move(*skinned);
+    ALCOVE_TRY(transforms_, VertexTransforms::skinned(model_, primitive_, vertices_,
+                                                      *placement_.joints, budget_.vertices));
   }
-  const auto read = values("POSITION", 3);
-  if (!read) return Failure(read.error());
+  ALCOVE_TRY(const auto read, values("POSITION", 3));
   mesh.positions.resize(vertices_.size());
   for (size_t i = 0; i < vertices_.size(); ++i) {
-    const float* in = &(*read)[3 * i];
+    const float* in = &read[3 * i];
     glm::vec3& out = mesh.positions[i];
     out = glm::vec3(transforms_.at(i) * glm::dvec4(in[0], in[1], in[2], 1.0));
     if (!glm::all(glm::lessThanEqual(glm::abs(out), glm::vec3(kFarthest)))) {
@@ -264,7 +254,7 @@ PrimitiveReader::Read PrimitiveReader::read_positions() {
   return {};
 }
 
-PrimitiveReader::Read PrimitiveReader::read_uvs() {
+Result<void> PrimitiveReader::read_uvs() {
   for (const uint32_t set : {0u, 1u}) {
     if (!reads_by(material_, set)) continue;
     const std::string name = "TEXCOORD_" + std::to_string(set);
@@ -274,28 +264,26 @@ PrimitiveReader::Read PrimitiveReader::read_uvs() {
                                 " that its material names: they are taken to be zero.");
       continue;
     }
-    const auto read = values(name, 2);
-    if (!read) return Failure(read.error());
+    ALCOVE_TRY(const auto read, values(name, 2));
     std::vector<glm::vec2>& uvs = set == 0 ? mesh.uvs : mesh.second_uvs;
-    for (size_t i = 0; i < read->size(); i += 2) {
-      const glm::vec2 uv((*read)[i], (*read)[i + 1]);
+    for (size_t i = 0; i < read.size(); i += 2) {
+      const glm::vec2 uv(read[i], read[i + 1]);
       uvs.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f));
     }
   }
   return {};
 }
 
-PrimitiveReader::Read PrimitiveReader::read_colors() {
+Result<void> PrimitiveReader::read_colors() {
   const auto accessor = static_cast<size_t>(attribute(primitive_.attributes, "COLOR_0"));
   if (accessor == SIZE_MAX) return {};
   const bool has_alpha =
       accessor < model_.accessors.size() && model_.accessors[accessor].type == TINYGLTF_TYPE_VEC4;
   const size_t width = has_alpha ? 4 : 3;
-  const auto read = values("COLOR_0", static_cast<int>(width));
-  if (!read) return Failure(read.error());
+  ALCOVE_TRY(const auto read, values("COLOR_0", static_cast<int>(width)));
   mesh.colors.assign(vertices_.size(), glm::u8vec4(255));
-  for (size_t i = 0; i < read->size(); ++i) {
-    const float value = std::isfinite((*read)[i]) ? std::clamp((*read)[i], 0.0f, 1.0f) : 1.0f;
+  for (size_t i = 0; i < read.size(); ++i) {
+    const float value = std::isfinite(read[i]) ? std::clamp(read[i], 0.0f, 1.0f) : 1.0f;
     mesh.colors[i / width][static_cast<int>(i % width)] =
         static_cast<uint8_t>(std::lround(255.0f * value));
   }
@@ -304,7 +292,7 @@ PrimitiveReader::Read PrimitiveReader::read_colors() {
   return {};
 }
 
-PrimitiveReader::Read PrimitiveReader::read_normals() {
+Result<void> PrimitiveReader::read_normals() {
   const bool mapped = material_.normal_texture.image >= 0;
   if (attribute(primitive_.attributes, "NORMAL") < 0) {
     // The tangents of a normal map are computed at vertices that have a normal, so that the mesh
@@ -312,8 +300,7 @@ PrimitiveReader::Read PrimitiveReader::read_normals() {
     if (mapped) make_flat_normals(mesh);
     return {};
   }
-  const auto normals = values("NORMAL", 3);
-  if (!normals) return Failure(normals.error());
+  ALCOVE_TRY(const auto normals, values("NORMAL", 3));
   for (size_t i = 0; i < vertices_.size(); ++i) {
     // Normals are transformed by the cofactor matrix, the inverse transpose times the determinant.
     // It exists even if the determinant is 0. Normals that are zero or not finite become zero.
@@ -321,17 +308,16 @@ PrimitiveReader::Read PrimitiveReader::read_normals() {
     const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
     const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
                               side * glm::cross(m[0], m[1]));
-    const float* in = &(*normals)[3 * i];
+    const float* in = &normals[3 * i];
     mesh.normals.emplace_back(direction_of(cofactor * glm::dvec3(in[0], in[1], in[2])));
   }
   mend_normals(mesh);
   if (!mapped || attribute(primitive_.attributes, "TANGENT") < 0) return {};
-  const auto tangents = values("TANGENT", 4);
-  if (!tangents) return Failure(tangents.error());
+  ALCOVE_TRY(const auto tangents, values("TANGENT", 4));
   for (size_t i = 0; i < vertices_.size(); ++i) {
     const glm::dmat3 m(transforms_.at(i));
     const float side = glm::determinant(m) < 0.0 ? -1.0f : 1.0f;
-    const float* in = &(*tangents)[4 * i];
+    const float* in = &tangents[4 * i];
     mesh.tangents.emplace_back(glm::vec3(direction_of(m * glm::dvec3(in[0], in[1], in[2]))),
                                in[3] < 0.0f ? -side : side);
   }
@@ -340,14 +326,11 @@ PrimitiveReader::Read PrimitiveReader::read_normals() {
 
 }  // namespace
 
-tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
-                                              const tinygltf::Primitive& primitive,
-                                              const std::string& name,
-                                              const PrimitivePlacement& placement,
-                                              GltfLimits& budget, Scene& scene) {
-  const auto refuse = [&](const std::string& why) { return Failure("mesh " + name + " " + why); };
+Result<void> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                           const std::string& name, const PrimitivePlacement& placement,
+                           GltfLimits& budget, Scene& scene) {
   if (budget.primitives == 0)
-    return refuse("takes the scene past the number of parts that is read here");
+    return Failure("takes the scene past the number of parts that is read here");
   --budget.primitives;
   // tinygltf stores -1 if the file gives no mode. The default is triangles.
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
@@ -356,7 +339,7 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
     return {};
   }
   if (primitive.material >= static_cast<int>(model.materials.size()))
-    return refuse("has no material " + std::to_string(primitive.material));
+    return Failure("has no material " + std::to_string(primitive.material));
   if (attribute(primitive.attributes, "POSITION") < 0) return {};
 
   Mesh mesh;
@@ -370,13 +353,12 @@ tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
     return {};
   }
   PrimitiveReader reader(model, primitive, placement, budget, scene, std::move(mesh));
-  auto read = reader.read_triangles(mode).and_then([&] { return reader.read_positions(); });
-  if (!read) return refuse(read.error());
+  ALCOVE_TRY_VOID(reader.read_triangles(mode));
+  ALCOVE_TRY_VOID(reader.read_positions());
   if (reader.mesh.indices.empty()) return {};
-  read = reader.read_uvs().and_then([&] { return reader.read_colors(); }).and_then([&] {
-    return reader.read_normals();
-  });
-  if (!read) return refuse(read.error());
+  ALCOVE_TRY_VOID(reader.read_uvs());
+  ALCOVE_TRY_VOID(reader.read_colors());
+  ALCOVE_TRY_VOID(reader.read_normals());
   scene.meshes.push_back(std::move(reader.mesh));
   return {};
 }

@@ -3,9 +3,9 @@
 #include <tiny_gltf.h>
 
 #include <string>
-#include <tl/expected.hpp>
 
 #include "scene/gltf.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -25,10 +25,10 @@ struct PrimitivePlacement {
 // Triangles without an area, and primitives whose material is alpha-blended with an alpha of 0, are
 // left out. A mirroring transform reverses the winding. Error texts are the end of a sentence whose
 // beginning the caller adds.
-[[nodiscard]] tl::expected<void, std::string> add_primitive(const tinygltf::Model& model,
-                                                            const tinygltf::Primitive& primitive,
-                                                            const std::string& name,
-                                                            const PrimitivePlacement& placement,
-                                                            GltfLimits& budget, Scene& scene);
+[[nodiscard]] Result<void> add_primitive(const tinygltf::Model& model,
+                                         const tinygltf::Primitive& primitive,
+                                         const std::string& name,
+                                         const PrimitivePlacement& placement, GltfLimits& budget,
+                                         Scene& scene);
 
 }  // namespace alcove::sample

@@ -10,8 +10,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 const tinygltf::Value* compression(const tinygltf::BufferView& view) {
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     const auto found = view.extensions.find(name);
@@ -36,9 +34,8 @@ void unfilter(const std::string& filter, std::vector<uint8_t>& data, size_t coun
   if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(data.data(), count, stride);
 }
 
-tl::expected<std::vector<uint8_t>, std::string> decompressed(const tinygltf::Model& model,
-                                                             const tinygltf::Value& extension,
-                                                             uint64_t most_bytes) {
+Result<std::vector<uint8_t>> decompressed(const tinygltf::Model& model,
+                                          const tinygltf::Value& extension, uint64_t most_bytes) {
   const uint64_t count = number(extension, "count"), stride = number(extension, "byteStride");
   const std::string mode = text(extension, "mode"), filter = text(extension, "filter");
   const bool attributes = mode == "ATTRIBUTES";
@@ -53,15 +50,13 @@ tl::expected<std::vector<uint8_t>, std::string> decompressed(const tinygltf::Mod
   view.buffer = static_cast<int>(number(extension, "buffer"));
   view.byteOffset = number(extension, "byteOffset");
   view.byteLength = number(extension, "byteLength");
-  const auto bytes = view_bytes(model, view);
-  if (!bytes) return Failure(bytes.error());
+  ALCOVE_TRY(const auto bytes, view_bytes(model, view));
   std::vector<uint8_t> out(count * stride);
   const int failed =
-      attributes
-          ? meshopt_decodeVertexBuffer(out.data(), count, stride, bytes->data(), bytes->size())
+      attributes ? meshopt_decodeVertexBuffer(out.data(), count, stride, bytes.data(), bytes.size())
       : mode == "TRIANGLES"
-          ? meshopt_decodeIndexBuffer(out.data(), count, stride, bytes->data(), bytes->size())
-          : meshopt_decodeIndexSequence(out.data(), count, stride, bytes->data(), bytes->size());
+          ? meshopt_decodeIndexBuffer(out.data(), count, stride, bytes.data(), bytes.size())
+          : meshopt_decodeIndexSequence(out.data(), count, stride, bytes.data(), bytes.size());
   if (failed != 0) return Failure("is damaged");
   if (attributes) unfilter(filter, out, count, stride);
   return out;
@@ -69,19 +64,19 @@ tl::expected<std::vector<uint8_t>, std::string> decompressed(const tinygltf::Mod
 
 }  // namespace
 
-tl::expected<void, std::string> decompress_views(tinygltf::Model& model) {
+Result<void> decompress_views(tinygltf::Model& model) {
   uint64_t bytes_left = uint64_t{1} << 30;
   for (size_t i = 0; i < model.bufferViews.size(); ++i) {
     tinygltf::BufferView& view = model.bufferViews[i];
     const tinygltf::Value* extension = compression(view);
     if (extension == nullptr) continue;
-    auto data = decompressed(model, *extension, bytes_left);
-    if (!data) return Failure("compressed buffer view " + std::to_string(i) + " " + data.error());
-    bytes_left -= data->size();
+    const std::string name = "compressed buffer view " + std::to_string(i) + " ";
+    ALCOVE_TRY(auto data, decompressed(model, *extension, bytes_left).map_error(with_prefix(name)));
+    bytes_left -= data.size();
     view.buffer = static_cast<int>(model.buffers.size());
     view.byteOffset = 0;
-    view.byteLength = data->size();
-    model.buffers.emplace_back().data = std::move(*data);
+    view.byteLength = data.size();
+    model.buffers.emplace_back().data = std::move(data);
   }
   return {};
 }

@@ -3,7 +3,8 @@
 #include <tiny_gltf.h>
 
 #include <string>
-#include <tl/expected.hpp>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -11,6 +12,6 @@ namespace alcove::sample {
 // KHR_meshopt_compression, and replaces each by a view of a buffer of its own. The extension's own
 // properties are known to be of the right type (gltf_properties.h). All views together may have at
 // most 1 GiB. The error text is the end of a sentence whose beginning the caller adds.
-[[nodiscard]] tl::expected<void, std::string> decompress_views(tinygltf::Model& model);
+[[nodiscard]] Result<void> decompress_views(tinygltf::Model& model);
 
 }  // namespace alcove::sample

@@ -24,10 +24,8 @@ namespace alcove::sample {
 namespace {
 
 using nlohmann::json;
-using Failure = tl::unexpected<std::string>;
-using Checked = tl::expected<void, std::string>;
 
-tl::expected<json, std::string> parse(std::span<const uint8_t> text) {
+Result<json> parse(std::span<const uint8_t> text) {
   try {
     if (text.empty()) return Failure("it is empty");
     json root = json::parse(text.begin(), text.end());
@@ -43,7 +41,7 @@ tl::expected<json, std::string> parse(std::span<const uint8_t> text) {
 
 // Checks the glTF version, before other properties, because those of glTF 1.0 are different. Files
 // of a later version 2.x are read, unless asset.minVersion says that readers of 2.0 cannot.
-Checked check_version(const json& root) {
+Result<void> check_version(const json& root) {
   const auto asset = root.find("asset");
   if (asset == root.end() || !asset->is_object()) return {};
   for (const char* name : {"version", "minVersion"}) {
@@ -69,7 +67,7 @@ bool is_one_of(std::span<const std::string_view> names, const std::string& name)
 
 // Notes the extensions that are not read, and refuses those that hold or place triangles. Other
 // extensions, also unknown ones, change appearance, light, behaviour or metadata.
-tl::expected<std::vector<std::string>, std::string> check_extensions(const json& root) {
+Result<std::vector<std::string>> check_extensions(const json& root) {
   static constexpr std::string_view kRead[] = {
       "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",
       "KHR_draco_mesh_compression", "KHR_materials_pbrSpecularGlossiness",
@@ -128,7 +126,7 @@ void convert(const json& root, const char* name, std::vector<Element>& out,
 }
 
 // Converts the JSON to tinygltf's model by tinygltf's own functions, so that it is parsed once.
-Checked fill_model(const json& root, tinygltf::Model& model) {
+Result<void> fill_model(const json& root, tinygltf::Model& model) {
   std::string error;
   const auto by = [&](auto parse) {
     return [&error, parse](auto* out, const json& from) {
@@ -172,8 +170,8 @@ Checked fill_model(const json& root, tinygltf::Model& model) {
 // Fills the buffers of the model. The first buffer of a binary file may be its binary chunk. Other
 // buffers without a URI have no data. The bytes are moved out of `file`, so that they are not in
 // memory twice.
-Checked fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfParts& parts,
-                     GltfFiles& files, tinygltf::Model& model) {
+Result<void> fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfParts& parts,
+                          GltfFiles& files, tinygltf::Model& model) {
   std::vector<uint8_t> chunk;
   if (parts.has_binary) {
     const auto begin = file.begin() + (parts.binary.data() - file.data());
@@ -189,9 +187,7 @@ Checked fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfP
     if (uri != buffers[i].end()) {
       const auto& text = uri->get_ref<const std::string&>();
       name += " (" + GltfFiles::shown(text) + ")";
-      auto bytes = files.read(text);
-      if (!bytes) return Failure(name + " " + bytes.error());
-      out.data = std::move(*bytes);
+      ALCOVE_TRY(out.data, files.read(text).map_error(with_prefix(name + " ")));
     } else if (i == 0 && parts.has_binary) {
       out.data = std::move(chunk);
     } else {
@@ -209,28 +205,20 @@ Checked fill_buffers(const json& buffers, std::vector<uint8_t> file, const GltfP
 
 }  // namespace
 
-tl::expected<GltfModel, std::string> read_gltf_model(std::vector<uint8_t> file,
-                                                     const std::filesystem::path& folder) {
-  const auto parts = split_gltf(file);
-  if (!parts) return Failure(parts.error());
-  auto parsed = parse(parts->json);
-  if (!parsed) return Failure(parsed.error());
-  if (!parts->has_binary) file = {};
-  if (auto checked = check_version(*parsed); !checked) return Failure(checked.error());
-  auto root = checked_properties(std::move(*parsed));
-  if (!root) return Failure(root.error());
-  convert_specular_glossiness(*root);
-  auto notes = check_extensions(*root);
-  if (!notes) return Failure(notes.error());
-  GltfModel out{{}, GltfFiles(folder), std::move(*notes)};
-  const auto read = fill_model(*root, out.model)
-                        .and_then([&] {
-                          return fill_buffers(root->value("buffers", json::array()),
-                                              std::move(file), *parts, out.files, out.model);
-                        })
-                        .and_then([&] { return decompress_views(out.model); })
-                        .and_then([&] { return decompress_primitives(out.model); });
-  if (!read) return Failure(read.error());
+Result<GltfModel> read_gltf_model(std::vector<uint8_t> file, const std::filesystem::path& folder) {
+  ALCOVE_TRY(const auto parts, split_gltf(file));
+  ALCOVE_TRY(auto parsed, parse(parts.json));
+  if (!parts.has_binary) file = {};
+  ALCOVE_TRY_VOID(check_version(parsed));
+  ALCOVE_TRY(auto root, checked_properties(std::move(parsed)));
+  convert_specular_glossiness(root);
+  GltfModel out{{}, GltfFiles(folder), {}};
+  ALCOVE_TRY(out.warnings, check_extensions(root));
+  ALCOVE_TRY_VOID(fill_model(root, out.model));
+  ALCOVE_TRY_VOID(fill_buffers(root.value("buffers", json::array()), std::move(file), parts,
+                               out.files, out.model));
+  ALCOVE_TRY_VOID(decompress_views(out.model));
+  ALCOVE_TRY_VOID(decompress_primitives(out.model));
   return out;
 }
 

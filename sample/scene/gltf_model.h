@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "scene/gltf_files.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -27,7 +27,7 @@ struct GltfModel {
 // lets tinygltf convert it, and reads the buffers that URIs name (gltf_files.h). A file is refused
 // if it requires an extension that is known to change geometry and is not read. The error is the
 // beginning of a sentence in which the file is called "it".
-[[nodiscard]] tl::expected<GltfModel, std::string> read_gltf_model(
-    std::vector<uint8_t> file, const std::filesystem::path& folder);
+[[nodiscard]] Result<GltfModel> read_gltf_model(std::vector<uint8_t> file,
+                                                const std::filesystem::path& folder);
 
 }  // namespace alcove::sample

@@ -14,10 +14,8 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
-glm::dmat4 transform_of(const glm::dvec3& translation, const glm::dquat& rotation,
-                        const glm::dvec3& scale) {
+glm::dmat4 compose(const glm::dvec3& translation, const glm::dquat& rotation,
+                   const glm::dvec3& scale) {
   glm::dmat4 m(1.0);
   const double length = glm::length(rotation);
   if (length > 0.0) m = glm::mat4_cast(rotation / length);
@@ -35,7 +33,7 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
   };
   glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
   if (const auto& q = node.rotation; !q.empty()) rotation = {q[3], q[0], q[1], q[2]};
-  return transform_of(vector(node.translation, 0.0), rotation, vector(node.scale, 1.0));
+  return compose(vector(node.translation, 0.0), rotation, vector(node.scale, 1.0));
 }
 
 // Returns whether KHR_node_visibility hides the node. Its descendants are then hidden too.
@@ -52,7 +50,7 @@ struct Roots {
   size_t drawn;  // how many of them
 };
 
-tl::expected<Roots, std::string> find_roots(const tinygltf::Model& model) {
+Result<Roots> find_roots(const tinygltf::Model& model) {
   const auto missing = [](int node) {
     return Failure("it names node " + std::to_string(node) + ", which does not exist");
   };
@@ -90,8 +88,7 @@ tl::expected<Roots, std::string> find_roots(const tinygltf::Model& model) {
 }
 
 // Checks that the mesh of a node exists, and its skin with all joints.
-tl::expected<void, std::string> check_references(const tinygltf::Model& model,
-                                                 const tinygltf::Node& node) {
+Result<void> check_references(const tinygltf::Model& model, const tinygltf::Node& node) {
   const auto refuse = [&](const std::string& what, int index) {
     return Failure("node \"" + node.name + "\" has no " + what + " " + std::to_string(index));
   };
@@ -156,18 +153,16 @@ std::vector<glm::dvec3> placed_vertices(const tinygltf::Model& model, const Node
 
 }  // namespace
 
-tl::expected<NodeTree, std::string> read_nodes(const tinygltf::Model& model,
-                                               uint64_t most_instances) {
-  const auto roots = find_roots(model);
-  if (!roots) return Failure(roots.error());
+Result<NodeTree> read_nodes(const tinygltf::Model& model, uint64_t most_instances) {
+  ALCOVE_TRY(const auto roots, find_roots(model));
   struct Step {
     int node;
     glm::dmat4 world_from_parent;
     bool drawn;
   };
   std::vector<Step> open;  // a stack: the last one is visited next
-  for (size_t i = roots->nodes.size(); i-- > 0;)
-    open.push_back({roots->nodes[i], glm::dmat4(1.0), i < roots->drawn});
+  for (size_t i = roots.nodes.size(); i-- > 0;)
+    open.push_back({roots.nodes[i], glm::dmat4(1.0), i < roots.drawn});
   NodeTree out;
   out.world_from_node.assign(model.nodes.size(), glm::dmat4(1.0));
   size_t visited = 0;
@@ -187,12 +182,11 @@ tl::expected<NodeTree, std::string> read_nodes(const tinygltf::Model& model,
   if (visited < model.nodes.size()) return Failure("some of its nodes form a cycle");
   for (DrawnNode& drawn : out.drawn) {
     const tinygltf::Node& node = model.nodes[drawn.node];
-    if (auto checked = check_references(model, node); !checked) return Failure(checked.error());
+    ALCOVE_TRY_VOID(check_references(model, node));
     if (node.mesh < 0 || node.skin >= 0) continue;
-    auto instances = NodeInstances::read(model, node, most_instances);
-    if (!instances) return Failure("node \"" + node.name + "\" " + instances.error());
-    most_instances -= instances->size();
-    drawn.instances = std::move(*instances);
+    ALCOVE_TRY(drawn.instances, NodeInstances::read(model, node, most_instances)
+                                    .map_error(with_prefix("node \"" + node.name + "\" ")));
+    most_instances -= drawn.instances.size();
   }
   return out;
 }
@@ -218,9 +212,8 @@ glm::dvec3 chosen_origin(const tinygltf::Model& model, const NodeTree& nodes) {
   return size > 1.0 ? glm::round(centre) : centre;
 }
 
-tl::expected<NodeInstances, std::string> NodeInstances::read(const tinygltf::Model& model,
-                                                             const tinygltf::Node& node,
-                                                             uint64_t most) {
+Result<NodeInstances> NodeInstances::read(const tinygltf::Model& model, const tinygltf::Node& node,
+                                          uint64_t most) {
   NodeInstances out;
   const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
   if (found == node.extensions.end()) return out;
@@ -235,14 +228,13 @@ tl::expected<NodeInstances, std::string> NodeInstances::read(const tinygltf::Mod
        {Attribute{"TRANSLATION", 3, out.translations_}, Attribute{"ROTATION", 4, out.rotations_},
         Attribute{"SCALE", 3, out.scales_}}) {
     if (!accessors.Has(attribute.name)) continue;
-    auto values = read_floats(model, accessors.Get(attribute.name).GetNumberAsInt(),
-                              attribute.components, most);
-    if (!values) return Failure("has instances whose " + values.error());
-    const size_t elements = values->size() / static_cast<size_t>(attribute.components);
+    ALCOVE_TRY(attribute.values, read_floats(model, accessors.Get(attribute.name).GetNumberAsInt(),
+                                             attribute.components, most)
+                                     .map_error(with_prefix("has instances whose ")));
+    const size_t elements = attribute.values.size() / static_cast<size_t>(attribute.components);
     if (count.value_or(elements) != elements)
       return Failure("has instances whose attributes differ in number");
     count = elements;
-    attribute.values = std::move(*values);
   }
   out.count_ = count.value_or(0);
   return out;
@@ -258,7 +250,7 @@ glm::dmat4 NodeInstances::at(size_t instance) const {
     const float* q = &rotations_[4 * instance];
     rotation = {q[3], q[0], q[1], q[2]};
   }
-  return transform_of(vector(translations_, 0.0), rotation, vector(scales_, 1.0));
+  return compose(vector(translations_, 0.0), rotation, vector(scales_, 1.0));
 }
 
 }  // namespace alcove::sample

@@ -3,10 +3,10 @@
 #include <tiny_gltf.h>
 
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "support/glm.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -15,9 +15,8 @@ class NodeInstances {
  public:
   // Reads the instances, at most `most`. The result is empty if the node does not have the
   // extension. Error texts are the end of a sentence whose beginning the caller adds.
-  [[nodiscard]] static tl::expected<NodeInstances, std::string> read(const tinygltf::Model& model,
-                                                                     const tinygltf::Node& node,
-                                                                     uint64_t most);
+  [[nodiscard]] static Result<NodeInstances> read(const tinygltf::Model& model,
+                                                  const tinygltf::Node& node, uint64_t most);
 
   [[nodiscard]] size_t size() const { return count_; }
   // Returns the transform of an instance relative to the node. `instance` is below size().
@@ -45,8 +44,7 @@ struct NodeTree {
 // or all if the file has no scenes, except those that KHR_node_visibility hides. At most
 // `most_instances` instances are read. Error texts are the end of a sentence whose beginning the
 // caller adds.
-[[nodiscard]] tl::expected<NodeTree, std::string> read_nodes(const tinygltf::Model& model,
-                                                             uint64_t most_instances);
+[[nodiscard]] Result<NodeTree> read_nodes(const tinygltf::Model& model, uint64_t most_instances);
 
 // Returns the origin of world space in the coordinates of the file. It is zero, unless the scene is
 // farther from the file's origin than 256 times its own size. Then it is a point near the scene's

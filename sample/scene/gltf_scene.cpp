@@ -11,8 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Returns whether a transform and its inverse can be stored as floats. The instances of a mesh need
 // both.
 bool can_be_instance(const glm::dmat4& m) {
@@ -38,7 +36,7 @@ class NodeReader {
     }
   }
 
-  tl::expected<void, std::string> add(const DrawnNode& drawn_node) {
+  Result<void> add(const DrawnNode& drawn_node) {
     const tinygltf::Node& node = model_.nodes[drawn_node.node];
     if (node.mesh < 0) return {};
     if (node.skin >= 0) return add_skinned(node);
@@ -48,8 +46,7 @@ class NodeReader {
   }
 
  private:
-  tl::expected<void, std::string> add_nodes(const std::vector<const DrawnNode*>& nodes,
-                                            const tinygltf::Node& node) {
+  Result<void> add_nodes(const std::vector<const DrawnNode*>& nodes, const tinygltf::Node& node) {
     size_t count = 0;
     for (const DrawnNode* drawn : nodes) count += std::max<size_t>(drawn->instances.size(), 1);
     std::vector<glm::mat4x3> shared;
@@ -61,7 +58,7 @@ class NodeReader {
         apart.push_back(world);
     };
     for (const DrawnNode* drawn : nodes) {
-      const glm::dmat4 world = world_of(drawn->node);
+      const glm::dmat4 world = world_transform(drawn->node);
       if (drawn->instances.size() == 0) place(world);
       // Instances that coincide, such as those of attributes without data, are drawn once.
       glm::dmat4 previous(0.0);
@@ -77,46 +74,43 @@ class NodeReader {
     return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), nullptr, &shared});
   }
 
-  glm::dmat4 world_of(size_t node) const {
+  glm::dmat4 world_transform(size_t node) const {
     glm::dmat4 world = nodes_.world_from_node[node];
     world[3] -= glm::dvec4(scene_.origin, 0.0);
     return world;
   }
 
-  std::string name_of(const tinygltf::Node& node) const {
+  std::string mesh_name(const tinygltf::Node& node) const {
     const std::string& name = model_.meshes[static_cast<size_t>(node.mesh)].name;
     return !name.empty() ? "\"" + name + "\"" : std::to_string(node.mesh);
   }
 
-  tl::expected<void, std::string> add_skinned(const tinygltf::Node& node) {
-    const auto joints = joints_of(node.skin);
-    if (!joints) return Failure("mesh " + name_of(node) + " " + joints.error());
-    return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), *joints});
+  Result<void> add_skinned(const tinygltf::Node& node) {
+    ALCOVE_TRY(const auto* joints,
+               find_joints(node.skin).map_error(with_prefix("mesh " + mesh_name(node) + " ")));
+    return add_mesh(node, PrimitivePlacement{glm::dmat4(1.0), joints});
   }
 
   // Returns the joint matrices of a skin relative to the scene's origin. They are computed once,
   // because many nodes may have the same skin.
-  tl::expected<const std::vector<glm::dmat4>*, std::string> joints_of(int skin) {
-    const auto [known, is_new] = joints_of_skin_.try_emplace(skin);
+  Result<const std::vector<glm::dmat4>*> find_joints(int skin) {
+    const auto [known, is_new] = skin_joints_.try_emplace(skin);
     if (is_new) {
-      auto joints = joint_matrices(model_, skin, nodes_.world_from_node, budget_.joints);
-      if (!joints) return Failure(joints.error());
-      budget_.joints -= joints->size();
-      for (glm::dmat4& joint : *joints) joint[3] -= glm::dvec4(scene_.origin, 0.0);
-      known->second = std::move(*joints);
+      ALCOVE_TRY(auto joints, joint_matrices(model_, skin, nodes_.world_from_node, budget_.joints));
+      budget_.joints -= joints.size();
+      for (glm::dmat4& joint : joints) joint[3] -= glm::dvec4(scene_.origin, 0.0);
+      known->second = std::move(joints);
     }
     return &known->second;
   }
 
-  tl::expected<void, std::string> add_mesh(const tinygltf::Node& node,
-                                           PrimitivePlacement placement) {
-    const std::string name = name_of(node);
+  Result<void> add_mesh(const tinygltf::Node& node, PrimitivePlacement placement) {
+    const std::string name = mesh_name(node);
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<size_t>(node.mesh)];
     placement.morph_weights = node.weights.empty() ? &mesh.weights : &node.weights;
-    for (const auto& primitive : mesh.primitives) {
-      auto added = add_primitive(model_, primitive, name, placement, budget_, scene_);
-      if (!added) return added;
-    }
+    for (const auto& primitive : mesh.primitives)
+      ALCOVE_TRY_VOID(add_primitive(model_, primitive, name, placement, budget_, scene_)
+                          .map_error(with_prefix("mesh " + name + " ")));
     return {};
   }
 
@@ -125,23 +119,21 @@ class NodeReader {
   GltfLimits& budget_;
   Scene& scene_;
   std::vector<std::vector<const DrawnNode*>> nodes_of_;  // by mesh; those not added yet
-  std::map<int, std::vector<glm::dmat4>> joints_of_skin_;
+  std::map<int, std::vector<glm::dmat4>> skin_joints_;
 };
 
 }  // namespace
 
-tl::expected<void, std::string> add_nodes(const tinygltf::Model& model, GltfLimits& budget,
-                                          std::vector<PlacedCamera>& cameras, Scene& scene,
-                                          const Progress& progress) {
-  const auto nodes = read_nodes(model, budget.instances);
-  if (!nodes) return Failure(nodes.error());
-  scene.origin = chosen_origin(model, *nodes);
-  NodeReader reader(model, *nodes, budget, scene);
+Result<void> add_nodes(const tinygltf::Model& model, GltfLimits& budget,
+                       std::vector<PlacedCamera>& cameras, Scene& scene, const Progress& progress) {
+  ALCOVE_TRY(const auto nodes, read_nodes(model, budget.instances));
+  scene.origin = chosen_origin(model, nodes);
+  NodeReader reader(model, nodes, budget, scene);
   size_t done = 0;
-  for (const DrawnNode& drawn : nodes->drawn) {
-    if (auto added = reader.add(drawn); !added) return added;
-    if (progress) progress(double(++done) / double(nodes->drawn.size()));
-    glm::dmat4 world_from_node = nodes->world_from_node[drawn.node];
+  for (const DrawnNode& drawn : nodes.drawn) {
+    ALCOVE_TRY_VOID(reader.add(drawn));
+    if (progress) progress(double(++done) / double(nodes.drawn.size()));
+    glm::dmat4 world_from_node = nodes.world_from_node[drawn.node];
     world_from_node[3] -= glm::dvec4(scene.origin, 0.0);
     add_camera(model, model.nodes[drawn.node], world_from_node, cameras, scene);
   }

@@ -3,13 +3,13 @@
 #include <tiny_gltf.h>
 
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "scene/gltf_camera.h"
 #include "scene/gltf_mesh.h"
 #include "scene/scene.h"
 #include "support/progress.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -20,9 +20,8 @@ namespace alcove::sample {
 // instances. Other meshes are transformed to world space. Skinned meshes are transformed to world
 // space in the pose of their joints. `progress` receives the fraction of the nodes that have been
 // read. Error texts are the end of a sentence whose beginning the caller adds.
-[[nodiscard]] tl::expected<void, std::string> add_nodes(const tinygltf::Model& model,
-                                                        GltfLimits& budget,
-                                                        std::vector<PlacedCamera>& cameras,
-                                                        Scene& scene, const Progress& progress);
+[[nodiscard]] Result<void> add_nodes(const tinygltf::Model& model, GltfLimits& budget,
+                                     std::vector<PlacedCamera>& cameras, Scene& scene,
+                                     const Progress& progress);
 
 }  // namespace alcove::sample

@@ -9,15 +9,9 @@
 #include "scene/gltf_accessor.h"
 
 namespace alcove::sample {
-namespace {
-
-using Failure = tl::unexpected<std::string>;
-
-}  // namespace
-
-tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
-    const tinygltf::Model& model, int index, const std::vector<glm::dmat4>& world_from_node,
-    uint64_t most) {
+Result<std::vector<glm::dmat4>> joint_matrices(const tinygltf::Model& model, int index,
+                                               const std::vector<glm::dmat4>& world_from_node,
+                                               uint64_t most) {
   const tinygltf::Skin& skin = model.skins[static_cast<size_t>(index)];
   const std::string name = "has skin " + std::to_string(index) + ", which ";
   constexpr size_t kMost = UINT16_MAX + size_t{1};  // JOINTS_n are 16-bit at most
@@ -27,11 +21,11 @@ tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
     return Failure(name + "takes the scene past the number of joints that is read here");
   std::vector<float> inverse_bind;
   if (skin.inverseBindMatrices >= 0) {
-    auto read = read_floats(model, skin.inverseBindMatrices, 16, kMost);
-    if (!read) return Failure(name + read.error());
-    if (read->size() < 16 * skin.joints.size())
+    ALCOVE_TRY(
+        inverse_bind,
+        read_floats(model, skin.inverseBindMatrices, 16, kMost).map_error(with_prefix(name)));
+    if (inverse_bind.size() < 16 * skin.joints.size())
       return Failure(name + "has fewer inverse bind matrices than joints");
-    inverse_bind = std::move(*read);
   }
   std::vector<glm::dmat4> out;
   for (size_t i = 0; i < skin.joints.size(); ++i) {
@@ -41,10 +35,11 @@ tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
   return out;
 }
 
-tl::expected<VertexTransforms, std::string> VertexTransforms::skinned(
-    const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-    const std::vector<uint32_t>& vertices, const std::vector<glm::dmat4>& joints,
-    uint64_t most_sets) {
+Result<VertexTransforms> VertexTransforms::skinned(const tinygltf::Model& model,
+                                                   const tinygltf::Primitive& primitive,
+                                                   const std::vector<uint32_t>& vertices,
+                                                   const std::vector<glm::dmat4>& joints,
+                                                   uint64_t most_sets) {
   constexpr int kJointsPerSet = 4;
   const auto accessor = [&](const char* name, size_t set) {
     return attribute(primitive.attributes, name + std::to_string(set));
@@ -61,13 +56,13 @@ tl::expected<VertexTransforms, std::string> VertexTransforms::skinned(
   out.joint_of_.resize(vertices.size() * out.influences_);
   out.weight_of_.resize(vertices.size() * out.influences_);
   for (size_t set = 0; set < sets; ++set) {
-    const auto numbers = read_floats(model, accessor("JOINTS_", set), kJointsPerSet, 0, &vertices);
-    if (!numbers) return Failure(numbers.error());
-    const auto weights = read_floats(model, accessor("WEIGHTS_", set), kJointsPerSet, 0, &vertices);
-    if (!weights) return Failure(weights.error());
-    for (size_t i = 0; i < numbers->size(); ++i) {
-      const float joint = (*numbers)[i];
-      const float weight = std::isfinite((*weights)[i]) ? std::max((*weights)[i], 0.0f) : 0.0f;
+    ALCOVE_TRY(const auto numbers,
+               read_floats(model, accessor("JOINTS_", set), kJointsPerSet, 0, &vertices));
+    ALCOVE_TRY(const auto weights,
+               read_floats(model, accessor("WEIGHTS_", set), kJointsPerSet, 0, &vertices));
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      const float joint = numbers[i];
+      const float weight = std::isfinite(weights[i]) ? std::max(weights[i], 0.0f) : 0.0f;
       const bool exists = joint >= 0.0f && joint < static_cast<float>(joints.size());
       if (!exists && weight > 0.0f) {
         return Failure("has a vertex of joint " + std::to_string(joint) + ", and its skin has " +

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "support/glm.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -15,7 +15,7 @@ namespace alcove::sample {
 // the file's nodes (glTF 2.0 section 3.7.3.1). The skin and its joints exist, and `world_from_node`
 // has the transform of each node. A skin may have at most `most` joints. Error texts are the end of
 // a sentence whose beginning the caller adds.
-[[nodiscard]] tl::expected<std::vector<glm::dmat4>, std::string> joint_matrices(
+[[nodiscard]] Result<std::vector<glm::dmat4>> joint_matrices(
     const tinygltf::Model& model, int skin, const std::vector<glm::dmat4>& world_from_node,
     uint64_t most);
 
@@ -31,10 +31,11 @@ class VertexTransforms {
   // vertex without weights follows its first joint. `most_sets` is the largest allowed number of
   // vertices times the number of sets. Error texts are the end of a sentence whose beginning the
   // caller adds.
-  [[nodiscard]] static tl::expected<VertexTransforms, std::string> skinned(
-      const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-      const std::vector<uint32_t>& vertices, const std::vector<glm::dmat4>& joints,
-      uint64_t most_sets);
+  [[nodiscard]] static Result<VertexTransforms> skinned(const tinygltf::Model& model,
+                                                        const tinygltf::Primitive& primitive,
+                                                        const std::vector<uint32_t>& vertices,
+                                                        const std::vector<glm::dmat4>& joints,
+                                                        uint64_t most_sets);
 
   [[nodiscard]] glm::dmat4 at(size_t vertex) const;
 

@@ -25,20 +25,16 @@ void treat_materials(Scene& scene, const MaterialTreatment& treatment) {
 
 }  // namespace
 
-tl::expected<Scene, std::string> load_scene(const std::string& what,
-                                            const MaterialTreatment& treatment,
-                                            const Progress& progress) {
+Result<Scene> load_scene(const std::string& what, const MaterialTreatment& treatment,
+                         const Progress& progress) {
   if (what.empty() || what == "builtin") return builtin_scene();
   if (what == "fence") return fence_scene();
   if (what == "terrain") return terrain_scene();
   if (is_analytic_name(what)) {
-    auto analytic = analytic_scene(what);
-    if (!analytic) return tl::unexpected(analytic.error());
-    return std::move(analytic->scene);
+    return analytic_scene(what).map([](AnalyticScene&& it) { return std::move(it.scene); });
   }
-  auto scene = load_gltf(what, progress);
-  if (!scene) return scene;
-  treat_materials(*scene, treatment);
+  ALCOVE_TRY(auto scene, load_gltf(what, progress));
+  treat_materials(scene, treatment);
   return scene;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 
 #include "scene/scene.h"
 #include "support/progress.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -19,8 +19,8 @@ struct MaterialTreatment {
 // analytic scene (`plane:60`, `groove:90`, `corner`, `sphere`, `pit`, `step`), or the path of a
 // .gltf or .glb file. A scene from a file has only the cameras of the file. Errors are one sentence
 // that names the scene and the remedy. The scene's warnings name each alpha-blended material.
-[[nodiscard]] tl::expected<Scene, std::string> load_scene(const std::string& what,
-                                                          const MaterialTreatment& treatment = {},
-                                                          const Progress& progress = {});
+[[nodiscard]] Result<Scene> load_scene(const std::string& what,
+                                       const MaterialTreatment& treatment = {},
+                                       const Progress& progress = {});
 
 }  // namespace alcove::sample

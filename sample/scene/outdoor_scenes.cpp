@@ -24,19 +24,7 @@ class Random {
   std::uint32_t state_;
 };
 
-glm::mat4 moved(glm::vec3 by) { return glm::translate(glm::mat4(1.0f), by); }
-
 glm::mat4 turned(float angle) { return glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0, 1, 0)); }
-
-Camera camera(const char* name, glm::vec3 eye, glm::vec3 target, float far_plane) {
-  Camera out;
-  out.name = name;
-  out.eye_ws = eye;
-  out.target_ws = target;
-  out.near_plane = 0.05f;
-  out.far_plane = far_plane;
-  return out;
-}
 
 // A bush: leaves on the surface of a sphere and inside it, and a few stems.
 void add_bush(SceneBuilder& b, std::uint32_t leaf, std::uint32_t wood, glm::vec3 centre,
@@ -56,7 +44,7 @@ void add_bush(SceneBuilder& b, std::uint32_t leaf, std::uint32_t wood, glm::vec3
     const glm::vec3 at = centre + out * (radius * std::sqrt(random.in(0.2f, 1.0f)));
     if (at.y < 0.05f) continue;
     b.world_from_shape = glm::rotate(
-        glm::rotate(moved(at), random.in(0.0f, glm::two_pi<float>()), glm::vec3(0, 1, 0)),
+        glm::rotate(translation(at), random.in(0.0f, glm::two_pi<float>()), glm::vec3(0, 1, 0)),
         random.in(-1.2f, 1.2f), glm::vec3(1, 0, 0));
     const float length = random.in(0.05f, 0.09f);
     const float width = 0.45f * length;
@@ -67,7 +55,7 @@ void add_bush(SceneBuilder& b, std::uint32_t leaf, std::uint32_t wood, glm::vec3
 // A tuft of grass: blades that lean outwards.
 void add_tuft(SceneBuilder& b, glm::vec3 at, Random& random) {
   for (int i = 0; i < 9; ++i) {
-    b.world_from_shape = moved(at) * turned(random.in(0.0f, glm::two_pi<float>()));
+    b.world_from_shape = translation(at) * turned(random.in(0.0f, glm::two_pi<float>()));
     const float height = random.in(0.1f, 0.28f);
     const float lean = random.in(0.02f, 0.12f);
     b.triangle({-0.008f, 0.0f, 0.02f}, {0.008f, 0.0f, 0.02f}, {0.0f, height, lean});
@@ -128,7 +116,7 @@ void add_ground(SceneBuilder& b) {
 
 // A conifer: a trunk and four cones.
 void add_tree(SceneBuilder& b, std::uint32_t wood, std::uint32_t leaf, glm::vec3 at, float height) {
-  b.world_from_shape = glm::scale(moved(at), glm::vec3(height));
+  b.world_from_shape = glm::scale(translation(at), glm::vec3(height));
   b.use(wood);
   const std::vector<glm::vec2> trunk = {{0.03f, -0.05f}, {0.025f, 0.3f}, {0.0f, 0.6f}};
   b.lathe(trunk, 8);
@@ -142,7 +130,7 @@ void add_tree(SceneBuilder& b, std::uint32_t wood, std::uint32_t leaf, glm::vec3
 }
 
 void add_hut(SceneBuilder& b, std::uint32_t wall, std::uint32_t roof, glm::vec3 at) {
-  b.world_from_shape = moved(at) * turned(0.5f);
+  b.world_from_shape = translation(at) * turned(0.5f);
   b.use(wall);
   b.box({-2.0f, -1.0f, -1.5f}, {2.0f, 2.0f, -1.35f});
   b.box({-2.0f, -1.0f, -1.5f}, {-1.85f, 2.0f, 1.5f});
@@ -183,9 +171,9 @@ Scene fence_scene() {
     add_tuft(b, {random.in(-5.0f, 5.0f), 0.0f, random.in(-2.0f, 2.6f)}, random);
   Scene scene = b.finish("fence");
   scene.suggested_radius = 0.5f;
-  scene.cameras = {camera("fence", {-2.6f, 1.3f, 3.0f}, {0.2f, 0.55f, -0.4f}, 60.0f),
-                   camera("bush", {0.2f, 0.8f, 2.3f}, {-0.8f, 0.4f, 0.2f}, 60.0f),
-                   camera("along", {-4.4f, 1.0f, 0.7f}, {2.0f, 0.6f, -0.3f}, 60.0f)};
+  scene.cameras = {scene_camera("fence", {-2.6f, 1.3f, 3.0f}, {0.2f, 0.55f, -0.4f}, 60.0f, 60.0f),
+                   scene_camera("bush", {0.2f, 0.8f, 2.3f}, {-0.8f, 0.4f, 0.2f}, 60.0f, 60.0f),
+                   scene_camera("along", {-4.4f, 1.0f, 0.7f}, {2.0f, 0.6f, -0.3f}, 60.0f, 60.0f)};
   return scene;
 }
 
@@ -202,7 +190,7 @@ Scene terrain_scene() {
     const glm::vec3 at = on_terrain(random.in(-34.0f, 34.0f), random.in(-34.0f, 20.0f));
     const float size = random.in(0.15f, 1.1f);
     b.world_from_shape =
-        glm::scale(moved(at) * turned(random.in(0.0f, 3.0f)),
+        glm::scale(translation(at) * turned(random.in(0.0f, 3.0f)),
                    size * glm::vec3(1.0f, random.in(0.5f, 0.9f), random.in(0.6f, 1.0f)));
     b.use(stone);
     b.sphere({0, 0, 0}, 1.0f, 6, 9);
@@ -221,9 +209,10 @@ Scene terrain_scene() {
   }
   Scene scene = b.finish("terrain");
   scene.suggested_radius = 1.0f;
-  scene.cameras = {camera("valley", {-5.0f, 4.6f, 15.0f}, {1.0f, 0.6f, -4.0f}, 200.0f),
-                   camera("hut", {9.0f, 2.8f, 3.0f}, {3.0f, 1.2f, -3.0f}, 200.0f),
-                   camera("ridge", {-20.0f, 5.5f, 2.0f}, {6.0f, 0.0f, -14.0f}, 200.0f)};
+  scene.cameras = {
+      scene_camera("valley", {-5.0f, 4.6f, 15.0f}, {1.0f, 0.6f, -4.0f}, 60.0f, 200.0f),
+      scene_camera("hut", {9.0f, 2.8f, 3.0f}, {3.0f, 1.2f, -3.0f}, 60.0f, 200.0f),
+      scene_camera("ridge", {-20.0f, 5.5f, 2.0f}, {6.0f, 0.0f, -14.0f}, 60.0f, 200.0f)};
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
 namespace alcove::sample {
@@ -39,6 +40,20 @@ glm::vec3 around_y(glm::vec2 radius_height, float angle) {
 }
 
 }  // namespace
+
+glm::mat4 translation(glm::vec3 by) { return glm::translate(glm::mat4(1.0f), by); }
+
+Camera scene_camera(const char* name, glm::vec3 eye, glm::vec3 target, float fov_degrees,
+                    float far_plane) {
+  Camera out;
+  out.name = name;
+  out.eye_ws = eye;
+  out.target_ws = target;
+  out.fov_y = glm::radians(fov_degrees);
+  out.near_plane = 0.05f;
+  out.far_plane = far_plane;
+  return out;
+}
 
 uint32_t SceneBuilder::add_material(const std::string& name, glm::vec3 base_color, float roughness,
                                     float metallic) {

@@ -8,6 +8,12 @@
 
 namespace alcove::sample {
 
+[[nodiscard]] glm::mat4 translation(glm::vec3 by);
+
+// Returns a perspective camera with a near plane at 0.05.
+[[nodiscard]] Camera scene_camera(const char* name, glm::vec3 eye, glm::vec3 target,
+                                  float fov_degrees, float far_plane);
+
 // Adds solids to a scene, one mesh per material. Every shape is transformed by `world_from_shape`,
 // which may translate, rotate and scale but not mirror. Triangles are counter-clockwise from
 // outside.

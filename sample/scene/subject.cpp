@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kMostGrouped = size_t{1} << 16;  // parts; of more parts a sample is grouped
 
-glm::dvec3 centre_of(const Bounds& bounds) {
+glm::dvec3 middle(const Bounds& bounds) {
   return 0.5 * (glm::dvec3(bounds.low) + glm::dvec3(bounds.high));
 }
 
@@ -75,7 +75,7 @@ class Parts {
       const glm::dmat4x3 world(world_from_mesh(mesh, instances_[i].instance));
       const double side = glm::determinant(glm::dmat3(world)) < 0.0 ? -1.0 : 1.0;
       for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
-        const size_t part = part_of(i, mesh.indices[k]);
+        const size_t part = part_index(i, mesh.indices[k]);
         if (!chosen[part]) continue;
         WorldTriangle triangle;
         for (size_t c = 0; c < 3; ++c)
@@ -92,7 +92,7 @@ class Parts {
   static constexpr uint64_t kMostVertices = uint64_t{1} << 23;
 
   const Mesh& mesh_of(const MeshInstance& instance) const { return scene_.meshes[instance.mesh]; }
-  size_t part_of(size_t instance, uint32_t vertex) const {
+  size_t part_index(size_t instance, uint32_t vertex) const {
     return part_of_vertex_.empty() ? instance : part_of_vertex_[first_vertices_[instance] + vertex];
   }
 
@@ -304,7 +304,7 @@ enum class Kind { subject, surroundings, room };
 // Judges the candidates, large parts that have been seen from the centre of the rest.
 Kind judge(const std::vector<Part>& parts, const std::vector<uint32_t>& candidates,
            const std::vector<Enclosure>& enclosures, const Bounds& rest) {
-  const glm::dvec3 centre = centre_of(rest);
+  const glm::dvec3 centre = middle(rest);
   Enclosure all;
   bool all_flat = true, all_behind = true;
   for (size_t i = 0; i < candidates.size(); ++i) {
@@ -385,8 +385,7 @@ Separation separate(const Parts& found, const std::vector<uint32_t>& order) {
     for (size_t i = 0; i < k; ++i) chosen[candidates[i]] = static_cast<char>(i + 1);
     std::vector<Enclosure> enclosures(k);
     found.for_each_triangle(chosen, [&](size_t part, const WorldTriangle& triangle) {
-      enclosures[static_cast<size_t>(chosen[part] - 1)].add(triangle, centre_of(bounds),
-                                                            directions);
+      enclosures[static_cast<size_t>(chosen[part] - 1)].add(triangle, middle(bounds), directions);
     });
     const Kind kind = judge(parts, candidates, enclosures, bounds);
     if (kind == Kind::subject) continue;
@@ -432,15 +431,14 @@ Subject find_subject(const Scene& scene) {
     grouped[p] = 1;
     out.bounds_ws = united(out.bounds_ws, parts[p].bounds_ws);
   }
-  out.free_distance_ws = free_distances(found, separation.shells, centre_of(out.bounds_ws));
+  out.free_distance_ws = free_distances(found, separation.shells, middle(out.bounds_ws));
   // Parts that were not sampled belong to the subject if they lie in it or at its border.
   const float border = sampled ? static_cast<float>(0.05 * diagonal(out.bounds_ws)) : 0.0f;
   const Bounds around{out.bounds_ws.low - border, out.bounds_ws.high + border};
   const double largest = diagonal(out.bounds_ws);
   for (size_t p = 0; p < parts.size(); ++p) {
     const Bounds& bounds = parts[p].bounds_ws;
-    if (!grouped[p] &&
-        !(contains(around, glm::vec3(centre_of(bounds))) && diagonal(bounds) < largest))
+    if (!grouped[p] && !(contains(around, glm::vec3(middle(bounds))) && diagonal(bounds) < largest))
       out.triangles_outside += parts[p].triangles;
     else if (sampled)
       out.bounds_ws = united(out.bounds_ws, bounds);

@@ -4,15 +4,14 @@
 
 namespace alcove::sample {
 
-tl::expected<ImageHeader, std::string> read_image_header(std::span<const uint8_t> bytes) {
+Result<ImageHeader> read_image_header(std::span<const uint8_t> bytes) {
   if (is_png(bytes)) return read_png_header(bytes);
   if (is_jpeg(bytes)) return read_jpeg_header(bytes);
-  return tl::unexpected<std::string>("is not a PNG or JPEG (glTF has no other image formats)");
+  return Failure("is not a PNG or JPEG (glTF has no other image formats)");
 }
 
-tl::expected<DecodedImage, std::string> decode_image(std::span<const uint8_t> bytes,
-                                                     const ImageHeader& header,
-                                                     uint32_t reduction) {
+Result<DecodedImage> decode_image(std::span<const uint8_t> bytes, const ImageHeader& header,
+                                  uint32_t reduction) {
   return header.format == ImageFormat::png ? decode_png(bytes, reduction)
                                            : decode_jpeg(bytes, reduction);
 }

@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -36,15 +37,13 @@ constexpr uint32_t kLargestImageSide = 16384;
 // Reads the size from the header without decoding. Another format, a damaged header, or a file too
 // short for so many pixels is an error, and so is a PNG of more than 2^26 pixels that is interlaced
 // or has less than one byte for 64 pixels.
-[[nodiscard]] tl::expected<ImageHeader, std::string> read_image_header(
-    std::span<const uint8_t> bytes);
+[[nodiscard]] Result<ImageHeader> read_image_header(std::span<const uint8_t> bytes);
 
 // Decodes an image. `header` is the result of read_image_header() for the same bytes. Every block
 // of `reduction` x `reduction` pixels (at least 1) becomes its mean, and the full image is then not
 // kept in memory, except for an interlaced PNG. Data that is damaged or cut short, and a
 // progressive JPEG that needs more than 512 MiB, are errors.
-[[nodiscard]] tl::expected<DecodedImage, std::string> decode_image(std::span<const uint8_t> bytes,
-                                                                   const ImageHeader& header,
-                                                                   uint32_t reduction = 1);
+[[nodiscard]] Result<DecodedImage> decode_image(std::span<const uint8_t> bytes,
+                                                const ImageHeader& header, uint32_t reduction = 1);
 
 }  // namespace alcove::sample

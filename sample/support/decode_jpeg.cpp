@@ -6,11 +6,11 @@
 #include <csetjmp>
 
 #include "support/image_rows.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using Bytes = std::span<const uint8_t>;
 
 constexpr const char* kDamaged = "is damaged";
@@ -118,7 +118,7 @@ class JpegReader {
   jpeg_progress_mgr progress_{};
 };
 
-Failure failure_of(const JpegReader& reader) {
+Failure decoding_failure(const JpegReader& reader) {
   return Failure(reader.lacked_memory()
                      ? "is a progressive JPEG that needs over 512 MiB to decode (save it as a "
                        "baseline JPEG)"
@@ -139,7 +139,7 @@ bool is_jpeg(Bytes bytes) {
   return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
 }
 
-tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
+Result<ImageHeader> read_jpeg_header(Bytes bytes) {
   JpegReader reader(bytes);
   if (!reader.read_header()) return Failure(kDamaged);
   // The most pixels that one byte can encode: a Huffman code has at least one bit, and a block of
@@ -151,12 +151,12 @@ tl::expected<ImageHeader, std::string> read_jpeg_header(Bytes bytes) {
   return ImageHeader{ImageFormat::jpeg, reader.width(), reader.height()};
 }
 
-tl::expected<DecodedImage, std::string> decode_jpeg(Bytes bytes, uint32_t reduction) {
+Result<DecodedImage> decode_jpeg(Bytes bytes, uint32_t reduction) {
   JpegReader reader(bytes);
   const unsigned scale = libjpeg_scale(reduction);
-  if (!reader.read_header() || !reader.start(scale)) return failure_of(reader);
+  if (!reader.read_header() || !reader.start(scale)) return decoding_failure(reader);
   ImageRows rows(reader.output_width(), reader.output_height(), reduction / scale, false);
-  if (!reader.read_rows(rows)) return failure_of(reader);
+  if (!reader.read_rows(rows)) return decoding_failure(reader);
   return rows.take();
 }
 

@@ -4,11 +4,11 @@
 #include <cstring>
 
 #include "support/image_rows.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using Bytes = std::span<const uint8_t>;
 
 constexpr const char* kDamaged = "is damaged";
@@ -81,7 +81,7 @@ class PngReader {
 
 bool is_png(Bytes bytes) { return bytes.size() >= 8 && png_sig_cmp(bytes.data(), 0, 8) == 0; }
 
-tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
+Result<ImageHeader> read_png_header(Bytes bytes) {
   PngReader reader(bytes);
   if (!reader.read_header()) return Failure(kDamaged);
   // Deflate compresses at most 1032 bytes into one (RFC 1951: 258 bytes into 2 bits).
@@ -101,7 +101,7 @@ tl::expected<ImageHeader, std::string> read_png_header(Bytes bytes) {
   return ImageHeader{ImageFormat::png, reader.width(), reader.height()};
 }
 
-tl::expected<DecodedImage, std::string> decode_png(Bytes bytes, uint32_t reduction) {
+Result<DecodedImage> decode_png(Bytes bytes, uint32_t reduction) {
   PngReader reader(bytes);
   if (!reader.read_header()) return Failure(kDamaged);
   // Rows of an interlaced image are complete only at its end.

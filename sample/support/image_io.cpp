@@ -21,10 +21,8 @@
 namespace alcove::sample {
 namespace {
 
-using Outcome = tl::expected<void, std::string>;
-
-tl::unexpected<std::string> failure(const std::filesystem::path& file, const std::string& why) {
-  return tl::unexpected<std::string>("cannot write " + file.string() + ": " + why);
+Failure failure(const std::filesystem::path& file, const std::string& why) {
+  return Failure("cannot write " + file.string() + ": " + why);
 }
 
 // An image as its channels, interleaved.
@@ -49,21 +47,21 @@ Channels channels(const Image<glm::vec3>& image) {
 
 // Checks that a file is complete by reading it back. OpenEXR's destructor ignores errors when it
 // closes the file, so a disk that becomes full at the end is not detected in any other way.
-Outcome check_complete_exr(const std::filesystem::path& file) {
+Result<void> check_complete_exr(const std::filesystem::path& file) {
   try {
     Imf::InputFile input(file.string().c_str());
-    if (!input.isComplete()) return tl::unexpected<std::string>("the disk is full");
+    if (!input.isComplete()) return Failure("the disk is full");
   } catch (const std::exception& error) {
-    return tl::unexpected<std::string>(error.what());
+    return Failure(error.what());
   }
   return {};
 }
 
 // `names`: of the channels.
-Outcome write_exr_channels(const std::filesystem::path& file, const Channels& image,
-                           const std::vector<const char*>& names) {
+Result<void> write_exr_channels(const std::filesystem::path& file, const Channels& image,
+                                const std::vector<const char*>& names) {
   if (!image.has_pixels()) return failure(file, "the image has no pixels");
-  return write_whole(file, [&](const std::filesystem::path& temporary) -> Outcome {
+  return write_whole(file, [&](const std::filesystem::path& temporary) -> Result<void> {
     try {
       Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
       header.compression() = Imf::ZIP_COMPRESSION;
@@ -78,50 +76,45 @@ Outcome write_exr_channels(const std::filesystem::path& file, const Channels& im
       output.setFrameBuffer(frame);
       output.writePixels(static_cast<int>(image.height));
     } catch (const std::exception& error) {
-      return tl::unexpected<std::string>(error.what());
+      return Failure(error.what());
     }
     return check_complete_exr(temporary);
   });
 }
 
-// The selected channels of an EXR file, interleaved.
-struct FloatImage {
-  uint32_t width = 0;
-  uint32_t height = 0;
-  std::vector<float> values;
-};
-
-tl::expected<FloatImage, std::string> read_exr_channels(const std::filesystem::path& file,
-                                                        const ChooseChannels& choose) {
-  const auto refuse = [&](const std::string& why) {
-    return tl::unexpected<std::string>("cannot read " + file.string() + ": it " + why);
+// Reads an EXR file whose chosen channels are those of a pixel.
+template <class Pixel>
+Result<Image<Pixel>> read_exr_image(const std::filesystem::path& file,
+                                    const ChooseChannels& choose) {
+  Image<Pixel> image;
+  const auto begin = [&](uint32_t width, uint32_t height) {
+    image.width = width;
+    image.height = height;
   };
-  const auto opened = open_regular_file(file);
-  if (!opened) return refuse(opened.error());
-  FloatImage image;
-  const FloatRows rows{.begin =
-                           [&](uint32_t width, uint32_t height) {
-                             image.width = width;
-                             image.height = height;
-                           },
-                       .row =
-                           [&](std::span<const float> row) {
-                             image.values.reserve(row.size() * image.height);
-                             image.values.insert(image.values.end(), row.begin(), row.end());
-                           }};
-  if (auto read = read_exr(opened->get(), choose, rows); !read) return refuse(read.error());
-  return image;
+  const auto add = [&](std::span<const float> row) {
+    const size_t first = image.pixels.size();
+    image.pixels.reserve(size_t{image.width} * image.height);
+    image.pixels.resize(first + image.width);
+    std::memcpy(&image.pixels[first], row.data(), row.size_bytes());
+  };
+  return open_regular_file(file)
+      .and_then([&](const FilePointer& opened) {
+        return read_exr(opened.get(), choose, {.begin = begin, .row = add});
+      })
+      .map([&] { return std::move(image); })
+      .map_error(
+          [&](const std::string& why) { return "cannot read " + file.string() + ": it " + why; });
 }
 
-uint8_t byte_of(float value) {
+uint8_t to_byte(float value) {
   if (!(value > 0.0f)) return 0;
   return static_cast<uint8_t>(std::lround(std::min(value, 1.0f) * 255.0f));
 }
 
-Outcome write_png_channels(const std::filesystem::path& file, const Channels& in) {
+Result<void> write_png_channels(const std::filesystem::path& file, const Channels& in) {
   if (!in.has_pixels()) return failure(file, "the image has no pixels");
   std::vector<uint8_t> pixels(in.values.size());
-  std::ranges::transform(in.values, pixels.begin(), byte_of);
+  std::ranges::transform(in.values, pixels.begin(), to_byte);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = in.width;
@@ -136,39 +129,29 @@ Outcome write_png_channels(const std::filesystem::path& file, const Channels& in
 
 }  // namespace
 
-Outcome write_exr(const std::filesystem::path& file, const Image<float>& image) {
+Result<void> write_exr(const std::filesystem::path& file, const Image<float>& image) {
   return write_exr_channels(file, channels(image), {"Y"});
 }
-Outcome write_exr(const std::filesystem::path& file, const Image<glm::vec3>& image) {
+Result<void> write_exr(const std::filesystem::path& file, const Image<glm::vec3>& image) {
   return write_exr_channels(file, channels(image), {"R", "G", "B"});
 }
 
-tl::expected<Image<float>, std::string> read_exr_grey(const std::filesystem::path& file) {
-  auto read = read_exr_channels(file, [](const ChannelExists& exists) {
+Result<Image<float>> read_exr_grey(const std::filesystem::path& file) {
+  return read_exr_image<float>(file, [](const ChannelExists& exists) {
     return std::vector<std::string>{exists("Y") ? "Y" : "R"};
   });
-  if (!read) return tl::unexpected(read.error());
-  Image<float> image;
-  image.width = read->width;
-  image.height = read->height;
-  image.pixels = std::move(read->values);
-  return image;
 }
 
-tl::expected<Image<glm::vec3>, std::string> read_exr_rgb(const std::filesystem::path& file) {
-  const auto read = read_exr_channels(file, [](const ChannelExists&) {
+Result<Image<glm::vec3>> read_exr_rgb(const std::filesystem::path& file) {
+  return read_exr_image<glm::vec3>(file, [](const ChannelExists&) {
     return std::vector<std::string>{"R", "G", "B"};
   });
-  if (!read) return tl::unexpected(read.error());
-  Image<glm::vec3> image(read->width, read->height);
-  std::memcpy(image.pixels.data(), read->values.data(), read->values.size() * sizeof(float));
-  return image;
 }
 
-Outcome write_png(const std::filesystem::path& file, const Image<float>& image) {
+Result<void> write_png(const std::filesystem::path& file, const Image<float>& image) {
   return write_png_channels(file, channels(image));
 }
-Outcome write_png(const std::filesystem::path& file, const Image<glm::vec3>& image) {
+Result<void> write_png(const std::filesystem::path& file, const Image<glm::vec3>& image) {
   return write_png_channels(file, channels(image));
 }
 

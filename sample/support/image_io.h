@@ -2,10 +2,10 @@
 
 #include <filesystem>
 #include <string>
-#include <tl/expected.hpp>
 
 #include "support/glm.h"
 #include "support/image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -13,23 +13,19 @@ namespace alcove::sample {
 // Errors are one sentence with the file's name and the reason.
 
 // OpenEXR, scanlines, 32-bit float, top row first: one channel `Y`, or three `R` `G` `B`.
-[[nodiscard]] tl::expected<void, std::string> write_exr(const std::filesystem::path& file,
-                                                        const Image<float>& image);
-[[nodiscard]] tl::expected<void, std::string> write_exr(const std::filesystem::path& file,
-                                                        const Image<glm::vec3>& image);
+[[nodiscard]] Result<void> write_exr(const std::filesystem::path& file, const Image<float>& image);
+[[nodiscard]] Result<void> write_exr(const std::filesystem::path& file,
+                                     const Image<glm::vec3>& image);
 
 // Reads the channel `Y`, or `R` if there is no `Y`. At most 16384 pixels a side.
-[[nodiscard]] tl::expected<Image<float>, std::string> read_exr_grey(
-    const std::filesystem::path& file);
+[[nodiscard]] Result<Image<float>> read_exr_grey(const std::filesystem::path& file);
 // Reads the channels `R`, `G` and `B`. At most 16384 pixels a side.
-[[nodiscard]] tl::expected<Image<glm::vec3>, std::string> read_exr_rgb(
-    const std::filesystem::path& file);
+[[nodiscard]] Result<Image<glm::vec3>> read_exr_rgb(const std::filesystem::path& file);
 
 // Writes an 8-bit PNG. Values are clamped to 0..1 and stored without a transfer function; callers
 // encode sRGB themselves. NaN becomes 0.
-[[nodiscard]] tl::expected<void, std::string> write_png(const std::filesystem::path& file,
-                                                        const Image<float>& image);
-[[nodiscard]] tl::expected<void, std::string> write_png(const std::filesystem::path& file,
-                                                        const Image<glm::vec3>& image);
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const Image<float>& image);
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file,
+                                     const Image<glm::vec3>& image);
 
 }  // namespace alcove::sample

@@ -4,6 +4,7 @@
 
 #include "support/block_mean.h"
 #include "support/decode_image.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -44,14 +45,10 @@ class ImageRows {
 
 // The functions of decode_image.h for PNG and for JPEG.
 [[nodiscard]] bool is_png(std::span<const uint8_t> bytes);
-[[nodiscard]] tl::expected<ImageHeader, std::string> read_png_header(
-    std::span<const uint8_t> bytes);
-[[nodiscard]] tl::expected<DecodedImage, std::string> decode_png(std::span<const uint8_t> bytes,
-                                                                 uint32_t reduction);
+[[nodiscard]] Result<ImageHeader> read_png_header(std::span<const uint8_t> bytes);
+[[nodiscard]] Result<DecodedImage> decode_png(std::span<const uint8_t> bytes, uint32_t reduction);
 [[nodiscard]] bool is_jpeg(std::span<const uint8_t> bytes);
-[[nodiscard]] tl::expected<ImageHeader, std::string> read_jpeg_header(
-    std::span<const uint8_t> bytes);
-[[nodiscard]] tl::expected<DecodedImage, std::string> decode_jpeg(std::span<const uint8_t> bytes,
-                                                                  uint32_t reduction);
+[[nodiscard]] Result<ImageHeader> read_jpeg_header(std::span<const uint8_t> bytes);
+[[nodiscard]] Result<DecodedImage> decode_jpeg(std::span<const uint8_t> bytes, uint32_t reduction);
 
 }  // namespace alcove::sample

@@ -7,8 +7,8 @@
 namespace alcove::sample {
 
 // Converts text of any bytes, such as a file name, to one line of UTF-8 for JSON, SVG and
-// terminals: control characters become spaces, and bytes that are not part of a character become
-// U+FFFD.
+// terminals: control characters become spaces, and bytes that are not part of a character are
+// replaced by U+FFFD.
 [[nodiscard]] std::string printable(std::string_view text);
 
 // Returns printable(text), limited to `most` bytes (at least 16). In a longer text, "..." replaces

@@ -19,8 +19,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Lets OpenEXR read a file that is already open. OpenEXR expects errors as exceptions.
 class FileStream : public Imf::IStream {
  public:
@@ -127,7 +125,7 @@ bool has_size(std::FILE* file, const std::string& type, uint32_t size) {
 
 // Checks the attributes of all headers, and returns to the beginning of the file. OpenEXR allocates
 // memory for an attribute by the size that the file states, before it reads it.
-tl::expected<void, std::string> check_attributes(std::FILE* file) {
+Result<void> check_attributes(std::FILE* file) {
   constexpr uint32_t kMagic = 20000630, kMultiPart = 0x1000;
   const long end = std::fseek(file, 0, SEEK_END) == 0 ? std::ftell(file) : -1;
   std::rewind(file);
@@ -173,7 +171,7 @@ uint64_t bytes_per_pixel(const Imf::Header& header) {
 }
 
 // Checks the sizes for which OpenEXR allocates memory, before it allocates any.
-tl::expected<Size, std::string> check_header(const Imf::Header& header) {
+Result<Size> check_header(const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type()))
     return Failure("is a deep image; flatten it first");
   const Imath::Box2i& window = header.dataWindow();
@@ -201,33 +199,31 @@ tl::expected<Size, std::string> check_header(const Imf::Header& header) {
               window.min.x};
 }
 
-tl::expected<void, std::string> read_checked(FileStream& stream, const ChooseChannels& choose,
-                                             const FloatRows& rows) {
+Result<void> read_checked(FileStream& stream, const ChooseChannels& choose, const FloatRows& rows) {
   // Opening reads the headers and no pixels.
   Imf::MultiPartInputFile file(stream, 0);
   const Imf::Header& header = file.header(0);
-  const auto size = check_header(header);
-  if (!size) return Failure(size.error());
+  ALCOVE_TRY(const auto size, check_header(header));
   const auto exists = [&](const std::string& name) {
     return header.channels().findChannel(name) != nullptr;
   };
   const std::vector<std::string> names = choose(exists);
   const size_t pixel = names.size() * sizeof(float);
-  std::vector<float> row(names.size() * size->width);
+  std::vector<float> row(names.size() * size.width);
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < names.size(); ++c) {
     if (!exists(names[c])) return Failure("has no channel " + names[c]);
     // The base of a slice is the address that column 0 would have, which may lie before the buffer.
     // All rows are read into the same memory.
     char* base = reinterpret_cast<char*>(row.data() + c) -
-                 ptrdiff_t{size->first_column} * static_cast<ptrdiff_t>(pixel);
+                 ptrdiff_t{size.first_column} * static_cast<ptrdiff_t>(pixel);
     frame.insert(names[c], Imf::Slice(Imf::FLOAT, base, pixel, 0));
   }
   Imf::InputPart part(file, 0);
   part.setFrameBuffer(frame);
-  rows.begin(size->width, size->height);
-  for (uint32_t y = 0; y < size->height; ++y) {
-    const int line = size->first_row + static_cast<int>(y);
+  rows.begin(size.width, size.height);
+  for (uint32_t y = 0; y < size.height; ++y) {
+    const int line = size.first_row + static_cast<int>(y);
     part.readPixels(line, line);
     rows.row(row);
   }
@@ -236,9 +232,8 @@ tl::expected<void, std::string> read_checked(FileStream& stream, const ChooseCha
 
 }  // namespace
 
-tl::expected<void, std::string> read_exr(std::FILE* file, const ChooseChannels& choose,
-                                         const FloatRows& rows) {
-  if (auto fine = check_attributes(file); !fine) return fine;
+Result<void> read_exr(std::FILE* file, const ChooseChannels& choose, const FloatRows& rows) {
+  ALCOVE_TRY_VOID(check_attributes(file));
   try {
     FileStream stream(file);
     return read_checked(stream, choose, rows);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "support/float_rows.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -15,8 +16,7 @@ namespace alcove::sample {
 // about 512 MiB. Error texts are the end of a sentence that begins with the file's name.
 using ChannelExists = std::function<bool(const std::string& name)>;
 using ChooseChannels = std::function<std::vector<std::string>(const ChannelExists& exists)>;
-[[nodiscard]] tl::expected<void, std::string> read_exr(std::FILE* file,
-                                                       const ChooseChannels& choose,
-                                                       const FloatRows& rows);
+[[nodiscard]] Result<void> read_exr(std::FILE* file, const ChooseChannels& choose,
+                                    const FloatRows& rows);
 
 }  // namespace alcove::sample

@@ -11,7 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using Rgbe = std::array<uint8_t, 4>;
 
 struct Size {
@@ -42,7 +41,7 @@ uint32_t read_side(std::string_view& text, std::string_view axis) {
   return value;
 }
 
-tl::expected<Size, std::string> read_size(const std::string& line) {
+Result<Size> read_size(const std::string& line) {
   std::string_view text = line;
   const uint32_t height = read_side(text, "-Y ");
   const uint32_t width = read_side(text, " +X ");
@@ -55,7 +54,7 @@ tl::expected<Size, std::string> read_size(const std::string& line) {
   return Size{width, height};
 }
 
-tl::expected<Size, std::string> read_header(std::FILE* file) {
+Result<Size> read_header(std::FILE* file) {
   constexpr int kMostLines = 1000;
   const auto first = read_line(file);
   if (!first || !(first->starts_with("#?RADIANCE") || first->starts_with("#?RGBE")))
@@ -139,16 +138,15 @@ void decode(const std::vector<Rgbe>& row, std::vector<float>& out) {
 
 }  // namespace
 
-tl::expected<void, std::string> read_hdr(std::FILE* file, const FloatRows& rows) {
-  const auto size = read_header(file);
-  if (!size) return Failure(size.error());
-  std::vector<Rgbe> row(size->width);
-  std::vector<float> values(3 * size_t{size->width});
-  rows.begin(size->width, size->height);
-  for (uint32_t y = 0; y < size->height; ++y) {
+Result<void> read_hdr(std::FILE* file, const FloatRows& rows) {
+  ALCOVE_TRY(const auto size, read_header(file));
+  std::vector<Rgbe> row(size.width);
+  std::vector<float> values(3 * size_t{size.width});
+  rows.begin(size.width, size.height);
+  for (uint32_t y = 0; y < size.height; ++y) {
     if (!read_row(file, row)) {
       return Failure("is damaged or cut short in row " + std::to_string(y) + " of " +
-                     std::to_string(size->height));
+                     std::to_string(size.height));
     }
     decode(row, values);
     rows.row(values);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "support/float_rows.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -12,6 +13,6 @@ namespace alcove::sample {
 // FreeImage) are not maintained against hostile files. It keeps one row in memory. The size in the
 // header limits the time, and every count is checked against the row. Rows are R, G, B. Error
 // texts are the end of a sentence that begins with the file's name.
-[[nodiscard]] tl::expected<void, std::string> read_hdr(std::FILE* file, const FloatRows& rows);
+[[nodiscard]] Result<void> read_hdr(std::FILE* file, const FloatRows& rows);
 
 }  // namespace alcove::sample

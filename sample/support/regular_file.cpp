@@ -6,8 +6,7 @@
 
 namespace alcove::sample {
 
-tl::expected<FilePointer, std::string> open_regular_file(const std::filesystem::path& file) {
-  using Failure = tl::unexpected<std::string>;
+Result<FilePointer> open_regular_file(const std::filesystem::path& file) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -15,7 +16,6 @@ using FilePointer = std::unique_ptr<std::FILE, FileCloser>;
 
 // Opens a regular file for reading. Other files are refused, because opening a named pipe or a
 // device could wait forever. The error completes a sentence that begins with the file's name.
-[[nodiscard]] tl::expected<FilePointer, std::string> open_regular_file(
-    const std::filesystem::path& file);
+[[nodiscard]] Result<FilePointer> open_regular_file(const std::filesystem::path& file);
 
 }  // namespace alcove::sample

@@ -9,10 +9,16 @@ namespace alcove::sample {
 
 template <class T>
 using Result = tl::expected<T, std::string>;
+using Failure = tl::unexpected<std::string>;
+
+// Returns a function for map_error() that puts a text before the sentence of an error.
+[[nodiscard]] inline auto with_prefix(std::string prefix) {
+  return [prefix = std::move(prefix)](const std::string& error) { return prefix + error; };
+}
 
 }  // namespace alcove::sample
 
-// Declares a variable with the value of a call, or returns its error:
+// Declares or assigns a variable with the value of a call, or returns its error:
 //   ALCOVE_TRY(const auto scene, load_scene(name));
 #define ALCOVE_TRY(declaration, ...) \
   ALCOVE_TRY_AS(ALCOVE_TRY_NAME(alcove_result_, __LINE__), declaration, __VA_ARGS__)

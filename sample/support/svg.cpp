@@ -5,7 +5,7 @@
 namespace alcove::sample {
 namespace {
 
-std::string list_of(const std::vector<glm::vec2>& points) {
+std::string point_list(const std::vector<glm::vec2>& points) {
   std::string list;
   for (const glm::vec2 point : points) list += fmt::format("{:.2f},{:.2f} ", point.x, point.y);
   return list;
@@ -18,7 +18,7 @@ std::string escaped(std::string_view text) {
 }
 
 // Returns the end of a shape's element, with its title if it has one.
-std::string end_of(const char* shape, std::string_view title) {
+std::string element_end(const char* shape, std::string_view title) {
   return title.empty() ? "/>\n" : fmt::format("><title>{}</title></{}>\n", escaped(title), shape);
 }
 
@@ -30,24 +30,24 @@ void Svg::line(glm::vec2 from, glm::vec2 to, std::string_view style) {
 }
 
 void Svg::polyline(const std::vector<glm::vec2>& points, std::string_view style) {
-  body_ += fmt::format("<polyline points=\"{}\" fill=\"none\" {}/>\n", list_of(points), style);
+  body_ += fmt::format("<polyline points=\"{}\" fill=\"none\" {}/>\n", point_list(points), style);
 }
 
 void Svg::polygon(const std::vector<glm::vec2>& points, std::string_view style) {
-  body_ += fmt::format("<polygon points=\"{}\" {}/>\n", list_of(points), style);
+  body_ += fmt::format("<polygon points=\"{}\" {}/>\n", point_list(points), style);
 }
 
 void Svg::circle(glm::vec2 centre, float radius, std::string_view style, std::string_view title) {
   body_ += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\" {}", centre.x, centre.y,
                        radius, style) +
-           end_of("circle", title);
+           element_end("circle", title);
 }
 
 void Svg::rectangle(glm::vec2 corner, glm::vec2 size, std::string_view style,
                     std::string_view title) {
   body_ += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" {}",
                        corner.x, corner.y, size.x, size.y, style) +
-           end_of("rect", title);
+           element_end("rect", title);
 }
 
 void Svg::text(glm::vec2 at, std::string_view anchor, std::string_view text,

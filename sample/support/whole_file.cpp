@@ -13,9 +13,6 @@ namespace alcove::sample {
 namespace {
 
 namespace fs = std::filesystem;
-using Outcome = tl::expected<void, std::string>;
-using Failure = tl::unexpected<std::string>;
-
 constexpr const char* kPart = ".part";
 
 // Returns a temporary file name in the folder of the target, so that the final rename stays on one
@@ -28,7 +25,7 @@ fs::path temporary_beside(const fs::path& file) {
 }
 
 // Writes all bytes or returns an error. A full disk may only be detected by the flush.
-Outcome fill(const fs::path& file, const void* bytes, size_t size) {
+Result<void> fill(const fs::path& file, const void* bytes, size_t size) {
   std::FILE* stream = std::fopen(file.string().c_str(), "wb");
   if (!stream) return Failure(std::strerror(errno));
   errno = 0;
@@ -41,7 +38,7 @@ Outcome fill(const fs::path& file, const void* bytes, size_t size) {
 
 }  // namespace
 
-tl::expected<OutputFolder, std::string> OutputFolder::create(const fs::path& folder) {
+Result<OutputFolder> OutputFolder::create(const fs::path& folder) {
   OutputFolder out;
   std::error_code error;
   fs::path part;
@@ -72,10 +69,11 @@ OutputFolder::~OutputFolder() {
     fs::remove(*folder, ignored);  // fails if it is not empty
 }
 
-Outcome write_whole(const fs::path& file, const std::function<Outcome(const fs::path&)>& write) {
+Result<void> write_whole(const fs::path& file,
+                         const std::function<Result<void>(const fs::path&)>& write) {
   const fs::path temporary = temporary_beside(file);
   std::error_code reason;
-  Outcome outcome = write(temporary);
+  Result<void> outcome = write(temporary);
   if (outcome) {
     fs::rename(temporary, file, reason);
     if (!reason) return {};
@@ -85,11 +83,11 @@ Outcome write_whole(const fs::path& file, const std::function<Outcome(const fs::
   return Failure("cannot write " + file.string() + ": " + outcome.error());
 }
 
-Outcome write_bytes(const fs::path& file, const void* bytes, size_t size) {
+Result<void> write_bytes(const fs::path& file, const void* bytes, size_t size) {
   return write_whole(file, [&](const fs::path& temporary) { return fill(temporary, bytes, size); });
 }
 
-Outcome write_text(const fs::path& file, const std::string& text) {
+Result<void> write_text(const fs::path& file, const std::string& text) {
   return write_bytes(file, text.data(), text.size());
 }
 

@@ -3,8 +3,9 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
+
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -18,8 +19,7 @@ namespace alcove::sample {
 class OutputFolder {
  public:
   // Returns an error also if the folder exists and no file can be created in it.
-  [[nodiscard]] static tl::expected<OutputFolder, std::string> create(
-      const std::filesystem::path& folder);
+  [[nodiscard]] static Result<OutputFolder> create(const std::filesystem::path& folder);
   OutputFolder(OutputFolder&&) = default;
   OutputFolder& operator=(OutputFolder&&) = delete;
   ~OutputFolder();
@@ -30,13 +30,12 @@ class OutputFolder {
 };
 
 // `write` fills the temporary file of the given name, and returns whether it succeeded.
-[[nodiscard]] tl::expected<void, std::string> write_whole(
+[[nodiscard]] Result<void> write_whole(
     const std::filesystem::path& file,
-    const std::function<tl::expected<void, std::string>(const std::filesystem::path&)>& write);
-[[nodiscard]] tl::expected<void, std::string> write_bytes(const std::filesystem::path& file,
-                                                          const void* bytes, size_t size);
-[[nodiscard]] tl::expected<void, std::string> write_text(const std::filesystem::path& file,
-                                                         const std::string& text);
+    const std::function<Result<void>(const std::filesystem::path&)>& write);
+[[nodiscard]] Result<void> write_bytes(const std::filesystem::path& file, const void* bytes,
+                                       size_t size);
+[[nodiscard]] Result<void> write_text(const std::filesystem::path& file, const std::string& text);
 
 // Removes the temporary files in a folder that have not been written for an hour, because their
 // writers were killed.

@@ -23,11 +23,9 @@ GltfMaker rich_scene() {
   GltfMaker maker = painted(transformed({{"offset", {0, 0.5}}, {"rotation", 1}}),
                             {{"index", 0}, {"texCoord", 1}, {"scale", 0.5}});
   auto& attributes = maker.primitive()["attributes"];
-  attributes["NORMAL"] =
-      maker.accessor(maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}), 5126, "VEC3", 3);
-  attributes["TANGENT"] =
-      maker.accessor(maker.view<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, -1}), 5126, "VEC4", 3);
-  maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({0, 1, 2}), 5123, "SCALAR", 3);
+  attributes["NORMAL"] = maker.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  attributes["TANGENT"] = maker.add<float>("VEC4", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, -1});
+  maker.primitive()["indices"] = maker.add<uint16_t>("SCALAR", {0, 1, 2});
   maker.json["accessors"][0]["sparse"] = {
       {"count", 1},
       {"indices", {{"bufferView", maker.view<uint8_t>({2})}, {"componentType", 5121}}},

@@ -64,9 +64,8 @@ TEST_F(RenderedFile, SkinnedMeshIsDrawnAtItsJointsAndNotAtItsNode) {
   for (size_t i = 0; i < vertices; ++i) weights.insert(weights.end(), {1, 0, 0, 0});
   GltfMaker& gltf = skinned.gltf;
   auto& attributes = gltf.json["meshes"][static_cast<size_t>(mesh)]["primitives"][0]["attributes"];
-  attributes["JOINTS_0"] =
-      gltf.accessor(gltf.view(std::vector<uint8_t>(4 * vertices, 0)), 5121, "VEC4", vertices);
-  attributes["WEIGHTS_0"] = gltf.accessor(gltf.view(weights), 5126, "VEC4", vertices);
+  attributes["JOINTS_0"] = gltf.add("VEC4", std::vector<uint8_t>(4 * vertices, 0));
+  attributes["WEIGHTS_0"] = gltf.add("VEC4", weights);
   const int joint = skinned.node({{"translation", {0.5f, 0, 0}}});
   gltf.json["skins"] = {{{"joints", {joint}}}};
   skinned.node({{"mesh", mesh}, {"skin", 0}, {"scale", {100, 100, 100}}});
@@ -162,7 +161,7 @@ TEST_F(RenderedFile, SpecularGlossinessTextureGivesColourAndCutsOutTransparentTe
   gltf.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
   gltf.json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
-      gltf.accessor(gltf.view<float>({0, 1, 1, 1, 1, 0, 0, 0}), 5126, "VEC2", 4);
+      gltf.add<float>("VEC2", {0, 1, 1, 1, 1, 0, 0, 0});
   const auto drawn = draw_file(maker.write(folder_, "card"), view_from({0, 1, 4}, {0, 1, 0}));
   ASSERT_TRUE(drawn);
   const Image<float> depth = linear_depth(*drawn);

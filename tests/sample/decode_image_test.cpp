@@ -176,7 +176,7 @@ TEST(DecodeImage, ImagesOtherThanPngAndJpegAreRefused) {
   for (const std::string& text :
        {std::string("P5 8000 8000 65535\n") + std::string(100, '\0'), std::string("GIF89a"),
         std::string("BM"), std::string("#?RADIANCE\n"), std::string("\0\0\2", 3), std::string()}) {
-    const auto image = decoded({text.begin(), text.end()});
+    const auto image = decoded(text_bytes(text));
     ASSERT_FALSE(image);
     EXPECT_THAT(image.error(), HasSubstr("not a PNG or JPEG"));
   }

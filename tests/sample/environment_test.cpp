@@ -22,8 +22,7 @@ class EnvironmentFile : public testing::Test {
  protected:
   tl::expected<EnvironmentImage, std::string> load(const std::string& name,
                                                    const std::string& bytes) {
-    std::ofstream(folder_.path / name, std::ios::binary) << bytes;
-    return load_environment(folder_.path / name);
+    return load_environment(folder_.write(name, bytes));
   }
   tl::expected<EnvironmentImage, std::string> load(const EnvironmentImage& exr) {
     EXPECT_TRUE(write_exr(folder_.path / "a.exr", exr));

@@ -6,6 +6,10 @@
 
 namespace alcove::sample {
 
+inline std::vector<uint8_t> text_bytes(const std::string& text) {
+  return {text.begin(), text.end()};
+}
+
 // Returns a binary glTF file of a JSON text and a binary chunk (glTF 2.0 section 4.4).
 inline std::vector<uint8_t> glb_file(std::string json, std::vector<uint8_t> binary) {
   while (json.size() % 4) json += ' ';

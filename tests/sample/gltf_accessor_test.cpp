@@ -10,10 +10,9 @@ namespace {
 TEST(GltfAccessor, VertexIndicesOfEveryUnsignedIntegerTypeGiveTheSameTriangles) {
   for (const int type : {5121, 5123, 5125}) {
     GltfMaker maker = GltfMaker::triangle();
-    const int view = type == 5121   ? maker.view<uint8_t>({0, 2, 1})
-                     : type == 5123 ? maker.view<uint16_t>({0, 2, 1})
-                                    : maker.view<uint32_t>({0, 2, 1});
-    maker.primitive()["indices"] = maker.accessor(view, type, "SCALAR", 3);
+    maker.primitive()["indices"] = type == 5121   ? maker.add<uint8_t>("SCALAR", {0, 2, 1})
+                                   : type == 5123 ? maker.add<uint16_t>("SCALAR", {0, 2, 1})
+                                                  : maker.add<uint32_t>("SCALAR", {0, 2, 1});
     const Scene scene = parsed(maker.gltf());
     ASSERT_EQ(triangle_count(scene), 1u) << type;
     EXPECT_LT(area_of(scene.meshes[0], 0).z, 0.0) << type;
@@ -23,10 +22,10 @@ TEST(GltfAccessor, VertexIndicesOfEveryUnsignedIntegerTypeGiveTheSameTriangles) 
 TEST(GltfAccessor, NormalizedIntegersAreReadAsFloatsFromMinusOneToOne) {
   GltfMaker maker = GltfMaker::triangle();
   const int bytes = maker.view<int8_t>({0, 0, 0, 0, 127, 0, 0, 0, 0, -128, 0, 0}, 4);
-  const int shorts = maker.view<uint16_t>({0, 0, 65535, 0, 0, 32768});
   const int position = maker.accessor(bytes, 5120, "VEC3", 3, true);
-  maker.primitive()["attributes"] = {{"POSITION", position},
-                                     {"TEXCOORD_0", maker.accessor(shorts, 5123, "VEC2", 3, true)}};
+  maker.primitive()["attributes"] = {
+      {"POSITION", position},
+      {"TEXCOORD_0", maker.add<uint16_t>("VEC2", {0, 0, 65535, 0, 0, 32768}, true)}};
   // The loader keeps texture coordinates only if a texture uses them.
   const int texture = maker.white_texture();
   maker.json["materials"] = {{{"emissiveTexture", {{"index", texture}}}}};

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -27,20 +26,18 @@ TEST(GltfFile, FileOutsideTheFolderOfTheSceneIsReportedAsOutsideAndNotAsMissing)
   const std::filesystem::path inside = folder.path / "inside";
   std::filesystem::create_directories(inside);
   GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
-  std::ofstream(folder.path / "own.bin") << "elsewhere";
-  std::ofstream(folder.path / "t.png") << "elsewhere";
+  folder.write("own.bin", std::string("elsewhere"));
+  folder.write("t.png", std::string("elsewhere"));
   std::filesystem::create_symlink(folder.path / "own.bin", inside / "link.bin");
   for (const std::string uri : {"../own.bin", "link.bin"}) {
     nlohmann::json json = maker.json;
     json["buffers"] = {{{"byteLength", maker.bytes.size()}, {"uri", uri}}};
-    std::ofstream(inside / "scene.gltf") << json.dump();
-    const auto scene = load_gltf(inside / "scene.gltf");
+    const auto scene = load_gltf(folder.write("inside/scene.gltf", json.dump()));
     ASSERT_FALSE(scene);
     EXPECT_THAT(scene.error(), HasSubstr("(" + uri + ") lies outside the scene's folder"));
   }
   maker.json["images"][0] = {{"uri", "../t.png"}};
-  const std::vector<uint8_t> bytes = maker.gltf();
-  const auto scene = parse_gltf(bytes, "test.gltf", inside);
+  const auto scene = parse_gltf(maker.gltf(), "test.gltf", inside);
   ASSERT_TRUE(scene) << scene.error();
   EXPECT_THAT(scene->warnings,
               testing::Contains(HasSubstr("image 0 (../t.png) lies outside the scene's folder")));
@@ -82,10 +79,8 @@ tl::expected<Scene, std::string> scene_with(const std::string& uri, const std::s
   const GltfMaker maker = GltfMaker::triangle();
   nlohmann::json json = maker.json;
   json["buffers"] = {{{"byteLength", maker.bytes.size()}, {"uri", uri}}};
-  std::ofstream(folder.path / "scene.gltf") << json.dump();
-  std::ofstream(folder.path / file_name, std::ios::binary)
-      << std::string(maker.bytes.begin(), maker.bytes.end());
-  return load_gltf(folder.path / "scene.gltf");
+  folder.write(file_name, maker.bytes);
+  return load_gltf(folder.write("scene.gltf", json.dump()));
 }
 
 // RFC 3986 section 2.1: only %XX is decoded.
@@ -132,16 +127,14 @@ TEST(GltfFile, NamedPipesAndFoldersInPlaceOfInputFilesAreRefused) {
   nlohmann::json json = GltfMaker::triangle().json;
   for (const char* uri : {"pipe", ".", "/dev/zero"}) {
     json["buffers"] = {{{"byteLength", 36}, {"uri", uri}}};
-    std::ofstream(folder.path / "scene.gltf") << json.dump();
-    EXPECT_FALSE(load_gltf(folder.path / "scene.gltf")) << uri;
+    EXPECT_FALSE(load_gltf(folder.write("scene.gltf", json.dump()))) << uri;
   }
 }
 
 tl::expected<Scene, std::string> scene_with_data(const std::string& uri, size_t length) {
   nlohmann::json json = GltfMaker::triangle().json;
   json["buffers"] = {{{"byteLength", length}, {"uri", uri}}};
-  const std::string text = json.dump();
-  return parse_gltf({reinterpret_cast<const uint8_t*>(text.data()), text.size()}, "a.gltf", "");
+  return parse_gltf(text_bytes(json.dump()), "a.gltf", "");
 }
 
 TEST(GltfFile, EmbeddedDataUriMayHaveAnyMediaTypeAndBase64OrPercentEncoding) {
@@ -179,13 +172,10 @@ TEST(GltfFile, BufferWithoutDataIsAllowedUnlessABufferViewUsesIt) {
   nlohmann::json root = nlohmann::json::parse(maker.gltf());
   root["buffers"].push_back({{"byteLength", 1000}});
   root["buffers"].push_back({{"byteLength", 1000}});
-  const auto text = [&] {
-    const std::string dumped = root.dump();
-    return std::vector<uint8_t>(dumped.begin(), dumped.end());
-  };
-  EXPECT_EQ(corners(parsed(text())), corners(parsed(maker.gltf())));
+  EXPECT_EQ(corners(parsed(text_bytes(root.dump()))), corners(parsed(maker.gltf())));
   root["bufferViews"][0]["buffer"] = 1;
-  EXPECT_THAT(refusal(text()), HasSubstr("buffer view 0 lies in buffer 1, which has no data"));
+  EXPECT_THAT(refusal(text_bytes(root.dump())),
+              HasSubstr("buffer view 0 lies in buffer 1, which has no data"));
 }
 
 // glTF 2.0 section 3.6.2.1: an accessor without a buffer view is zeroes, which sparse values

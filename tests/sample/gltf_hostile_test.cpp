@@ -53,14 +53,12 @@ const Fault kFaults[] = {
     {"NodeCycle", [](GltfMaker& m) { m.json["nodes"][0]["children"] = {0}; }, "twice"},
     {"IndexBeyondTheLastVertex",
      [](GltfMaker& m) {
-       const int view = m.view<uint16_t>({0, 1, 3});
-       m.primitive()["indices"] = m.accessor(view, 5123, "SCALAR", 3);
+       m.primitive()["indices"] = m.add<uint16_t>("SCALAR", {0, 1, 3});
      },
      "index 3"},
     {"FloatIndices",
      [](GltfMaker& m) {
-       const int view = m.view<float>({0, 1, 2});
-       m.primitive()["indices"] = m.accessor(view, 5126, "SCALAR", 3);
+       m.primitive()["indices"] = m.add<float>("SCALAR", {0, 1, 2});
      },
      "unsigned"},
     {"PositionThatIsNaN",
@@ -88,15 +86,13 @@ const Fault kFaults[] = {
      "material \"tiles\" has no texture 4"},
     {"FewerNormalsThanVertices",
      [](GltfMaker& m) {
-       const int normals = m.accessor(m.view<float>({1, 0, 0}), 5126, "VEC3", 1);
-       m.primitive()["attributes"]["NORMAL"] = normals;
+       m.primitive()["attributes"]["NORMAL"] = m.add<float>("VEC3", {1, 0, 0});
      },
      "has 1 elements, and element 2 is used"},
     {"FewerSecondTextureCoordinatesThanVertices",
      [](GltfMaker& m) {
        m = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
-       const int uvs = m.accessor(m.view<float>({0, 0}), 5126, "VEC2", 1);
-       m.primitive()["attributes"]["TEXCOORD_1"] = uvs;
+       m.primitive()["attributes"]["TEXCOORD_1"] = m.add<float>("VEC2", {0, 0});
      },
      "has 1 elements, and element 2 is used"},
     {"NoSuchSampler",
@@ -175,8 +171,7 @@ void add_square(GltfMaker& maker, uint32_t image_side, float height, float size,
       {{"emissiveTexture", {{"index", json["textures"].size() - 1}}}, {"doubleSided", true}});
   json["meshes"][0]["primitives"].push_back(
       {{"attributes",
-        {{"POSITION", maker.accessor(maker.view(at), 5126, "VEC3", 6)},
-         {"TEXCOORD_0", maker.accessor(maker.view(uvs), 5126, "VEC2", 6)}}},
+        {{"POSITION", maker.add("VEC3", at)}, {"TEXCOORD_0", maker.add("VEC2", uvs)}}},
        {"material", json["materials"].size() - 1}});
 }
 
@@ -195,25 +190,24 @@ GltfMaker squares() {
 TEST(GltfImage, ImagesBeyondTheMemoryLimitAreReducedToTheSizeAtWhichTheyAppear) {
   GltfLimits limits;
   limits.images.kept = 64 * 64 + 3 * 32 * 32 - 1;
-  const auto scene = parse_gltf(squares().gltf(), "large.gltf", "", limits);
-  ASSERT_TRUE(scene) << scene.error();
+  const Scene scene = parsed(squares().gltf(), limits);
   std::vector<uint32_t> sides;
-  for (const TextureImage& image : scene->images) sides.push_back(image.width);
+  for (const TextureImage& image : scene.images) sides.push_back(image.width);
+  ASSERT_EQ(sides.size(), 5u);
   EXPECT_EQ(sides[0], 64u);
   EXPECT_EQ(sides[4], 4u);
-  EXPECT_EQ(scene->images[2].rgba[0], 200);
+  EXPECT_EQ(scene.images[2].rgba[0], 200);
   for (const size_t smaller : {1u, 2u, 3u}) EXPECT_LT(sides[smaller], 64u) << smaller;
   EXPECT_LT(sides[3], sides[1]);
-  EXPECT_THAT(scene->warnings, testing::Contains(HasSubstr("3 of 5 are reduced")));
+  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("3 of 5 are reduced")));
 }
 
 TEST(GltfImage, ImagesThatAppearSmallestAreLeftOutBeyondTheDecodingLimit) {
   GltfLimits limits;
   limits.images.decoded = 3 * 64 * 64;
-  const auto scene = parse_gltf(squares().gltf(), "large.gltf", "", limits);
-  ASSERT_TRUE(scene) << scene.error();
+  const Scene scene = parsed(squares().gltf(), limits);
   std::vector<int32_t> images;
-  for (const Material& material : scene->materials)
+  for (const Material& material : scene.materials)
     images.push_back(material.emissive_texture.image);
   EXPECT_THAT(images, testing::ElementsAre(0, -1, 1, -1, 2, -1));
 }
@@ -222,11 +216,10 @@ TEST(GltfImage, ImagesBeyondTheDecodingLimitAreLeftOutFromTheirHeaders) {
   GltfMaker maker = with_image(GltfMaker::base64(make_png_promise(1024, 1024, 2000)));
   GltfLimits limits;
   limits.images.decoded = 1 << 19;
-  const auto scene = parse_gltf(maker.gltf(), "large.gltf", "", limits);
-  ASSERT_TRUE(scene) << scene.error();
-  EXPECT_TRUE(scene->images.empty());
+  const Scene scene = parsed(maker.gltf(), limits);
+  EXPECT_TRUE(scene.images.empty());
   EXPECT_THAT(
-      scene->warnings,
+      scene.warnings,
       testing::ElementsAre(HasSubstr("image 0 (data:...) takes the images of the scene past")));
 }
 
@@ -247,7 +240,7 @@ TEST(GltfImage, DamagedJpegIsLeftOutWithAWarning) {
 
 TEST(GltfImage, ImagesOtherThanPngAndJpegAreLeftOutWithAWarning) {
   const std::string pgm = "P5 8000 8000 65535\n" + std::string(20'000, '\0');
-  const Scene scene = parsed(with_image(GltfMaker::base64({pgm.begin(), pgm.end()})).gltf());
+  const Scene scene = parsed(with_image(GltfMaker::base64(text_bytes(pgm))).gltf());
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_THAT(scene.warnings[0], HasSubstr("image 0 (data:...) is not a PNG or JPEG"));
 }

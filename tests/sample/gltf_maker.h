@@ -4,9 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,20 @@ class GltfMaker {
     return static_cast<int>(json["accessors"].size()) - 1;
   }
 
+  // Appends values with an accessor of their own, and gives it.
+  template <class T>
+  int add(const std::string& type, const std::vector<T>& values, bool normalized = false) {
+    static const std::map<std::string, size_t> kWidths = {
+        {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+    const int component = std::is_same_v<T, float>     ? 5126
+                          : sizeof(T) == 4             ? 5125
+                          : std::is_same_v<T, int8_t>  ? 5120
+                          : std::is_same_v<T, uint8_t> ? 5121
+                          : std::is_same_v<T, int16_t> ? 5122
+                                                       : 5123;
+    return accessor(view(values), component, type, values.size() / kWidths.at(type), normalized);
+  }
+
   // An image of one white pixel, in a texture of its own; gives the texture.
   int white_texture() {
     const int png = view<uint8_t>(
@@ -63,8 +78,7 @@ class GltfMaker {
   // One triangle in the XY plane that faces +Z.
   static GltfMaker triangle() {
     GltfMaker maker;
-    const int positions = maker.view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
-    const int accessor = maker.accessor(positions, 5126, "VEC3", 3);
+    const int accessor = maker.add<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
     maker.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", accessor}}}}}}}};
     return maker;
   }
@@ -76,8 +90,7 @@ class GltfMaker {
     nlohmann::json out = json;
     out["buffers"] = {{{"byteLength", bytes.size()},
                        {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
-    const std::string text = out.dump();
-    return {text.begin(), text.end()};
+    return text_bytes(out.dump());
   }
 
   std::vector<uint8_t> glb() const {
@@ -120,22 +133,20 @@ inline GltfMaker painted(const nlohmann::json& base_colour, const nlohmann::json
   maker.json.erase("textures");
   maker.white_texture();
   auto& attributes = maker.primitive()["attributes"];
-  const int first = maker.view<float>({0, 0, 3, 0, 0, 3});
-  const int second = maker.view<float>({0, 0, 7, 0, 0, 7});
-  attributes["TEXCOORD_0"] = maker.accessor(first, 5126, "VEC2", 3);
-  attributes["TEXCOORD_1"] = maker.accessor(second, 5126, "VEC2", 3);
+  attributes["TEXCOORD_0"] = maker.add<float>("VEC2", {0, 0, 3, 0, 0, 3});
+  attributes["TEXCOORD_1"] = maker.add<float>("VEC2", {0, 0, 7, 0, 0, 7});
   return maker;
 }
 
-inline Scene parsed(const std::vector<uint8_t>& bytes) {
-  auto scene = parse_gltf(bytes, "test.gltf", "");
+inline Scene parsed(const std::vector<uint8_t>& bytes, const GltfLimits& limits = {}) {
+  auto scene = parse_gltf(bytes, "test.gltf", "", limits);
   EXPECT_TRUE(scene) << (scene ? "" : scene.error());
   return scene ? std::move(*scene) : Scene{};
 }
 
 // The sentence by which a file is refused.
-inline std::string refusal(const std::vector<uint8_t>& bytes) {
-  const auto scene = parse_gltf(bytes, "test.gltf", "");
+inline std::string refusal(const std::vector<uint8_t>& bytes, const GltfLimits& limits = {}) {
+  const auto scene = parse_gltf(bytes, "test.gltf", "", limits);
   EXPECT_FALSE(scene);
   if (scene) return "";
   EXPECT_THAT(scene.error(), testing::HasSubstr("test.gltf"));

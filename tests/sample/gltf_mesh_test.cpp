@@ -27,13 +27,9 @@ TEST(GltfMesh, TrianglesOfStripsAndFansAllFaceTheSameWay) {
   for (const int mode : {5, 6}) {
     for (const bool indexed : {false, true}) {
       GltfMaker maker = GltfMaker::triangle();
-      const int view = maker.view<float>(mode == 5 ? strip : fan);
-      maker.primitive()["attributes"]["POSITION"] = maker.accessor(view, 5126, "VEC3", 5);
+      maker.primitive()["attributes"]["POSITION"] = maker.add("VEC3", mode == 5 ? strip : fan);
       maker.primitive()["mode"] = mode;
-      if (indexed) {
-        const int indices = maker.view<uint16_t>({0, 1, 2, 3, 4});
-        maker.primitive()["indices"] = maker.accessor(indices, 5123, "SCALAR", 5);
-      }
+      if (indexed) maker.primitive()["indices"] = maker.add<uint16_t>("SCALAR", {0, 1, 2, 3, 4});
       const Scene scene = parsed(maker.gltf());
       ASSERT_EQ(triangle_count(scene), 3u) << mode;
       for (size_t i = 0; i < 3; ++i) EXPECT_EQ(face_normal(scene, i), glm::vec3(0, 0, 1));
@@ -62,11 +58,9 @@ TEST(GltfMesh, TriangleWindingIsReversedUnderANodeThatMirrors) {
 
 TEST(GltfMesh, TangentsAreMirroredWithTheNodeAndInvalidOnesBecomeZero) {
   GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
-  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
-  const int tangents = maker.view<float>({1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});
   auto& attributes = maker.primitive()["attributes"];
-  attributes["NORMAL"] = maker.accessor(normals, 5126, "VEC3", 3);
-  attributes["TANGENT"] = maker.accessor(tangents, 5126, "VEC4", 3);
+  attributes["NORMAL"] = maker.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  attributes["TANGENT"] = maker.add<float>("VEC4", {1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});
   maker.json["nodes"][0]["scale"] = {-2, 1, 1};
   const Scene scene = parsed(maker.gltf());
   ASSERT_EQ(scene.meshes[0].tangents.size(), 3u);

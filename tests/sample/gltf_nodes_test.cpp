@@ -18,18 +18,16 @@ using testing::IsEmpty;
 // joints with equal weights.
 GltfMaker skinned_triangle() {
   GltfMaker maker = GltfMaker::triangle();
-  const int normals = maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1});
-  const int joints = maker.view<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0});
-  const int weights = maker.view<float>({1, 0, 0, 0, 2, 0, 0, 0, 0.5f, 0.5f, 0, 0});
   // Undoes a bind pose that lies 10 units along x.
-  const int bind = maker.view<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1,
-                                      1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1});
   auto& attributes = maker.primitive()["attributes"];
-  attributes["NORMAL"] = maker.accessor(normals, 5126, "VEC3", 3);
-  attributes["JOINTS_0"] = maker.accessor(joints, 5121, "VEC4", 3);
-  attributes["WEIGHTS_0"] = maker.accessor(weights, 5126, "VEC4", 3);
+  attributes["NORMAL"] = maker.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  attributes["JOINTS_0"] = maker.add<uint8_t>("VEC4", {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0});
+  attributes["WEIGHTS_0"] = maker.add<float>("VEC4", {1, 0, 0, 0, 2, 0, 0, 0, 0.5f, 0.5f, 0, 0});
   maker.json["skins"] = {
-      {{"joints", {1, 2}}, {"inverseBindMatrices", maker.accessor(bind, 5126, "MAT4", 2)}}};
+      {{"joints", {1, 2}},
+       {"inverseBindMatrices",
+        maker.add<float>("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1,
+                                  1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1})}}};
   const float h = std::sqrt(0.5f);
   maker.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {7, 8, 9}}},
                          {{"translation", {10, 0, 5}}, {"rotation", {0, h, 0, h}}},
@@ -101,12 +99,10 @@ TEST(GltfInstances, NodeScaledToZeroAlongAnAxisBecomesAMeshOfItsOwn) {
 
 TEST(GltfInstances, InstancesOfTheGpuInstancingExtensionAreRead) {
   GltfMaker maker = GltfMaker::triangle();
-  const int translations = maker.view<float>({0, 0, 0, 3, 0, 0});
-  const int scales = maker.view<float>({1, 1, 1, 2, 2, 2});
   maker.json["nodes"][0]["translation"] = {0, 10, 0};
   maker.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
-      {"TRANSLATION", maker.accessor(translations, 5126, "VEC3", 2)},
-      {"SCALE", maker.accessor(scales, 5126, "VEC3", 2)}};
+      {"TRANSLATION", maker.add<float>("VEC3", {0, 0, 0, 3, 0, 0})},
+      {"SCALE", maker.add<float>("VEC3", {1, 1, 1, 2, 2, 2})}};
   maker.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
   const Scene scene = parsed(maker.gltf());
   EXPECT_EQ(triangle_count(scene), 2u);
@@ -146,14 +142,12 @@ TEST(GltfNodes, OnlyRequiredExtensionsThatHoldGeometryAreRefused) {
 // A triangle with two morph targets, whose first moves a corner and turns the normals.
 GltfMaker morphed_triangle() {
   GltfMaker maker = GltfMaker::triangle();
-  const int normals =
-      maker.accessor(maker.view<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}), 5126, "VEC3", 3);
-  const int moves = maker.accessor(maker.view<float>({0, 0, 0, 0, 0, 4, 0, 0, 0}), 5126, "VEC3", 3);
-  const int turns =
-      maker.accessor(maker.view<float>({2, 0, -2, 2, 0, -2, 2, 0, -2}), 5126, "VEC3", 3);
+  const int normals = maker.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int moves = maker.add<float>("VEC3", {0, 0, 0, 0, 0, 4, 0, 0, 0});
+  const int turns = maker.add<float>("VEC3", {2, 0, -2, 2, 0, -2, 2, 0, -2});
   maker.primitive()["attributes"]["NORMAL"] = normals;
   // Morphed texture coordinates have two components and are not read.
-  const int uvs = maker.accessor(maker.view<float>({0, 0, 0, 0, 0, 0}), 5126, "VEC2", 3);
+  const int uvs = maker.add<float>("VEC2", {0, 0, 0, 0, 0, 0});
   maker.primitive()["targets"] = {{{"POSITION", moves}, {"NORMAL", turns}, {"TEXCOORD_0", uvs}},
                                   {{"POSITION", moves}}};
   maker.json["meshes"][0]["weights"] = {0.5, 0.0};
@@ -180,10 +174,8 @@ TEST(GltfMorph, WeightsOfANodeReplaceThoseOfTheMeshForThatNodeOnly) {
 TEST(GltfMorph, TargetsAreAppliedBeforeSkins) {
   GltfMaker maker = morphed_triangle();
   auto& attributes = maker.primitive()["attributes"];
-  attributes["JOINTS_0"] =
-      maker.accessor(maker.view<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), 5121, "VEC4", 3);
-  attributes["WEIGHTS_0"] =
-      maker.accessor(maker.view<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}), 5126, "VEC4", 3);
+  attributes["JOINTS_0"] = maker.add<uint8_t>("VEC4", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  attributes["WEIGHTS_0"] = maker.add<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
   maker.json["skins"] = {{{"joints", {1}}}};
   maker.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"scale", {1, 1, 10}}}};
   maker.json["scenes"][0]["nodes"] = {0, 1};

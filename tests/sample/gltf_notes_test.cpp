@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <string>
 
 #include "gltf_maker.h"
@@ -33,9 +32,7 @@ TEST(GltfNotes, BlendedMaterialIsDrawnOpaqueOrCutOutAndTheChoiceIsReported) {
   maker.json["materials"] = {{{"name", "leaf"}, {"alphaMode", "BLEND"}}};
   maker.primitive()["material"] = 0;
   const TemporaryFolder folder;
-  const std::string file = (folder.path / "leaf.gltf").string();
-  const std::vector<uint8_t> bytes = maker.gltf();
-  std::ofstream(file, std::ios::binary) << std::string(bytes.begin(), bytes.end());
+  const std::string file = folder.write("leaf.gltf", maker.gltf());
   for (const bool cut : {false, true}) {
     const auto scene = load_scene(file, {.cut_blends = cut});
     ASSERT_TRUE(scene) << scene.error();
@@ -50,8 +47,7 @@ TEST(GltfNotes, WarningsAndErrorsStayShortForLongNamesAndUris) {
   nlohmann::json json = maker.json;
   json["buffers"] = {
       {{"byteLength", 36}, {"uri", "data:nonsense;base64," + std::string(2000000, 'A')}}};
-  const std::string text = json.dump();
-  const std::string data = refusal({text.begin(), text.end()});
+  const std::string data = refusal(text_bytes(json.dump()));
   EXPECT_LT(data.size(), 250u);
   EXPECT_THAT(data, testing::Not(HasSubstr("AAAA")));
   // The name consists of letters of two bytes, which must not be cut in the middle.

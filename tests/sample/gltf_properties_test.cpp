@@ -58,7 +58,7 @@ GltfMaker complete() {
        {{"bufferView", maker.view<uint16_t>({0})}, {"byteOffset", 0}, {"componentType", 5123}}},
       {"values", {{"bufferView", maker.view<float>({0, 0, 0})}, {"byteOffset", 0}}}};
   root["bufferViews"][0]["byteStride"] = 12;
-  maker.primitive()["indices"] = maker.accessor(maker.view<uint16_t>({0, 1, 2}), 5123, "SCALAR", 3);
+  maker.primitive()["indices"] = maker.add<uint16_t>("SCALAR", {0, 1, 2});
   maker.primitive()["mode"] = 4;
   maker.primitive()["targets"] = {json::object()};
   root["meshes"][0]["name"] = "triangle";
@@ -181,8 +181,7 @@ TEST(GltfProperties, WrongLengthAndUriOfABufferAreRefused) {
   const auto with = [&](const char* member, const json& value) {
     json root = json::parse(maker.gltf());
     root["buffers"][0][member] = value;
-    const std::string text = root.dump();
-    return refusal({text.begin(), text.end()});
+    return refusal(text_bytes(root.dump()));
   };
   EXPECT_THAT(with("byteLength", -1), HasSubstr("buffers[0].byteLength is -1"));
   EXPECT_THAT(with("byteLength", "36"), HasSubstr("buffers[0].byteLength is \"36\""));
@@ -243,14 +242,14 @@ TEST(GltfProperties, JsonNestedAMillionLevelsDeepIsRead) {
   const std::vector<uint8_t> gltf = maker.gltf();
   std::string text(gltf.begin(), gltf.end() - 1);
   text += ",\"extras\":" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}";
-  EXPECT_EQ(corners(parsed({text.begin(), text.end()})), corners(parsed(gltf)));
+  EXPECT_EQ(corners(parsed(text_bytes(text))), corners(parsed(gltf)));
 }
 
 TEST(GltfProperties, ErrorForDamagedJsonGivesTheBytePositionOfTheFault) {
   const std::string text = R"({"asset": {"version": "2.0"}, "nodes": [}])";
-  EXPECT_THAT(refusal({text.begin(), text.end()}), HasSubstr("cannot be read at byte 41"));
+  EXPECT_THAT(refusal(text_bytes(text)), HasSubstr("cannot be read at byte 41"));
   const std::string number = R"({"asset": {"version": "2.0"}, "scene": 1e999})";
-  EXPECT_THAT(refusal({number.begin(), number.end()}), HasSubstr("a number that is too large"));
+  EXPECT_THAT(refusal(text_bytes(number)), HasSubstr("a number that is too large"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <png.h>
+#include <zlib.h>
 
 #include <cstdio>  // jpeglib.h needs it first
 
@@ -89,29 +90,19 @@ inline std::vector<uint8_t> make_plain_png(uint32_t width, uint32_t height, uint
 
 // Returns a PNG whose header has this size and whose data are `padding` bytes of zeros.
 inline std::vector<uint8_t> make_png_promise(uint32_t width, uint32_t height, size_t padding) {
-  std::vector<uint8_t> out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13};
-  std::vector<uint8_t> header{'I', 'H', 'D', 'R'};
-  for (const uint32_t side : {width, height})
+  std::vector<uint8_t> out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  const auto add_word = [&](size_t value) {
     for (int shift = 24; shift >= 0; shift -= 8)
-      header.push_back(static_cast<uint8_t>(side >> shift));
-  header.insert(header.end(), {8, 0, 0, 0, 0});
-  uint32_t crc = 0xffffffffu;
-  for (const uint8_t byte : header) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) crc = crc & 1u ? crc >> 1 ^ 0xedb88320u : crc >> 1;
-  }
-  crc = ~crc;
-  out.insert(out.end(), header.begin(), header.end());
-  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<uint8_t>(crc >> shift));
-  const std::vector<uint8_t> data{static_cast<uint8_t>(padding >> 24),
-                                  static_cast<uint8_t>(padding >> 16),
-                                  static_cast<uint8_t>(padding >> 8),
-                                  static_cast<uint8_t>(padding),
-                                  'I',
-                                  'D',
-                                  'A',
-                                  'T'};
-  out.insert(out.end(), data.begin(), data.end());
+      out.push_back(static_cast<uint8_t>(value >> shift));
+  };
+  add_word(13);
+  out.insert(out.end(), {'I', 'H', 'D', 'R'});
+  add_word(width);
+  add_word(height);
+  out.insert(out.end(), {8, 0, 0, 0, 0});
+  add_word(crc32(0, &out[12], 17));
+  add_word(padding);
+  out.insert(out.end(), {'I', 'D', 'A', 'T'});
   out.resize(out.size() + padding + 4);
   return out;
 }

@@ -2,9 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "cli/open_session.h"
 #include "cli/options.h"
 #include "gltf_maker.h"
@@ -21,13 +18,8 @@ TEST(SceneNotes, OnlyTheFirstTwentyNotesOnASceneArePrinted) {
   for (int i = 100; i < 150; ++i)
     maker.json["extensionsUsed"].push_back("EXT_" + std::to_string(i));
   const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path / "notes.gltf";
-  const std::vector<uint8_t> bytes = maker.gltf();
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
   Options options;
-  options.scene = file.string();
+  options.scene = folder.write("notes.gltf", maker.gltf());
   testing::internal::CaptureStderr();
   EXPECT_TRUE(load_session(options));
   const std::string printed = testing::internal::GetCapturedStderr();
@@ -39,8 +31,7 @@ TEST(SceneNotes, OnlyTheFirstTwentyNotesOnASceneArePrinted) {
 // A masked triangle with vertex colours, and whether a ray meets it near its first corner.
 bool is_hit(const std::vector<uint8_t>& colors) {
   GltfMaker maker = GltfMaker::triangle();
-  const int view = maker.view<uint8_t>(colors);
-  maker.primitive()["attributes"]["COLOR_0"] = maker.accessor(view, 5121, "VEC4", 3, true);
+  maker.primitive()["attributes"]["COLOR_0"] = maker.add("VEC4", colors, true);
   maker.json["materials"] = {{{"alphaMode", "MASK"}}};
   maker.primitive()["material"] = 0;
   const Scene scene = parsed(maker.gltf());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <string>
 #include <vector>
@@ -88,12 +87,10 @@ class ModelMaker {
       low = glm::min(low, p);
       high = glm::max(high, p);
     }
-    const int positions =
-        gltf.accessor(gltf.view(values), 5126, "VEC3", triangles.positions.size());
+    const int positions = gltf.add("VEC3", values);
     gltf.json["accessors"].back()["min"] = {low.x, low.y, low.z};
     gltf.json["accessors"].back()["max"] = {high.x, high.y, high.z};
-    const int indices =
-        gltf.accessor(gltf.view(triangles.indices), 5125, "SCALAR", triangles.indices.size());
+    const int indices = gltf.add("SCALAR", triangles.indices);
     nlohmann::json primitive = {{"attributes", {{"POSITION", positions}}}, {"indices", indices}};
     if (!material.is_null()) {
       gltf.json["materials"].push_back(material);
@@ -116,12 +113,7 @@ class ModelMaker {
   }
 
   [[nodiscard]] std::string write(const TemporaryFolder& folder, const std::string& name) const {
-    const std::vector<uint8_t> bytes = gltf.glb();
-    const std::string file = (folder.path / (name + ".glb")).string();
-    std::ofstream(file, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-    return file;
+    return folder.write(name + ".glb", gltf.glb());
   }
 
   GltfMaker gltf;

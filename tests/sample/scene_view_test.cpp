@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "gltf_maker.h"
 #include "render/frame_renderer.h"
@@ -206,24 +205,19 @@ void drop(Window& window, const std::string& file) {
 }
 
 // Writes a triangle of 100 units around a point far from the origin.
-std::string write_large_triangle(const std::filesystem::path& folder) {
+std::string write_large_triangle(const TemporaryFolder& folder) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["materials"] = {{{"doubleSided", true}}};
   maker.primitive()["material"] = 0;
   maker.json["nodes"][0]["scale"] = {100, 100, 100};
   maker.json["nodes"][0]["translation"] = {4000, 0, 0};
-  const std::vector<uint8_t> bytes = maker.glb();
-  const std::string file = (folder / "dropped.glb").string();
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  return file;
+  return folder.write("dropped.glb", maker.glb());
 }
 
 TEST_F(ViewerWindowTest, FileDroppedOnTheWindowReplacesSceneCameraAndRadius) {
   draw(2);
   const float radius = view_->state().settings.radius;
-  drop(view_->window(), write_large_triangle(folder_.path));
+  drop(view_->window(), write_large_triangle(folder_));
   view_->show_panel(false);
   draw(1);
   EXPECT_EQ(view_->scene().name, "dropped");
@@ -233,7 +227,7 @@ TEST_F(ViewerWindowTest, FileDroppedOnTheWindowReplacesSceneCameraAndRadius) {
 }
 
 TEST_F(ViewerWindowTest, SceneMayBeReplacedWhileFramesAreInFlight) {
-  const std::string triangle = write_large_triangle(folder_.path);
+  const std::string triangle = write_large_triangle(folder_);
   for (int i = 0; i < 6; ++i) {
     view_->state().picture = i % 2 == 0 ? Picture::lit : Picture::visibility;
     draw(static_cast<std::uint32_t>(i));

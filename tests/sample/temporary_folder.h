@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
@@ -18,6 +19,12 @@ struct TemporaryFolder {
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path, ignored);
+  }
+  // Writes a file of text or bytes, and returns its path.
+  template <class Bytes>
+  std::string write(const std::string& name, const Bytes& bytes) const {
+    std::ofstream(path / name, std::ios::binary) << std::string(bytes.begin(), bytes.end());
+    return (path / name).string();
   }
   // The number of files and folders in it.
   std::ptrdiff_t files() const {
