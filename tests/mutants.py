@@ -4,8 +4,8 @@
   tests/mutants.py [--count 300] [--seed 1] [--build build/mutants] [--folders framegraph/src,...]
 
 A mutant is one source line with one fault: another operator, another constant, a condition that is always
-true or false, or a call that is left out. It is built, and the test programs run until one fails. A mutant
-that does not compile is replaced by the next one. The same seed gives the same mutants of the same sources.
+true or false, or a call that is left out. The test programs that the file reaches are built and run, quickest
+first, until one fails. A mutant that does not compile is replaced by the next one. The same seed gives the same mutants of the same sources.
 The tree must have no uncommitted changes; every file is restored. Prints a line for each mutant and the sum.
 """
 import argparse
@@ -17,9 +17,10 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = "framegraph/src,framegraph/verifier/src,passes/src,shaders/maths"
-# The test programs, quickest first.
-PROGRAMS = ["framegraph/framegraph_test", "maths/maths_test", "framegraph/framegraph_gpu_test",
-            "passes/passes_test", "passes/c_interface_test"]
+# The test programs, quickest first, and the folders whose faults they can see.
+PROGRAMS = {"framegraph/framegraph_test": "framegraph", "maths/maths_test": "shaders",
+            "framegraph/framegraph_gpu_test": "framegraph", "passes/passes_test": "",
+            "passes/c_interface_test": ""}
 OPERATORS = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > "), (" == ", " != "),
              (" != ", " == "), (" && ", " || "), (" || ", " && "), (" + ", " - "), (" - ", " + "),
              (" * ", " / "), (" / ", " * "), (" | ", " & "), ("++", "--"), ("min(", "max("), ("max(", "min(")]
@@ -31,7 +32,7 @@ def mutations(line):
              for old, new in OPERATORS for m in re.finditer(re.escape(old), line)]
     for m in re.finditer(r"(?<![\w.])(\d+)(\.\d+)?(?=[fu;,) \]])", line):
         found.append(line[:m.start(1)] + str(int(m.group(1)) + 1) + line[m.end(1):])
-    if m := re.match(r"(\s*(?:\} else )?if \()(.*)(\) \{\s*)$", line):
+    if m := re.match(r"(\s*(?:\} )?(?:else )?if \()(.*?)(\)(?: \{| return.*;)?\s*)$", line):
         found += [m.group(1) + value + m.group(3) for value in ("true", "false")]
     if re.match(r"\s+[\w.:>-]+\(.*\);\s*$", line) and "return" not in line:
         found.append(re.match(r"\s*", line).group() + ";\n")
@@ -60,14 +61,14 @@ def run(command, seconds):
         return 124
 
 
-def judge(build):
-    """Builds and tests the mutant: 'invalid', the name of the program that kills it, or 'SURVIVES'."""
-    names = [program.split("/")[1] for program in PROGRAMS]
-    if run(["ninja", "-C", build, *names], 1800) != 0:
-        return "invalid"
-    for program in PROGRAMS:
-        if run([f"{build}/tests/{program}", "--gtest_brief=1", "--gtest_fail_fast"], 900) != 0:
-            return program.split("/")[1]
+def judge(build, file):
+    """Builds and tests a mutant of the file: 'invalid', the name of the program that kills it, or 'SURVIVES'."""
+    for program, folder in PROGRAMS.items():
+        if not file or file.startswith(folder):
+            if run(["ninja", "-C", build, program.split("/")[1]], 1800) != 0:
+                return "invalid"
+            if run([f"{build}/tests/{program}", "--gtest_brief=1", "--gtest_fail_fast"], 900) != 0:
+                return program.split("/")[1]
     return "SURVIVES"
 
 
@@ -81,7 +82,7 @@ def main():
     if subprocess.run(["git", "diff", "--quiet", "HEAD"], cwd=ROOT).returncode != 0:
         sys.exit("mutants: the tree has uncommitted changes; commit them first")
     build = str(ROOT / given.build)
-    if run(["cmake", "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"], 300) != 0 or judge(build) != "SURVIVES":
+    if run(["cmake", "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"], 300) != 0 or judge(build, "") != "SURVIVES":
         sys.exit(f"mutants: {given.build} cannot be built, or its tests fail without a mutant")
     every = candidates(given.folders.split(","))
     random.Random(given.seed).shuffle(every)
@@ -94,7 +95,7 @@ def main():
         was, lines[number] = lines[number].strip(), text
         try:
             path.write_text("".join(lines))
-            verdict = judge(build)
+            verdict = judge(build, str(path.relative_to(ROOT)))
         finally:
             path.write_text(original)
         if verdict != "invalid":
