@@ -68,6 +68,30 @@ TEST_F(ExecutorTest, CulledWriteOfAMipIsNotUsedThoughThePassReadsAnotherMip) {
   EXPECT_EQ(calls, 1);
 }
 
+TEST_F(ExecutorTest, CulledWriteOfStencilIsNotUsedThoughThePassReadsDepth) {
+  Executor executor = make({.check_uses = true});
+  Graph graph;
+  Texture texture =
+      graph.create_texture("t", {VK_FORMAT_D32_SFLOAT_S8_UINT, Extent::absolute(4, 4)});
+  PassBuilder draw = graph.add_pass("draw");
+  texture = draw.write(texture, access::depth_attachment);
+  draw.record([](RecordContext&) {});
+  PassBuilder mask = graph.add_pass("mask");
+  mask.read(texture, access::depth_read_fragment, Range::depth());
+  texture = mask.write_optional(texture, access::stencil_attachment, Range::stencil());
+  mask.side_effect();
+  int calls = 0;
+  mask.record([&calls, texture](RecordContext& c) {
+    ++calls;
+    EXPECT_TRUE(c.is_used(texture, Range::depth()));
+    EXPECT_FALSE(c.is_used(texture, Range::stencil()));
+    EXPECT_TRUE(c.is_used(texture));
+  });
+  const auto report = gpu_.run(executor, graph);
+  ASSERT_TRUE(report) << to_string(report.error());
+  EXPECT_EQ(calls, 1);
+}
+
 // A fill of a whole buffer, a copy from its first half, and a copy to its second half, which
 // nothing has read since the fill.
 TEST_F(ExecutorTest, WriteOfAPartOfABufferFollowsTheFillOfTheWholeAndTheReadOfAnotherPart) {

@@ -435,5 +435,60 @@ TEST_F(Validate, ImportWrittenByAVulkanExtensionStageGetsABarrierBeforeItsReader
   }
 }
 
+TEST_F(Validate, QueuesRefuseEachStageThatTheyCannotRun) {
+  constexpr VkPipelineStageFlags2 kGraphics[] = {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
+                                                 VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                                 VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
+                                                 VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                                                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                                 VK_PIPELINE_STAGE_2_BLIT_BIT,
+                                                 VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT,
+                                                 VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT};
+  constexpr VkPipelineStageFlags2 kCompute[] = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                                VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                                                VK_PIPELINE_STAGE_2_CLEAR_BIT};
+  const auto is_refused = [&](VkPipelineStageFlags2 stage, QueueClass queue) {
+    graph_.reset();
+    const Buffer buffer =
+        pass("writer").write(graph_.create_buffer("b", {64}), buffer_access::storage_write_compute);
+    pass("reader", queue).read(buffer, {stage, VK_ACCESS_2_MEMORY_READ_BIT});
+    return !compile(graph_);
+  };
+  for (const VkPipelineStageFlags2 stage : kGraphics) {
+    EXPECT_FALSE(is_refused(stage, QueueClass::graphics)) << stage;
+    EXPECT_TRUE(is_refused(stage, QueueClass::compute)) << stage;
+    EXPECT_TRUE(is_refused(stage, QueueClass::transfer)) << stage;
+  }
+  for (const VkPipelineStageFlags2 stage : kCompute) {
+    EXPECT_FALSE(is_refused(stage, QueueClass::compute)) << stage;
+    EXPECT_TRUE(is_refused(stage, QueueClass::transfer)) << stage;
+  }
+}
+
+TEST_F(Validate, ImageAtTheDevicesLimitsIsAcceptedAndBeyondEachOfThemRefused) {
+  const ImageLimits most{.extent = {8, 8, 1}, .mips = 3, .layers = 2, .samples = 1};
+  Texture texture = graph_.create_texture("t", {kDesc.format, Extent::absolute(8, 8), 3, 2});
+  texture = pass("writer").write(texture, access::storage_write_compute);
+  ImageLimits allowed = most;
+  Limits limits;
+  limits.images = {[](const void* context, const ResourceRecord&, VkFlags) {
+                     return *static_cast<const ImageLimits*>(context);
+                   },
+                   &allowed};
+  EXPECT_TRUE(compile(graph_, limits));
+  for (const auto& [change, text] :
+       {std::pair<void (*)(ImageLimits&), const char*>{[](ImageLimits& l) { l.mips = 2; },
+                                                       "at most 2 mips for it, not 3"},
+        {[](ImageLimits& l) { l.layers = 1; }, "at most 1 layers for it, not 2"},
+        {[](ImageLimits& l) { l.extent.width = 7; }, "at most 7 texels of width for it, not 8"},
+        {[](ImageLimits& l) { l.extent.height = 7; }, "at most 7 texels of height for it, not 8"},
+        {[](ImageLimits& l) { l.extent.depth = 0; }, "at most 0 slices for it, not 1"},
+        {[](ImageLimits& l) { l.samples = 0; }, "the device does not support it"}}) {
+    allowed = most;
+    change(allowed);
+    expect(ErrorCode::unsupported_format, text, limits);
+  }
+}
+
 }  // namespace
 }  // namespace alcove::framegraph
