@@ -20,7 +20,7 @@ FOLDERS = "framegraph/src,framegraph/verifier/src,passes/src,shaders/maths"
 # The test programs, quickest first, and the folders whose faults they can see.
 PROGRAMS = {"framegraph/framegraph_test": "framegraph", "maths/maths_test": "shaders",
             "framegraph/framegraph_gpu_test": "framegraph", "passes/passes_test": "",
-            "passes/c_interface_test": "", "sample/mistakes_test": "passes/src/diagnose"}
+            "passes/c_interface_test": "", "host/mistakes_test": "passes/src/diagnose"}
 OPERATORS = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > "), (" == ", " != "),
              (" != ", " == "), (" && ", " || "), (" || ", " && "), (" + ", " - "), (" - ", " + "),
              (" * ", " / "), (" / ", " * "), (" | ", " & "), ("++", "--"), ("min(", "max("), ("max(", "min(")]
