@@ -275,7 +275,7 @@ Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline
   }
   get_texts(device, &executable, &count, texts.data());
   for (std::uint32_t i = 0; i < count; ++i)
-    shader.texts[texts[i].name] = contents[i].c_str();  // up to the null terminator
+    shader.texts[texts[i].name] = contents[i].substr(0, contents[i].find('\0'));
   return shader;
 }
 
