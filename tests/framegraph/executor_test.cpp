@@ -44,54 +44,6 @@ TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
   EXPECT_EQ(*static_cast<const std::uint32_t*>(host.mapped), 8u);
 }
 
-// The pass always reads mip 0. Nobody reads mip 1, which it could write.
-TEST_F(ExecutorTest, CulledWriteOfAMipIsNotUsedThoughThePassReadsAnotherMip) {
-  Executor executor = make({.check_uses = true});
-  Graph graph;
-  Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4), 2});
-  PassBuilder clear = graph.add_pass("clear");
-  texture = clear.write(texture, access::clear, Range::mip(0));
-  clear.record([=](RecordContext& c) { clear_image(c, c.image(texture), 1); });
-  PassBuilder reduce = graph.add_pass("reduce");
-  reduce.read(texture, access::sampled_general_compute, Range::mip(0));
-  texture = reduce.write_optional(texture, access::storage_write_compute, Range::mip(1));
-  reduce.side_effect();
-  int calls = 0;
-  reduce.record([&calls, texture](RecordContext& c) {
-    ++calls;
-    EXPECT_TRUE(c.is_used(texture, Range::mip(0)));
-    EXPECT_FALSE(c.is_used(texture, Range::mip(1)));
-    EXPECT_TRUE(c.is_used(texture));
-  });
-  const auto report = gpu_.run(executor, graph);
-  ASSERT_TRUE(report) << to_string(report.error());
-  EXPECT_EQ(calls, 1);
-}
-
-TEST_F(ExecutorTest, CulledWriteOfStencilIsNotUsedThoughThePassReadsDepth) {
-  Executor executor = make({.check_uses = true});
-  Graph graph;
-  Texture texture =
-      graph.create_texture("t", {VK_FORMAT_D32_SFLOAT_S8_UINT, Extent::absolute(4, 4)});
-  PassBuilder draw = graph.add_pass("draw");
-  texture = draw.write(texture, access::depth_attachment);
-  draw.record([](RecordContext&) {});
-  PassBuilder mask = graph.add_pass("mask");
-  mask.read(texture, access::depth_read_fragment, Range::depth());
-  texture = mask.write_optional(texture, access::stencil_attachment, Range::stencil());
-  mask.side_effect();
-  int calls = 0;
-  mask.record([&calls, texture](RecordContext& c) {
-    ++calls;
-    EXPECT_TRUE(c.is_used(texture, Range::depth()));
-    EXPECT_FALSE(c.is_used(texture, Range::stencil()));
-    EXPECT_TRUE(c.is_used(texture));
-  });
-  const auto report = gpu_.run(executor, graph);
-  ASSERT_TRUE(report) << to_string(report.error());
-  EXPECT_EQ(calls, 1);
-}
-
 // A fill of a whole buffer, a copy from its first half, and a copy to its second half, which
 // nothing has read since the fill.
 TEST_F(ExecutorTest, WriteOfAPartOfABufferFollowsTheFillOfTheWholeAndTheReadOfAnotherPart) {

@@ -458,12 +458,12 @@ TEST_P(CompiledPresets, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPer
   struct PackedEncoding {
     const char* name;
     NormalEncoding encoding;
-    double most;  // instructions per pixel, a little above the measured ones
+    std::array<double, 2> most;  // instructions per pixel by GPU, a little above the measured ones
   };
   constexpr PackedEncoding kPacked[] = {
-      {"unsigned xyz", NormalEncoding::unsigned_xyz, 4.5},
-      {"octahedral", NormalEncoding::octahedral, 13.0},
-      {"unsigned octahedral", NormalEncoding::unsigned_octahedral, 16.0}};
+      {"unsigned xyz", NormalEncoding::unsigned_xyz, {4.5, 1.2}},
+      {"octahedral", NormalEncoding::octahedral, {13.0, 3.2}},
+      {"unsigned octahedral", NormalEncoding::unsigned_octahedral, {16.0, 4.0}}};
   CostInputs inputs;
   inputs.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
   inputs.settings.bent_normal = !part_.rdna;
@@ -475,7 +475,7 @@ TEST_P(CompiledPresets, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPer
     ASSERT_TRUE(found) << found.error();
     std::printf("%s: %.1f instructions per pixel more than %.1f\n", packed.name, *found - *plain,
                 *plain);
-    EXPECT_LE(*found - *plain, packed.most) << packed.name;
+    EXPECT_LE(*found - *plain, packed.most.at(GetParam())) << packed.name;
     EXPECT_GT(*found, *plain) << packed.name;
   }
 }

@@ -84,16 +84,16 @@ struct TimedPair {
 // are a confidence interval of 97 % for the median.
 inline constexpr std::uint32_t kDecidingPairs = 21;
 
-// What a variant achieves in a view: a row of the tables of `ablate`, `bench` and `recommend`.
+// The errors, the cost and the time of a variant in a view: a row of the tables of `ablate`,
+// `bench` and `recommend`.
 struct Measurement {
   Variant variant;
   ErrorSummary scene;         // of visibility against ray-traced truth
   ErrorSummary height_field;  // against brute force on the same depth buffer
   VariantCost cost;           // relative to the first row
-  // Of the occlusion passes of a frame, by the clock of the measurement.
-  double time_ms = 0;
-  double spread_ms = 0;     // of that time; 0 if it is modelled
-  double processor_ms = 0;  // processor time of all threads; 0 if it was not measured
+  double time_ms = 0;         // of the occlusion passes of a frame, by the chosen clock
+  double spread_ms = 0;       // of that time; 0 if it is modelled
+  double processor_ms = 0;    // processor time of all threads; 0 if it was not measured
 };
 
 // The clock of a measurement's times, and the model if it is `modelled`.
