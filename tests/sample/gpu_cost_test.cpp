@@ -462,8 +462,8 @@ TEST_P(CompiledPresets, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPer
   };
   constexpr PackedEncoding kPacked[] = {
       {"unsigned xyz", NormalEncoding::unsigned_xyz, {4.5, 1.2}},
-      {"octahedral", NormalEncoding::octahedral, {13.0, 3.2}},
-      {"unsigned octahedral", NormalEncoding::unsigned_octahedral, {16.0, 4.0}}};
+      {"octahedral", NormalEncoding::octahedral, {13.0, 2.8}},
+      {"unsigned octahedral", NormalEncoding::unsigned_octahedral, {16.0, 3.5}}};
   CostInputs inputs;
   inputs.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
   inputs.settings.bent_normal = !part_.rdna;
