@@ -30,17 +30,16 @@ constexpr std::uint32_t kView = bits({Command::view});
 constexpr std::uint32_t kCompare = bits({Command::compare});
 constexpr std::uint32_t kRecommend = bits({Command::recommend});
 constexpr std::uint32_t kGraph = bits({Command::graph});
-constexpr std::uint32_t kDoctor = bits({Command::doctor});
 constexpr std::uint32_t kMotion = bits({Command::motion});
 constexpr std::uint32_t kAblate = bits({Command::ablate});
 constexpr std::uint32_t kBench = bits({Command::bench});
 constexpr std::uint32_t kCost = bits({Command::cost});
 constexpr std::uint32_t kMeasure = bits({Command::measure});
 constexpr std::uint32_t kReport = bits({Command::report});
-constexpr std::uint32_t kAll = kRender | kView | kCompare | kRecommend | kGraph | kDoctor |
-                               kMotion | kAblate | kBench | kCost | kMeasure | kReport;
+// All but `doctor`, which has no options.
+constexpr std::uint32_t kAll = kRender | kView | kCompare | kRecommend | kGraph | kMotion |
+                               kAblate | kBench | kCost | kMeasure | kReport;
 constexpr std::uint32_t kOnDevice = kAll & ~kCost;
-constexpr std::uint32_t kWithSettings = kAll & ~kDoctor;
 constexpr std::uint32_t kStatic = kRecommend | kAblate | kBench | kReport;  // a static camera
 constexpr std::uint32_t kWithTruth = kStatic | kCompare | kMotion;
 
@@ -123,16 +122,6 @@ std::span<const OptionRow> option_rows() {
       {kOnDevice, kOptions, "--both-sides", nullptr,
        "draw the back faces of single-sided materials. Default: they are culled, as glTF specifies",
        [](O& o, const V&) { o.materials.both_sides = true; }},
-      {kDoctor, kOptions, "--mistakes", nullptr,
-       "draw the built-in scene with each of the usual mistakes of integration, and print what "
-       "alcoveDiagnose reports",
-       [](O& o, const V&) { o.mistakes = true; }},
-      {kDoctor, kOptions, "--pictures", "FOLDER",
-       "implies --mistakes; write a picture without mistakes and one with each mistake",
-       [](O& o, const V& v) {
-         o.pictures = v.text;
-         o.mistakes = true;
-       }},
       {kRecommend, kOptions, "--budget-ms", "MS",
        "find the setting with the smallest error whose occlusion passes take at most this time",
        [](O& o, const V& v) {
@@ -291,7 +280,7 @@ std::span<const OptionRow> option_rows() {
              static_cast<float>(v.number(-360.0, 360.0, "an angle in degrees, -360 to 360")));
        }},
 
-      {kWithSettings, kOcclusion, "--quality", "NAME", quality.c_str(),
+      {kAll, kOcclusion, "--quality", "NAME", quality.c_str(),
        [](O& o, const V& v) {
          o.occlusion.quality =
              static_cast<passes::Quality>(v.one_of(passes::kNames<passes::Quality>));
@@ -302,13 +291,13 @@ std::span<const OptionRow> option_rows() {
        "view "
        "shows; the program prints it and why",
        [](O& o, const V& v) { o.occlusion.radius = v.length(); }},
-      {kWithSettings, kOcclusion, "--settings", "FILE",
+      {kAll, kOcclusion, "--settings", "FILE",
        "settings that `alcove recommend --out` wrote. --set changes them further",
        read_settings_file},
-      {kWithSettings, kOcclusion, "--set", "NAME=VALUE",
+      {kAll, kOcclusion, "--set", "NAME=VALUE",
        "changes one setting of the preset; the settings are listed below. May be repeated",
        read_setting, true},
-      {kWithSettings, kOcclusion, "--normals", "NAME",
+      {kAll, kOcclusion, "--normals", "NAME",
        "normals that the occlusion pass and the truths use: shading (from vertices and normal "
        "maps), geometric (of the triangles) or depth (reconstructed from the depth buffer). "
        "Default: shading",

@@ -39,10 +39,8 @@ constexpr std::array<CommandRow, 12> kCommands{{
      "find the most accurate setting within a time, or the fastest within an error", Scenes::one,
      480, 270, kHistory, 64},
     {Command::graph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory"},
-    {Command::doctor, kUse, "doctor",
-     "list the Vulkan devices and the features that they lack, or check a scene with "
-     "alcoveDiagnose",
-     Scenes::one, 320, 180},
+    {Command::doctor, kUse, "doctor", "list the Vulkan devices and the features that they lack",
+     Scenes::none},
     {Command::motion, kLaboratory, "motion",
      "measure errors and flicker while the camera or an object moves", Scenes::one, 960, 540, 48},
     {Command::ablate, kLaboratory, "ablate",

@@ -107,8 +107,6 @@ struct Options {
   CostOptions cost;
   // measure: sizes of the image in pixels
   std::vector<std::pair<uint32_t, uint32_t>> sizes{{1920, 1080}, {3840, 2160}, {7680, 4320}};
-  bool mistakes = false;           // doctor: draws the built-in scene with planted mistakes
-  std::filesystem::path pictures;  // doctor: folder for pictures of the mistakes; empty for none
   bool grid = false;  // bench: measures the grid of steps and slices instead of the presets
   GraphFormat graph_format = GraphFormat::text;
   int device = -1;

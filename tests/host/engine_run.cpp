@@ -1,4 +1,4 @@
-#include "evaluate/engine_run.h"
+#include "engine_run.h"
 
 #include <algorithm>
 #include <array>

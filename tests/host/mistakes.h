@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/engine_run.h"
+#include "engine_run.h"
 #include "support/result.h"
 
 namespace alcove::sample {
@@ -13,10 +13,10 @@ namespace alcove::sample {
 // A mistake that engines make when they call Alcove.
 struct PlantedMistake {
   const char* name;
-  const char* sentence;      // part of the only sentence of alcoveDiagnose, or of the refused call
-  ChangeFrame plant;         // makes the mistake in a frame; null for a late submission
-  const char* picture = "";  // name of the file in the table of passes/INTEGRATION.md, if any
-  bool reversed = false;     // in frames with a reversed depth buffer and an infinite far plane
+  const char* sentence;  // part of the only sentence of alcoveDiagnose, or of the refused call
+  ChangeFrame plant;     // makes the mistake in a frame; null for a late submission
+  const char* table_name = "";  // in the table of passes/INTEGRATION.md, if it has a row there
+  bool reversed = false;        // in frames with a reversed depth buffer and an infinite far plane
 };
 
 [[nodiscard]] const std::vector<PlantedMistake>& planted_mistakes();

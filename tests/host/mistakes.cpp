@@ -1,4 +1,4 @@
-#include "evaluate/mistakes.h"
+#include "mistakes.h"
 
 #include <algorithm>
 #include <cmath>
