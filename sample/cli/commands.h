@@ -12,8 +12,6 @@ namespace alcove::sample {
 [[nodiscard]] Result<void> run_render(const Options& options);
 [[nodiscard]] Result<void> run_compare(const Options& options);
 [[nodiscard]] Result<void> run_motion(const Options& options);
-[[nodiscard]] Result<void> run_ablate(const Options& options);
-[[nodiscard]] Result<void> run_bench(const Options& options);
 [[nodiscard]] Result<void> run_recommend(const Options& options);
 [[nodiscard]] Result<void> run_cost(const Options& options);
 [[nodiscard]] Result<void> run_measure(const Options& options);

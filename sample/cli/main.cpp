@@ -34,10 +34,6 @@ Result<void> run(const Options& options) {
       return alcove::sample::run_doctor(options);
     case Command::motion:
       return alcove::sample::run_motion(options);
-    case Command::ablate:
-      return alcove::sample::run_ablate(options);
-    case Command::bench:
-      return alcove::sample::run_bench(options);
     case Command::cost:
       return alcove::sample::run_cost(options);
     case Command::measure:

@@ -1,5 +1,7 @@
 #include "cli/open_session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -83,12 +85,27 @@ StaticSetup static_setup(const Options& options, const Camera& camera) {
           options.occlusion.normals};
 }
 
-Result<ModelledTimes> modelled_times(const Options& options) {
-  return ModelledTimes::create(*options.gpu,
-                               {.width = options.target_width,
-                                .height = options.target_height,
-                                .normals = options.occlusion.normals != NormalSource::depth},
-                               options.use_cache);
+Result<SettingTimes> setting_times(const Options& options, const Session& session) {
+  if (options.clock == Clock::modelled) {
+    return modelled_times(*options.gpu,
+                          {.width = options.target_width,
+                           .height = options.target_height,
+                           .normals = options.occlusion.normals != NormalSource::depth},
+                          options.use_cache);
+  }
+  StaticSetup setup = static_setup(options, session.camera);
+  setup.width = options.target_width;
+  setup.height = options.target_height;
+  return measured_times(session, setup, options.clock);
+}
+
+std::string clock_text(const Options& options, const Session& session) {
+  const std::string size = fmt::format("{}x{}", options.target_width, options.target_height);
+  if (options.clock == Clock::modelled)
+    return fmt::format("modelled time at {} on {}", size, options.gpu->title);
+  return fmt::format("{} time at {} on {}",
+                     options.clock == Clock::timestamps ? "GPU" : "processor", size,
+                     session.gpu->device().properties().deviceName);
 }
 
 TruthOptions truth_options(const Options& options) {

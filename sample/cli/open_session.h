@@ -6,8 +6,8 @@
 
 #include "cli/options.h"
 #include "evaluate/situations.h"
+#include "evaluate/static_view.h"
 #include "evaluate/truths.h"
-#include "evaluate/variant.h"
 #include "render/rendering.h"
 #include "render/session.h"
 #include "support/result.h"
@@ -30,8 +30,11 @@ namespace alcove::sample {
 // The static view of `camera` with the options' size, frames and normals.
 [[nodiscard]] StaticSetup static_setup(const Options& options, const Camera& camera);
 
-// The modelled times on the options' GPU at the size for which they are wanted.
-[[nodiscard]] Result<ModelledTimes> modelled_times(const Options& options);
+// The times by the options' clock at the size for which they are wanted. Borrows the session.
+[[nodiscard]] Result<SettingTimes> setting_times(const Options& options, const Session& session);
+
+// Their clock, and the size of the images that are timed.
+[[nodiscard]] std::string clock_text(const Options& options, const Session& session);
 
 [[nodiscard]] TruthOptions truth_options(const Options& options);
 

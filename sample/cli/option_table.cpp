@@ -31,16 +31,14 @@ constexpr std::uint32_t kCompare = bits({Command::compare});
 constexpr std::uint32_t kRecommend = bits({Command::recommend});
 constexpr std::uint32_t kGraph = bits({Command::graph});
 constexpr std::uint32_t kMotion = bits({Command::motion});
-constexpr std::uint32_t kAblate = bits({Command::ablate});
-constexpr std::uint32_t kBench = bits({Command::bench});
 constexpr std::uint32_t kCost = bits({Command::cost});
 constexpr std::uint32_t kMeasure = bits({Command::measure});
 constexpr std::uint32_t kReport = bits({Command::report});
 // All but `doctor`, which has no options.
-constexpr std::uint32_t kAll = kRender | kView | kCompare | kRecommend | kGraph | kMotion |
-                               kAblate | kBench | kCost | kMeasure | kReport;
+constexpr std::uint32_t kAll =
+    kRender | kView | kCompare | kRecommend | kGraph | kMotion | kCost | kMeasure | kReport;
 constexpr std::uint32_t kOnDevice = kAll & ~kCost;
-constexpr std::uint32_t kStatic = kRecommend | kAblate | kBench | kReport;  // a static camera
+constexpr std::uint32_t kStatic = kRecommend | kReport;  // a static camera
 constexpr std::uint32_t kWithTruth = kStatic | kCompare | kMotion;
 
 constexpr const char* kOptions = "Options";
@@ -136,28 +134,17 @@ std::span<const OptionRow> option_rows() {
        "or mix. Default: mix, in which the moving camera counts 60 %, the standing 30 % and the "
        "first frame 10 %",
        [](O& o, const V& v) { o.situation = v.one_of_or<Situation>(kSituationNames, "mix"); }},
-      {kRecommend, kOptions, "--exhaustive", nullptr,
-       "also measure each number of samples with and without a second depth layer, and compare the "
-       "best of them with the result. Takes minutes",
-       [](O& o, const V&) { o.exhaustive = true; }},
       {kRecommend, kOptions, "--out", "FILE", "also write the settings, for --settings",
        [](O& o, const V& v) { o.settings_out = v.text; }},
-      {kBench, kOptions, "--grid", nullptr,
-       "instead of the usual table, print the errors with 8 to 64 steps and 1 to 8 slices. All "
-       "other settings are those of --quality and --set. Times are not measured",
-       [](O& o, const V&) { o.grid = true; }},
       {kRecommend | kReport, kOptions, "--target-size", "WxH",
        "size of the image whose time counts; errors are measured at --size. Default: 1920x1080",
        [](O& o, const V& v) { std::tie(o.target_width, o.target_height) = v.size(); }},
       {kStatic, kOptions, "--gpu", "NAME",
        "the GPU whose time is modelled: ps4 (PS4-like) or rdna2. Default: rdna2",
        [](O& o, const V& v) { o.gpu = &kGpuParts[v.one_of(kGpuNames)]; }},
-      {kRecommend | kAblate | kBench, kOptions, "--clock", "NAME",
-       "which time is compared: modelled (time on --gpu by the cost model, the same in every run), "
-       "timestamps (GPU time of the device) or processor (time of all threads). Default: "
-       "timestamps "
-       "on a GPU; on a software device, and for `recommend`, modelled, or processor if the driver "
-       "for the model is not installed",
+      {kStatic, kOptions, "--clock", "NAME",
+       "which time counts: modelled (time on --gpu by the cost model, the same in every run), "
+       "timestamps (GPU time of the device) or processor (time of all threads). Default: modelled",
        [](O& o, const V& v) { o.clock = static_cast<Clock>(v.one_of(kClockNames)); }},
       {kMeasure, kOptions, "--sizes", "WxH,...",
        "sizes of the image in pixels. Default: 1920x1080,3840x2160,7680x4320",
@@ -191,7 +178,7 @@ std::span<const OptionRow> option_rows() {
       {kWithTruth, kOptions, "--no-cache", nullptr,
        "compute the truths again instead of reading them from the cache on disk",
        [](O& o, const V&) { o.use_cache = false; }},
-      {kRender | kCompare | kMotion | kAblate | kBench | kMeasure | kReport, kOptions, "--out",
+      {kRender | kCompare | kMotion | kMeasure | kReport, kOptions, "--out",
        "DIR", "folder for images and report.json. Default: out", read_out},
       {kView, kOptions, "--out", "DIR",
        "folder for screenshots. Default: the current folder. If given, the last frame of --frames "

@@ -28,7 +28,7 @@ struct CommandRow {
 };
 
 constexpr std::uint32_t kHistory = 32;  // frames that the history averages
-constexpr std::array<CommandRow, 12> kCommands{{
+constexpr std::array<CommandRow, 10> kCommands{{
     {Command::render, kUse, "render", "render a scene to occlusion images and print timings"},
     {Command::view, kUse, "view",
      "open a window to orbit a scene, change settings and see their cost", Scenes::one, 960, 540,
@@ -43,12 +43,6 @@ constexpr std::array<CommandRow, 12> kCommands{{
      Scenes::none},
     {Command::motion, kLaboratory, "motion",
      "measure errors and flicker while the camera or an object moves", Scenes::one, 960, 540, 48},
-    {Command::ablate, kLaboratory, "ablate",
-     "change one part of the occlusion at a time and print its cost and error", Scenes::one, 960,
-     540, kHistory},
-    {Command::bench, kLaboratory, "bench",
-     "measure time and error of many settings, and write a table, a plot and JSON", Scenes::many,
-     960, 540, kHistory},
     {Command::cost, kLaboratory, "cost",
      "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
      Scenes::none, 1920, 1080},
@@ -148,7 +142,6 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "  alcove render scene.gltf --camera hall --out out\n"
       "  alcove compare groove:60 --radius 1\n"
       "  alcove motion scene.gltf --path strafe\n"
-      "  alcove ablate scene.gltf --quality high\n"
       "  alcove recommend scene.gltf --tolerance 0.05\n"
       "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality high",
       "alcove");

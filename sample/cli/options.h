@@ -12,9 +12,8 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "evaluate/clock.h"
 #include "evaluate/motion_paths.h"
-#include "evaluate/recommendation.h"
+#include "evaluate/situations.h"
 #include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"
@@ -33,8 +32,6 @@ enum class Command {
   doctor,
   // The laboratory.
   motion,
-  ablate,
-  bench,
   cost,
   measure,
   report
@@ -84,7 +81,7 @@ struct CostOptions {
 struct Options {
   Command command = Command::render;
   std::string scene;                // empty: the built-in one
-  std::vector<std::string> scenes;  // bench: any number, each as `scene`
+  std::vector<std::string> scenes;  // report: any number, each as `scene`
   MaterialTreatment materials;
   std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
   bool split = false;                 // compare: also splits the error into its causes
@@ -97,17 +94,15 @@ struct Options {
   // one of them is given.
   std::optional<double> budget_ms, tolerance;
   std::optional<Situation> situation;  // recommend: empty for a mix of all
-  uint32_t target_width = 1920;        // recommend: of the image whose time is modelled, pixels
+  uint32_t target_width = 1920;        // recommend: of the image whose time counts, pixels
   uint32_t target_height = 1080;
   const GpuPart* gpu = &kGpuParts[1];  // the modelled one; null for all (cost)
-  bool exhaustive = false;             // recommend: also measures all settings of measure_all()
   std::filesystem::path settings_out;  // recommend: empty for none
-  std::optional<Clock> clock;          // bench, recommend: empty for the clock that fits the device
+  Clock clock = Clock::modelled;       // recommend, report
   std::optional<MotionKind> path;      // motion: empty for all paths
   CostOptions cost;
   // measure: sizes of the image in pixels
   std::vector<std::pair<uint32_t, uint32_t>> sizes{{1920, 1080}, {3840, 2160}, {7680, 4320}};
-  bool grid = false;  // bench: measures the grid of steps and slices instead of the presets
   GraphFormat graph_format = GraphFormat::text;
   int device = -1;
   bool validation = false;

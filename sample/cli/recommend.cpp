@@ -8,9 +8,7 @@
 #include "cli/render_command.h"
 #include "evaluate/output_needs.h"
 #include "evaluate/situations.h"
-#include "evaluate/trade.h"
 #include "render/settings_json.h"
-#include "support/mib.h"
 #include "support/progress.h"
 #include "support/result.h"
 #include "support/whole_file.h"
@@ -19,28 +17,6 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-
-std::string point_text(const Measurement& point) {
-  return fmt::format("{}: RMSE {:.4f} in {:.3f} ms, {:.1f} MiB", point.variant.name,
-                     point.scene.rmse, point.time_ms, mib(point.cost.bytes));
-}
-
-// Prints the next faster and the next more accurate point of the Pareto front.
-void print_neighbours(const Trade& trade, const Measurement& chosen) {
-  const auto own = static_cast<std::size_t>(&chosen - trade.points.data());
-  for (std::size_t i = own; i-- > 0;) {
-    if (trade.on_pareto_front[i]) {
-      std::cout << "  faster:         " << point_text(trade.points[i]) << "\n";
-      break;
-    }
-  }
-  for (std::size_t i = own + 1; i < trade.points.size(); ++i) {
-    if (trade.on_pareto_front[i]) {
-      std::cout << "  more accurate:  " << point_text(trade.points[i]) << "\n";
-      break;
-    }
-  }
-}
 
 SituationWeights chosen_weights(const Options& options) {
   if (!options.situation) return kMixedWeights;
@@ -132,28 +108,12 @@ std::string unmet_message(const RecommendationGoal& goal, const std::string& clo
                    *goal.tolerance, closest);
 }
 
-// Measures all settings of measure_all(), and prints them and the best of them.
-Result<void> compare_with_all(const passes::OcclusionSettings& base, const RecommendationGoal& goal,
-                              const RecommendationWorld& world, const Achievement& chosen) {
-  ALCOVE_TRY(const auto all, measure_all(base, world));
-  const Achievement* best = nullptr;
-  std::cout << fmt::format("  all settings: {:47}RMSE       ms\n", "");
-  for (const Achievement& one : all) {
-    std::cout << fmt::format("    {:56} {:.4f} {:.4f}\n", samples_text(one.settings),
-                             goal.rmse(one), goal.ms(one));
-    best = best == nullptr || goal.prefers(one, *best) ? &one : best;
-  }
-  std::cout << fmt::format(
-      "  the best of them: {}: RMSE {:.4f} in {:.4f} ms; the search's has {:+.1f} % error and "
-      "{:+.1f} % time\n",
-      samples_text(best->settings), goal.rmse(*best), goal.ms(*best),
-      100.0 * (goal.rmse(chosen) / goal.rmse(*best) - 1.0),
-      100.0 * (goal.ms(chosen) / goal.ms(*best) - 1.0));
-  return {};
-}
+}  // namespace
 
-Result<void> recommend_by_model(const Options& options, const Session& session,
-                                const ModelledTimes& times, const RecommendationGoal& goal) {
+Result<void> run_recommend(const Options& options) {
+  ALCOVE_TRY(const Session session, open_session(options));
+  const RecommendationGoal goal{options.budget_ms, options.tolerance, chosen_weights(options)};
+  ALCOVE_TRY(const auto times, setting_times(options, session));
   ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(options, session.camera),
                                                   truth_options(options)));
   constexpr double kExpected = 60;  // calls; their number depends on what they find
@@ -184,51 +144,10 @@ Result<void> recommend_by_model(const Options& options, const Session& session,
   for (const std::string& need : needs) std::cout << "  " << need << "\n";
   std::cout << std::flush;
   check_other_views(options, session, goal, chosen);
-  if (options.exhaustive) ALCOVE_TRY_VOID(compare_with_all(session.settings, goal, world, chosen));
-  std::cout << fmt::format(
-      "RMSE of visibility against ray-traced truth at {}x{}; modelled time at {}x{} on {}\n{}\n",
-      options.view.width, options.view.height, options.target_width, options.target_height,
-      options.gpu->title, render_line(options, session, chosen.settings));
+  std::cout << fmt::format("RMSE of visibility against ray-traced truth at {}x{}; {}\n{}\n",
+                           options.view.width, options.view.height, clock_text(options, session),
+                           render_line(options, session, chosen.settings));
   return write_settings(options, chosen.settings);
-}
-
-// Chooses among numbers of samples by times that are measured on the device.
-Result<void> recommend_by_clock(const Options& options, const Session& session,
-                                const RecommendationGoal& goal) {
-  ALCOVE_TRY(MeasuredTrade measured,
-             measure_trade(session, static_setup(options, session.camera), truth_options(options),
-                           *options.gpu, options.clock));
-  const Trade trade = find_pareto_front(std::move(measured.points));
-  const auto achievement = [](const Measurement& point) {
-    const double rmse = point.scene.rmse;
-    return Achievement{
-        point.variant.settings, {rmse, rmse, rmse}, {point.time_ms, point.time_ms, point.time_ms}};
-  };
-  const Measurement& chosen = *std::ranges::min_element(
-      trade.points, [&](const Achievement& a, const Achievement& b) { return goal.prefers(a, b); },
-      achievement);
-  if (!goal.met(achievement(chosen))) return Failure(unmet_message(goal, point_text(chosen)));
-  std::cout << measured.note << point_text(chosen) << "\n";
-  print_neighbours(trade, chosen);
-  std::cout << fmt::format("RMSE of visibility against ray-traced truth; {} at {}x{} on {}\n{}\n",
-                           measured.clock_title, options.view.width, options.view.height,
-                           session.gpu->device().properties().deviceName,
-                           render_line(options, session, chosen.variant.settings));
-  return {};
-}
-
-}  // namespace
-
-Result<void> run_recommend(const Options& options) {
-  ALCOVE_TRY(const Session session, open_session(options));
-  const RecommendationGoal goal{options.budget_ms, options.tolerance, chosen_weights(options)};
-  if (options.clock.value_or(Clock::modelled) != Clock::modelled)
-    return recommend_by_clock(options, session, goal);
-  const auto times = modelled_times(options);
-  if (times) return recommend_by_model(options, session, *times, goal);
-  if (options.clock) return Failure(times.error());
-  std::cerr << "note: " << times.error() << " Times are measured on the device instead.\n";
-  return recommend_by_clock(options, session, goal);
 }
 
 }  // namespace alcove::sample

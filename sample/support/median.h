@@ -26,10 +26,4 @@ template <class T>
   return values[static_cast<std::size_t>(rank)];
 }
 
-// Returns half the distance between the first and the third quartile, a measure of spread that
-// ignores outliers. 0 if there are no values.
-[[nodiscard]] inline double quartile_spread(const std::vector<double>& values) {
-  return 0.5 * (percentile(values, 0.75) - percentile(values, 0.25));
-}
-
 }  // namespace alcove::sample

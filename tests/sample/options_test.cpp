@@ -38,12 +38,11 @@ TEST(Options, ViewCommandByDefaultHasNoFrameLimitAndNoOutputFolder) {
   EXPECT_FALSE(parse({"view", "--frames", "0"}));
 }
 
-TEST(Options, ClockOptionOfBenchAndRecommendIsParsedAndUnknownClocksAreRefused) {
-  EXPECT_FALSE(parse({"bench"})->clock);
-  EXPECT_EQ(parse({"bench", "--clock", "processor"})->clock, Clock::processor);
-  EXPECT_EQ(parse({"recommend", "--tolerance", "0.1", "--clock", "modelled"})->clock,
-            Clock::modelled);
-  const auto wrong = parse({"bench", "--clock", "sundial"});
+TEST(Options, ClockOptionIsParsedAndUnknownClocksAreRefused) {
+  EXPECT_EQ(parse({"report"})->clock, Clock::modelled);
+  EXPECT_EQ(parse({"recommend", "--tolerance", "0.1", "--clock", "processor"})->clock,
+            Clock::processor);
+  const auto wrong = parse({"report", "--clock", "sundial"});
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().text, HasSubstr("--clock"));
 }
@@ -119,13 +118,13 @@ TEST(Options, MotionCommandAcceptsACameraPathAndRefusesTooFewFrames) {
   }
 }
 
-TEST(Options, BenchCommandAcceptsAnyNumberOfScenes) {
-  const auto none = parse({"bench"});
+TEST(Options, ReportCommandAcceptsAnyNumberOfScenes) {
+  const auto none = parse({"report"});
   ASSERT_TRUE(none) << none.error().text;
-  EXPECT_EQ(none->command, Command::bench);
+  EXPECT_EQ(none->command, Command::report);
   EXPECT_TRUE(none->scenes.empty());
   EXPECT_EQ(none->view.frames, 32u);
-  const auto two = parse({"bench", "step", "corner", "--size", "64x64"});
+  const auto two = parse({"report", "step", "corner", "--size", "64x64"});
   ASSERT_TRUE(two) << two.error().text;
   EXPECT_EQ(two->scenes, (std::vector<std::string>{"step", "corner"}));
 }
@@ -201,7 +200,7 @@ TEST(Options, OptionsWithoutEffectOnTheCommandAreRefused) {
   EXPECT_FALSE(parse({"view", "--spp", "16"}));
   for (const char* command : {"render", "graph"})
     EXPECT_TRUE(parse({command, "--spp", "16"})) << "a line for compare serves " << command;
-  for (const char* command : {"motion", "ablate", "bench"}) {
+  for (const char* command : {"motion", "report"}) {
     EXPECT_TRUE(parse({command, "--spp", "16"})) << command;
     EXPECT_FALSE(parse({command, "--roughness", "0.3"})) << command;
   }
@@ -255,7 +254,7 @@ TEST(Options, HelpOfACommandShowsItsUsage) {
 
 TEST(Options, HelpOfEveryCommandThatTakesSettingsListsTheSettings) {
   for (const char* command :
-       {"render", "compare", "motion", "ablate", "bench", "recommend", "graph", "view"}) {
+       {"render", "compare", "motion", "report", "recommend", "graph", "view"}) {
     const std::string help = parse({command, "--help"}).error().text;
     EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
     EXPECT_THAT(help, HasSubstr("Radius of the spatial filter in tiles")) << command;

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "evaluate/trade.h"
+#include "evaluate/sweep.h"
 
 namespace alcove::sample {
 namespace {

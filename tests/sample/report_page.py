@@ -41,7 +41,7 @@ def point(name, ms, rmse, preset=False, recommended=False):
 
 
 DATA = {
-    "gpu": "A GPU", "target": "1920x1080", "size": "64x36", "device": "a device",
+    "clock": "time of a GPU", "size": "64x36", "device": "a device",
     "peers": [{"name": "peer", "ms": .2}],
     "scenes": [{
         "name": "scene </script><script>throw 1</script>",

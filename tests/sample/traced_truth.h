@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluate/variant.h"
+#include "evaluate/errors.h"
 #include "reference/ray_scene.h"
 #include "reference/surface_points.h"
 #include "reference/truth.h"
+#include "render/frame_renderer.h"
 
 namespace alcove::sample {
 

@@ -10,7 +10,7 @@
 #include "evaluate/errors.h"
 #include "evaluate/output_needs.h"
 #include "evaluate/situations.h"
-#include "evaluate/trade.h"
+#include "evaluate/sweep.h"
 #include "gpu_cost/presets.h"
 #include "gpu_cost/xegtao.h"
 #include "report/report_page.h"
@@ -33,7 +33,7 @@ constexpr auto kStanding = static_cast<std::size_t>(Situation::standing);
 // The part of the page about one scene.
 class ScenePage {
  public:
-  ScenePage(const Options& options, const Session& session, const ModelledTimes& times,
+  ScenePage(const Options& options, const Session& session, const SettingTimes& times,
             SituationErrors errors)
       : options_(options),
         session_(session),
@@ -47,13 +47,20 @@ class ScenePage {
     ALCOVE_TRY_VOID(add_pictures());
     ALCOVE_TRY_VOID(add_split());
     ALCOVE_TRY(json_["plan"], plan_text(session_, options_));
-    json_["name"] = options_.scene.empty() ? "builtin" : printable(options_.scene);
+    json_["name"] = name_of_scene();
     json_["points"] = std::move(points_);
     return std::move(json_);
   }
 
  private:
+  std::string name_of_scene() const {
+    return options_.scene.empty() ? "builtin" : printable(options_.scene);
+  }
+
   void add_point(const std::string& name, const Achievement& of, bool preset, bool recommended) {
+    std::cout << fmt::format("  {:46}{:9.4f}{:10.4f}{:9.4f}{:11.4f}{:11.4f}\n", name,
+                             of.rmse[kMoving], of.rmse[kStanding], of.rmse[kFirst], of.ms[kMoving],
+                             of.ms[kStanding]);
     const Shot shot{session_.camera,     of.settings,          std::nullopt,
                     options_.view.width, options_.view.height, options_.view.frames};
     points_.push_back({{"name", name},
@@ -69,6 +76,8 @@ class ScenePage {
   // The presets, and numbers of samples between them.
   Result<void> add_points() {
     const std::vector<Variant> variants = preset_sweep(session_.settings);
+    std::cout << fmt::format("{:43}RMSE moving  standing    first  ms moving   standing\n",
+                             name_of_scene());
     const Progress progress = print_progress("settings");
     for (std::size_t i = 0; i < variants.size(); ++i) {
       ALCOVE_TRY(const auto found, world_.measure(variants[i].settings));
@@ -83,7 +92,7 @@ class ScenePage {
   // The settings that `recommend` finds within the time of `medium`.
   Result<void> add_requirements() {
     OcclusionSettings medium = passes::quality_settings(Quality::medium, session_.settings.radius);
-    ALCOVE_TRY(const auto limit, times_.measure(medium));
+    ALCOVE_TRY(const auto limit, times_(medium, false));
     RecommendationGoal goal;
     goal.budget_ms = goal.ms({medium, {}, limit});
     ALCOVE_TRY(const auto found, recommend(medium, goal, world_));
@@ -141,7 +150,7 @@ class ScenePage {
 
   const Options& options_;
   const Session& session_;
-  const ModelledTimes& times_;
+  const SettingTimes& times_;
   SituationErrors errors_;
   RecommendationWorld world_;
   Json json_;
@@ -154,16 +163,15 @@ Result<void> run_report(const Options& options) {
   ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
   // A missing Chart.js is reported before the measurement, which takes minutes.
   ALCOVE_TRY_VOID(report_page({}));
-  ALCOVE_TRY(const auto times, modelled_times(options));
-  Json data{{"gpu", options.gpu->title},
-            {"target", fmt::format("{}x{}", options.target_width, options.target_height)},
-            {"size", fmt::format("{}x{}", options.view.width, options.view.height)},
+  Json data{{"size", fmt::format("{}x{}", options.view.width, options.view.height)},
             {"peers", Json::array()}};
   for (const XeGtao& peer : {kXeGtao[1], kXeGtaoHigh}) {
+    if (options.clock != Clock::modelled) continue;
     data["peers"].push_back(
         {{"name", peer.name},
          {"ms", xegtao_ms(*options.gpu, peer, options.target_width, options.target_height)}});
   }
+  Json report;
   const std::vector<std::string> scenes =
       options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;
   for (const std::string& scene : scenes) {
@@ -171,14 +179,19 @@ Result<void> run_report(const Options& options) {
     one.scene = scene;
     ALCOVE_TRY(const auto session, open_session(one));
     data["device"] = session.gpu->device().properties().deviceName;
+    data["clock"] = clock_text(options, session);
+    ALCOVE_TRY(const auto times, setting_times(one, session));
     ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(one, session.camera),
                                                     truth_options(one)));
     ALCOVE_TRY(auto page, ScenePage(one, session, times, std::move(errors)).make());
+    report["scenes"].push_back({{"name", page["name"]}, {"points", page["points"]}});
     data["scenes"].push_back(std::move(page));
   }
+  report["time"] = data["clock"];
   ALCOVE_TRY(const auto page, report_page(data));
+  ALCOVE_TRY_VOID(write_text(options.out / "report.json", report.dump(2) + "\n"));
   return write_text(options.out / "index.html", page).map([&] {
-    std::cout << "index.html is in " << options.out.string() << "\n";
+    std::cout << "index.html and report.json are in " << options.out.string() << "\n";
   });
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
-#include "evaluate/variant.h"
+#include "evaluate/static_view.h"
 #include "gpu/gpu.h"
 #include "scene/scene.h"
 #include "support/glm.h"

@@ -96,11 +96,11 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
 }
 
 Result<std::vector<std::string>> view_needs(const Session& session, const SituationErrors& errors,
-                                            const ModelledTimes& times,
+                                            const SettingTimes& times,
                                             const RecommendationGoal& goal,
                                             const Achievement& chosen) {
   ALCOVE_TRY(const auto band_rmse, errors.measure_with_guard_band(chosen.settings));
-  ALCOVE_TRY(const auto band_ms, times.measure(chosen.settings, true));
+  ALCOVE_TRY(const auto band_ms, times(chosen.settings, true));
   const Achievement with{chosen.settings, band_rmse, band_ms};
   FeatureEffect band = measure_effect(
       fmt::format("a guard band of {:g} % of the height, by AlcoveView::written_area",
@@ -113,7 +113,7 @@ Result<std::vector<std::string>> view_needs(const Session& session, const Situat
   const TimeIncrease time_increase = [&](const auto& change) -> Result<double> {
     Achievement changed = chosen;
     change(changed.settings);
-    ALCOVE_TRY(changed.ms, times.measure(changed.settings));
+    ALCOVE_TRY(changed.ms, times(changed.settings, false));
     return goal.ms(changed) / goal.ms(chosen) - 1.0;
   };
   ALCOVE_TRY(auto needs, output_needs(session.scene, seen, errors.truths(), time_increase));

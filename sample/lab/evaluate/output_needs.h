@@ -33,7 +33,7 @@ using TimeIncrease = std::function<Result<double>(
 // output_needs(). `errors` and `times` are those of the view.
 [[nodiscard]] Result<std::vector<std::string>> view_needs(const Session& session,
                                                           const SituationErrors& errors,
-                                                          const ModelledTimes& times,
+                                                          const SettingTimes& times,
                                                           const RecommendationGoal& goal,
                                                           const Achievement& chosen);
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "evaluate/trade.h"
+#include "evaluate/sweep.h"
 
 namespace alcove::sample {
 namespace {
@@ -270,20 +270,6 @@ FeatureEffect measure_effect(const std::string& feature, const RecommendationGoa
 Result<Recommendation> recommend(const OcclusionSettings& base, const RecommendationGoal& goal,
                                  const RecommendationWorld& world) {
   return Search(base, goal, world).run();
-}
-
-Result<std::vector<Achievement>> measure_all(const OcclusionSettings& base,
-                                             const RecommendationWorld& world) {
-  std::vector<Achievement> all;
-  for (const Variant& variant : preset_sweep(base)) {
-    for (const std::uint32_t layers : {1u, 2u}) {
-      OcclusionSettings settings = variant.settings;
-      settings.depth_layers = layers;
-      ALCOVE_TRY(const auto measured, world.measure(settings));
-      all.push_back(measured);
-    }
-  }
-  return all;
 }
 
 }  // namespace alcove::sample

@@ -84,9 +84,4 @@ struct RecommendationWorld {
                                                const RecommendationGoal& goal,
                                                const RecommendationWorld& world);
 
-// Measures each number of samples with and without a second depth layer: what a search is compared
-// with.
-[[nodiscard]] Result<std::vector<Achievement>> measure_all(const passes::OcclusionSettings& base,
-                                                           const RecommendationWorld& world);
-
 }  // namespace alcove::sample

@@ -5,9 +5,11 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "evaluate/errors.h"
 #include "render/settings_json.h"
+#include "support/median.h"
 
 namespace alcove::sample {
 namespace {
@@ -133,58 +135,73 @@ Result<std::array<double, 3>> SituationErrors::compute(const Draw& draw) const {
   return rmse;
 }
 
-Result<ModelledTimes> ModelledTimes::create(const GpuPart& part, const CostInputs& inputs,
-                                            bool use_cache) {
-  ALCOVE_TRY(auto device, create_null_device(part.family));
-  ModelledTimes times(part, inputs, use_cache && !program_hash().empty());
-  times.device_ = std::move(device);
-  return times;
+Result<SettingTimes> modelled_times(const GpuPart& part, const CostInputs& view, bool use_cache) {
+  ALCOVE_TRY(const NullDevice device, create_null_device(part.family));
+  const TruthCache cache(use_cache && !program_hash().empty() ? TruthCache::default_folder()
+                                                              : std::filesystem::path());
+  return [&part, view, device, cache](const OcclusionSettings& settings,
+                                      bool with_guard_band) -> Result<std::array<double, 3>> {
+    CostInputs inputs = view;
+    inputs.guard_band = with_guard_band ? guard_band(inputs.height) : 0;
+    inputs.settings = timed_settings(settings);
+    CacheKey key;
+    key.add(std::string_view("modelled times"), std::string_view(program_hash()), part.family,
+            inputs.width, inputs.height, inputs.normals, inputs.motion, inputs.guard_band,
+            std::string_view(to_json(inputs.settings).dump()));
+    return cached(cache, key, [&]() -> Result<std::array<double, 3>> {
+      ALCOVE_TRY(const auto frames, modelled_frames(part, device, inputs));
+      constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
+                                                  FrameState::converged};
+      std::array<double, 3> ms{};
+      for (std::size_t i = 0; i < kStates.size(); ++i) {
+        ms[i] = std::ranges::find(frames, kStates[i], &ModelledFrame::state)->milliseconds();
+      }
+      return ms;
+    });
+  };
 }
 
-Result<std::array<double, 3>> ModelledTimes::measure(const OcclusionSettings& settings,
-                                                     bool with_guard_band) const {
-  CostInputs inputs = inputs_;
-  inputs.guard_band = with_guard_band ? guard_band(inputs.height) : 0;
-  inputs.settings = timed_settings(settings);
-  CacheKey key;
-  key.add(std::string_view("modelled times"), std::string_view(program_hash()), part_->family,
-          inputs.width, inputs.height, inputs.normals, inputs.motion, inputs.guard_band,
-          std::string_view(to_json(inputs.settings).dump()));
-  return cached(cache_, key, [&]() -> Result<std::array<double, 3>> {
-    ALCOVE_TRY(const auto frames, modelled_frames(*part_, device_, inputs));
-    constexpr std::array<FrameState, 3> kStates{FrameState::first, FrameState::moving,
-                                                FrameState::converged};
-    std::array<double, 3> ms{};
-    for (std::size_t i = 0; i < kStates.size(); ++i) {
-      ms[i] = std::ranges::find(frames, kStates[i], &ModelledFrame::state)->milliseconds();
+SettingTimes measured_times(const Session& session, const StaticSetup& view, Clock clock) {
+  return [&session, view, clock](const OcclusionSettings& settings,
+                                 bool with_guard_band) -> Result<std::array<double, 3>> {
+    constexpr std::uint32_t kWarmUp = 16;  // frames that compile shaders and fill the history
+    constexpr std::uint32_t kTimed = 11;
+    StaticSetup setup = view;
+    setup.frames = kWarmUp + kTimed;
+    if (with_guard_band) {
+      setup.width += 2 * guard_band(view.height);
+      setup.height += 2 * guard_band(view.height);
     }
-    return ms;
-  });
+    ALCOVE_TRY(const auto renderer,
+               FrameRenderer::create(*session.gpu, session.scene, {setup.width, setup.height},
+                                     setup.normals));
+    std::array<double, 3> medians{};
+    for (const Situation situation : {Situation::first, Situation::moving, Situation::standing}) {
+      setup.orbit = situation == Situation::moving ? kOrbit : 0.0f;
+      std::vector<double> times;
+      for (std::uint32_t i = 0; i < setup.frames; ++i) {
+        const std::uint32_t frame = situation == Situation::first ? 0 : i;
+        ALCOVE_TRY(const FrameCost cost, renderer->draw(frame_request(setup, settings, frame)));
+        if (i >= kWarmUp)
+          times.push_back(clock == Clock::processor ? cost.cpu_ms : cost.occlusion_ms);
+      }
+      medians[static_cast<std::size_t>(situation)] = median(std::move(times));
+    }
+    if (!(*std::ranges::min_element(medians) > 0.0)) {
+      return Failure("The device " + std::string(session.gpu->device().properties().deviceName) +
+                     " does not time its passes; give --clock processor, or another --device.");
+    }
+    return medians;
+  };
 }
 
-RecommendationWorld recommendation_world(SituationErrors& errors, const ModelledTimes& times) {
+RecommendationWorld recommendation_world(SituationErrors& errors, const SettingTimes& times) {
   return {[&](const OcclusionSettings& settings) -> Result<Achievement> {
-            ALCOVE_TRY(const auto ms, times.measure(settings));
+            ALCOVE_TRY(const auto ms, times(settings, false));
             ALCOVE_TRY(const auto rmse, errors.measure(settings));
             return Achievement{settings, rmse, ms};
           },
-          [&](const OcclusionSettings& settings) { return times.measure(settings); }};
-}
-
-Result<ChosenClock> choose_clock(const VulkanDevice& device,
-                                 const std::function<Result<ModelledTimes>()>& create_model,
-                                 std::optional<Clock> wanted) {
-  const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const Clock clock = wanted.value_or(software ? Clock::modelled : Clock::timestamps);
-  if (clock != Clock::modelled) return ChosenClock{clock, {}};
-  auto created = create_model();
-  if (!created && wanted) return Failure(created.error());
-  if (!created) return ChosenClock{Clock::processor, {}};
-  return ChosenClock{clock, [model = std::move(*created)](const OcclusionSettings& settings) {
-                       return model.measure(settings).map([](const std::array<double, 3>& ms) {
-                         return ms[static_cast<std::size_t>(Situation::moving)];
-                       });
-                     }};
+          [&](const OcclusionSettings& settings) { return times(settings, false); }};
 }
 
 }  // namespace alcove::sample

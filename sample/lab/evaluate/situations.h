@@ -1,15 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <string>
+#include <string_view>
 
-#include "evaluate/clock.h"
 #include "evaluate/recommendation.h"
+#include "evaluate/static_view.h"
 #include "evaluate/truths.h"
-#include "evaluate/variant.h"
 #include "gpu_cost/modelled_frame.h"
 #include "reference/truth_cache.h"
 #include "render/session.h"
@@ -59,41 +58,34 @@ class SituationErrors {
   CacheKey key_;
 };
 
-// Models the times of settings on a GPU, and keeps them in the cache on disk for this build of the
-// program.
-class ModelledTimes {
- public:
-  // `inputs` are those of the view; settings are replaced. Error: Mesa's AMD driver is missing.
-  [[nodiscard]] static Result<ModelledTimes> create(const GpuPart& part, const CostInputs& inputs,
-                                                    bool use_cache);
-
-  // The times in the order of Situation, in milliseconds, without or with a guard band of
-  // kGuardBand of the image's height.
-  [[nodiscard]] Result<std::array<double, 3>> measure(const passes::OcclusionSettings& settings,
-                                                      bool guard_band = false) const;
-
- private:
-  ModelledTimes(const GpuPart& part, const CostInputs& inputs, bool use_cache)
-      : part_(&part),
-        inputs_(inputs),
-        cache_(use_cache ? TruthCache::default_folder() : std::filesystem::path()) {}
-
-  const GpuPart* part_;
-  CostInputs inputs_;
-  NullDevice device_;
-  TruthCache cache_;
+// The clock of times. Modelled times are the same in every run.
+enum class Clock : std::uint8_t {
+  modelled,    // GPU time by the cost model (gpu_cost)
+  timestamps,  // GPU time by the device's timestamps
+  processor,   // processor time of all threads, for software devices
 };
+// Names in the order of the enumerators.
+inline constexpr std::array<std::string_view, 3> kClockNames{"modelled", "timestamps", "processor"};
+
+// Returns the times of settings in the order of Situation, in milliseconds, without or with a guard
+// band of kGuardBand of the image's height.
+using SettingTimes = std::function<Result<std::array<double, 3>>(
+    const passes::OcclusionSettings& settings, bool guard_band)>;
+
+// Times that are modelled for a GPU. They are kept in the cache on disk for this build of the
+// program. `inputs` are those of the view; settings are replaced. Error: Mesa's AMD driver is
+// missing.
+[[nodiscard]] Result<SettingTimes> modelled_times(const GpuPart& part, const CostInputs& inputs,
+                                                  bool use_cache);
+
+// Times that are measured on the session's device for images of the size of `setup`: medians over
+// frames. `clock` is not `modelled`. Borrows the session. Error of a call: the device does not time
+// its passes, or a rendering fails.
+[[nodiscard]] SettingTimes measured_times(const Session& session, const StaticSetup& setup,
+                                          Clock clock);
 
 // Returns functions that measure settings by these errors and times, which must outlive them.
 [[nodiscard]] RecommendationWorld recommendation_world(SituationErrors& errors,
-                                                       const ModelledTimes& times);
-
-// Returns the clock for times on a device. Without `wanted`, it is `timestamps` on a GPU; on a
-// software device, whose timestamps are noise, it is `modelled`, or `processor` if Mesa's AMD
-// driver is not installed. `create_model` is called if the clock is `modelled`. Error: `wanted` is
-// `modelled` and the driver is not installed.
-[[nodiscard]] Result<ChosenClock> choose_clock(
-    const VulkanDevice& device, const std::function<Result<ModelledTimes>()>& create_model,
-    std::optional<Clock> wanted);
+                                                       const SettingTimes& times);
 
 }  // namespace alcove::sample

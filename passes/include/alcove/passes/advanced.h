@@ -59,7 +59,7 @@ struct AdvancedSettings {
   // standard deviations, at least 0. 0 turns clamping off.
   float clamp_width = 0.0f;
 
-  // Parts of the search that can be switched off to measure what they do (`alcove ablate`).
+  // Parts of the search that can be switched off to measure what they do.
 
   // Whether each depth sample is moved to the centre of its texel. If not, tilted planes occlude
   // themselves.

@@ -1,0 +1,47 @@
+// A view that is rendered with any settings.
+#pragma once
+
+#include <cstdint>
+
+#include "alcove/passes/occlusion.h"
+#include "render/frame_renderer.h"
+#include "render/normal_source.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+#include "support/image.h"
+#include "support/result.h"
+
+namespace alcove::sample {
+
+// A view and how it is rendered.
+struct StaticSetup {
+  Camera camera;
+  std::uint32_t width = 960;
+  std::uint32_t height = 540;
+  std::uint32_t frames = 32;  // at least 1; the last one is evaluated
+  NormalSource normals = NormalSource::shading;
+  std::uint32_t first_frame = 0;  // number of the first frame; others have another noise
+  float orbit = 0;                // radians per frame, of an orbit that ends at the camera
+};
+
+// Returns the request for a frame of the view: visibility alone, with motion relative to the frame
+// before.
+[[nodiscard]] FrameRequest frame_request(const StaticSetup& setup,
+                                         const passes::OcclusionSettings& settings,
+                                         std::uint32_t frame);
+
+// Renders the frames of a view and reads the last one back.
+[[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
+                                              const passes::OcclusionSettings& settings);
+[[nodiscard]] Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene,
+                                              const StaticSetup& setup,
+                                              const passes::OcclusionSettings& settings);
+
+// Renders the frames of a view with a guard band, which is this many pixels wide beyond the borders
+// at the sides, and at top and bottom, and returns the visibility of the view without the band.
+[[nodiscard]] Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene,
+                                                        const StaticSetup& setup,
+                                                        const passes::OcclusionSettings& settings,
+                                                        VkExtent2D band);
+
+}  // namespace alcove::sample

@@ -1,0 +1,69 @@
+#include "evaluate/sweep.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gpu_cost/presets.h"
+
+namespace alcove::sample {
+namespace {
+
+using passes::OcclusionSettings;
+
+TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
+  for (const passes::Quality quality : presets()) {
+    const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
+    const std::vector<Variant> ways = preset_sweep(base);
+    EXPECT_GE(ways.size(), 16u);
+    std::vector<OcclusionSettings> seen;
+    for (const Variant& way : ways) {
+      EXPECT_EQ(std::ranges::count(seen, way.settings), 0) << way.name;
+      seen.push_back(way.settings);
+    }
+    for (const passes::Quality preset : presets()) {
+      OcclusionSettings settings = passes::quality_settings(preset, base.radius);
+      settings.depth_layers = std::max(settings.depth_layers, base.depth_layers);
+      EXPECT_EQ(std::ranges::count(seen, settings), 1) << passes::name_of(preset);
+    }
+  }
+}
+
+TEST(PresetSweep, SweepContainsHalfResolutionWithSeveralTileSizesAndSteps) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> half;
+  for (const Variant& variant : preset_sweep({})) {
+    EXPECT_TRUE(passes::validate(variant.settings)) << variant.name;
+    if (variant.settings.half_resolution) {
+      half.emplace_back(variant.settings.tile_size, variant.settings.steps);
+      EXPECT_TRUE(variant.name == "console" ||
+                  variant.name.find("half resolution") != std::string::npos)
+          << variant.name;
+    }
+  }
+  EXPECT_THAT(half, testing::IsSupersetOf({std::pair(8u, 4u), std::pair(8u, 8u), std::pair(4u, 8u),
+                                           std::pair(2u, 10u)}));
+}
+
+TEST(PresetSweep, SweepChangesOnlyNumbersOfSamplesHalfResolutionAndDepthLayers) {
+  OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
+  base.history_frames = 0;
+  base.advanced.estimator = passes::Estimator::horizons;
+  base.hidden_occlusion = 0.1f;
+  for (const Variant& way : preset_sweep(base)) {
+    OcclusionSettings settings = way.settings;
+    settings.tile_size = base.tile_size;
+    settings.slices = base.slices;
+    settings.steps = base.steps;
+    settings.half_resolution = base.half_resolution;
+    settings.depth_layers = base.depth_layers;
+    EXPECT_EQ(settings, base) << way.name;
+  }
+}
+
+}  // namespace
+}  // namespace alcove::sample
