@@ -334,8 +334,6 @@ std::span<const OptionRow> option_rows() {
       {kCost, kCostModel, "--write-budget", "FILE",
        "only write the costs of all presets into the file of limits that the tests check",
        [](O& o, const V& v) { o.cost.budget = v.text; }},
-      {kCost, kCostModel, "--chart", "FILE", "also write an SVG chart of the time of each pass",
-       [](O& o, const V& v) { o.cost.chart = v.text; }},
   };
   return rows;
 }

@@ -75,7 +75,6 @@ struct CostOptions {
   bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none
   std::filesystem::path budget;  // file for the budget of the presets; empty for none
-  std::filesystem::path chart;   // an SVG image; empty for none
 };
 
 struct Options {

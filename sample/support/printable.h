@@ -6,7 +6,7 @@
 
 namespace alcove::sample {
 
-// Converts text of any bytes, such as a file name, to one line of UTF-8 for JSON, SVG and
+// Converts text of any bytes, such as a file name, to one line of UTF-8 for JSON and
 // terminals: control characters become spaces, and bytes that are not part of a character are
 // replaced by U+FFFD.
 [[nodiscard]] std::string printable(std::string_view text);

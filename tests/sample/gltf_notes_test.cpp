@@ -68,7 +68,7 @@ TEST(GltfNotes, WarningsAndErrorsStayShortForLongNamesAndUris) {
   EXPECT_THAT(why, testing::EndsWith("accessor 9 does not exist"));
 }
 
-// The name of a scene appears in report.json and trade.svg, which must be valid UTF-8.
+// The name of a scene appears in report.json, which must be valid UTF-8.
 TEST(GltfNotes, SceneNameIsUtf8ForAnyFileName) {
   const auto scene = parse_gltf(GltfMaker::triangle().gltf(), "caf\xe9.gltf", "");
   ASSERT_TRUE(scene) << scene.error();

@@ -63,12 +63,8 @@ Result<void> run_cost(const Options& options) {
   if (!options.cost.budget.empty()) return write_budget(options.cost.budget);
   ALCOVE_TRY(const auto costs, measure(options));
   std::cout << format_table(costs, options.cost.loops);
-  Result<void> written;
-  if (!options.cost.json.empty())
-    written = write_text(options.cost.json, to_json(costs).dump(2) + "\n");
-  if (written && !options.cost.chart.empty())
-    written = write_text(options.cost.chart, draw_chart(costs));
-  return written;
+  if (options.cost.json.empty()) return {};
+  return write_text(options.cost.json, to_json(costs).dump(2) + "\n");
 }
 
 }  // namespace alcove::sample

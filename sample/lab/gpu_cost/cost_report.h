@@ -54,7 +54,4 @@ struct SettingsCost {
 // settings, or if `costs` does not contain them for the same GPU.
 [[nodiscard]] std::vector<double> output_ratios(const SettingsCost& cost,
                                                 std::span<const SettingsCost> costs);
-// An SVG image: for each GPU, a bar of the passes' times for each frame of each label.
-[[nodiscard]] std::string draw_chart(std::span<const SettingsCost> costs);
-
 }  // namespace alcove::sample
