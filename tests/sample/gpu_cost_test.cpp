@@ -10,6 +10,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "alcove/passes/setting_names.h"
@@ -313,41 +316,6 @@ TEST(CostReport, TimeOfXeGtaoIsThatOfItsShadersAndGrowsWithTheImage) {
   }
 }
 
-SettingsCost one_pass(double instructions, double registers, double waves, double spills) {
-  ModelledPass pass;
-  pass.pass = "gtao";
-  pass.instructions_per_pixel = instructions;
-  return {{"medium", {}, ""},
-          &kGpuParts[1],
-          {{FrameState::moving, {pass}}},
-          {{"gtao", {50, 50, registers}, {9, 9, waves}, {0, 0, spills}}}};
-}
-
-TEST(GpuBudget, EachModelledCostThatDoesNotKeepItsBudgetIsReported) {
-  const std::string budget = format_budget({one_pass(100, 64, 8, 0)}, "compiler");
-  const auto complaints = [&](const SettingsCost& cost) {
-    return over_budget(budget, "compiler", {cost}).value();
-  };
-  EXPECT_THAT(complaints(one_pass(100.9, 64, 8, 0)), IsEmpty());
-  EXPECT_THAT(complaints(one_pass(99.1, 48, 10, 0)), IsEmpty());
-  EXPECT_THAT(complaints(one_pass(80, 48, 10, 0)),
-              ElementsAre(HasSubstr("instructions_per_pixel[0] is 80")));
-  EXPECT_THAT(complaints(one_pass(101.5, 64, 8, 0)),
-              ElementsAre("rdna2, medium, gtao: instructions_per_pixel[0] is 101.5, the budget is "
-                          "100."));
-  EXPECT_THAT(complaints(one_pass(100, 68, 8, 0)), ElementsAre(HasSubstr("registers[2] is 68")));
-  EXPECT_THAT(complaints(one_pass(100, 64, 7, 0)), ElementsAre(HasSubstr("waves")));
-  EXPECT_THAT(complaints(one_pass(100, 64, 8, 1)), ElementsAre(HasSubstr("spilled")));
-}
-
-TEST(GpuBudget, PassWithoutABudgetAndBudgetOfAnotherCompilerAreReported) {
-  const std::string budget = format_budget({}, "compiler");
-  EXPECT_THAT(over_budget(budget, "compiler", {one_pass(1, 1, 1, 0)}).value(),
-              testing::Contains(HasSubstr("the budget is missing")));
-  for (const std::string& other : {format_budget({}, "another"), std::string(), std::string("{")})
-    EXPECT_FALSE(over_budget(other, "compiler", {one_pass(1, 1, 1, 0)})) << other;
-}
-
 SettingsCost frames_of(const std::string& label, const GpuPart& part, double moving_ms,
                        double static_ms, const std::string& label_without = "") {
   ModelledPass moving, unchanged;
@@ -411,19 +379,28 @@ class CompiledPresets : public testing::TestWithParam<std::size_t> {
   NullDevice device_;
 };
 
-TEST_P(CompiledPresets, ModelledCostOfEachPresetStaysWithinItsGpuBudget) {
+std::vector<std::string> lines_of(const std::string& text, const std::string& with) {
+  std::vector<std::string> found;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find(with) != std::string::npos) found.push_back(line);
+  return found;
+}
+
+TEST_P(CompiledPresets, ModelledCostOfEachPresetIsThatOfTheBudget) {
   std::ifstream file(ALCOVE_GPU_BUDGET);
   const std::string budget{std::istreambuf_iterator<char>(file), {}};
+  if (lines_of(budget, device_.compiler).empty())
+    GTEST_SKIP() << "The budget was written with another compiler than " << device_.compiler;
+  std::vector<SettingsCost> costs;
   for (const LabelledSettings& settings : budgeted_settings()) {
-    const auto cost = model_cost(part_, device_, settings);
+    auto cost = model_cost(part_, device_, settings);
     ASSERT_TRUE(cost) << settings.label << ": " << cost.error();
-    const auto complaints = over_budget(budget, device_.compiler, {*cost});
-    if (!complaints) GTEST_SKIP() << complaints.error();
-    for (const std::string& complaint : *complaints) {
-      ADD_FAILURE() << complaint
-                    << " If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;
-    }
+    costs.push_back(std::move(*cost));
   }
+  const std::string gpu = "{\"gpu\":\"" + std::string(part_.name);
+  EXPECT_EQ(lines_of(format_budget(costs, device_.compiler), gpu), lines_of(budget, gpu))
+      << "If it is meant: alcove cost --write-budget " ALCOVE_GPU_BUDGET;
 }
 
 // Instructions per pixel of the passes of a moving frame.
