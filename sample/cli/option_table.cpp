@@ -321,10 +321,6 @@ std::span<const OptionRow> option_rows() {
       {kCost, kCostModel, "--samples", nullptr,
        "model the passes with depth of four samples per pixel",
        [](O& o, const V&) { o.cost.inputs.samples = true; }},
-      {kCost, kCostModel, "--outputs", nullptr,
-       "also model the settings with bent normals and with specular occlusion, and print the ratio "
-       "of each frame's time to its time without this output",
-       [](O& o, const V&) { o.cost.outputs = true; }},
       {kCost, kCostModel, "--loops", nullptr,
        "also print the instructions of a wave by kind, and each loop that the compiler did not "
        "unroll with its iterations",

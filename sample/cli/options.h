@@ -72,7 +72,6 @@ struct OcclusionOptions {
 struct CostOptions {
   CostInputs inputs;             // without the settings
   bool loops = false;            // also prints the loops of the shaders
-  bool outputs = false;          // also models bent normals and specular occlusion
   std::filesystem::path json;    // empty for none
   std::filesystem::path budget;  // file for the budget of the presets; empty for none
 };

@@ -28,7 +28,6 @@ using passes::cost::FrameState;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 
 // Two loops, one within the other, as ACO prints them before registers are assigned.
 constexpr const char* kNestedLoops =
@@ -316,51 +315,15 @@ TEST(CostReport, TimeOfXeGtaoIsThatOfItsShadersAndGrowsWithTheImage) {
   }
 }
 
-SettingsCost frames_of(const std::string& label, const GpuPart& part, double moving_ms,
-                       double static_ms, const std::string& label_without = "") {
-  ModelledPass moving, unchanged;
-  moving.limits_ms[0] = moving_ms;
-  unchanged.limits_ms[0] = static_ms;
-  return {{label, {}, label_without},
-          &part,
-          {{FrameState::moving, {moving}}, {FrameState::unchanged, {unchanged}}},
-          {}};
-}
-
-TEST(CostReport, TimeWithAnOptionalOutputIsComparedWithTheTimeWithoutItOnTheSameGpu) {
-  const std::vector<SettingsCost> costs{
-      frames_of("low", kGpuParts[1], 1, 1), frames_of("medium", kGpuParts[0], 10, 10),
-      frames_of("medium", kGpuParts[1], 2, 4),
-      frames_of("medium with bent normals", kGpuParts[1], 3, 5, "medium")};
-  EXPECT_THAT(output_ratios(costs[3], costs), ElementsAre(1.5, 1.25));
-  EXPECT_THAT(output_ratios(costs[2], costs), IsEmpty()) << "medium is compared with nothing";
-  EXPECT_THAT(output_ratios(costs[3], std::span(costs).first(2)), IsEmpty())
-      << "medium is not among the costs of this GPU";
-  EXPECT_THAT(format_table(costs, false),
-              HasSubstr("medium with bent normals                  1.500      1.250\n"));
-  EXPECT_THAT(format_table(std::span(costs).first(3), false), Not(HasSubstr("without the output")));
-  EXPECT_EQ(to_json(costs)[1]["settings"][2]["frames"][0]["of_time_without_output"], 1.5);
-}
-
 TEST(CostReport, FramesAreComparedWithXeGtaoAtTheSameSize) {
-  SettingsCost cost = frames_of("medium", kGpuParts[1], 1, 1);
+  ModelledPass pass;
+  pass.limits_ms[0] = 1;
+  SettingsCost cost{{"medium", {}}, &kGpuParts[1], {{FrameState::moving, {pass}}}, {}};
   cost.settings.inputs.width = 960;
   cost.settings.inputs.height = 540;
   const auto json = to_json({&cost, 1});
   EXPECT_NEAR(json[0]["settings"][0]["frames"][0]["of_xegtao_high"],
               1 / xegtao_ms(kGpuParts[1], kXeGtaoHigh, 960, 540), 1e-9);
-}
-
-TEST(CostReport, EachOptionalOutputIsAddedToAPresetAlone) {
-  const LabelledSettings plain{"high", {}, ""};
-  const auto [bent, specular] = with_each_output(plain);
-  EXPECT_EQ(bent.label, "high with bent normals");
-  EXPECT_EQ(bent.label_without, "high");
-  EXPECT_TRUE(bent.inputs.settings.bent_normal);
-  EXPECT_EQ(bent.inputs.settings.specular, passes::Specular::none);
-  EXPECT_EQ(specular.label_without, "high");
-  EXPECT_FALSE(specular.inputs.settings.bent_normal);
-  EXPECT_EQ(specular.inputs.settings.specular, passes::Specular::slices);
 }
 
 // The parameter is the index of a GPU. Its tests share a device, which keeps the pipelines that it

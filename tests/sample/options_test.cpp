@@ -47,11 +47,6 @@ TEST(Options, ClockOptionIsParsedAndUnknownClocksAreRefused) {
   EXPECT_THAT(wrong.error().text, HasSubstr("--clock"));
 }
 
-TEST(Options, OutputsOptionOfTheCostCommandIsParsed) {
-  EXPECT_FALSE(parse({"cost"})->cost.outputs);
-  EXPECT_TRUE(parse({"cost", "--outputs"})->cost.outputs);
-}
-
 TEST(Options, CommandLineWithManyOptionsIsParsed) {
   const auto options =
       parse({"compare",  "scene.glb", "--eye",         "-9,5.5,-0.4", "--target",    "5,3.2,-0.3",

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <iostream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "alcove/passes/setting_names.h"
@@ -16,37 +14,25 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
-// The preset with the changes of --set. With --outputs, also with each further output.
-Result<std::vector<LabelledSettings>> labelled_settings(const Options& options,
-                                                        passes::Quality quality) {
+// The preset with the changes of --set.
+Result<LabelledSettings> labelled_settings(const Options& options, passes::Quality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
-  one.radius = one.radius.value_or(0.5f);  // no instruction depends on it
-  const auto settings = occlusion_settings(one, 1.0f);
-  if (!settings) return Failure(settings.error());
-  LabelledSettings plain{std::string(passes::name_of(quality)), options.cost.inputs, ""};
-  plain.inputs.width = options.view.width;
-  plain.inputs.height = options.view.height;
-  plain.inputs.normals = options.occlusion.normals != NormalSource::depth;
-  plain.inputs.settings = *settings;
-  for (const auto& [name, value] : options.occlusion.set) plain.label += " " + name + "=" + value;
-  if (!options.cost.outputs) return std::vector{std::move(plain)};
-  if (settings->bent_normal || settings->specular != passes::Specular::none) {
-    return Failure(
-        "--outputs compares settings with and without bent normals and specular occlusion; leave "
-        "bent_normal and specular out of --set.");
-  }
-  auto [bent, specular] = with_each_output(plain);
-  return std::vector{std::move(plain), std::move(bent), std::move(specular)};
+  LabelledSettings labelled{std::string(passes::name_of(quality)), options.cost.inputs};
+  ALCOVE_TRY(labelled.inputs.settings,
+             occlusion_settings(one, 0.5f));  // no instruction depends on the radius
+  labelled.inputs.width = options.view.width;
+  labelled.inputs.height = options.view.height;
+  labelled.inputs.normals = options.occlusion.normals != NormalSource::depth;
+  for (const auto& [name, value] : options.occlusion.set)
+    labelled.label += " " + name + "=" + value;
+  return labelled;
 }
 
 Result<std::vector<SettingsCost>> measure(const Options& options) {
   std::vector<LabelledSettings> settings;
   for (const passes::Quality quality : chosen_presets(options.occlusion)) {
-    ALCOVE_TRY(auto all, labelled_settings(options, quality));
-    std::ranges::move(all, std::back_inserter(settings));
+    ALCOVE_TRY(settings.emplace_back(), labelled_settings(options, quality));
   }
   return model_costs(settings, options.gpu);
 }

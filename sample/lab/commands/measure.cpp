@@ -254,7 +254,7 @@ Result<void> run_measure(const Options& options) {
       ALCOVE_TRY(const auto settings, occlusion_settings(one, session.settings.radius));
       last = CostInputs{.width = width, .height = height, .settings = settings};
       ALCOVE_TRY(const auto frame,
-                 measure(session, options, {std::string(passes::name_of(quality)), *last, ""}));
+                 measure(session, options, {std::string(passes::name_of(quality)), *last}));
       report["measured"].push_back(print(frame));
     }
   }

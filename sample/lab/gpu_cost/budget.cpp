@@ -1,8 +1,6 @@
 #include "gpu_cost/budget.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "gpu_cost/presets.h"
@@ -45,7 +43,13 @@ Json budget_row(const SettingsCost& cost, const Occupancy& occupancy) {
 std::vector<LabelledSettings> budgeted_settings() {
   std::vector<LabelledSettings> all;
   for (const Quality quality : presets()) all.push_back(preset(quality));
-  std::ranges::move(with_each_output(preset(Quality::medium)), std::back_inserter(all));
+  LabelledSettings bent = preset(Quality::medium);
+  bent.label += " with bent normals";
+  bent.inputs.settings.bent_normal = true;
+  LabelledSettings specular = preset(Quality::medium);
+  specular.label += " with specular occlusion";
+  specular.inputs.settings.specular = passes::Specular::slices;
+  all.insert(all.end(), {bent, specular});
   return all;
 }
 

@@ -68,22 +68,6 @@ std::string settings_rows(const SettingsCost& cost, bool loops) {
   return out;
 }
 
-// A line for each choice of settings on `part` that has an output more than another one.
-std::string ratio_rows(std::span<const SettingsCost> costs, const GpuPart& part) {
-  std::string rows;
-  for (const SettingsCost& cost : costs) {
-    const std::vector<double> ratios = output_ratios(cost, costs);
-    if (cost.part == &part && !ratios.empty())
-      rows += fmt::format("    {:36}{:11.3f}\n", cost.settings.label, fmt::join(ratios, ""));
-  }
-  if (rows.empty()) return rows;
-  std::string heading =
-      "  Time of a frame over its time without the output:\n" + std::string(40, ' ');
-  for (const ModelledFrame& frame : costs.front().frames)
-    heading += fmt::format("{:>11}", name_of(frame.state));
-  return heading + "\n" + rows;
-}
-
 Json to_json(const ModelledPass& pass) {
   const auto& [alu, texture, shared, l2, memory, latency] = pass.limits_ms;
   const ShaderStatistics& shader = pass.statistics;
@@ -123,7 +107,7 @@ Json to_json(const ModelledPass& pass) {
             {"shared_memory", pass.wave.shared_operations}}}};
 }
 
-Json to_json(const SettingsCost& cost, double peer_ms, const std::vector<double>& ratios) {
+Json to_json(const SettingsCost& cost, double peer_ms) {
   Json frames = Json::array();
   for (const ModelledFrame& frame : cost.frames) {
     Json passes = Json::array();
@@ -132,7 +116,6 @@ Json to_json(const SettingsCost& cost, double peer_ms, const std::vector<double>
                       {"ms", frame.milliseconds()},
                       {"of_xegtao_high", frame.milliseconds() / peer_ms},
                       {"passes", std::move(passes)}});
-    if (!ratios.empty()) frames.back()["of_time_without_output"] = ratios[frames.size() - 1];
   }
   Json occupancies = Json::array();
   for (const Occupancy& occupancy : cost.occupancies) {
@@ -147,18 +130,6 @@ Json to_json(const SettingsCost& cost, double peer_ms, const std::vector<double>
 }
 
 }  // namespace
-
-std::array<LabelledSettings, 2> with_each_output(const LabelledSettings& plain) {
-  LabelledSettings bent = plain;
-  bent.label += " with bent normals";
-  bent.inputs.settings.bent_normal = true;
-  bent.label_without = plain.label;
-  LabelledSettings specular = plain;
-  specular.label += " with specular occlusion";
-  specular.inputs.settings.specular = passes::Specular::slices;
-  specular.label_without = plain.label;
-  return {std::move(bent), std::move(specular)};
-}
 
 Result<SettingsCost> model_cost(const GpuPart& part, const NullDevice& device,
                                 const LabelledSettings& settings) {
@@ -181,19 +152,6 @@ Result<std::vector<SettingsCost>> model_costs(std::span<const LabelledSettings> 
   return costs;
 }
 
-std::vector<double> output_ratios(const SettingsCost& cost, std::span<const SettingsCost> costs) {
-  const auto without = std::ranges::find_if(costs, [&](const SettingsCost& other) {
-    return other.part == cost.part && other.settings.label == cost.settings.label_without;
-  });
-  std::vector<double> ratios;
-  if (cost.settings.label_without.empty() || without == costs.end()) return ratios;
-  for (const ModelledFrame& frame : cost.frames) {
-    const auto same = std::ranges::find(without->frames, frame.state, &ModelledFrame::state);
-    ratios.push_back(frame.milliseconds() / same->milliseconds());
-  }
-  return ratios;
-}
-
 std::string format_table(std::span<const SettingsCost> costs, bool loops) {
   std::string out;
   for (const GpuPart& part : kGpuParts) {
@@ -212,7 +170,6 @@ std::string format_table(std::span<const SettingsCost> costs, bool loops) {
         "  VGPRs  waves  spills    code  shared  lines   ALU texture shared L2 memory latency\n";
     for (const SettingsCost& cost : costs)
       if (cost.part == &part) out += settings_rows(cost, loops);
-    out += ratio_rows(costs, part);
   }
   return out;
 }
@@ -227,8 +184,7 @@ Json to_json(std::span<const SettingsCost> costs) {
       const CostInputs& size = cost.settings.inputs;
       for (const XeGtao& peer : kXeGtao)
         peers[std::string(peer.name)] = xegtao_ms(part, peer, size.width, size.height);
-      settings.push_back(
-          to_json(cost, peers[std::string(kXeGtaoHigh.name)], output_ratios(cost, costs)));
+      settings.push_back(to_json(cost, peers[std::string(kXeGtaoHigh.name)]));
     }
     if (!settings.empty()) {
       parts.push_back({{"gpu", part.name},
