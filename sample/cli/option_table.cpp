@@ -178,8 +178,8 @@ std::span<const OptionRow> option_rows() {
       {kWithTruth, kOptions, "--no-cache", nullptr,
        "compute the truths again instead of reading them from the cache on disk",
        [](O& o, const V&) { o.use_cache = false; }},
-      {kRender | kCompare | kMotion | kMeasure | kReport, kOptions, "--out",
-       "DIR", "folder for images and report.json. Default: out", read_out},
+      {kRender | kCompare | kMotion | kMeasure | kReport, kOptions, "--out", "DIR",
+       "folder for images and report.json. Default: out", read_out},
       {kView, kOptions, "--out", "DIR",
        "folder for screenshots. Default: the current folder. If given, the last frame of --frames "
        "is written there too",
@@ -305,7 +305,7 @@ std::span<const OptionRow> option_rows() {
        "several values gives an image of its own",
        read_roughness},
       {kRender | kCompare | kView, "Light", "--environment", "FILE",
-       "equirectangular image of the light, .hdr or .exr. Default: a generated sky",
+       "equirectangular image of the light, .exr. Default: a generated sky",
        [](O& o, const V& v) { o.environment = v.text; }},
 
       {kCost, kCostModel, "--gpu", "NAME", "modelled GPU: ps4 (PS4-like) or rdna2. Default: both",

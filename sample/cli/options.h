@@ -81,7 +81,7 @@ struct Options {
   std::string scene;                // empty: the built-in one
   std::vector<std::string> scenes;  // report: any number, each as `scene`
   MaterialTreatment materials;
-  std::filesystem::path environment;  // .hdr or .exr; empty: the procedural sky
+  std::filesystem::path environment;  // .exr; empty: the procedural sky
   bool split = false;                 // compare: also splits the error into its causes
   bool lit = false;                   // compare: also traces the lit picture
   uint32_t lit_points = 32'000;       // compare: approximate number of pixels with traced light

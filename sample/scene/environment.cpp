@@ -1,14 +1,15 @@
 #include "scene/environment.h"
 
+#include <ImfRgbaFile.h>
+
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <glm/gtc/constants.hpp>
-#include <optional>
+#include <new>
+#include <vector>
 
 #include "support/block_mean.h"
-#include "support/read_exr.h"
-#include "support/read_hdr.h"
-#include "support/regular_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -34,59 +35,47 @@ glm::vec3 sky_radiance(const glm::vec3& d) {
   return glm::mix(ground, haze + glow, above);
 }
 
-// Collects the rows of a file, and reduces the image by a whole factor to at most kLargestSide
-// pixels a side.
-class EnvironmentRows {
- public:
-  FloatRows receiver() {
-    return {.begin = [this](uint32_t width, uint32_t height) { begin(width, height); },
-            .row = [this](std::span<const float> row) { add(row); }};
-  }
-  EnvironmentImage take() { return std::move(image_); }
+// The largest radiance of an OpenEXR file of 16-bit floats, or 0 if the value is invalid.
+float valid(float value) { return value > 0.0f ? std::min(value, kLargestHalf) : 0.0f; }
 
- private:
-  void begin(uint32_t width, uint32_t height) {
-    const uint32_t factor = (std::max(width, height) + kLargestSide - 1) / kLargestSide;
-    mean_.emplace(width, height, factor);
-    image_ = EnvironmentImage(mean_->reduced(width), mean_->reduced(height));
-    light_.resize(3 * size_t{width});
-  }
-
-  void add(std::span<const float> row) {
-    std::ranges::transform(row, light_.begin(), [](float value) {
-      return value > 0.0f && !std::isinf(value) ? std::min(value, kLargestHalf) : 0.0f;
-    });
-    mean_->add_row(light_, [this](size_t, double value) {
-      image_.pixels[written_ / 3][static_cast<int>(written_ % 3)] = static_cast<float>(value);
-      ++written_;
-    });
-  }
-
-  EnvironmentImage image_;
-  std::optional<BlockMean<float, double, 3>> mean_;
-  std::vector<float> light_;  // a row of the file, invalid radiance as 0
-  size_t written_ = 0;        // how many components of image_ are complete
-};
-
-std::vector<std::string> colour_channels(const ChannelExists&) { return {"R", "G", "B"}; }
-
-std::string lower_case_ending(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
-// The error text is the end of a sentence that begins with the file's name.
+// Reads an OpenEXR file, and reduces the image by a whole factor to at most kLargestSide pixels a
+// side. The error text is the end of a sentence that begins with the file's name.
 Result<EnvironmentImage> read_environment(const std::filesystem::path& file) {
-  const std::string ending = lower_case_ending(file);
-  if (ending != ".hdr" && ending != ".exr")
-    return Failure("is no .hdr or .exr file; give an equirectangular image of these formats");
-  ALCOVE_TRY(const FilePointer opened, open_regular_file(file));
-  EnvironmentRows rows;
-  ALCOVE_TRY_VOID(ending == ".hdr" ? read_hdr(opened.get(), rows.receiver())
-                                   : read_exr(opened.get(), colour_channels, rows.receiver()));
-  return rows.take();
+  constexpr int64_t kLargestFileSide = 16384;
+  try {
+    Imf::RgbaInputFile input(file.string().c_str());
+    const Imath::Box2i window = input.dataWindow();
+    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
+    const int64_t height = int64_t{window.max.y} - window.min.y + 1;
+    const int64_t longest = std::max(width, height);
+    if (longest > kLargestFileSide)
+      return Failure("has more than " + std::to_string(kLargestFileSide) + " pixels a side");
+    const auto factor = static_cast<uint32_t>((longest + kLargestSide - 1) / kLargestSide);
+    BlockMean<float, double, 3> mean(static_cast<uint32_t>(width), static_cast<uint32_t>(height),
+                                     factor);
+    EnvironmentImage image(mean.reduced(static_cast<uint32_t>(width)),
+                           mean.reduced(static_cast<uint32_t>(height)));
+    size_t written = 0;
+    std::vector<Imf::Rgba> row(static_cast<size_t>(width));
+    std::vector<float> light;
+    input.setFrameBuffer(row.data() - window.min.x, 1, 0);  // each row into the same memory
+    for (int y = window.min.y; y <= window.max.y; ++y) {
+      input.readPixels(y);
+      light.clear();
+      for (const Imf::Rgba& pixel : row)
+        light.insert(light.end(), {valid(pixel.r), valid(pixel.g), valid(pixel.b)});
+      mean.add_row(light, [&](size_t, double value) {
+        image.pixels[written / 3][static_cast<int>(written % 3)] = static_cast<float>(value);
+        ++written;
+      });
+    }
+    return image;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return Failure(std::string("is no OpenEXR file that can be read (OpenEXR says: ") +
+                   error.what() + ")");
+  }
 }
 
 }  // namespace

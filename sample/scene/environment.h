@@ -18,10 +18,10 @@ using EnvironmentImage = Image<glm::vec3>;
 // that would be direct light. Its mean radiance is about 1.
 [[nodiscard]] EnvironmentImage procedural_sky();
 
-// Reads a .hdr (Radiance) or .exr file of at most 16384 pixels a side, and reduces it by a whole
-// factor to at most 2048. An empty name gives the procedural sky. Radiance that is negative or not
-// finite becomes 0, and radiance above the largest 16-bit float, 65504, becomes that. The error is
-// a sentence with the file's name: unreadable, damaged, or another format.
+// Reads an OpenEXR file of at most 16384 pixels a side as 16-bit floats, and reduces it by a whole
+// factor to at most 2048. An empty name gives the procedural sky. Radiance that is negative or NaN
+// becomes 0, and radiance above the largest 16-bit float, 65504, becomes that. The error is a
+// sentence with the file's name: unreadable, damaged, or another format.
 [[nodiscard]] Result<EnvironmentImage> load_environment(const std::filesystem::path& file);
 
 // Returns the radiance from a unit direction in world space, interpolated bilinearly.

@@ -9,13 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "support/read_exr.h"
-#include "support/regular_file.h"
 #include "support/whole_file.h"
 
 namespace alcove::sample {
@@ -82,30 +78,6 @@ Result<void> write_exr_channels(const std::filesystem::path& file, const Channel
   });
 }
 
-// Reads an EXR file whose chosen channels are those of a pixel.
-template <class Pixel>
-Result<Image<Pixel>> read_exr_image(const std::filesystem::path& file,
-                                    const ChooseChannels& choose) {
-  Image<Pixel> image;
-  const auto begin = [&](uint32_t width, uint32_t height) {
-    image.width = width;
-    image.height = height;
-  };
-  const auto add = [&](std::span<const float> row) {
-    const size_t first = image.pixels.size();
-    image.pixels.reserve(size_t{image.width} * image.height);
-    image.pixels.resize(first + image.width);
-    std::memcpy(&image.pixels[first], row.data(), row.size_bytes());
-  };
-  return open_regular_file(file)
-      .and_then([&](const FilePointer& opened) {
-        return read_exr(opened.get(), choose, {.begin = begin, .row = add});
-      })
-      .map([&] { return std::move(image); })
-      .map_error(
-          [&](const std::string& why) { return "cannot read " + file.string() + ": it " + why; });
-}
-
 uint8_t to_byte(float value) {
   if (!(value > 0.0f)) return 0;
   return static_cast<uint8_t>(std::lround(std::min(value, 1.0f) * 255.0f));
@@ -134,18 +106,6 @@ Result<void> write_exr(const std::filesystem::path& file, const Image<float>& im
 }
 Result<void> write_exr(const std::filesystem::path& file, const Image<glm::vec3>& image) {
   return write_exr_channels(file, channels(image), {"R", "G", "B"});
-}
-
-Result<Image<float>> read_exr_grey(const std::filesystem::path& file) {
-  return read_exr_image<float>(file, [](const ChannelExists& exists) {
-    return std::vector<std::string>{exists("Y") ? "Y" : "R"};
-  });
-}
-
-Result<Image<glm::vec3>> read_exr_rgb(const std::filesystem::path& file) {
-  return read_exr_image<glm::vec3>(file, [](const ChannelExists&) {
-    return std::vector<std::string>{"R", "G", "B"};
-  });
 }
 
 Result<void> write_png(const std::filesystem::path& file, const Image<float>& image) {

@@ -9,18 +9,13 @@
 
 namespace alcove::sample {
 
-// Readers and writers of image files. A file is written completely or not at all (whole_file.h).
+// Writers of image files. A file is written completely or not at all (whole_file.h).
 // Errors are one sentence with the file's name and the reason.
 
 // OpenEXR, scanlines, 32-bit float, top row first: one channel `Y`, or three `R` `G` `B`.
 [[nodiscard]] Result<void> write_exr(const std::filesystem::path& file, const Image<float>& image);
 [[nodiscard]] Result<void> write_exr(const std::filesystem::path& file,
                                      const Image<glm::vec3>& image);
-
-// Reads the channel `Y`, or `R` if there is no `Y`. At most 16384 pixels a side.
-[[nodiscard]] Result<Image<float>> read_exr_grey(const std::filesystem::path& file);
-// Reads the channels `R`, `G` and `B`. At most 16384 pixels a side.
-[[nodiscard]] Result<Image<glm::vec3>> read_exr_rgb(const std::filesystem::path& file);
 
 // Writes an 8-bit PNG. Values are clamped to 0..1 and stored without a transfer function; callers
 // encode sRGB themselves. NaN becomes 0.

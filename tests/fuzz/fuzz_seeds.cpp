@@ -7,7 +7,6 @@
 
 #include "draco_maker.h"
 #include "image_maker.h"
-#include "support/image_io.h"
 
 namespace alcove::sample {
 namespace {
@@ -85,23 +84,6 @@ void write_images(const fs::path& folder) {
   }
 }
 
-bool write_environments(const fs::path& folder) {
-  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n";
-  std::string runs, plain;
-  for (int row = 0; row < 2; ++row) {
-    runs += std::string("\x02\x02\x00\x08", 4);
-    for (int channel = 0; channel < 4; ++channel)
-      runs += std::string("\x84\x80\x04\x01\x02\x03\x04", 7);
-    plain += std::string("\x80\x40\x20\x81\x01\x01\x01\x07", 8);
-  }
-  for (const std::string& text : {header + runs, header + plain})
-    write(folder / "hdr" / (std::to_string(text.size()) + ".hdr"), {text.begin(), text.end()});
-  Image<glm::vec3> image(9, 20, glm::vec3(0.5f, 1.0f, 2.0f));
-  image.at(3, 3) = glm::vec3(100);
-  fs::create_directories(folder / "exr");
-  return write_exr(folder / "exr" / "0.exr", image).has_value();
-}
-
 }  // namespace
 }  // namespace alcove::sample
 
@@ -112,5 +94,4 @@ int main(int argc, char** argv) {
   }
   alcove::sample::write_scenes(argv[1]);
   alcove::sample::write_images(argv[1]);
-  return alcove::sample::write_environments(argv[1]) ? 0 : 1;
 }

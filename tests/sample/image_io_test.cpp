@@ -1,5 +1,7 @@
 #include "support/image_io.h"
 
+#include <ImfFrameBuffer.h>
+#include <ImfInputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -15,6 +17,23 @@
 namespace alcove::sample {
 namespace {
 
+// The values of channels of an OpenEXR file, interleaved.
+std::vector<float> read_exr(const std::filesystem::path& file,
+                            const std::vector<const char*>& channels, uint32_t width,
+                            uint32_t height) {
+  std::vector<float> values(channels.size() * width * height);
+  Imf::FrameBuffer frame;
+  const size_t pixel = channels.size() * sizeof(float);
+  for (size_t c = 0; c < channels.size(); ++c) {
+    frame.insert(channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data() + c),
+                                         pixel, pixel * width));
+  }
+  Imf::InputFile input(file.string().c_str());
+  input.setFrameBuffer(frame);
+  input.readPixels(0, static_cast<int>(height) - 1);
+  return values;
+}
+
 TEST(ImageIo, GreyExrImageIsReadBackExactly) {
   const TemporaryFolder folder;
   Image<float> image(7, 3);
@@ -22,10 +41,7 @@ TEST(ImageIo, GreyExrImageIsReadBackExactly) {
     image.pixels[i] = 0.1f * static_cast<float>(i) - 0.3f;
   image.at(6, 2) = std::numeric_limits<float>::infinity();
   ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
-  const auto read = read_exr_grey(folder.path / "a.exr");
-  ASSERT_TRUE(read) << read.error();
-  EXPECT_EQ(read->width, 7u);
-  EXPECT_EQ(read->pixels, image.pixels);
+  EXPECT_EQ(read_exr(folder.path / "a.exr", {"Y"}, 7, 3), image.pixels);
   EXPECT_EQ(folder.files(), 1);
 }
 
@@ -35,9 +51,8 @@ TEST(ImageIo, ColourExrIsReadBackWithChannelsAndRowsInOrder) {
   image.at(0, 0) = {1, 2, 3};
   image.at(1, 1) = {-4, 5, 6};
   ASSERT_TRUE(write_exr(folder.path / "a.exr", image));
-  const auto read = read_exr_rgb(folder.path / "a.exr");
-  ASSERT_TRUE(read) << read.error();
-  EXPECT_EQ(read->pixels, image.pixels);
+  EXPECT_THAT(read_exr(folder.path / "a.exr", {"R", "G", "B"}, 2, 2),
+              testing::ElementsAre(1, 2, 3, 0, 0, 0, 0, 0, 0, -4, 5, 6));
 }
 
 TEST(ImageIo, ErrorForAMissingOutputFolderNamesTheFile) {
@@ -49,22 +64,6 @@ TEST(ImageIo, ErrorForAMissingOutputFolderNamesTheFile) {
 TEST(ImageIo, WritingAnImageWithoutPixelsIsRefused) {
   EXPECT_FALSE(write_exr("a.exr", Image<float>()));
   EXPECT_FALSE(write_png("a.png", Image<glm::vec3>()));
-}
-
-TEST(ImageIo, DamagedExrIsRefused) {
-  const TemporaryFolder folder;
-  std::ofstream(folder.path / "a.exr") << "this is not an image";
-  const auto read = read_exr_grey(folder.path / "a.exr");
-  ASSERT_FALSE(read);
-  EXPECT_THAT(read.error(), testing::HasSubstr("a.exr"));
-}
-
-TEST(ImageIo, NamedPipeIsRefusedWithoutWaiting) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(mkfifo((folder.path / "a.exr").c_str(), 0600), 0);
-  const auto read = read_exr_grey(folder.path / "a.exr");
-  ASSERT_FALSE(read);
-  EXPECT_THAT(read.error(), testing::HasSubstr("not a regular file"));
 }
 
 TEST(ImageIo, NamedPipeInPlaceOfAnOutputFileIsReplacedByTheFile) {

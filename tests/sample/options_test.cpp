@@ -54,10 +54,10 @@ TEST(Options, CommandLineWithManyOptionsIsParsed) {
              "--radius", "0.75",      "--normals",     "geometric",   "--quality",   "high",
              "--set",    "slices=2",  "--set",         "steps=5",     "--roughness", "0.1,0.3,0.6",
              "--spp",    "512",       "--reversed-z",  "--size",      "320x200",     "--out",
-             "x",        "--lit",     "--environment", "sky.hdr"});
+             "x",        "--lit",     "--environment", "sky.exr"});
   ASSERT_TRUE(options) << options.error().text;
   EXPECT_EQ(options->scene, "scene.glb");
-  EXPECT_EQ(options->environment, "sky.hdr");
+  EXPECT_EQ(options->environment, "sky.exr");
   EXPECT_TRUE(options->lit);
   EXPECT_EQ(*options->view.eye, glm::dvec3(-9, 5.5, -0.4));
   EXPECT_EQ(options->view.reversed_z, true);

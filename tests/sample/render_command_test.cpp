@@ -104,7 +104,7 @@ TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
 TEST(PrintedRenderCommand, PrintedCommandKeepsTheSceneEnvironmentAndNormalsOptions) {
   Options options;
   options.scene = "a scene's file.glb";
-  options.environment = "sky.hdr";
+  options.environment = "sky.exr";
   options.occlusion.normals = NormalSource::geometric;
   expect_round_trip(options, some_shot());
 }
