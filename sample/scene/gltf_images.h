@@ -20,11 +20,10 @@ struct ImageLimits {
 // TextureUse::image indexes the images of the model; afterwards it indexes Scene::images, or is -1
 // without an image.
 //
-// The headers are read first. If the images together exceed the limit on memory, the image with the
-// most texels for the size at which it appears is halved, until all fit. An image appears as large
-// as its surfaces do from around the subject of the scene, which has to be known. An image is left
-// out if it cannot be read, if it has too many pixels a side, or if those that appear larger reach
-// the limit on decoding. The scene gets a warning about each of these.
+// The headers are read first. If the images together exceed the limit on memory, the largest is
+// halved until all fit. An image is left out if it cannot be read, if it has too many pixels a
+// side, or if those before it reach the limit on decoding. The scene gets a warning about each of
+// these.
 void add_images(const tinygltf::Model& model, GltfFiles& files, const ImageLimits& limits,
                 Scene& scene);
 

@@ -157,59 +157,41 @@ TEST(GltfFile, EveryTruncationOfABinaryFileIsRefused) {
   }
 }
 
-// A square with an image, at a height and of a size.
-void add_square(GltfMaker& maker, uint32_t image_side, float height, float size, float repeats) {
-  const std::vector<float> at = {0, 0, height, size, 0,    height, size, size, height,
-                                 0, 0, height, size, size, height, 0,    size, height};
-  const float r = repeats;
-  const std::vector<float> uvs = {0, 0, r, 0, r, r, 0, 0, r, r, 0, r};
+// A file whose triangles show square images of these sizes.
+GltfMaker with_images(const std::vector<uint32_t>& sides) {
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
   auto& json = maker.json;
-  json["images"].push_back(
-      {{"bufferView", maker.view(make_plain_png(image_side, image_side, 200))}});
-  json["textures"].push_back({{"source", json["images"].size() - 1}});
-  json["materials"].push_back(
-      {{"emissiveTexture", {{"index", json["textures"].size() - 1}}}, {"doubleSided", true}});
-  json["meshes"][0]["primitives"].push_back(
-      {{"attributes",
-        {{"POSITION", maker.add("VEC3", at)}, {"TEXCOORD_0", maker.add("VEC2", uvs)}}},
-       {"material", json["materials"].size() - 1}});
-}
-
-// Squares of two sizes, one of which repeats its image, and one far away, which appears small. The
-// fifth image is small itself.
-GltfMaker squares() {
-  GltfMaker maker = GltfMaker::triangle();
-  add_square(maker, 64, 0.0f, 4.0f, 1.0f);
-  add_square(maker, 64, 0.1f, 1.0f, 1.0f);
-  add_square(maker, 64, 0.2f, 4.0f, 8.0f);
-  add_square(maker, 64, 400.0f, 4.0f, 1.0f);
-  add_square(maker, 4, 0.3f, 4.0f, 1.0f);
+  const nlohmann::json primitive = maker.primitive();
+  for (const char* list : {"images", "textures", "materials"}) json[list] = nlohmann::json::array();
+  for (size_t i = 0; i < sides.size(); ++i) {
+    json["images"].push_back({{"bufferView", maker.view(make_plain_png(sides[i], sides[i], 200))}});
+    json["textures"].push_back({{"source", i}});
+    json["materials"].push_back({{"emissiveTexture", {{"index", i}}}});
+    json["meshes"][0]["primitives"][i] = primitive;
+    json["meshes"][0]["primitives"][i]["material"] = i;
+  }
   return maker;
 }
 
-TEST(GltfImage, ImagesBeyondTheMemoryLimitAreReducedToTheSizeAtWhichTheyAppear) {
+TEST(GltfImage, LargestImagesAreHalvedUntilAllFitInMemory) {
   GltfLimits limits;
-  limits.images.kept = 64 * 64 + 3 * 32 * 32 - 1;
-  const Scene scene = parsed(squares().gltf(), limits);
+  limits.images.kept = 3 * 32 * 32;
+  const Scene scene = parsed(with_images({128, 16, 64, 16}).gltf(), limits);
   std::vector<uint32_t> sides;
   for (const TextureImage& image : scene.images) sides.push_back(image.width);
-  ASSERT_EQ(sides.size(), 5u);
-  EXPECT_EQ(sides[0], 64u);
-  EXPECT_EQ(sides[4], 4u);
-  EXPECT_EQ(scene.images[2].rgba[0], 200);
-  for (const size_t smaller : {1u, 2u, 3u}) EXPECT_LT(sides[smaller], 64u) << smaller;
-  EXPECT_LT(sides[3], sides[1]);
-  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("3 of 5 are reduced")));
+  EXPECT_THAT(sides, testing::ElementsAre(32, 16, 32, 16));
+  EXPECT_EQ(scene.images[0].rgba[0], 200);
+  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("2 of 4 are reduced")));
 }
 
-TEST(GltfImage, ImagesThatAppearSmallestAreLeftOutBeyondTheDecodingLimit) {
+TEST(GltfImage, ImagesAfterThoseThatReachTheDecodingLimitAreLeftOut) {
   GltfLimits limits;
-  limits.images.decoded = 3 * 64 * 64;
-  const Scene scene = parsed(squares().gltf(), limits);
+  limits.images.decoded = 2 * 64 * 64;
+  const Scene scene = parsed(with_images({64, 64, 64}).gltf(), limits);
   std::vector<int32_t> images;
   for (const Material& material : scene.materials)
     images.push_back(material.emissive_texture.image);
-  EXPECT_THAT(images, testing::ElementsAre(0, -1, 1, -1, 2, -1));
+  EXPECT_THAT(images, testing::ElementsAre(0, 1, -1, -1));  // the last is the default
 }
 
 TEST(GltfImage, ImagesBeyondTheDecodingLimitAreLeftOutFromTheirHeaders) {
