@@ -1,7 +1,7 @@
 // An independent check of the ordering in a plan. For every pair of conflicting operations in two
 // frames it searches for a path of barriers and semaphores from one to the other. It is slow and
-// simple, and shares no code and no method with the verifier. It does not check layouts, contents,
-// owners and lifetimes.
+// simple, and shares no code with the verifier. It does not check layouts, contents, owners and
+// lifetimes.
 #pragma once
 
 #include <string>

@@ -147,10 +147,8 @@ void Replay::end_frame() {
   }
   for (const FinalState& final : plan_.finals) check_final(final);
   check_histories();
-  for (std::uint32_t i = 0; i < queue_count_; ++i) {
-    const auto queue = static_cast<std::uint8_t>(i);
+  for (std::uint8_t queue = 0; queue < kQueueClasses; ++queue)
     order_.signal(queue, end_signal(queue));
-  }
 }
 
 void Replay::check_final_state(std::uint32_t resource) {

@@ -49,6 +49,9 @@ constexpr Accesses kReads =
     VK_ACCESS_2_CONDITIONAL_RENDERING_READ_BIT_EXT |
     VK_ACCESS_2_FRAGMENT_SHADING_RATE_ATTACHMENT_READ_BIT_KHR;
 
+// Returns the lowest bit of a mask, or 0 if no bit is set.
+constexpr std::uint64_t lowest(std::uint64_t mask) { return mask & (~mask + 1); }
+
 }  // namespace
 
 Stages expand_stages(Stages stages) {
@@ -81,197 +84,123 @@ Barrier barrier_of(const Transition& t, QueueClass queue) {
           expand_accesses(t.dst_access),    t.resource == kNone};
 }
 
-namespace {
-
-std::vector<std::uint64_t> bits_of(std::uint64_t mask) {
-  std::vector<std::uint64_t> bits;
-  for (; mask != 0; mask &= mask - 1) bits.push_back(mask & (~mask + 1));
-  return bits;
-}
-
-// Returns whether f(i) is true for the index i of each of the bits that `mask` contains.
-template <typename Function>
-bool all_bits(const std::vector<std::uint64_t>& bits, std::uint64_t mask, const Function& f) {
-  for (std::size_t i = 0; i < bits.size(); ++i)
-    if ((mask & bits[i]) && !f(i)) return false;
-  return true;
-}
-
-}  // namespace
-
-HappensBefore::HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues)
-    : stages_(bits_of(stages)),
-      writes_(bits_of(accesses & kWrites)),
-      accesses_(bits_of(accesses)),
-      places_(queues * stages_.size()),
-      ordered_(places_ * places_),
-      available_(places_ * writes_.size() * places_),
-      visible_(places_ * (writes_.size() + 1) * places_ * accesses_.size()) {}
-
-template <typename Function>
-bool HappensBefore::all_stages(Stages stages, Function&& f) const {
-  return all_bits(stages_, stages, f);
-}
-
-template <typename Function>
-bool HappensBefore::any_stage(Stages stages, Function&& f) const {
-  return !all_stages(stages, [&](std::size_t i) { return !f(i); });
-}
-
-template <typename Function>
-bool HappensBefore::all_writes(Accesses writes, Function&& f) const {
-  return all_bits(writes_, writes, f);
-}
-
-template <typename Function>
-bool HappensBefore::holds(const Operation& operation, Function&& f) const {
-  const auto at = [&](std::size_t stage) { return f(place(operation.queue, stage)); };
-  return operation.kind == Operation::Kind::access ? all_stages(operation.stages, at)
-                                                   : any_stage(operation.stages, at);
-}
-
-void HappensBefore::apply(std::span<const Barrier> barriers) {
-  if (scopes_.size() < barriers.size()) scopes_.resize(barriers.size());
-  for (std::size_t i = 0; i < barriers.size(); ++i) reach(barriers[i], scopes_[i]);
-  for (std::size_t i = 0; i < barriers.size(); ++i) spread(barriers[i], scopes_[i]);
-}
-
-// Finds the operations that a barrier waits for: those in its first scope, and all operations that
-// are ordered before these.
-void HappensBefore::reach(const Barrier& barrier, ScopeTimes& scope) const {
-  scope.ordered.assign(places_, 0);
-  scope.available.assign(places_ * writes_.size(), 0);
-  all_stages(barrier.src, [&](std::size_t stage) {
-    const std::size_t through = place(barrier.queue, stage);
-    for (std::size_t source = 0; source < places_; ++source) {
-      const bool direct = source == through;
-      Time& before = scope.ordered[source];
-      before = std::max(before, direct ? now_ : ordered(source, through));
-      for (std::size_t write = 0; write < writes_.size(); ++write) {
-        const bool made = direct && barrier.memory && (barrier.src_access & writes_[write]) != 0;
-        Time& there = scope.available[source * writes_.size() + write];
-        there = std::max(there, made ? now_ : available(source, write, through));
-      }
-    }
-    return true;
-  });
-}
-
-void HappensBefore::spread(const Barrier& barrier, const ScopeTimes& scope) {
-  const auto raise = [](Time& time, Time to) { time = std::max(time, to); };
-  all_stages(barrier.dst, [&](std::size_t stage) {
-    const std::size_t to = place(barrier.queue, stage);
-    for (std::size_t source = 0; source < places_; ++source) {
-      raise(ordered(source, to), scope.ordered[source]);
-      for (std::size_t write = 0; write <= writes_.size(); ++write) {
-        const bool writes = write < writes_.size();
-        const Time time =
-            writes ? scope.available[source * writes_.size() + write] : scope.ordered[source];
-        if (writes) raise(available(source, write, to), time);
-        if (!barrier.memory) continue;
-        Time* const seen = visible(source, write, to);
-        for (std::size_t a = 0; a < accesses_.size(); ++a)
-          if (barrier.dst_access & accesses_[a]) raise(seen[a], time);
-      }
-    }
-    return true;
-  });
-}
-
-// Records a semaphore signal. It comes after all earlier work of its queue and after everything
-// that is ordered before that work, and makes the writes of all of these available.
 void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
-  if (signalled_.size() <= submission) signalled_.resize(submission + 1);
-  std::vector<Time>& times = signalled_[submission];
-  times.assign(places_, 0);
-  for (std::size_t source = 0; source < places_; ++source) {
-    if (source / stages_.size() == queue) times[source] = now_;
-    for (std::size_t stage = 0; stage < stages_.size(); ++stage)
-      times[source] = std::max(times[source], ordered(source, place(queue, stage)));
-  }
+  if (signals_.size() <= submission) signals_.resize(submission + 1);
+  signals_[submission] = steps_.size();
+  steps_.push_back({Step::Kind::signal, queue, 0, 0, {}});
 }
 
 void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission, Stages stages) {
-  // Everything that came before the signal is available and visible after the wait.
-  const std::vector<Time>& times = signalled_[submission];
-  ScopeTimes all{times, {}};
-  for (const Time time : times) all.available.insert(all.available.end(), writes_.size(), time);
-  spread({queue, 0, 0, expand_stages(stages), ~Accesses{0}, true}, all);
+  steps_.push_back({Step::Kind::wait, queue, expand_stages(stages), signals_[submission], {}});
+}
+
+bool HappensBefore::Part::is_before(const Barrier& barrier) const {
+  return (barrier.queue == queue && (barrier.src & source) != 0) ||
+         (barrier.src & ordered[barrier.queue]) != 0;
+}
+
+// `covers` says whether the memory dependency of the barrier covers the operation's resource.
+bool HappensBefore::Part::is_available_by(const Barrier& barrier, bool covers) const {
+  if (write == 0) return is_before(barrier);
+  const bool direct = barrier.queue == queue && (barrier.src & source) != 0;
+  return (direct && covers && (barrier.src_access & write) != 0) ||
+         (barrier.src & available[barrier.queue]) != 0;
+}
+
+bool HappensBefore::Reach::is_seen(std::uint8_t by, Stages stages, Accesses accesses) const {
+  for (; stages != 0; stages &= stages - 1) {
+    Accesses unseen = accesses;
+    for (const Sight& sight : visible)
+      if (sight.queue == by && (sight.stages & lowest(stages))) unseen &= ~sight.accesses;
+    if (unseen != 0) return false;
+  }
+  return true;
+}
+
+// Adds the second scope of a barrier that waits for the part.
+void HappensBefore::Reach::add(const Barrier& barrier, bool makes_available) {
+  ordered[barrier.queue] |= barrier.dst;
+  if (!makes_available) return;
+  available[barrier.queue] |= barrier.dst;
+  if (barrier.memory) visible.push_back({barrier.queue, barrier.dst, barrier.dst_access});
+}
+
+// Follows the steps from `from` on. A signal comes after all earlier work of its queue and after
+// everything that is ordered before that work, and makes the writes of all of these available. They
+// are visible after a wait for it.
+void HappensBefore::follow(std::size_t from, Reach& reach) const {
+  std::vector<std::size_t> signals;  // that come after the part
+  for (std::size_t i = from; i < steps_.size(); ++i) {
+    const Step& step = steps_[i];
+    if (step.kind == Step::Kind::signal) {
+      if (step.queue == reach.queue || reach.ordered[step.queue] != 0) signals.push_back(i);
+    } else if (step.kind == Step::Kind::wait) {
+      if (std::find(signals.begin(), signals.end(), step.signal) != signals.end())
+        reach.add({step.queue, 0, 0, step.stages, ~Accesses{0}, true}, true);
+    } else {
+      const Part before = reach;
+      for (const Barrier& barrier : step.barriers)
+        if (before.is_before(barrier))
+          reach.add(barrier, before.is_available_by(barrier, barrier.memory));
+    }
+  }
+}
+
+template <typename Function>
+bool HappensBefore::all_parts(const Operation& operation, const Function& f) const {
+  const auto holds = [&](Stages stage, Accesses write) {
+    Reach reach{{operation.queue, stage, write}, {}};
+    if (operation.kind == Operation::Kind::change)
+      reach.add({operation.queue, 0, 0, operation.stages, operation.seen_by, true}, true);
+    follow(operation.time, reach);
+    return f(reach);
+  };
+  if (operation.kind != Operation::Kind::access) return holds(operation.stages, 0);
+  for (Stages stages = operation.stages; stages != 0; stages &= stages - 1) {
+    Accesses writes = operation.writes;
+    do {
+      if (!holds(lowest(stages), lowest(writes))) return false;
+      writes &= writes - 1;
+    } while (writes != 0);
+  }
+  return true;
 }
 
 bool HappensBefore::is_before(const Operation& operation, const Barrier& barrier) const {
-  if (operation.kind == Operation::Kind::release && operation.queue == barrier.queue &&
-      barrier.src != 0)
-    return true;
-  return holds(operation, [&](std::size_t source) {
-    return any_stage(barrier.src, [&](std::size_t stage) {
-      const std::size_t through = place(barrier.queue, stage);
-      return source == through || ordered(source, through) >= operation.time;
-    });
-  });
+  return all_parts(operation, [&](const Reach& reach) { return reach.is_before(barrier); });
 }
 
 bool HappensBefore::is_available_by(const Operation& operation, const Barrier& barrier) const {
-  if (operation.writes == 0) return is_before(operation, barrier);
-  return holds(operation, [&](std::size_t source) {
-    return all_writes(operation.writes, [&](std::size_t write) {
-      return any_stage(barrier.src, [&](std::size_t stage) {
-        const std::size_t through = place(barrier.queue, stage);
-        return (source == through && (barrier.src_access & writes_[write])) ||
-               available(source, write, through) >= operation.time;
-      });
-    });
-  });
+  return all_parts(operation,
+                   [&](const Reach& reach) { return reach.is_available_by(barrier, true); });
 }
 
 bool HappensBefore::is_ordered(const Operation& operation, std::uint8_t queue,
                                Stages stages) const {
-  return all_stages(expand_stages(stages), [&](std::size_t stage) {
-    return is_own(operation, queue, stages_[stage]) || holds(operation, [&](std::size_t source) {
-             return ordered(source, place(queue, stage)) >= operation.time;
-           });
-  });
+  const Stages wanted = expand_stages(stages);
+  return all_parts(operation,
+                   [&](const Reach& reach) { return (wanted & ~reach.ordered[queue]) == 0; });
 }
 
 bool HappensBefore::is_available(const Operation& operation, std::uint8_t queue,
                                  Stages stages) const {
-  if (operation.writes == 0) return is_ordered(operation, queue, stages);
-  return all_stages(expand_stages(stages), [&](std::size_t stage) {
-    return holds(operation, [&](std::size_t source) {
-      return all_writes(operation.writes, [&](std::size_t write) {
-        return available(source, write, place(queue, stage)) >= operation.time;
-      });
-    });
-  });
+  const Stages wanted = expand_stages(stages);
+  return all_parts(operation,
+                   [&](const Reach& reach) { return (wanted & ~reach.available[queue]) == 0; });
 }
 
 bool HappensBefore::is_visible(const Operation& operation, std::uint8_t queue, Stages stages,
                                Accesses accesses) const {
-  const Accesses wanted = expand_accesses(accesses);
-  const auto sees = [&](std::size_t source, std::size_t write, std::size_t to, std::size_t access) {
-    return visible(source, write, to)[access] >= operation.time;
-  };
-  return all_stages(expand_stages(stages), [&](std::size_t stage) {
-    const std::size_t to = place(queue, stage);
-    for (std::size_t a = 0; a < accesses_.size(); ++a) {
-      if (!(wanted & accesses_[a])) continue;
-      if (is_own(operation, queue, stages_[stage]) && (operation.seen_by & accesses_[a])) continue;
-      const bool seen = holds(operation, [&](std::size_t source) {
-        if (operation.writes == 0) return sees(source, writes_.size(), to, a);
-        return all_writes(operation.writes,
-                          [&](std::size_t write) { return sees(source, write, to, a); });
-      });
-      if (!seen) return false;
-    }
-    return true;
+  return all_parts(operation, [&](const Reach& reach) {
+    return reach.is_seen(queue, expand_stages(stages), expand_accesses(accesses));
   });
 }
 
 bool HappensBefore::is_before_any(const Operation& operation, std::uint8_t queue,
                                   Stages stages) const {
-  return any_stage(expand_stages(stages), [&](std::size_t stage) {
-    return is_available(operation, queue, stages_[stage]);
-  });
+  for (Stages left = expand_stages(stages); left != 0; left &= left - 1)
+    if (is_available(operation, queue, lowest(left))) return true;
+  return false;
 }
 
 }  // namespace alcove::framegraph::verifier

@@ -2,17 +2,13 @@
 // model ("Execution and Memory Dependencies" of the specification). It does not depend on how plans
 // are made.
 //
-// Time counts the commands of the replay. A source is a queue, a stage, and a write access or none.
-// A destination is a queue and a stage. For each pair of a source and a destination, the model
-// keeps one time: all accesses of the source up to it happen before the next command of the
-// destination. One time is enough, because a barrier that orders a command of a stage orders all
-// earlier commands of that stage and queue too. The cost of a barrier therefore depends on the
-// number of stages, and not on the number of earlier commands.
+// It keeps the barriers, signals and waits of the replay in a list. To answer a question about an
+// operation, it follows them from the operation on, and collects the stages and accesses that the
+// operation has reached. The cost of an answer is proportional to their number since the operation.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <numeric>
-#include <span>
 #include <vector>
 
 #include "alcove/framegraph/plan.h"
@@ -21,7 +17,6 @@ namespace alcove::framegraph::verifier {
 
 using Stages = VkPipelineStageFlags2;
 using Accesses = VkAccessFlags2;
-using Time = std::uint32_t;
 
 // Replace stage and access bits that stand for several others by those others.
 Stages expand_stages(Stages stages);
@@ -38,7 +33,7 @@ struct Operation {
   };
   Kind kind = Kind::access;
   std::uint8_t queue = 0;
-  Time time = 0;
+  std::size_t time = 0;  // HappensBefore::now()
   Stages stages = 0;     // expanded by expand_stages()
   Accesses writes = 0;   // of an access: its bits that write
   Accesses seen_by = 0;  // of a change: the accesses of `stages` that see it
@@ -59,21 +54,13 @@ Barrier barrier_of(const Transition& transition, QueueClass queue);
 
 class HappensBefore {
  public:
-  // Creates an empty model. `stages` and `accesses` contain every expanded bit that an access or a
-  // barrier of the plan names. `queues` is the number of queue classes.
-  HappensBefore(Stages stages, Accesses accesses, std::uint32_t queues);
-
-  // Returns the stages that the constructor was given.
-  Stages tracked_stages() const {
-    return std::accumulate(stages_.begin(), stages_.end(), Stages{0});
-  }
-
-  // Starts the next command and returns its time.
-  Time next() { return ++now_; }
-  Time now() const { return now_; }
+  std::size_t now() const { return steps_.size(); }
   // Applies the barriers of one command. They are not ordered among each other.
-  void apply(std::span<const Barrier> barriers);
-  // signal() records the signal of a submission, numbered from 0. wait() makes a queue wait for it.
+  void apply(const std::vector<Barrier>& barriers) {
+    steps_.push_back({Step::Kind::barriers, 0, 0, 0, barriers});
+  }
+  // signal() records the signal of a submission, numbered from 0. wait() makes a queue wait for the
+  // last signal of that number.
   void signal(std::uint8_t queue, std::uint32_t submission);
   void wait(std::uint8_t queue, std::uint32_t submission, Stages stages);
 
@@ -94,60 +81,48 @@ class HappensBefore {
   bool is_before_any(const Operation& operation, std::uint8_t queue, Stages stages) const;
 
  private:
-  // For each source, the times up to which one barrier of the current batch orders its accesses.
-  struct ScopeTimes {
-    std::vector<Time> ordered;
-    std::vector<Time> available;  // by source and write access
+  // The barriers of one command, or a signal or wait of a queue.
+  struct Step {
+    enum class Kind : std::uint8_t { barriers, signal, wait };
+    Kind kind = Kind::barriers;
+    std::uint8_t queue = 0;
+    Stages stages = 0;       // that wait
+    std::size_t signal = 0;  // the step that a wait waits for
+    std::vector<Barrier> barriers;
+  };
+  // A part of an operation, and what comes after it. A part is one stage of an access with one of
+  // its writes, or without one. A layout change or a release has one part.
+  struct Part {
+    std::uint8_t queue = 0;
+    Stages source = 0;   // barriers over these stages wait for the part directly
+    Accesses write = 0;  // one bit, or 0
+    // By queue: the stages whose next command comes after the part, and those for which its write
+    // is also available.
+    std::array<Stages, kQueueClasses> ordered{};
+    std::array<Stages, kQueueClasses> available{};
+
+    bool is_before(const Barrier& barrier) const;
+    bool is_available_by(const Barrier& barrier, bool covers) const;
+  };
+  struct Reach : Part {
+    struct Sight {
+      std::uint8_t queue = 0;
+      Stages stages = 0;
+      Accesses accesses = 0;
+    };
+    std::vector<Sight> visible;
+
+    void add(const Barrier& barrier, bool makes_available);
+    bool is_seen(std::uint8_t by, Stages stages, Accesses accesses) const;
   };
 
-  std::size_t place(std::uint8_t queue, std::size_t stage) const {
-    return queue * stages_.size() + stage;
-  }
-  Time& ordered(std::size_t source, std::size_t to) { return ordered_[source * places_ + to]; }
-  Time ordered(std::size_t source, std::size_t to) const { return ordered_[source * places_ + to]; }
-  Time& available(std::size_t source, std::size_t write, std::size_t to) {
-    return available_[(source * writes_.size() + write) * places_ + to];
-  }
-  Time available(std::size_t source, std::size_t write, std::size_t to) const {
-    return available_[(source * writes_.size() + write) * places_ + to];
-  }
-  // Returns the array of times, one for each access of the destination, up to which the writes of a
-  // source are visible to a destination. `write` is writes_.size() if the source does not write.
-  Time* visible(std::size_t source, std::size_t write, std::size_t to) {
-    return &visible_[((source * (writes_.size() + 1) + write) * places_ + to) * accesses_.size()];
-  }
-  const Time* visible(std::size_t source, std::size_t write, std::size_t to) const {
-    return &visible_[((source * (writes_.size() + 1) + write) * places_ + to) * accesses_.size()];
-  }
-  void reach(const Barrier& barrier, ScopeTimes& scope) const;
-  void spread(const Barrier& barrier, const ScopeTimes& scope);
+  void follow(std::size_t from, Reach& reach) const;
+  // Returns whether f(reach) is true for all parts of an operation.
   template <typename Function>
-  bool all_stages(Stages stages, Function&& f) const;
-  template <typename Function>
-  bool any_stage(Stages stages, Function&& f) const;
-  template <typename Function>
-  bool all_writes(Accesses writes, Function&& f) const;
-  // Calls f(index of a source) for each stage of an operation and combines the results. An access
-  // requires f for all of its stages, a layout change for any of them.
-  template <typename Function>
-  bool holds(const Operation& operation, Function&& f) const;
-  // Returns whether `stage` is in the second scope of the barrier that made the layout change. The
-  // layout change happens before the commands of those stages.
-  static bool is_own(const Operation& operation, std::uint8_t queue, Stages stage) {
-    return operation.kind == Operation::Kind::change && operation.queue == queue &&
-           (operation.stages & stage) != 0;
-  }
+  bool all_parts(const Operation& operation, const Function& f) const;
 
-  std::vector<Stages> stages_;      // one bit each
-  std::vector<Accesses> writes_;    // one bit each
-  std::vector<Accesses> accesses_;  // one bit each
-  std::size_t places_ = 0;          // number of queues times number of stages
-  Time now_ = 0;
-  std::vector<Time> ordered_;
-  std::vector<Time> available_;
-  std::vector<Time> visible_;
-  std::vector<ScopeTimes> scopes_;            // by barrier of a command
-  std::vector<std::vector<Time>> signalled_;  // by submission, by source
+  std::vector<Step> steps_;
+  std::vector<std::size_t> signals_;  // by submission: the step of its last signal
 };
 
 }  // namespace alcove::framegraph::verifier

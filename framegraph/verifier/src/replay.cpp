@@ -4,48 +4,6 @@
 
 namespace alcove::framegraph::verifier {
 
-Replay::Replay(const GraphDescription& graph, const Limits& limits, const Plan& plan,
-               Errors& errors)
-    : graph_(graph),
-      limits_(limits),
-      plan_(plan),
-      errors_(errors),
-      queue_count_(queue_count(graph, plan)),
-      order_(order_of(graph, plan, queue_count_)) {}
-
-// Returns the number of queue classes that the plan or the limits name.
-std::uint32_t Replay::queue_count(const GraphDescription& graph, const Plan& plan) {
-  QueueClass last = QueueClass::graphics;
-  for (const ExternalRecord& external : graph.externals) last = std::max(last, external.queue);
-  for (const Transition& t : plan.transitions) last = std::max({last, t.src_queue, t.dst_queue});
-  for (const Submission& submission : plan.submissions) last = std::max(last, submission.queue);
-  return static_cast<std::uint32_t>(last) + 1;
-}
-
-// Creates the model with the stages and accesses that the frame and the plan name. A mask such as
-// ALL_COMMANDS is expanded only to stages that are also named elsewhere.
-HappensBefore Replay::order_of(const GraphDescription& graph, const Plan& plan,
-                               std::uint32_t queues) {
-  Stages stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  Accesses accesses = 0;
-  const auto add = [&](Stages in, Accesses by) {
-    stages |= expand_stages(in & ~VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
-    constexpr Accesses kAll = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    accesses |= expand_accesses(by & ~kAll);
-  };
-  for (const AccessRecord& access : graph.accesses) add(access.stages, access.access);
-  for (const ExternalRecord& external : graph.externals) {
-    add(external.initial_state.stages, external.initial_state.access);
-    add(external.final_state.stages, external.final_state.access);
-  }
-  for (const Transition& t : plan.transitions) {
-    add(t.src_stages, t.src_access);
-    add(t.dst_stages, t.dst_access);
-  }
-  for (const FinalState& final : plan.finals) add(final.state.stages, final.state.access);
-  return {stages, accesses, queues};
-}
-
 void Replay::run() {
   resources_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
@@ -89,7 +47,6 @@ void Replay::find_expected() {
 void Replay::begin_frame(bool first) {
   where_ = first ? "at the start of the frame" : "at the start of the next frame";
   first_frame_ = first;
-  order_.next();
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
     resources_[r].used = false;
@@ -117,16 +74,14 @@ void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& init
   using Kind = Operation::Kind;
   const Stages stages = expand_stages(initial_state.stages);
   const Accesses accesses = expand_accesses(initial_state.access);
-  const Time time = order_.next();
+  const std::size_t time = order_.now();
   if (is_write(accesses)) {
     const Accesses writes = accesses & ~reads_of(accesses);
     if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
     return;
   }
-  // Creates one operation for each stage. Only stages that the frame or the plan names are tracked;
-  // waiting for the others would make no difference.
-  for (Stages left = accesses == 0 ? stages & order_.tracked_stages() : 0; left != 0;
-       left &= left - 1)
+  // Creates one operation for each stage.
+  for (Stages left = accesses == 0 ? stages : 0; left != 0; left &= left - 1)
     sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
   if (accesses != 0) sub.last.writes.push_back({Kind::change, queue, time, stages, 0, accesses});
   if (stages != 0) sub.last.reads.push_back({Kind::access, queue, time, stages, 0, 0});
@@ -136,7 +91,7 @@ void Replay::submission(std::uint32_t index) {
   const Submission& submission = plan_.submissions[index];
   const auto queue = static_cast<std::uint8_t>(submission.queue);
   for (std::uint8_t other = 0; other < kQueueClasses && !first_frame_; ++other)
-    if ((submission.frame_before & (1u << other)) != 0 && other < queue_count_)
+    if ((submission.frame_before & (1u << other)) != 0)
       order_.wait(queue, end_signal(other), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
     const Wait& wait_for = plan_.waits[submission.first_wait + w];
@@ -159,7 +114,6 @@ void Replay::submission(std::uint32_t index) {
 void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue) {
   for (std::uint32_t b = first; b < first + count; ++b) {
     const Batch& batch = plan_.batches[b];
-    order_.next();
     barriers_.clear();
     for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
       const Transition& t = plan_.transitions[i];
@@ -222,7 +176,7 @@ void Replay::change(const Transition& t, QueueClass on) {
   const std::uint32_t src = family(static_cast<std::uint8_t>(t.src_queue));
   const std::uint32_t dst = family(static_cast<std::uint8_t>(t.dst_queue));
   const bool releases = src != dst && on == t.src_queue;
-  const Time time = order_.next();
+  const std::size_t time = order_.now();
   for_each_sub(t.resource, t.range, [&](Sub& sub) {
     sub.last = {};
     sub.series = kNone;
@@ -296,7 +250,6 @@ void Replay::pass(std::uint32_t position) {
   const std::uint32_t pass = plan_.passes[position].pass;
   const std::uint32_t first = graph_.passes[pass].first_access;
   const auto count = static_cast<std::uint32_t>(graph_.pass_accesses(pass).size());
-  order_.next();
   for (std::uint32_t i = first; i < first + count; ++i)
     if (plan_.live_accesses[i]) check_access(position, i);
   for (std::uint32_t i = first; i < first + count; ++i)

@@ -41,7 +41,8 @@ struct Sub {
 
 class Replay {
  public:
-  Replay(const GraphDescription& graph, const Limits& limits, const Plan& plan, Errors& errors);
+  Replay(const GraphDescription& graph, const Limits& limits, const Plan& plan, Errors& errors)
+      : graph_(graph), limits_(limits), plan_(plan), errors_(errors) {}
   void run();
 
  private:
@@ -67,9 +68,6 @@ class Replay {
   };
   using Memory = std::map<VkDeviceSize, Bytes>;
 
-  static std::uint32_t queue_count(const GraphDescription& graph, const Plan& plan);
-  static HappensBefore order_of(const GraphDescription& graph, const Plan& plan,
-                                std::uint32_t queues);
   // Returns the number of the semaphore signal that stands for all work of a queue in the frame.
   // These signals are numbered after those of the submissions.
   std::uint32_t end_signal(std::uint8_t queue) const {
@@ -134,7 +132,6 @@ class Replay {
   const Limits& limits_;
   const Plan& plan_;
   Errors& errors_;
-  std::uint32_t queue_count_;
   HappensBefore order_;
   std::vector<Resource> resources_;
   std::vector<Memory> memory_;  // by heap

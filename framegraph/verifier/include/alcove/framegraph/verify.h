@@ -5,8 +5,8 @@
 // in the previous frame. Every access must happen after the earlier conflicting accesses to its
 // subresource or to its bytes of memory, and their writes must be available and visible to it, on
 // all queues. The verifier also follows the layout, the owning queue family and the contents of
-// every subresource, and the final states of imports. The time is linear in the number of accesses,
-// times the logarithm of the number of transients that live at once.
+// every subresource, and the final states of imports. The time of a check is proportional to the
+// number of barriers between the two accesses.
 #pragma once
 
 #include <tl/expected.hpp>
