@@ -17,11 +17,10 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
   plan.batches.clear();
   plan.transitions.clear();
   plan.finals.clear();
-  if (validate(graph, limits, workspace, errors)) {
+  if (validate(graph, limits, workspace, plan, errors)) {
     cull(graph, workspace, plan);
     assign_queues(graph, limits, workspace, plan);
-    lifetimes(graph, workspace, plan);
-    find_contents(graph, limits, workspace, plan);
+    lifetimes(graph, limits, workspace, plan);
     if (check_images(graph, limits, plan, errors)) {
       place(graph, limits, workspace, plan);
       synchronise(graph, limits, workspace, plan);

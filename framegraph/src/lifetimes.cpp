@@ -1,5 +1,6 @@
 // Lifetimes: finds for each resource the positions of its first and its last use, between which no
-// other resource may use a transient's memory, and the usage flags with which it is created.
+// other resource may use a transient's memory, and the usage flags with which it is created. An
+// attachment whose contents nobody needs can lie in lazily allocated memory.
 #include <algorithm>
 
 #include "workspace.h"
@@ -20,9 +21,27 @@ void lengthen(const GraphDescription& graph, const Workspace& workspace, Plan& p
   }
 }
 
+// Marks the attachments whose contents no later pass needs. They can do without memory.
+void find_transient_attachments(const GraphDescription& graph, const Workspace& workspace,
+                                Plan& plan) {
+  constexpr VkFlags kAttachmentUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                       VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+  for (const std::uint32_t r : workspace.transients) {
+    VkFlags& usage = plan.placements[r].usage;
+    if (graph.resources[r].kind == ResourceKind::texture && (usage & ~kAttachmentUsage) == 0)
+      usage |= VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
+  }
+  for (std::size_t i = 0; i < graph.accesses.size(); ++i)
+    if (plan.contents[i] & kIsNeeded)
+      plan.placements[graph.accesses[i].resource].usage &=
+          ~VkFlags{VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT};
+}
+
 }  // namespace
 
-void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan) {
+void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+               Plan& plan) {
   plan.placements.assign(graph.resources.size(), Placement{});
   workspace.transients.clear();
   std::uint32_t position = 0;
@@ -46,6 +65,7 @@ void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan) 
     if (placement.first != kNone)
       placement.last = static_cast<std::uint32_t>(plan.passes.size() - 1);
   }
+  if (limits.has_lazy_memory) find_transient_attachments(graph, workspace, plan);
 }
 
 }  // namespace alcove::framegraph

@@ -39,6 +39,7 @@ class Replay {
     const auto& first = v_.workspace.first_sub;
     s_.versions.assign(v_.graph.resources.size(), 0);
     s_.touches.assign(first.back(), {});
+    v_.plan.contents.assign(v_.graph.accesses.size(), 0);
     if (v_.graph.externals.empty()) return;
     for (std::uint32_t r = 0; r < v_.graph.resources.size(); ++r) {
       const std::uint32_t external = v_.graph.resources[r].external;
@@ -81,10 +82,15 @@ class Replay {
     if (access.flags & kWrite) ++version;
     const auto& first = v_.workspace.first_sub;
     if (first[access.resource] == first[access.resource + 1]) return;  // its description is invalid
-    unwritten_ = conflict_ = false;
+    unwritten_ = conflict_ = written_ = false;
     for_each_sub(v_.graph, v_.workspace, access,
                  [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub]); });
-    if (access.access & kAttachmentBits) check_attachment(pass, access);
+    if (access.access & kAttachmentBits) {
+      check_attachment(pass, access);
+      // The contents are those of passes that run, because an attachment also reads them.
+      if (written_ && !(access.flags & kDiscard))
+        v_.plan.contents[&access - v_.graph.accesses.data()] = kHasContents;
+    }
     if (conflict_) report_conflict(pass, access);
     if (unwritten_) report_unwritten(pass, access);
   }
@@ -94,6 +100,7 @@ class Replay {
       touched.stamp = pass + 1;
       touched.reads = touched.writes = false;
     }
+    written_ |= touched.written;
     if (access.flags & kWrite) {
       conflict_ |= touched.reads || touched.writes;
       unwritten_ |= !touched.written && reads_contents(access);
@@ -248,6 +255,7 @@ class Replay {
   Workspace::Validate& s_;
   bool unwritten_ = false;
   bool conflict_ = false;
+  bool written_ = false;                 // the range of the access has contents
   VkPipelineStageFlags2 forbidden_ = 0;  // of this pass
   std::uint32_t attachment_ = kNone;  // the first attachment of this pass, and the size of its mip
   std::uint32_t width_ = 0;
@@ -257,9 +265,9 @@ class Replay {
 
 }  // namespace
 
-bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan,
               Errors& errors) {
-  Validation validation{graph, limits, workspace, errors};
+  Validation validation{graph, limits, workspace, plan, errors};
   validate_resources(validation);
   Replay(validation).run();
   return errors.empty();

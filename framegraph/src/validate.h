@@ -12,6 +12,7 @@ struct Validation {
   const GraphDescription& graph;
   const Limits& limits;
   Workspace& workspace;
+  Plan& plan;
   Errors& errors;
 
   void fail(ErrorCode code, std::string message, std::uint32_t pass = kNone,

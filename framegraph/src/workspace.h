@@ -75,7 +75,6 @@ struct Workspace {
   std::uint32_t final_submission = 0;
 
   // Working memory of the individual phases.
-  std::vector<std::uint8_t> contents;  // by subresource
   struct Touch {
     std::uint32_t stamp = 0;  // the last pass that used it, from 1
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -181,10 +180,11 @@ inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::
 // The phases, in the order in which they run.
 
 // Numbers the subresources and finds all errors of the declaration. Returns false if there are any.
-bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+// Finds the attachments that have earlier contents, and writes plan.contents.
+bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan,
               Errors& errors);
-// Finds the passes and accesses that are not culled, and writes plan.cull_reasons and
-// plan.live_accesses.
+// Finds the passes and accesses that are not culled and the writes whose result is needed, and
+// writes plan.cull_reasons, plan.live_accesses and plan.contents.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // Assigns passes to queues and submissions.
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
@@ -193,11 +193,8 @@ void assign_queues(const GraphDescription& graph, const Limits& limits, Workspac
 bool queues_share(const GraphDescription& graph, const Workspace& workspace,
                   std::uint32_t resource);
 // Finds the first and last position of each resource, and its usage.
-void lifetimes(const GraphDescription& graph, Workspace& workspace, Plan& plan);
-// Finds for each access whether its range has contents and whether the contents it leaves are
-// needed later, and finds the attachments that need no memory of their own.
-void find_contents(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-                   Plan& plan);
+void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
+               Plan& plan);
 // Returns whether the device can create the textures that live passes use, and adds an error for
 // each one that it cannot create.
 bool check_images(const GraphDescription& graph, const Limits& limits, const Plan& plan,
