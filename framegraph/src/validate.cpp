@@ -26,7 +26,6 @@ class Replay {
   void run() {
     begin();
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
-      attachment_ = kNone;
       forbidden_ = forbidden_stages(v_.graph.passes[pass].queue);
       for (const AccessRecord& access : v_.graph.pass_accesses(pass))
         if (!follow(pass, access)) visit(pass, access);
@@ -85,12 +84,9 @@ class Replay {
     unwritten_ = conflict_ = written_ = false;
     for_each_sub(v_.graph, v_.workspace, access,
                  [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub]); });
-    if (access.access & kAttachmentBits) {
-      check_attachment(pass, access);
-      // The contents are those of passes that run, because an attachment also reads them.
-      if (written_ && !(access.flags & kDiscard))
-        v_.plan.contents[&access - v_.graph.accesses.data()] = kHasContents;
-    }
+    // The contents are those of passes that run, because an attachment also reads them.
+    if ((access.access & kAttachmentBits) != 0 && written_ && !(access.flags & kDiscard))
+      v_.plan.contents[&access - v_.graph.accesses.data()] = kHasContents;
     if (conflict_) report_conflict(pass, access);
     if (unwritten_) report_unwritten(pass, access);
   }
@@ -111,42 +107,6 @@ class Replay {
       touched.reads = true;
     }
     touched.layout = access.layout;
-  }
-
-  // Checks that the attachments of a pass have one size and one number of samples. An
-  // attachment with one sample that is only written counts as a resolve target if the others are
-  // multisampled.
-  void check_attachment(std::uint32_t pass, const AccessRecord& access) {
-    const ResourceRecord& r = v_.graph.resources[access.resource];
-    const auto side = [&access](std::uint32_t size) {
-      return std::max(1u, size >> access.range.base_mip);
-    };
-    if (attachment_ == kNone) {
-      attachment_ = access.resource;
-      width_ = side(r.width);
-      height_ = side(r.height);
-      samples_ = 0;
-    }
-    const bool resolved = r.samples == 1 && (access.access & ~kWriteBits) == 0;
-    if (samples_ == 0 && !resolved) samples_ = r.samples;
-    const bool samples_differ = !resolved && r.samples != samples_;
-    if (side(r.width) == width_ && side(r.height) == height_ && !samples_differ) return;
-    const auto size = [](std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
-      return std::to_string(width)
-                 .append("x")
-                 .append(std::to_string(height))
-                 .append(" with ")
-                 .append(std::to_string(samples)) +
-             " sample(s)";
-    };
-    v_.fail(ErrorCode::attachment_mismatch,
-            v_.pass_text(pass) + " draws to " + v_.resource_text(access.resource) + " of " +
-                size(side(r.width), side(r.height), r.samples) + " and to " +
-                v_.resource_text(attachment_) + " of " +
-                size(width_, height_, v_.graph.resources[attachment_].samples) +
-                ": give the attachments of a pass one size and one number of samples, or draw to "
-                "them in two passes",
-            pass, access.resource, access.version);
   }
 
   void report_conflict(std::uint32_t pass, const AccessRecord& access) {
@@ -257,10 +217,6 @@ class Replay {
   bool conflict_ = false;
   bool written_ = false;                 // the range of the access has contents
   VkPipelineStageFlags2 forbidden_ = 0;  // of this pass
-  std::uint32_t attachment_ = kNone;  // the first attachment of this pass, and the size of its mip
-  std::uint32_t width_ = 0;
-  std::uint32_t height_ = 0;
-  std::uint32_t samples_ = 0;  // 0 until an attachment other than a resolve target was seen
 };
 
 }  // namespace

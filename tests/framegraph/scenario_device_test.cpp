@@ -156,6 +156,23 @@ TEST_F(Scenario, RenderingOverTexelsOrViewsThatItsAttachmentsDoNotHaveIsRefused)
   }
 }
 
+TEST_F(Scenario, RenderingWithAttachmentsOfDifferentSizesIsRefused) {
+  begin();
+  PassBuilder draw = graph_.add_pass("draw");
+  const Texture color = draw.write(texture("color"), access::color_attachment);
+  const Texture small = draw.write(
+      graph_.create_texture("small", {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 16)}),
+      access::color_attachment);
+  draw.side_effect();
+  draw.record([=](RecordContext& c) {
+    const Attachment targets[] = {{color, &kClearRed}, {small, &kClearRed}};
+    EXPECT_FALSE(c.begin_rendering(targets));
+  });
+  const auto report = executor().submit(graph_);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error()[0].code, ErrorCode::attachment_mismatch);
+}
+
 // The second pass must load the contents that the first one stored. A pass that discards must not
 // load.
 TEST_F(Scenario, AttachmentsAreLoadedAndStoredOnlyIfContentsAreNeeded) {

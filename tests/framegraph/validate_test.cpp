@@ -58,21 +58,6 @@ TEST_F(Validate, AttachmentsAndDiscardingWritesOfUnwrittenTexturesAreAllowed) {
   EXPECT_TRUE(compile(graph_));
 }
 
-TEST_F(Validate, SingleSampledResolveTargetIsAllowedBesideAMultisampledAttachment) {
-  TextureDesc multisampled = kDesc;
-  multisampled.samples = VK_SAMPLE_COUNT_4_BIT;
-  for (const bool first : {true, false}) {
-    graph_.reset();
-    const Texture msaa = graph_.create_texture("msaa", multisampled);
-    const Texture target = graph_.create_texture("target", kDesc);
-    PassBuilder draw = pass("draw");
-    if (first) (void)draw.write(target, access::resolve_target);
-    (void)draw.write(msaa, access::color_attachment);
-    if (!first) (void)draw.write(target, access::resolve_target);
-    EXPECT_TRUE(compile(graph_));
-  }
-}
-
 TEST_F(Validate, RelativeExtentIsTheBaseExtentTimesMultiplierOverDivisorRoundedUp) {
   const Texture base = graph_.create_texture("base", {kDesc.format, Extent::absolute(100, 7)});
   const auto size = [&](std::uint32_t divisor, std::uint32_t multiplier) {
@@ -229,15 +214,6 @@ TEST_F(Validate, TwoWritesOfOneSubresourceInAPassAreRefused) {
   texture = twice.write(texture, access::storage_write_compute);
   (void)twice.write(texture, access::storage_write_compute);
   expect(ErrorCode::two_writers, "'twice' writes a subresource of texture 't' twice");
-}
-
-TEST_F(Validate, AttachmentsOfOneRenderingWithDifferentSizesAreRefused) {
-  Texture color = graph_.create_texture("color", kDesc);
-  Texture depth = graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, Extent::absolute(16, 8)});
-  PassBuilder draw = pass("draw");
-  color = draw.write(color, access::color_attachment);
-  depth = draw.write(depth, access::depth_attachment);
-  expect(ErrorCode::attachment_mismatch, "'draw' draws to texture 'depth' of 16x8");
 }
 
 TEST_F(Validate, ImportWithoutTheVulkanUsageThatAPassNeedsIsRefused) {
