@@ -182,13 +182,6 @@ typedef struct AlcoveView {
   // outputs change. If it is at least 1, `motion` is not read. If it is at least 16, the history
   // averages up to 127 frames.
   uint32_t static_frames;
-  // Whether a frame does nothing for the view while its image has converged and does not change:
-  // its outputs keep what they hold, and only barriers to the final states are recorded. The view
-  // must have been recorded alcoveGetConvergedFrames() times in succession with static_frames above
-  // 0 (in all but the first), with the same images, cameras and settings. The outputs must then
-  // still hold the last results; an output that arrives in VK_IMAGE_LAYOUT_UNDEFINED is written
-  // again, and so is a view whose pixels are diagnosed. [VK_FALSE]
-  VkBool32 skip_converged;
   const AlcoveSettings* settings;
   AlcoveCamera camera;
   // The camera with which this id was last recorded. It is not read, and may be zero, in the first
@@ -364,20 +357,6 @@ AlcoveResult alcoveRecordFrame(AlcoveContext* context, VkCommandBuffer commands,
 // frames one after the other with the same images and a growing AlcoveFrame::index. The last one
 // has the image. A view with an id of its own, dropped afterwards, does not disturb other views.
 AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view);
-
-// How far the image of a view with skip_converged has converged.
-typedef struct AlcoveViewState {
-  uint32_t struct_size;
-  uint32_t frames;            // recorded in succession for the unchanged image
-  uint32_t converged_frames;  // alcoveGetConvergedFrames of the view's settings
-  VkBool32 skipped;           // the last recorded frame did nothing for the view
-} AlcoveViewState;
-
-// Fills `state`, whose struct_size must be set. If `frames` is at least `converged_frames`, and
-// that is not 0, another frame of the unchanged view has nothing to do. All values are 0 for a view
-// that was not recorded with skip_converged, or was dropped. The context remembers 16 such views,
-// and forgets the oldest.
-AlcoveResult alcoveGetViewState(AlcoveContext* context, uint32_t id, AlcoveViewState* state);
 
 // Undoes the effects of alcoveRecordFrame if the frame that was just recorded will not be
 // submitted, for example because the window was closed. Call it before any other call on the

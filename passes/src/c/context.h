@@ -13,7 +13,6 @@
 #include "c/failure.h"
 #include "c/host.h"
 #include "c/images.h"
-#include "c/still_views.h"
 #include "diagnose/mistake_finder.h"
 #include "diagnose/pixel_observer.h"
 
@@ -51,7 +50,6 @@ struct AlcoveContext {
   alcove::passes::Kernels kernels;
   alcove::framegraph::Graph graph;
   alcove::passes::ImageTable images;
-  alcove::passes::StillViews still_views;
   alcove::passes::MistakeFinder finder;
   alcove::passes::PixelObserver pixels;
   alcove::framegraph::FrameReport

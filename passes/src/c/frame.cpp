@@ -84,12 +84,9 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
   context.images.reset();
   for (const AlcoveView& view : std::span(frame.views, frame.view_count)) {
     const bool inspects = frame.diagnose_pixels != VK_FALSE && passes.count == 0;
-    const bool skipped = !prepare && !inspects && context.still_views.is_converged(view);
-    auto added = skipped ? passes::import_view(graph, context.images, view)
-                         : passes::add_view(graph, context.kernels, context.images, view, frame,
-                                            prepare, inspects ? &context.pixels : nullptr);
+    auto added = passes::add_view(graph, context.kernels, context.images, view, frame, prepare,
+                                  inspects ? &context.pixels : nullptr);
     if (!added) return tl::unexpected(std::move(added.error()));
-    if (skipped) continue;
     passes.views[passes.count++] = {view.id,
                                     static_cast<std::uint32_t>(graph.description().passes.size())};
   }
@@ -134,11 +131,6 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   context.passes_of_views[frame->slot] = *passes;
   if (context.finder.observe(*frame))
     context.host->log(ALCOVE_SEVERITY_WARNING, passes::MistakeFinder::kTooManyViews);
-  const auto recorded = std::span(passes->views).first(passes->count);
-  for (const AlcoveView& view : std::span(frame->views, frame->view_count)) {
-    context.still_views.observe(
-        view, std::ranges::find(recorded, view.id, &ViewPasses::View::id) == recorded.end());
-  }
   context.pixels.recorded(frame->slot);
   return {};
 }
@@ -159,7 +151,6 @@ AlcoveResult alcoveDiscardFrame(AlcoveContext* context) {
     if (context->may_discard) {
       context->executor.discard(context->graph, {context->slot});
       context->pixels.discarded(context->slot);
-      context->still_views = {};
       context->report = {};
     }
     context->may_discard = false;
@@ -175,7 +166,6 @@ AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
     context->graph.histories().end_frame();
     passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
     context->finder.drop_view(id);
-    context->still_views.drop(id);
     return {};
   });
 }

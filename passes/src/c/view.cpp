@@ -194,34 +194,19 @@ tl::expected<ViewSetup, Failure> set_up(const AlcoveView& view, const ImageImpor
   return ViewSetup{*inputs, settings};
 }
 
-namespace {
-
-// Checks a view and imports its images into a graph.
-tl::expected<ViewSetup, Failure> set_up_in(framegraph::Graph& graph, ImageTable& images,
-                                           const AlcoveView& view) {
+tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
+                                     const AlcoveView& view, const AlcoveFrame& described,
+                                     bool prepare, PixelObserver* observer) {
   struct Import {
     framegraph::Graph& graph;
     ImageTable& images;
   } target{graph, images};
-  return set_up(
+  const auto setup = set_up(
       view, {[](void* user, const ImageRole& role, const AlcoveImage& image, const AlcoveView& of) {
                const Import& to = *static_cast<Import*>(user);
                return to.images.import(to.graph, role, image, of);
              },
              &target});
-}
-
-}  // namespace
-
-tl::expected<void, Failure> import_view(framegraph::Graph& graph, ImageTable& images,
-                                        const AlcoveView& view) {
-  return set_up_in(graph, images, view).map([](const ViewSetup&) {});
-}
-
-tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
-                                     const AlcoveView& view, const AlcoveFrame& described,
-                                     bool prepare, PixelObserver* observer) {
-  const auto setup = set_up_in(graph, images, view);
   if (!setup) return tl::unexpected(setup.error());
   const bool reset = view.reset_history != VK_FALSE;
   if (reset) graph.reset_history(ViewName(view.id));

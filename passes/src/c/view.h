@@ -44,11 +44,6 @@ struct ViewSetup {
 [[nodiscard]] tl::expected<ViewSetup, Failure> set_up(const AlcoveView& view,
                                                       const ImageImporter& importer);
 
-// Checks a view and imports its images, which the frame brings into their final states, without
-// adding a pass.
-[[nodiscard]] tl::expected<void, Failure> import_view(framegraph::Graph& graph, ImageTable& images,
-                                                      const AlcoveView& view);
-
 class PixelObserver;
 
 // Adds the passes of `view` to the graph. `prepare` is stored in Frame::prepare. If `observer` is
