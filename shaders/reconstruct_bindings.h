@@ -14,19 +14,18 @@ layout(constant_id = 1) const int kFilterRadius = 2;
 layout(constant_id = 2) const bool kBentNormal = false;
 layout(constant_id = 3) const bool kMotion = false;
 layout(constant_id = 4) const bool kPerspective = true;
-layout(constant_id = 5) const bool kClamp = false;
-layout(constant_id = 6) const bool kStatic = false;  // the previous frame shows the same
-layout(constant_id = 7) const bool kRoughnessTexture = false;
-layout(constant_id = 8) const int kRoughnessChannel = 0;
-layout(constant_id = 9) const bool kFresh = true;         // there is no history to read yet
-layout(constant_id = 10) const bool kVisibility = true;   // whether visibility_image is written
-layout(constant_id = 11) const uint kNormalEncoding = 0;  // as NormalEncoding has them
-layout(constant_id = 12) const bool kShaped = false;      // power or intensity is not 1
-layout(constant_id = 13) const bool kReversed = false;    // raw depth is 1 at the near plane
+layout(constant_id = 5) const bool kStatic = false;  // the previous frame shows the same
+layout(constant_id = 6) const bool kRoughnessTexture = false;
+layout(constant_id = 7) const int kRoughnessChannel = 0;
+layout(constant_id = 8) const bool kFresh = true;         // there is no history to read yet
+layout(constant_id = 9) const bool kVisibility = true;    // whether visibility_image is written
+layout(constant_id = 10) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 11) const bool kShaped = false;      // power or intensity is not 1
+layout(constant_id = 12) const bool kReversed = false;    // raw depth is 1 at the near plane
 // Writes visibility to the channel kVisibilityChannel alone and keeps the others.
-layout(constant_id = 14) const bool kKeepsChannels = false;
-layout(constant_id = 15) const int kVisibilityChannel = 0;
-layout(constant_id = 16) const bool kAreas = false;  // images are read or written in part (areas.h)
+layout(constant_id = 13) const bool kKeepsChannels = false;
+layout(constant_id = 14) const int kVisibilityChannel = 0;
+layout(constant_id = 15) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 #ifdef SPECULAR
 const bool kLobe = true;

@@ -32,11 +32,10 @@ struct Sums {
   float open;
   vec3 residual;
   vec3 expected_residual;
-  vec2 lobe;     // occluded, open
-  vec3 moments;  // of the visibility; only with kClamp
+  vec2 lobe;  // occluded, open
 };
 
-Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0)); }
+Sums no_sums() { return Sums(0.0, 0.0, vec3(0.0), vec3(0.0), vec2(0.0)); }
 
 void add_weighted(inout Sums sums, TileSample found, float weight, LobeSurface lobe) {
   sums.occluded += weight * found.occluded;
@@ -46,11 +45,6 @@ void add_weighted(inout Sums sums, TileSample found, float weight, LobeSurface l
     sums.expected_residual += weight * found.expected_residual;
   }
   if (kLobe) sums.lobe += weight * lobe_weight(lobe, found.lobe_surface) * found.lobe;
-}
-
-void add_moments(inout Sums sums, TileSample found, float weight) {
-  float visibility = 1.0 - found.occluded / max(found.open, 1e-9);
-  sums.moments += weight * vec3(1.0, visibility, visibility * visibility);
 }
 
 // Returns the offset, in pixels, to the traced pixel that lies `i` tiles to the right of the first
@@ -80,7 +74,6 @@ void add_tile_sample(inout Sums sums, Surface surface, Window window, TileSample
   float both = near * near * level;
   float weight = 1.0 / (both * both);
   add_weighted(sums, found, weight, surface.lobe);
-  if (kClamp) add_moments(sums, found, weight);
 }
 
 // Indices of the first traced pixels within the two radii.
@@ -114,10 +107,6 @@ Sums sum_four(Surface surface, Window window) {
       float root = clamp(1.0 - 0.5 * apart, 0.0, 1.0);
       float on_plane = root * root;
       add_weighted(sums, found, on_plane * (near[2 * i] * near[2 * j + 1]), surface.lobe);
-      if (kClamp) {
-        // Without the distance: beside a traced pixel the spread of the others would not count.
-        add_moments(sums, found, on_plane);
-      }
     }
   }
   return sums;

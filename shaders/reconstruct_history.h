@@ -113,17 +113,6 @@ void follow_change(inout History history, float now, float open) {
   history.weight = mix(history.weight, min(history.weight, kRecentFrames), changed);
 }
 
-void clamp_history(inout History history, Sums now) {
-  vec3 moments = now.moments / max(now.moments.x, 1e-30);
-  float before = 1.0 - history.occlusion;
-  float after =
-      clamp_to_spread(before, spread_of_sums(moments.y, moments.z, 1.0), parameters.clamp_width);
-  if (history.weight > 0.0 && now.moments.x > 0.01) {
-    history.occlusion = 1.0 - after;
-    history.weight = weight_after_clamp(history.weight, before, after, 0.25);
-  }
-}
-
 // Returns the sums over the traced pixels around the texel in this frame. A texel with hardly any
 // history gets the wider neighbourhood of a first frame.
 Sums sum_neighbourhood(Surface surface, History history, Window window) {
@@ -137,7 +126,6 @@ void reconstruct(Surface surface) {
   float growth = plane_weight_growth(history.weight);
   Window window = Window(sharpness_of(history), growth * growth);
   Sums now = sum_neighbourhood(surface, history, window);
-  if (kClamp) clamp_history(history, now);
   if (kMotion) {
     // If no traced pixel lies on the surface, nothing is known of a change.
     const float unchanged = 0.01;

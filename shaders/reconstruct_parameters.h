@@ -51,7 +51,6 @@ struct ReconstructParameters {
   float history_sharpness;
   float history_slack;   // rounding error of a stored depth, times history_sharpness
   float largest_weight;  // of the history, frames
-  float clamp_width;     // of clamp_to_spread()
   float roughness;       // perceptual, of every surface where no texture has it
   float power;           // of shaped_visibility()
   float intensity;       // of shaped_visibility()

@@ -12,37 +12,6 @@ ALCOVE_MATHS_BEGIN
 const uint kMaxHistoryFrames = 127u;
 const float kInverseRootOfMaxHistoryFrames = 0.0887357f;
 
-// Mean and standard deviation of a neighbourhood of this frame.
-struct Spread {
-  float mean;
-  float deviation;  // at least 0
-};
-
-// From the sums over `count` values and their squares.
-ALCOVE_INLINE Spread spread_of_sums(float sum, float sum_of_squares, float count) {
-  Spread spread;
-  spread.mean = sum / max(count, 1.0f);
-  float variance = sum_of_squares / max(count, 1.0f) - spread.mean * spread.mean;
-  spread.deviation = sqrt(max(variance, 0.0f));
-  return spread;
-}
-
-// Returns the visibility `history`, clamped to the mean of this frame's neighbourhood plus or minus
-// `width` standard deviations. If this frame's samples are noisy, the deviation is large and the
-// history is hardly clamped. If light or occluders have changed, the history lies outside and is
-// moved to the nearer limit.
-ALCOVE_INLINE float clamp_to_spread(float history, Spread now, float width) {
-  float half_width = width * now.deviation;
-  return clamp(history, now.mean - half_width, now.mean + half_width);
-}
-
-// Returns the history's weight after clamping has changed its value from `before` to `after`:
-// unchanged if the value did not change, at most one frame if it changed by `whole` or more.
-ALCOVE_INLINE float weight_after_clamp(float weight, float before, float after, float whole) {
-  float moved = clamp(abs(after - before) / max(whole, 1e-6f), 0.0f, 1.0f);
-  return mix(weight, min(weight, 1.0f), moved);
-}
-
 // Variance of the visibility that one frame measures at a pixel. Tuned in one view (`alcove motion
 // --path orbit`), and checked in another.
 const float kFrameVariance = 0.02f;

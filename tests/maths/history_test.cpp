@@ -124,25 +124,6 @@ TEST(History, HistoryTexelsWithAnotherDepthThanThePixelAreRejected) {
   EXPECT_EQ(maths::history_agreement(maths::vec4(-1e30f), 0.1f).x, 0.0f);
 }
 
-TEST(History, MeanAndStandardDeviationAreComputedFromSums) {
-  const maths::Spread s = maths::spread_of_sums(1.0f + 2.0f + 3.0f, 1.0f + 4.0f + 9.0f, 3.0f);
-  EXPECT_FLOAT_EQ(s.mean, 2.0f);
-  EXPECT_NEAR(s.deviation, std::sqrt(2.0f / 3.0f), 1e-6f);
-  EXPECT_EQ(maths::spread_of_sums(0.0f, 0.0f, 0.0f).deviation, 0.0f);
-  EXPECT_GE(maths::spread_of_sums(9 * 0.1f, 9 * 0.01f - 1e-6f, 9.0f).deviation, 0.0f);
-}
-
-TEST(History, ClampingReducesTheHistoryWeightOnlyIfTheHistoryValueWasOutOfRange) {
-  maths::Spread now;
-  now.mean = 0.5f;
-  now.deviation = 0.1f;
-  EXPECT_EQ(maths::clamp_to_spread(0.55f, now, 1.0f), 0.55f);
-  EXPECT_FLOAT_EQ(maths::clamp_to_spread(0.9f, now, 1.0f), 0.6f);
-  EXPECT_EQ(maths::weight_after_clamp(20.0f, 0.55f, 0.55f, 0.2f), 20.0f);
-  EXPECT_EQ(maths::weight_after_clamp(20.0f, 0.9f, 0.6f, 0.2f), 1.0f);
-  EXPECT_FLOAT_EQ(maths::weight_after_clamp(21.0f, 0.7f, 0.6f, 0.2f), 11.0f);
-}
-
 TEST(History, HistoryWeightFallsByTheVarianceThatInterpolationAddsToTheNoise) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {

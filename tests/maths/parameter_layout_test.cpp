@@ -102,7 +102,6 @@ const std::map<std::string, Offsets> kExpected = {
       ALCOVE_OFFSET(ReconstructParameters, history_sharpness),
       ALCOVE_OFFSET(ReconstructParameters, history_slack),
       ALCOVE_OFFSET(ReconstructParameters, largest_weight),
-      ALCOVE_OFFSET(ReconstructParameters, clamp_width),
       ALCOVE_OFFSET(ReconstructParameters, roughness),
       ALCOVE_OFFSET(ReconstructParameters, power),
       ALCOVE_OFFSET(ReconstructParameters, intensity),

@@ -149,13 +149,10 @@ ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
                   unpack_open(uint(a.w * 1000.0f)));
     }
     case 15u:
-      return vec4(weight_of_code(b.z * 31.0f), weight_after_clamp(b.y * 32.0f, b.z, b.w, 0.25f),
-                  recent_of_code(texel_recent_code(b.x), b.z), texel_codes(b.y));
-    case 16u: {
-      Spread spread = spread_of_sums(a.x + a.y + a.z, a.x * a.x + a.y * a.y + a.z * a.z, 3.0f);
-      return vec4(spread.mean, spread.deviation, clamp_to_spread(a.w, spread, 1.0f),
-                  weight_after_blur(b.z * 40.0f, b.y * 0.25f, b.x));
-    }
+      return vec4(weight_of_code(b.z * 31.0f), recent_of_code(texel_recent_code(b.x), b.z),
+                  texel_codes(b.y), 0.0f);
+    case 16u:
+      return vec4(weight_after_blur(b.z * 40.0f, b.y * 0.25f, b.x), 0.0f, 0.0f, 0.0f);
     case 23u: {
       RawOcclusion lobe;
       lobe.visible = a.x * a.y;

@@ -98,12 +98,7 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
          s.static_noise = true;
        },
        2},
-      {"history",
-       [](V&, S& s) {
-         s.history_frames = 2;
-         s.advanced.clamp_width = 1.0f;
-       },
-       2},
+      {"history", [](V&, S& s) { s.history_frames = 2; }, 2},
       {"motion", [](V& v, S&) { v.motion = draw_view(16, 12).motion; }, 2},
       {"normals from depth", [](V& v, S&) { v.normals = {}; }},
       {"normals in world space", [](V& v, S&) { v.normals_in_view_space = false; }},

@@ -135,10 +135,9 @@ TEST_F(CPipelines, PreparingAFrameCreatesAllPipelinesThatItsViewsEverNeed) {
          request_all_outputs(v);
          v.settings.specular = Specular::table;
        }},
-      {"orthographic and clamped",
+      {"orthographic",
        [](HostView& v) {
          v.view = v.previous_view = orthographic_view("", 3.0, 2.0, 0.1, 20.0).view;
-         v.settings.advanced.clamp_width = 1.0f;
          v.motion = {};
        }},
       {"without a history", [](HostView& v) { v.settings.history_frames = 0; }},

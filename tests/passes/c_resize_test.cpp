@@ -132,7 +132,6 @@ Kind CResize::any_kind() {
   const bool fades = !has_thickness(settings.advanced.estimator);
   settings.advanced.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
   settings.advanced.filter_radius = below(4);
-  settings.advanced.clamp_width = chance(2) ? 0.0f : 1.5f;
   settings.specular = static_cast<Specular>(1 + below(3));
   settings.roughness_channel = below(2);
   return {settings, below(128) & kOptionalInputs, below(15)};  // never without all outputs

@@ -116,7 +116,7 @@ TEST(Settings, ValidationEnforcesExactlyTheStatedRangeOfEachSetting) {
       EXPECT_THAT(said, HasSubstr(names_text<Value>()));
     }
   });
-  EXPECT_EQ(numbers, 16);
+  EXPECT_EQ(numbers, 15);
 }
 
 TEST(Settings, SliderRangesContainOnlyAcceptedValues) {

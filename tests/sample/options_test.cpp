@@ -251,11 +251,12 @@ TEST(Options, HelpOfEveryCommandThatTakesSettingsListsTheSettings) {
   for (const char* command :
        {"render", "compare", "motion", "report", "recommend", "graph", "view"}) {
     const std::string help = parse({command, "--help"}).error().text;
-    EXPECT_THAT(help, HasSubstr("clamp_width")) << command;
+    EXPECT_THAT(help, HasSubstr("filter_tolerance_px")) << command;
     EXPECT_THAT(help, HasSubstr("Radius of the spatial filter in tiles")) << command;
     EXPECT_THAT(help, HasSubstr("horizons, bitmask or connected")) << command;
   }
-  EXPECT_THAT(parse({"doctor", "--help"}).error().text, testing::Not(HasSubstr("clamp_width")));
+  EXPECT_THAT(parse({"doctor", "--help"}).error().text,
+              testing::Not(HasSubstr("filter_tolerance_px")));
 }
 
 TEST(Options, VersionOptionPrintsTheProgramNameAndAVersionNumber) {

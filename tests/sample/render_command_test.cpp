@@ -94,7 +94,6 @@ TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   settings.advanced.filter_radius = 0;
   settings.advanced.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;
-  settings.advanced.clamp_width = 1.5f;
   settings.bent_normal = true;
   settings.specular = passes::Specular::cone;
   settings.precision = passes::Precision::float32;

@@ -54,9 +54,6 @@ typedef struct AlcoveAdvancedSettings {
   // quarter of the full weight, in units of a pixel's width at its depth; above 0. The value is for
   // one slice and no history; more slices and more history reduce the distance. [1.5]
   float filter_tolerance_px;
-  // The history of a pixel is clamped to the mean of this frame's values around it, plus or minus
-  // this many standard deviations of these values; at least 0. 0 turns clamping off. [0]
-  float clamp_width;
 
   // Parts of the search that can be switched off, so that their effect can be measured.
 

@@ -66,7 +66,6 @@ void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.falloff, ours.falloff);
   visit(theirs.filter_radius, ours.filter_radius);
   visit(theirs.filter_tolerance_px, ours.filter_tolerance_px);
-  visit(theirs.clamp_width, ours.clamp_width);
   visit(theirs.snap_to_texels, ours.snap_to_texels);
   visit(theirs.extrapolation, ours.extrapolation);
   visit(theirs.unobserved, ours.unobserved);

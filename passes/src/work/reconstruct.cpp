@@ -45,7 +45,7 @@ Past past_of(const WorkFrame& frame, const ReconstructSizes& sizes, bool history
   return Past::unchanged;
 }
 
-std::array<NamedConstant, 17> constants_of(const WorkFrame& frame, const ReconstructInputs& inputs,
+std::array<NamedConstant, 16> constants_of(const WorkFrame& frame, const ReconstructInputs& inputs,
                                            const OcclusionSettings& settings,
                                            const maths::Projection& projection, Past past) {
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
@@ -54,7 +54,6 @@ std::array<NamedConstant, 17> constants_of(const WorkFrame& frame, const Reconst
            {"kBentNormal", flag(bool(inputs.raw_occlusion.bent))},
            {"kMotion", flag(inputs.motion && past == Past::moving)},
            {"kPerspective", flag(is_perspective(projection))},
-           {"kClamp", flag(settings.advanced.clamp_width > 0.0f)},
            {"kStatic", flag(past == Past::unchanged)},
            {"kRoughnessTexture", flag(bool(inputs.roughness))},
            {"kRoughnessChannel", channel_if(bool(inputs.roughness), settings.roughness_channel)},

@@ -192,7 +192,6 @@ maths::ReconstructParameters reconstruct_parameters(
       std::sqrt(static_cast<float>(inputs.raw_occlusion.slices)) /
       (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
-  parameters.clamp_width = settings.advanced.clamp_width;
   // The distances between the borders of the area that is read and those of the area that is
   // written were the same in the previous frame.
   const VkExtent2D read{static_cast<std::uint32_t>(projection.size_px.x),

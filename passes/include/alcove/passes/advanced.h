@@ -55,9 +55,6 @@ struct AdvancedSettings {
   // neighbour the weight 0.25; above 0. This is the value for one slice and no history. The
   // distance shrinks as slices and frames accumulate.
   float filter_tolerance_px = 1.5f;
-  // The history is clamped to the mean of the current frame's neighbourhood plus or minus this many
-  // standard deviations, at least 0. 0 turns clamping off.
-  float clamp_width = 0.0f;
 
   // Parts of the search that can be switched off to measure what they do.
 

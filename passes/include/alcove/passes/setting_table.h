@@ -196,15 +196,6 @@ void for_each_setting(Settings& settings, const Visit& visit) {
           .slider = {.minimum = 0.1f, .maximum = 8.0f},
           .matters = [](S s) { return s.advanced.filter_radius > 0; }},
       settings.advanced.filter_tolerance_px);
-  visit(SettingInfo{.name = "clamp_width",
-                    .help = "The history is clamped to the mean of the current neighbourhood plus "
-                            "or minus this many standard deviations. Smaller values above 0 drop "
-                            "outdated values sooner and average less noise away. 0 turns clamping "
-                            "off.",
-                    .group = advanced,
-                    .slider = {.maximum = 8.0f},
-                    .matters = [](S s) { return s.history_frames > 0; }},
-        settings.advanced.clamp_width);
   visit(SettingInfo{.name = "snap_to_texels",
                     .help = "Moves each depth sample to the centre of its texel, which keeps "
                             "tilted planes from occluding themselves.",
