@@ -126,33 +126,12 @@ TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithTh
   EXPECT_THAT(values, ElementsAre(1, 2, 3, 1, 0));
 }
 
-TEST_F(DispatchByName, SpecialisationConstantThatNoShaderDeclaresIsReportedByName) {
-  const auto result = add_gtso({{"kRoughnessTexture", 1},
-                                {"kRoughnessChannel", 2},
-                                {"kNormalEncoding", 3},
-                                {"kVisibilityChannel", 1},
-                                {"kAreas", 0},
-                                {"kTilesize", 9}});
-  ASSERT_FALSE(result);
-  EXPECT_THAT(result.error().message,
-              HasSubstr("The pass of the shader 'gtso' gives a value for a specialisation constant "
-                        "'kTilesize', which no shader declares"));
-}
-
 TEST_F(DispatchByName, ShaderBindingWithoutAnImageIsReportedByName) {
   const auto result = add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_image"});
   ASSERT_FALSE(result);
   EXPECT_THAT(result.error().message,
               HasSubstr("The shader 'linear_depth' has a binding 'linear_depth_image', for which "
                         "its pass gives no image"));
-}
-
-TEST_F(DispatchByName, ImageForABindingThatNoShaderDeclaresIsReportedByName) {
-  const auto result =
-      add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_depth_image", "linear_image"});
-  ASSERT_FALSE(result);
-  EXPECT_THAT(result.error().message,
-              HasSubstr("is given an image 'linear_image', a name that no shader declares"));
 }
 
 TEST_F(DispatchByName, ListThatIsFullIsAnError) {

@@ -77,24 +77,11 @@ constexpr ShaderSource kSources[] = {
 };
 static_assert(std::size(kSources) == kShaderCount);
 
-struct Interfaces {
-  std::array<ShaderInterface, kShaderCount> shaders;
-  std::vector<std::string_view> constant_names;
-  std::vector<std::string_view> image_names;
-};
-
-const Interfaces& interfaces() {
-  static const Interfaces all = [] {
-    Interfaces read;
-    for (std::size_t i = 0; i < kShaderCount; ++i) {
-      read.shaders[i] = read_shader_interface(kSources[i].code);
-      for (const ShaderConstant& constant : read.shaders[i].constants)
-        read.constant_names.push_back(constant.name);
-      for (const ShaderBinding& binding : read.shaders[i].bindings)
-        if (binding.is_image()) read.image_names.push_back(binding.name);
-    }
-    std::ranges::sort(read.constant_names);
-    std::ranges::sort(read.image_names);
+const std::array<ShaderInterface, kShaderCount>& interfaces() {
+  static const std::array<ShaderInterface, kShaderCount> all = [] {
+    std::array<ShaderInterface, kShaderCount> read;
+    for (std::size_t i = 0; i < kShaderCount; ++i)
+      read[i] = read_shader_interface(kSources[i].code);
     return read;
   }();
   return all;
@@ -109,12 +96,8 @@ Shader shader_of_name(std::string_view name) {
 }
 
 const ShaderInterface& shader_interface(Shader shader) {
-  return interfaces().shaders[static_cast<std::size_t>(shader)];
+  return interfaces()[static_cast<std::size_t>(shader)];
 }
-
-std::span<const std::string_view> known_constants() { return interfaces().constant_names; }
-
-std::span<const std::string_view> known_images() { return interfaces().image_names; }
 
 tl::expected<std::uint32_t, Error> resolve_constants(Shader shader,
                                                      std::span<const NamedConstant> given,
@@ -129,14 +112,6 @@ tl::expected<std::uint32_t, Error> resolve_constants(Shader shader,
                 "', for which its pass gives no value; name it in the pass's list of constants."});
     }
     values[i] = {declared[i].id, found->value};
-  }
-  if (given.size() > declared.size()) {
-    if (const NamedConstant* const unknown = find_unknown(given, known_constants())) {
-      return tl::unexpected(
-          Error{"The pass of the shader '" + std::string(shader_source(shader).name) +
-                "' gives a value for a specialisation constant '" + std::string(unknown->name) +
-                "', which no shader declares; correct the name or remove it."});
-    }
   }
   return static_cast<std::uint32_t>(declared.size());
 }

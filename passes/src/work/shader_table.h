@@ -28,10 +28,6 @@ struct ShaderSource {
 // Returns the interface of a shader. The first call reads those of all shaders, and allocates.
 [[nodiscard]] const ShaderInterface& shader_interface(Shader shader);
 
-// Returns the names of the specialisation constants, or of the images, of all shaders, sorted.
-[[nodiscard]] std::span<const std::string_view> known_constants();
-[[nodiscard]] std::span<const std::string_view> known_images();
-
 // Returns the element of `given` whose name is `name`, or null. Looks at the index `expected`
 // first, because lists usually have the order of the shader's declarations.
 template <typename Element>
@@ -42,19 +38,8 @@ const Element* find_named(std::span<const Element> given, std::string_view name,
   return found == given.end() ? nullptr : &*found;
 }
 
-// Returns the first element of `given` whose name is not in `known`, which is sorted, or null.
-template <typename Element>
-const Element* find_unknown(std::span<const Element> given,
-                            std::span<const std::string_view> known) {
-  const auto found = std::ranges::find_if(given, [&](const Element& element) {
-    return !std::ranges::binary_search(known, element.name);
-  });
-  return found == given.end() ? nullptr : &*found;
-}
-
 // Writes the values of the specialisation constants of `shader` to `values`, ascending by id, and
-// returns their number. Errors: a constant that has no value in the list, or a name that no shader
-// declares.
+// returns their number. Error: a constant that has no value in the list.
 [[nodiscard]] tl::expected<std::uint32_t, Error> resolve_constants(
     Shader shader, std::span<const NamedConstant> given, std::span<AlcoveWorkConstant> values);
 

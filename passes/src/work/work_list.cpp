@@ -134,12 +134,6 @@ tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
                   "', for which its pass gives no image; name it in the pass's list of images");
     }
   }
-  if (info.images.size() > images) {
-    if (const NamedTexture* const unknown = find_unknown(info.images, known_images())) {
-      return fail(std::string("is given an image '").append(unknown->name) +
-                  "', a name that no shader declares");
-    }
-  }
   made.parameter_bytes = static_cast<std::uint32_t>(info.parameters.size());
   std::memcpy(made.parameters, info.parameters.data(), info.parameters.size());
   ++work_.dispatch_count;

@@ -80,7 +80,7 @@ class WorkList {
   void set_history_source(const HistorySource& source) { source_ = source; }
 
   // Adds a dispatch. The accesses follow from the shader's interface. Errors: a constant or an
-  // image of the shader that is missing, a name that no shader has, or a list that is full.
+  // image of the shader that is missing, or a list that is full.
   [[nodiscard]] tl::expected<void, Error> dispatch(const DispatchInfo& info);
 
   VkExtent2D size(framegraph::Texture texture) const;
