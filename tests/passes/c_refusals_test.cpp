@@ -166,7 +166,7 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       {"depth", [](V& v) { v.depth.format = VK_FORMAT_UNDEFINED; }},
       {"without contents", [](V& v) { v.depth.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
       {"normals is 16x0", [](V& v) { v.normals.height = 0; }},
-      {"normals is 15x12", [](V& v) { v.normals.width = 15; }},
+      {"normals of 15x12", [](V& v) { v.normals.width = 15; }},
       {"normals has the format VK_FORMAT_R8G8B8A8_UNORM",
        [](V& v) { v.normals.format = VK_FORMAT_R8G8B8A8_UNORM; }},
       {"normals has the format VK_FORMAT",
@@ -176,13 +176,23 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
        [](V& v) { v.motion.format = VK_FORMAT_R32G32_UINT; }},
       {"scale of motion vectors is 0", [](V& v) { v.motion_scale[0] = 1.0f; }},
       {"roughness has the format VK_FORMAT", [](V& v) { v.roughness.format = VK_FORMAT_R8_UNORM; }},
-      {"back-face depth is 16x13", [](V& v) { v.back_depth.height = 13; }},
+      {"back-face depth of 16x13",
+       [](D& d) {
+         d.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+         d.views[0].back_depth.height = 13;
+         d.views[0].second_depth = {};  // the same image
+       }},
       {"no image of back_depth",
        [](D& d) {
          d.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
          d.views[0].back_depth = {};
        }},
-      {"second depth is 16x13", [](V& v) { v.second_depth.height = 13; }},
+      {"second depth of 16x13",
+       [](D& d) {
+         d.settings.depth_layers = 2;
+         d.views[0].second_depth.height = 13;
+         d.views[0].back_depth = {};  // the same image
+       }},
       {"no image of second_depth",
        [](D& d) {
          d.settings.depth_layers = 2;
@@ -229,17 +239,17 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       // Masks.
       {"must be VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT",
        [](V& v) { v.mask.format = VK_FORMAT_R16_UINT; }},
-      {"the image of mask is 15x12 pixels and that of depth 16x12",
-       [](V& v) { v.mask.width = 15; }},
+      {"mask of 15x12", [](V& v) { v.mask.width = 15; }},
       {"give at least one bit", [](V& v) { v.not_receiving = 0; }},
       {"values up to 255", [](V& v) { v.not_occluding = 256; }},
 
       // One channel of visibility.
       {"visibility_channel is 5", [](V& v) { set_number(v.visibility_channel, 5); }},
-      {"of which visibility_channel cannot be written alone; give",
+      {"it must be a normalised or float format of at least 2 channels",
        [](V& v) { v.visibility_channel = ALCOVE_CHANNEL_G; }},
-      {"of which visibility_channel cannot be written alone; give",
+      {"Visibility cannot be written to a channel of the format",
        [](V& v) {
+         v.visibility.initial_state = kResting;
          v.visibility.format = VK_FORMAT_R8G8B8A8_SNORM;
          v.visibility_channel = ALCOVE_CHANNEL_A;
        }},
@@ -253,13 +263,17 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
        }},
 
       // Outputs of half size.
-      {"needs half_resolution in its settings", [](V& v) { v.half_size_outputs = VK_TRUE; }},
-      {"half_size_outputs and an image of multi-bounce",
+      {"Outputs of half size need the setting half_resolution",
+       [](V& v) { v.half_size_outputs = VK_TRUE; }},
+      {"Multi-bounce is made from visibility of full size",
        [](D& d) {
-         d.settings.half_resolution = VK_TRUE;
-         d.views[0].half_size_outputs = VK_TRUE;
+         d.settings.half_resolution = d.views[0].half_size_outputs = VK_TRUE;
+         for (const Output& output : kOutputs) {
+           (d.views[0].*output.image).width = 8;
+           (d.views[0].*output.image).height = 6;
+         }
        }},
-      {"is 16x12 pixels; with half_size_outputs it must be 8x6, half of depth's 16x12 rounded up.",
+      {"is 16x12 pixels; it needs 8x6",
        [](D& d) {
          d.settings.half_resolution = d.views[0].half_size_outputs = VK_TRUE;
          d.views[0].multi_bounce = {};

@@ -6,9 +6,7 @@
 #include <cstdio>
 #include <span>
 
-#include "work/areas.h"
 #include "work/format_name.h"
-#include "work/kept_channels.h"
 #include "work/number_text.h"
 
 namespace alcove::passes {
@@ -112,29 +110,6 @@ ImageAreas to_areas(const AlcoveView& view) {
   return areas;
 }
 
-namespace {
-
-// Checks the size of an image that is not depth. Returns what is wrong with it, or an empty text.
-std::string size_problem(const ImageRole& role, const AlcoveImage& image, const AlcoveView& view) {
-  const VkExtent2D size{image.width, image.height};
-  const VkExtent2D depth{view.depth.width, view.depth.height};
-  const WorkFrame frame{.view = {}, .areas = to_areas(view)};
-  const bool in_part = role.output && has_areas(frame);
-  const AlcoveArea written = written_area(frame, read_size(frame, depth));
-  VkExtent2D wanted = in_part ? VkExtent2D{written.width, written.height} : depth;
-  if (role.half_size)
-    wanted = {wanted.width / 2 + wanted.width % 2, wanted.height / 2 + wanted.height % 2};
-  if (in_part) return output_problem(frame, wanted, size);
-  if (size.width == wanted.width && size.height == wanted.height) return {};
-  return role.half_size
-             ? "is " + size_text(size) + " pixels; with half_size_outputs it must be " +
-                   size_text(wanted) + ", half of depth's " + size_text(depth) + " rounded up."
-             : "is " + size_text(size) + " pixels and that of depth " + size_text(depth) +
-                   "; make them equal.";
-}
-
-}  // namespace
-
 tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage& image,
                                         const AlcoveView& view) {
   const auto fail = [&](const std::string& what) {
@@ -144,8 +119,6 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
     return fail("is " + size_text({image.width, image.height}) +
                 " pixels; each side must be at least 1.");
   }
-  if (const std::string problem = size_problem(role, image, view); !problem.empty())
-    return fail(problem);
   if (image.samples > 1 && !role.may_have_samples) {
     return fail("has " + std::to_string(image.samples) +
                 " samples a pixel; resolve it first, depths and normals to sample 0.");
@@ -153,10 +126,6 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
   if (image.samples > 64 || !std::has_single_bit(std::max(image.samples, 1u))) {
     return fail("has " + std::to_string(image.samples) +
                 " samples a pixel; it must be a power of two up to 64.");
-  }
-  if (role.keeps_channels && kept_channels(image.format) < role.channels) {
-    return fail("has the format " + format_name(image.format) +
-                ", of which visibility_channel cannot be written alone; " + kKeptFormats + ".");
   }
   if (!suits(role, image.format)) {
     return fail("has the format " + format_name(image.format) + "; it must be " +

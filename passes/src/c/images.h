@@ -20,14 +20,13 @@ struct ImageRole {
   bool output = false;
   bool keeps_channels = false;    // one channel of the output is written, the others are kept
   bool may_have_samples = false;  // more than one per pixel
-  bool half_size = false;         // it has half of depth's size, rounded up
 };
 
 // Converts the areas of a view. With dynamic resolution, images may be larger than the part that is
 // in use.
 [[nodiscard]] ImageAreas to_areas(const AlcoveView& view);
 
-// Checks an image of a view and its size.
+// Checks an image of a view. The passes check that the sizes of images fit together.
 [[nodiscard]] tl::expected<void, Failure> check_image(const ImageRole& role,
                                                       const AlcoveImage& image,
                                                       const AlcoveView& view);

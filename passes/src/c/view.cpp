@@ -7,7 +7,6 @@
 #include "c/settings.h"
 #include "diagnose/pixel_observer.h"
 #include "graph/add_view.h"
-#include "work/areas.h"
 
 namespace alcove::passes {
 namespace {
@@ -21,6 +20,8 @@ constexpr ImageRole kMotion{"motion vectors", Kind::signed_colour, 2};
 constexpr ImageRole kBackDepth{"back-face depth", Kind::depth};
 constexpr ImageRole kSecondDepth{"second depth", Kind::depth};
 constexpr ImageRole kAlbedo{"albedo", Kind::colour, 3};
+constexpr ImageRole kBentNormal{"bent normals", Kind::signed_colour, 3, true};
+constexpr ImageRole kSpecular{"specular occlusion", Kind::colour, 1, true};
 constexpr ImageRole kMultiBounce{"multi-bounce", Kind::colour, 3, true};
 
 tl::expected<void, Failure> check_given(const AlcoveView& view) {
@@ -72,30 +73,9 @@ ImageRole normals_role(NormalEncoding encoding) {
   return {"normals", packed ? Kind::colour : Kind::signed_colour, two ? 2u : 3u};
 }
 
-ImageRole visibility_role(VisibilityChannel channel, bool half_size) {
-  return {"visibility",
-          Kind::colour,
-          channel_index(channel) + 1,
-          true,
-          channel != VisibilityChannel::all,
-          false,
-          half_size};
-}
-
-// Checks what outputs of half size need.
-tl::expected<void, Failure> check_half_size(const AlcoveView& view,
-                                            const OcclusionSettings& settings) {
-  if (view.half_size_outputs == VK_FALSE) return {};
-  if (!settings.half_resolution) {
-    return invalid(view_name(view) +
-                   " has half_size_outputs, which needs half_resolution in its settings.");
-  }
-  if (view.multi_bounce.image != VK_NULL_HANDLE) {
-    return invalid(view_name(view) +
-                   " has half_size_outputs and an image of multi-bounce, which is made from "
-                   "visibility of full size; leave one of them out.");
-  }
-  return {};
+ImageRole visibility_role(VisibilityChannel channel) {
+  return {"visibility", Kind::colour, channel_index(channel) + 1, true,
+          channel != VisibilityChannel::all};
 }
 
 MotionConvention motion_convention(const AlcoveView& view) {
@@ -117,19 +97,15 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
   const auto channel =
       to_enum(view, "visibility_channel", view.visibility_channel, VisibilityChannel::alpha);
   if (!channel) return tl::unexpected(channel.error());
-  const bool half_size = view.half_size_outputs != VK_FALSE;
   const ImageRole normals = normals_role(*encoding);
-  const ImageRole visibility = visibility_role(*channel, half_size);
-  const ImageRole bent_normal{"bent normals", Kind::signed_colour, 3, true, false, false,
-                              half_size};
-  const ImageRole specular{"specular occlusion", Kind::colour, 1, true, false, false, half_size};
+  const ImageRole visibility = visibility_role(*channel);
   ViewInputs inputs;
   inputs.occlusion.depth_format = view.depth_format;
   inputs.occlusion.normal_convention = {*encoding, view.normals_in_view_space != VK_FALSE,
                                         view.normals_forward_z != VK_FALSE};
   inputs.occlusion.motion_convention = motion_convention(view);
   inputs.occlusion.visibility_channel = *channel;
-  inputs.occlusion.half_size_outputs = half_size;
+  inputs.occlusion.half_size_outputs = view.half_size_outputs != VK_FALSE;
   inputs.occlusion.not_receiving = view.not_receiving;
   inputs.occlusion.not_occluding = view.not_occluding;
   struct Import {
@@ -148,8 +124,8 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
       {kAlbedo, view.albedo, inputs.albedo},
       {kMask, view.mask, inputs.occlusion.mask},
       {visibility, view.visibility, inputs.occlusion.into.visibility},
-      {bent_normal, view.bent_normal, inputs.occlusion.into.bent_normal},
-      {specular, view.specular, inputs.occlusion.into.specular},
+      {kBentNormal, view.bent_normal, inputs.occlusion.into.bent_normal},
+      {kSpecular, view.specular, inputs.occlusion.into.specular},
       {kMultiBounce, view.multi_bounce, inputs.multi_bounce}};
   for (const Import& import : imports) {
     auto texture = importer.import(importer.user, import.role, import.image, view);
@@ -178,13 +154,8 @@ tl::expected<ViewSetup, Failure> set_up(const AlcoveView& view, const ImageImpor
   auto given = to_settings(view.settings);
   if (!given) return tl::unexpected(std::move(given.error()));
   OcclusionSettings& settings = *given;
-  auto right =
-      check_given(view).and_then([&] { return check_hidden(view, settings); }).and_then([&] {
-        return check_half_size(view, settings);
-      });
+  auto right = check_given(view).and_then([&] { return check_hidden(view, settings); });
   if (!right) return tl::unexpected(std::move(right.error()));
-  if (auto good = check_areas(to_areas(view), {view.depth.width, view.depth.height}); !good)
-    return tl::unexpected(failure_of(good.error(), view_name(view)));
   auto inputs = import_images(view, settings, importer);
   if (!inputs) return tl::unexpected(std::move(inputs.error()));
   const Occlusion& into = inputs->occlusion.into;

@@ -107,6 +107,11 @@ tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFr
                                                     const OcclusionSettings& settings) {
   auto outputs = describe_occlusion(list, frame, inputs.occlusion, settings);
   if (!outputs || !inputs.multi_bounce) return outputs;
+  if (inputs.occlusion.half_size_outputs) {
+    return tl::unexpected(
+        Error{"Multi-bounce is made from visibility of full size, which outputs of half size do "
+              "not have; leave one of them out."});
+  }
   return describe_multi_bounce(list, frame,
                                {outputs->visibility, inputs.albedo, inputs.multi_bounce,
                                 channel_of_visibility(inputs.occlusion)},
