@@ -96,7 +96,8 @@ typedef struct AlcoveSettings {
   // depth is sampled in both directions. Raising it reduces noise, and raises the cost in
   // proportion.
   uint32_t slices;
-  // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders.
+  // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders. A traced
+  // pixel costs 2 * slices * steps * depth_layers depth fetches.
   uint32_t steps;
   // The thickness of occluders as a fraction of the radius, or in another unit with
   // AlcoveAdvancedSettings::thickness_unit; at least 0. It is an upper limit: an occluder is no

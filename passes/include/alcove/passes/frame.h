@@ -38,27 +38,23 @@ enum class Precision : std::uint8_t {
   float32,  // R32_SFLOAT, RGBA32_SFLOAT
 };
 
-// How a texture holds normals. The decoded normal may have any length but 0.
+// How a texture holds normals: AlcoveNormalEncoding (alcove_settings.h).
 enum class NormalEncoding : std::uint8_t {
-  signed_xyz,    // xyz in a signed or float format
-  unsigned_xyz,  // xyz packed into [0,1]: 0.5 + 0.5 * normal
-  octahedral,    // the octahedral map (Cigolle et al. 2014) in xy of a signed or float format
-  unsigned_octahedral,  // the same packed into [0,1]
+  signed_xyz,
+  unsigned_xyz,
+  octahedral,
+  unsigned_octahedral,
 };
 
-// How normals are meant. A default is the world space and xyz as they are.
+// How normals are meant. AlcoveView (alcove.h) describes the fields.
 struct NormalConvention {
   NormalEncoding encoding = NormalEncoding::signed_xyz;
   bool in_view_space = false;  // else in world space
-  // Whether the z axis of normals in view space points away from the eye, as in engines whose
-  // camera looks along +Z. Bent normals are then written with the same axis.
   bool forward_z = false;
 };
 
 // The channels of the visibility texture to which visibility is written: all of them, or one, while
-// the others keep their contents. To write one channel of a texture of your own, the texture also
-// needs VK_IMAGE_USAGE_SAMPLED_BIT, and a format from which every other channel can be read and
-// written back unchanged: unsigned normalised or float, without a shared exponent and without sRGB.
+// the others keep their contents. AlcoveView::visibility_channel says what one channel needs.
 enum class VisibilityChannel : std::uint8_t { all, red, green, blue, alpha };
 
 // Returns the index of the channel that visibility is read from, 0 to 3.
@@ -66,20 +62,12 @@ enum class VisibilityChannel : std::uint8_t { all, red, green, blue, alpha };
   return channel == VisibilityChannel::all ? 0u : static_cast<std::uint32_t>(channel) - 1u;
 }
 
-// The parts of images that the occlusion passes read and write, for several views in one image, and
-// for a guard band: an area that is larger than the picture, so that occluders beyond its border
-// are found. If the size of `read` is zero, images are read and written as a whole; this costs
-// less.
+// The parts of images that the occlusion passes read and write: AlcoveView::read_area, written_area,
+// output_x and output_y (alcove.h). If the size of `read` is zero, images are read and written as a
+// whole.
 struct ImageAreas {
-  // The part of the inputs that is read. The camera describes it. Pixels outside are not read.
   AlcoveArea read{};
-  // The part of `read` for which results are computed, in pixels of the inputs. If its size is
-  // zero, it is `read`. History is kept for it alone, so reset the history if the distances between
-  // its borders and those of `read` change.
   AlcoveArea written{};
-  // The position of the results in the caller's textures, of which other pixels are not written.
-  // For results of half size it counts their texels, and the distance from `read` to `written` must
-  // be even.
   std::uint32_t output_x = 0;
   std::uint32_t output_y = 0;
 };
@@ -94,12 +82,7 @@ struct Frame {
   // The view of the previous frame, with which history is reprojected. It is not read if there is
   // no history: in the first frame, after a reset, and if `prepare` is true.
   View previous_view = view;
-  // The number of consecutive frames, up to and including this one, whose image is exactly that of
-  // the frame before. It is 0 if this frame differs from the previous one, or if you do not know.
-  // It must restart at 0 when the histories do: after a camera cut, and when the size, the settings
-  // or the outputs change. If it is at least 1, motion vectors are not read and history is not
-  // reprojected. If it is at least 16, the history averages up to 127 frames.
-  std::uint32_t static_frames = 0;
+  std::uint32_t static_frames = 0;  // as AlcoveView::static_frames
   // Two sizes for dynamic resolution. With them, the history continues while the size of the depth
   // texture, or of ImageAreas::read, changes. Zero means the current size.
   VkExtent2D largest_size{};   // size of the history textures; a change discards the history

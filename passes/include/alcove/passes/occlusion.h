@@ -33,9 +33,7 @@ struct OcclusionInputs {
   // `depth_ndc` (for example by at least a thousandth of the distance). If this depth is the sky or
   // NaN at a pixel, the second layer has no occluder there.
   framegraph::Texture second_depth_ndc;
-  // A mask of surfaces in one channel of 8 bits, R8_UNORM or R8_UINT; null: there is none. Surfaces
-  // with one of the bits `not_receiving` get the visibility 1, as the sky. Surfaces with one of the
-  // bits `not_occluding` occlude nothing; what lies behind them counts as unobserved.
+  // A mask of surfaces, R8_UNORM or R8_UINT, as AlcoveView::mask (alcove.h); null: there is none.
   framegraph::Texture mask;
   std::uint32_t not_receiving = 0;
   std::uint32_t not_occluding = 0;

@@ -12,11 +12,7 @@
 
 namespace alcove::passes {
 
-// Converts motion vectors: scale * vector + offset is the uv of a surface in this frame's image
-// minus its uv in the previous frame's image, with y down. Use a scale of 1 / size for vectors in
-// pixels, and 0.5 for vectors in normalised device coordinates (with Vulkan's y down). Negate the
-// scale for vectors that point from this frame to the previous one. If the vectors were drawn
-// without jitter, the offset is this frame's jitter minus the previous frame's, in uv.
+// Converts motion vectors as AlcoveView::motion (alcove.h) says.
 struct MotionConvention {
   std::array<float, 2> scale{1.0f, 1.0f};
   std::array<float, 2> offset{0.0f, 0.0f};

@@ -29,52 +29,21 @@ enum class Quality : std::uint8_t {
   reference,
 };
 
-// The method that computes specular occlusion, the visible fraction of each surface's GGX lobe.
-enum class Specular : std::uint8_t {
-  none,    // Not at all.
-  slices,  // Integrates the lobe over the slices of visibility. It has the smallest error.
-  // The next two methods compute specular occlusion from visibility and the bent normal ([Jimenez
-  // 2016], section 6; shaders/maths/gtso.h). Both are then computed even if they are not requested.
-  table,  // Fraction of the lobe within the visibility cone, from a table of 54 KiB.
-  cone,   // Intersection of the visibility cone with a cone that approximates the lobe.
-};
+// How specular occlusion is computed: AlcoveSpecular (alcove_settings.h). `table` and `cone` are
+// those of [Jimenez 2016], section 6 (shaders/maths/gtso.h).
+enum class Specular : std::uint8_t { none, slices, table, cone };
 
+// AlcoveSettings (alcove_settings.h) describes the fields, apart from those for outputs.
 struct OcclusionSettings {
-  // The largest distance at which occluders count, in scene units, above 0. A twentieth to a fifth
-  // of a room's height is usual.
   float radius = 0.5f;
-  // Width of a tile in pixels: 1, 2, 4 or 8. One pixel per tile is traced in a frame; the
-  // interleave offset selects another pixel of the tile in each frame. 1 traces every pixel.
   std::uint32_t tile_size = 4;
-  // Slices per traced pixel and frame, 1 to 64. More slices reduce noise.
   std::uint32_t slices = 2;
-  // Depth samples per half-slice (each of the two directions of a slice), 2 to 64. More samples
-  // find thinner occluders. A traced pixel costs 2 * slices * steps * depth_layers depth fetches.
   std::uint32_t steps = 12;
-  // Thickness of occluders as a fraction of the radius (or in AdvancedSettings::thickness_unit), at
-  // least 0. It is an upper limit: an occluder is no thicker than it is seen to be wide, so that
-  // blades, bars and leaves are thin.
-  float thickness = 0.3f;
-  // Average fraction of the volume hidden behind occluders that is treated as solid, [0,1]. The
-  // actual fraction is larger behind occluders that are wide on the image
-  // (hidden_occlusion_behind() in shaders/maths/visibility_bitmask.h). Raising it darkens corners
-  // behind foregrounds.
+  float thickness = 0.3f;  // in the unit AdvancedSettings::thickness_unit
   float hidden_occlusion = 0.286f;
-  // Number of depth buffers that are searched for occluders: 1, or 2. With 2,
-  // OcclusionInputs::second_depth_ndc is searched too.
   std::uint32_t depth_layers = 1;
-  // Largest number of frames that the history averages, 0 to 127. After 16 static frames the limit
-  // is 127. 0 keeps no history and allocates none, for engines with a temporal filter of their own
-  // or with none at all (static_noise).
   std::uint32_t history_frames = 32;
-  // Whether every frame has the same noise, so that equal inputs give equal outputs whatever
-  // Frame::index is. Set it without any temporal filter: with history_frames = 0 the noise would
-  // otherwise change in every frame and never be averaged. It has no effect with a history, which
-  // needs changing noise.
   bool static_noise = false;
-  // Whether the passes filter and accumulate texels of 2x2 pixels, and upsample the result to
-  // pixels along depth edges. This takes less time and less memory for the history, and has a
-  // larger error. It needs a tile_size of at least 2.
   bool half_resolution = false;
 
   // Outputs. An output that is off needs no pass and no memory.
@@ -83,15 +52,10 @@ struct OcclusionSettings {
   bool linear_depth = false;  // OcclusionOutputs::linear_depth, for lighting.
   Specular specular = Specular::none;
 
-  // Perceptual roughness of every pixel, [0,1], if there is no roughness texture.
   float roughness = 0.5f;
-  std::uint32_t roughness_channel = 0;  // Channel of the roughness texture, 0 to 3.
-  // Format of outputs for which the caller gives no texture, and of intermediate results.
+  std::uint32_t roughness_channel = 0;
+  // Also the format of outputs for which the caller gives no texture.
   Precision precision = Precision::unorm8;
-  // The passes write the visibility 1 - intensity * (1 - visibility^power), clamped to [0,1].
-  // `power` is above 0 and at most 16; `intensity` is 0 to 16. Values above 1 darken. If both are
-  // 1, visibility is unchanged and the shaders skip the computation. Multi-bounce and the specular
-  // models `table` and `cone` read the changed visibility.
   float power = 1.0f;
   float intensity = 1.0f;
 
