@@ -110,13 +110,15 @@ TEST_F(BadInput, RawOcclusionWithWrongTileSizeSlicesOrImageSizeIsReported) {
       OcclusionSettings search;
       search.tile_size = 2;
       search.bent_normal = true;
-      auto raw = add_gtao(frame, {depth, normals, {.in_view_space = true}}, search);
+      auto raw = add_gtao(
+          frame,
+          {{.depth_ndc = depth, .normals = normals, .normal_convention = {.in_view_space = true}}},
+          search);
       ASSERT_TRUE(raw);
       OcclusionSettings settings;
       bad.change(*raw, settings);
       expect_error(
-          add_reconstruct(frame, {.raw_occlusion = *raw, .depth_ndc = depth, .normals = normals},
-                          settings),
+          add_reconstruct(frame, {{.depth_ndc = depth, .normals = normals}, *raw}, settings),
           bad.message);
       read_back(graph, depth);
     });

@@ -179,9 +179,8 @@ TEST_F(HalfResolution, HalfResolutionWithTilesOfOnePixelIsRefused) {
   const auto raw = graph.create_texture(
       "raw", {VK_FORMAT_R32G32_UINT, framegraph::Extent::absolute(kWidth, kHeight)});
   expect_error(
-      add_reconstruct(
-          frame, {.raw_occlusion = {.raw_occlusion = raw}, .depth_ndc = depth, .normals = normals},
-          half_resolution(0)),
+      add_reconstruct(frame, {{.depth_ndc = depth, .normals = normals}, {.raw_occlusion = raw}},
+                      half_resolution(0)),
       "tile_size is 1");
 }
 

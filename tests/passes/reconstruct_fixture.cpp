@@ -65,18 +65,18 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
     frame.previous_size = input.previous_size;
     frame.largest_size = input.largest_size;
     ReconstructInputs inputs{
-        .raw_occlusion = {.raw_occlusion = upload(
-                              graph,
-                              packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion,
-                                                   input.tile_size, input.index),
-                              VK_FORMAT_R32G32_UINT),
-                          .tile_size = input.tile_size,
-                          .slices = input.slices},
-        .depth_ndc = input.coarse_depth
-                         ? upload(graph, with_16_bits(input.drawing.depth_ndc), VK_FORMAT_R16_UNORM)
-                         : upload(graph, input.drawing.depth_ndc),
-        .normals = upload(graph, input.drawing.normal_vs),
-        .normal_convention = {.in_view_space = true}};
+        {.depth_ndc = input.coarse_depth ? upload(graph, with_16_bits(input.drawing.depth_ndc),
+                                                  VK_FORMAT_R16_UNORM)
+                                         : upload(graph, input.drawing.depth_ndc),
+         .normals = upload(graph, input.drawing.normal_vs),
+         .normal_convention = {.in_view_space = true}},
+        {.raw_occlusion =
+             upload(graph,
+                    packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion,
+                                         input.tile_size, input.index),
+                    VK_FORMAT_R32G32_UINT),
+         .tile_size = input.tile_size,
+         .slices = input.slices}};
     if (input.motion != nullptr) inputs.motion = upload(graph, *input.motion);
     const auto outputs = add_reconstruct(frame, inputs, settings);
     ASSERT_TRUE(outputs) << outputs.error().message;

@@ -26,18 +26,6 @@ void for_each_texture(Occlusion& of, const Visit& visit) {
   visit(of.specular);
 }
 template <typename Visit>
-void for_each_texture(GtaoInputs& of, const Visit& visit) {
-  for (Texture* texture : {&of.depth_ndc, &of.normals, &of.roughness, &of.back_depth_ndc,
-                           &of.second_depth_ndc, &of.receiver_depth_ndc})
-    visit(*texture);
-}
-template <typename Visit>
-void for_each_texture(ReconstructInputs& of, const Visit& visit) {
-  for_each_texture(of.raw_occlusion, visit);
-  for (Texture* texture : {&of.depth_ndc, &of.normals, &of.motion, &of.roughness}) visit(*texture);
-  for_each_texture(of.into, visit);
-}
-template <typename Visit>
 void for_each_texture(MultiBounceInputs& of, const Visit& visit) {
   for (Texture* texture : {&of.visibility, &of.albedo, &of.into}) visit(*texture);
 }
@@ -53,6 +41,16 @@ void for_each_texture(OcclusionInputs& of, const Visit& visit) {
                            &of.back_depth_ndc, &of.second_depth_ndc, &of.mask})
     visit(*texture);
   for_each_texture(of.into, visit);
+}
+template <typename Visit>
+void for_each_texture(GtaoInputs& of, const Visit& visit) {
+  for_each_texture(static_cast<OcclusionInputs&>(of), visit);
+  visit(of.receiver_depth_ndc);
+}
+template <typename Visit>
+void for_each_texture(ReconstructInputs& of, const Visit& visit) {
+  for_each_texture(static_cast<OcclusionInputs&>(of), visit);
+  for_each_texture(of.raw_occlusion, visit);
 }
 template <typename Visit>
 void for_each_texture(ViewInputs& of, const Visit& visit) {

@@ -42,7 +42,7 @@ tl::expected<void, Error> check_result_sizes(const WorkList& list, const WorkFra
                                              const ReconstructInputs& inputs) {
   const VkExtent2D read = read_size(frame, list.size(inputs.depth_ndc));
   const AlcoveArea written = written_area(frame, read);
-  const std::uint32_t texel = inputs.half_size_results ? 2 : 1;
+  const std::uint32_t texel = inputs.half_size_outputs ? 2 : 1;
   if (written.x % texel != 0 || written.y % texel != 0) {
     return tl::unexpected(
         Error{"The area that is written begins at (" + std::to_string(written.x) + ", " +
@@ -135,7 +135,7 @@ tl::expected<void, Error> check_reconstruct(const WorkList& list, const WorkFram
   return validate(settings)
       .and_then([&] { return check_motion(inputs.motion_convention); })
       .and_then([&]() -> tl::expected<void, Error> {
-        if (inputs.half_size_results && !settings.half_resolution)
+        if (inputs.half_size_outputs && !settings.half_resolution)
           return tl::unexpected(
               Error{"Outputs of half size need the setting half_resolution; it is off."});
         return {};

@@ -69,31 +69,16 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
     if (!made) return tl::unexpected(std::move(made.error()));
     normals = *made;
   }
-  const auto raw_occlusion =
-      describe_gtao(list, frame,
-                    {.depth_ndc = depths->occluders,
-                     .normals = inputs.normals,
-                     .normal_convention = inputs.normal_convention,
-                     .roughness = inputs.roughness,
-                     .back_depth_ndc = inputs.back_depth_ndc,
-                     .second_depth_ndc = inputs.second_depth_ndc,
-                     .receiver_depth_ndc = inputs.mask ? depths->receivers : framegraph::Texture{},
-                     .depth_format = depth_format},
-                    settings);
+  GtaoInputs search{inputs};
+  search.depth_ndc = depths->occluders;
+  search.depth_format = depth_format;
+  if (inputs.mask) search.receiver_depth_ndc = depths->receivers;
+  const auto raw_occlusion = describe_gtao(list, frame, search, settings);
   if (!raw_occlusion) return tl::unexpected(raw_occlusion.error());
-  const auto filtered = describe_reconstruct(list, frame,
-                                             {.raw_occlusion = *raw_occlusion,
-                                              .depth_ndc = depths->receivers,
-                                              .depth_format = depth_format,
-                                              .normals = inputs.normals,
-                                              .normal_convention = inputs.normal_convention,
-                                              .motion = inputs.motion,
-                                              .roughness = inputs.roughness,
-                                              .into = inputs.into,
-                                              .motion_convention = inputs.motion_convention,
-                                              .visibility_channel = inputs.visibility_channel,
-                                              .half_size_results = inputs.half_size_outputs},
-                                             settings);
+  ReconstructInputs filter{inputs, *raw_occlusion};
+  filter.depth_ndc = depths->receivers;
+  filter.depth_format = depth_format;
+  const auto filtered = describe_reconstruct(list, frame, filter, settings);
   if (!filtered) return tl::unexpected(filtered.error());
   const OcclusionOutputs outputs{filtered->visibility, filtered->bent_normal, filtered->specular,
                                  *depth, normals};

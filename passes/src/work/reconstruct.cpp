@@ -87,7 +87,7 @@ Textures add_textures(WorkList& list, const WorkFrame& frame, const ReconstructI
   const bool history = settings.history_frames > 0;
   const AlcoveArea written = written_area(frame, sizes.now);
   const VkExtent2D size =
-      output_size(frame, texels({written.width, written.height}, inputs.half_size_results));
+      output_size(frame, texels({written.width, written.height}, inputs.half_size_outputs));
   Textures textures;
   if (needs_visibility(settings)) {
     textures.result.visibility = given_or_added(list, inputs.into.visibility, "visibility",
@@ -239,7 +239,7 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                             .normals = inputs.normals,
                             .normal_convention = inputs.normal_convention,
                             .visibility_channel = inputs.visibility_channel,
-                            .half_size_results = inputs.half_size_results},
+                            .half_size_results = inputs.half_size_outputs},
                            textures.result, settings);
 }
 

@@ -10,11 +10,11 @@ struct UpsampleInputs {
   framegraph::Texture half_depth;  // maths::half_texel_depth()
   framegraph::Texture residuals;  // maths::pack_half_residual(); null where there is no bent normal
   framegraph::Texture lobes;      // maths::LobeTexel; null where there is no lobe
-  framegraph::Texture depth_ndc;  // as GtaoInputs has it
-  framegraph::Texture normals;    // as ReconstructInputs has it
+  framegraph::Texture depth_ndc;  // as OcclusionInputs has it
+  framegraph::Texture normals;    // as OcclusionInputs has it
   NormalConvention normal_convention;
-  VisibilityChannel visibility_channel = VisibilityChannel::all;  // as ReconstructInputs has it
-  bool half_size_results = false;  // as ReconstructInputs has it: nothing is upsampled
+  VisibilityChannel visibility_channel = VisibilityChannel::all;  // as OcclusionInputs has it
+  bool half_size_results = false;  // as OcclusionInputs has it: nothing is upsampled
 };
 
 // Describes the pass that writes `result`. Its textures have the size of the results and were

@@ -4,36 +4,16 @@
 #include <cstdint>
 
 #include "alcove/passes/frame.h"
+#include "alcove/passes/inputs.h"
 #include "alcove/passes/settings.h"
 
 namespace alcove::passes {
 
-struct GtaoInputs {
-  // A depth texture (any depth format or R32_SFLOAT), as the view's projection wrote it. Samples
-  // within about one depth step of the surface's tangent plane do not occlude. A depth step is the
-  // distance in the scene between two successive depths that the texture can store; the pass
-  // derives it from the format and the projection. At the distance z it is z^2 / near * 2^-24 with
-  // 24 bits or 32-bit floats if depth is not reversed, z^2 / near * 2^-16 with 16 bits, and z *
-  // 2^-23 with reversed floats. While the step grows from a quarter of the radius to the radius,
-  // visibility fades to 1.
-  framegraph::Texture depth_ndc;
-  // Unit vectors, as `normal_convention` says. AlcoveView::normals (alcove.h) documents what
-  // happens to normals that face away from the eye, are zero or are not numbers. If null, the pass
-  // computes normals from depth at the traced pixels.
-  framegraph::Texture normals;
-  NormalConvention normal_convention;
-  framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
-  // See OcclusionInputs::back_depth_ndc. Needed only if needs_back_depth() returns true.
-  framegraph::Texture back_depth_ndc;
-  // See OcclusionInputs::second_depth_ndc. Needed only if needs_second_depth() returns true.
-  framegraph::Texture second_depth_ndc;
+struct GtaoInputs : OcclusionInputs {
   // With a mask, the depth with sky in the place of surfaces that do not receive occlusion;
   // `depth_ndc` then has kNoOccluder in the place of those that do not occlude (add_occlusion()
   // makes both). Null: there is no mask.
   framegraph::Texture receiver_depth_ndc;
-  // The format in which the depths were first stored, if `depth_ndc` is a copy in another format.
-  // By default it is the format of `depth_ndc`.
-  VkFormat depth_format = VK_FORMAT_UNDEFINED;
 };
 
 // The raw occlusion of a frame, one texel per tile: sums over slices, which reconstruction filters.

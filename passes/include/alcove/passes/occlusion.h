@@ -11,41 +11,6 @@
 
 namespace alcove::passes {
 
-struct OcclusionInputs {
-  // The depth buffer that the view's projection wrote. If it has several samples per pixel, a pass
-  // first copies sample 0.
-  framegraph::Texture depth_ndc;
-  VkFormat depth_format = VK_FORMAT_UNDEFINED;  // see GtaoInputs::depth_format
-  framegraph::Texture normals;                  // unit vectors; null: they are made from depth
-  NormalConvention normal_convention;
-  framegraph::Texture motion;     // as ReconstructInputs::motion; null: only the camera moves
-  framegraph::Texture roughness;  // perceptual, [0,1]; null: OcclusionSettings::roughness
-  // The depth of back faces, for ThicknessUnit::back_faces. It is ignored unless
-  // needs_back_depth(). Draw the scene a second time with front faces culled, with the same
-  // projection, size, clear value and depth test, so that the nearest back face is kept: there the
-  // view ray leaves the first solid that it enters. A pixel's occluder has the thickness of the
-  // settings instead if this depth is the sky or NaN, or is behind `depth_ndc` by less than a
-  // ten-thousandth of the distance.
-  framegraph::Texture back_depth_ndc;
-  // The second depth layer, for OcclusionSettings::depth_layers = 2. It is ignored unless
-  // needs_second_depth(). It holds the nearest front face that the first layer hides. Draw the
-  // scene a second time with back faces culled, and discard fragments that are not behind
-  // `depth_ndc` (for example by at least a thousandth of the distance). If this depth is the sky or
-  // NaN at a pixel, the second layer has no occluder there.
-  framegraph::Texture second_depth_ndc;
-  // A mask of surfaces, R8_UNORM or R8_UINT, as AlcoveView::mask (alcove.h); null: there is none.
-  framegraph::Texture mask;
-  std::uint32_t not_receiving = 0;
-  std::uint32_t not_occluding = 0;
-  // Textures of the caller for the outputs: see ReconstructInputs::into.
-  Occlusion into;
-  MotionConvention motion_convention;
-  VisibilityChannel visibility_channel = VisibilityChannel::all;  // see ReconstructInputs
-  // Whether the outputs have half the depth's size: see ReconstructInputs::half_size_results.
-  // Specular occlusion with `table` and `cone` is then not available.
-  bool half_size_outputs = false;
-};
-
 struct OcclusionOutputs {
   // One channel, [0,1], 1 is open. Null if neither the settings nor their specular model need it.
   framegraph::Texture visibility;

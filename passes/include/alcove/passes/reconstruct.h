@@ -2,8 +2,6 @@
 // accumulation in one pass (Jimenez et al. 2016, sections 4.4 and 4.5, with other weights).
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <string_view>
 
 #include "alcove/passes/frame.h"
@@ -12,45 +10,8 @@
 
 namespace alcove::passes {
 
-// Converts motion vectors as AlcoveView::motion (alcove.h) says.
-struct MotionConvention {
-  std::array<float, 2> scale{1.0f, 1.0f};
-  std::array<float, 2> offset{0.0f, 0.0f};
-};
-
-struct Occlusion {
-  // One channel, [0,1], 1 is open. Null if it was not requested.
-  framegraph::Texture visibility;
-  // Unit vectors in xyz, in the space of the normals. Null without bent normals.
-  framegraph::Texture bent_normal;
-  // One channel, the visible fraction of the GGX lobe, [0,1], 1 is open. Null without a lobe.
-  framegraph::Texture specular;
-};
-
-struct ReconstructInputs {
-  RawOcclusionTextures raw_occlusion;  // From add_gtao, with the same Frame::index.
-  framegraph::Texture depth_ndc;       // See GtaoInputs::depth_ndc and depth_format.
-  VkFormat depth_format = VK_FORMAT_UNDEFINED;
-  framegraph::Texture normals;  // The same texture as GtaoInputs::normals.
-  NormalConvention normal_convention;
-  // Motion vectors in xy: how far each surface moved on the image, in the units of
-  // `motion_convention`. If null, only the camera is assumed to move. With motion vectors,
-  // occluders may move too, which changes the visibility of surfaces that do not move. The history
-  // is then replaced where it differs from the mean of about the last four frames by more than
-  // noise.
-  framegraph::Texture motion;
-  framegraph::Texture roughness;  // as GtaoInputs::roughness
-  // Textures of the caller, of the results' size, to which the results are written completely. If a
-  // texture is null, its result is a transient with OcclusionSettings::precision. A texture whose
-  // result was not requested is ignored.
-  Occlusion into;
-  MotionConvention motion_convention;
-  // The channel of `into.visibility` that is written; `all` if that is null.
-  VisibilityChannel visibility_channel = VisibilityChannel::all;
-  // Whether results have half the depth's size, rounded up, and are not upsampled. Needs
-  // half_resolution. The texel at (x, y) belongs to one of the 2x2 pixels from (2x, 2y) on: to the
-  // nearest of them if x + y is even, and otherwise to the farthest that is not the sky.
-  bool half_size_results = false;
+struct ReconstructInputs : OcclusionInputs {
+  RawOcclusionTextures raw_occlusion;  // From add_gtao, with the same inputs and Frame::index.
 };
 
 // Adds the reconstruction. Each view of a graph needs its own `history_name`. A history starts
