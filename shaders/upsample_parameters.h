@@ -15,7 +15,7 @@ struct UpsampleParameters {
   vec2 pixel_uv;                // 1 over the size of the depth buffer
   vec2 texel_uv;                // 1 over the size of the half-resolution images
   vec2 half_pixel_per_tilt;     // change of inverse depth over half a pixel, per stored tilt
-  ivec2 to_outputs;             // from pixels to the outputs, or from texels to those of half size
+  ivec2 to_outputs;             // from pixels to the outputs
   float tolerance;              // scale of distances from the tangent plane, in depths
   float power;                  // of shaped_visibility()
   float intensity;              // of shaped_visibility()

@@ -114,9 +114,7 @@ void CAreas::run_sheet(bool band) {
       const Results expected = read_results(own[i]);
       EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.95f);
       const AlcoveArea written = band ? own[i].written_area : shared[i].read_area;
-      const std::uint32_t texel = from[i].half_size_outputs ? 2 : 1;
-      const AlcoveArea size{0, 0, (written.width + texel - 1) / texel,
-                            (written.height + texel - 1) / texel};
+      const AlcoveArea size{0, 0, written.width, written.height};
       const AlcoveArea area{shared[i].output_x, shared[i].output_y, size.width, size.height};
       for (const Output& each : kOutputs) {
         if ((expected.*each.texels).texels.empty()) continue;
@@ -139,7 +137,6 @@ TEST_P(CAreas, TwoViewsWithGuardBandsInOneImageEqualViewsInImagesOfTheirOwn) { r
 // Without motion the guard band changes nothing but the part that is written.
 TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
   HostView from = create_host_view(37, 45, ball_on_floor());
-  from.half_size_outputs = false;
   for (std::uint32_t index = 0; index < 4; ++index) {
     SCOPED_TRACE("frame " + std::to_string(index));
     from.static_frames = index;
@@ -176,11 +173,6 @@ INSTANTIATE_TEST_SUITE_P(
                          }},
                     Case{"SpecularByConeAlone", Quality::medium,
                          [](HostView& view) { view.settings.specular = Specular::cone; }},
-                    Case{"OutputsOfHalfSize", Quality::console,
-                         [](HostView& view) {
-                           view.half_size_outputs = true;
-                           request_all_outputs(view);
-                         }},
                     Case{"TwoDepthLayers", Quality::low,
                          [](HostView& view) { view.settings.depth_layers = 2; }},
                     Case{"WithoutHistory", Quality::low,

@@ -87,7 +87,7 @@ HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene
 void request_all_outputs(HostView& view) {
   view.settings.visibility = view.settings.bent_normal = true;
   view.settings.specular = Specular::slices;
-  view.multi_bounce = !view.half_size_outputs;
+  view.multi_bounce = true;
 }
 
 void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::uint32_t y) {
@@ -251,17 +251,13 @@ AlcoveView CInterface::create_view(const HostView& from) {
                   .largest_height = from.largest_size.height,
                   .previous_width = from.previous_size.width,
                   .previous_height = from.previous_size.height,
-                  .depth_format = from.depth_format,
-                  .half_size_outputs = to_bool32(from.half_size_outputs)};
+                  .depth_format = from.depth_format};
   for (const Input& each : kInputs) view.*each.image = input(from.*each.texels);
   const bool bytes = from.settings.precision == Precision::unorm8;
   const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
   const VkFormat direction = bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
-  const std::uint32_t shrink = from.half_size_outputs ? 2 : 1;
   const auto wanted = [&](bool is_wanted, VkFormat format) {
-    return is_wanted ? output(format, (from.depth_ndc.width + shrink - 1) / shrink,
-                              (from.depth_ndc.height + shrink - 1) / shrink)
-                     : AlcoveImage{};
+    return is_wanted ? output(format, from.depth_ndc.width, from.depth_ndc.height) : AlcoveImage{};
   };
   view.visibility = wanted(from.settings.visibility, scalar);
   view.bent_normal = wanted(from.settings.bent_normal, direction);
@@ -339,8 +335,7 @@ Results CInterface::run_by_cpp(const HostView& from, std::uint32_t index) {
                        .motion = upload_of(from.motion),
                        .roughness = upload_of(from.roughness),
                        .back_depth_ndc = upload_of(from.back_depth_ndc),
-                       .second_depth_ndc = upload_of(from.second_depth_ndc),
-                       .half_size_outputs = from.half_size_outputs},
+                       .second_depth_ndc = upload_of(from.second_depth_ndc)},
                       settings, name);
     ASSERT_TRUE(outputs) << outputs.error().message;
     if (from.settings.visibility) read_back(graph, outputs->visibility);

@@ -41,7 +41,6 @@ struct HostView {
   HostImage albedo;
   OcclusionSettings settings;  // their flags say which outputs are requested
   bool multi_bounce = false;
-  bool half_size_outputs = false;
 };
 
 // The results of a view. An output that is not requested has no texels.

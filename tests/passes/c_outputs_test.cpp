@@ -1,4 +1,4 @@
-// Outputs that share an image with something else of the engine, and outputs of half size.
+// Outputs that share an image with something else of the engine.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -11,9 +11,6 @@
 
 namespace alcove::passes {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr VkImageUsageFlags kSharedUsage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                            VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
@@ -174,88 +171,6 @@ TEST_F(COutputs, CppInterfaceWritesVisibilityToOneChannelOfAnImage) {
   });
   for (std::size_t i = 0; i < 16UL * 12 * 4; ++i)
     ASSERT_EQ(result().texels[i], i % 4 == 3 ? alone.texels[i / 4] : before.texels[i]) << i;
-}
-
-// Returns a view of a scene at half resolution, with all outputs of half size.
-HostView draw_half_view(std::uint32_t width, std::uint32_t height, const Scene& scene) {
-  HostView view = draw_view(width, height, scene);
-  view.settings.half_resolution = true;
-  view.half_size_outputs = true;
-  request_all_outputs(view);
-  view.reset = true;
-  return view;
-}
-
-TEST_F(COutputs, HalfSizeOutputsOfTheCAndCppInterfacesAreEqualAtAnySizeWithoutUpsampling) {
-  for (const VkExtent2D size : {VkExtent2D{1, 1}, {3, 1}, {1, 4}, {17, 11}, {18, 12}, {33, 8}}) {
-    SCOPED_TRACE(testing::Message() << size.width << "x" << size.height);
-    HostView view = draw_half_view(size.width, size.height, ball_on_floor());
-    expect_same_both_ways(context(), {&view, 1}, 0);
-    view.reset = false;  // with history
-    expect_same_both_ways(context(), {&view, 1}, 1);
-    EXPECT_THAT(print_plan(context()), HasSubstr("half-resolution output"));
-    EXPECT_THAT(print_plan(context()), Not(HasSubstr("upsample")));
-  }
-}
-
-TEST_F(COutputs, HalfSizeOutputsOfAnUnoccludedPlaneAreUnoccluded) {
-  const Results found = run_by_cpp(draw_half_view(17, 11, open_plane()), 0);
-  ASSERT_EQ(found.visibility.width, 9u);
-  ASSERT_EQ(found.visibility.height, 6u);
-  EXPECT_THAT(found.visibility.texels, testing::Each(1.0f));
-  EXPECT_THAT(found.specular.texels, testing::Each(testing::Ge(0.995f)));
-}
-
-// Away from depth edges a texel is about the mean of its four upsampled pixels.
-TEST_F(COutputs, HalfSizeOutputsAgreeWithTheMeanOfUpsampledOutputs) {
-  HostView view = draw_half_view(64, 48, groove(0.8));
-  const Results half = run_by_cpp(view, 0);
-  view.half_size_outputs = false;
-  const Results full = run_by_cpp(view, 0);
-  for (const auto& image : {&Results::visibility, &Results::specular, &Results::bent_normal}) {
-    const HostImage &small = half.*image, &large = full.*image;
-    double sum = 0.0;
-    for (std::uint32_t y = 0; y < small.height; ++y) {
-      for (std::uint32_t x = 0; x < small.width; ++x) {
-        const float mean = (large.at(2 * x, 2 * y) + large.at(2 * x + 1, 2 * y) +
-                            large.at(2 * x, 2 * y + 1) + large.at(2 * x + 1, 2 * y + 1)) /
-                           4.0f;
-        sum += std::abs(small.at(x, y) - mean);
-      }
-    }
-    EXPECT_LT(sum / (small.width * small.height), 0.01);
-  }
-}
-
-// The radius of this test is so small that nothing occludes. Each bent normal is then the normal of
-// its pixel, and shows which pixel a texel belongs to.
-TEST_F(COutputs, HalfSizeTexelsShowTheNearestOrFarthestOfFourPixelsInACheckerboard) {
-  HostView view = draw_half_view(33, 23, ball_on_floor());
-  view.settings.radius = 1e-4f;
-  const HostImage found = run_by_cpp(view, 0).bent_normal;
-  std::size_t told_apart = 0;
-  for (std::uint32_t y = 0; y < found.height; ++y) {
-    for (std::uint32_t x = 0; x < found.width; ++x) {
-      std::array<std::uint32_t, 2> chosen{};
-      double best = -kInfinity;
-      for (std::uint32_t i = 0; i < 4; ++i) {
-        const std::uint32_t px = 2 * x + i / 2, py = 2 * y + i % 2;
-        if (px >= 33 || py >= 23) continue;
-        const double nearness = view.depth_ndc.at(px, py);  // reversed: the sky is 0
-        const double rank = (x + y) % 2 == 0 ? nearness : nearness == 0.0 ? -1e9 : -nearness;
-        if (rank > best) {
-          best = rank;
-          chosen = {px, py};
-        }
-      }
-      if (view.depth_ndc.at(chosen[0], chosen[1]) == 0.0f) continue;
-      for (std::uint32_t c = 0; c < 3; ++c)
-        ASSERT_NEAR(found.at(x, y, c), view.normals.at(chosen[0], chosen[1], c), 2e-3)
-            << "at " << x << ", " << y;
-      ++told_apart;
-    }
-  }
-  EXPECT_GT(told_apart, 100u);
 }
 
 }  // namespace

@@ -262,33 +262,6 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
          v.visibility_channel = ALCOVE_CHANNEL_R;
        }},
 
-      // Outputs of half size.
-      {"Outputs of half size need the setting half_resolution",
-       [](V& v) { v.half_size_outputs = VK_TRUE; }},
-      {"Multi-bounce is made from visibility of full size",
-       [](D& d) {
-         d.settings.half_resolution = d.views[0].half_size_outputs = VK_TRUE;
-         for (const Output& output : kOutputs) {
-           (d.views[0].*output.image).width = 8;
-           (d.views[0].*output.image).height = 6;
-         }
-       }},
-      {"is 16x12 pixels; it needs 8x6",
-       [](D& d) {
-         d.settings.half_resolution = d.views[0].half_size_outputs = VK_TRUE;
-         d.views[0].multi_bounce = {};
-       }},
-      {"outputs of half size need slices",
-       [](D& d) {
-         d.settings.half_resolution = d.views[0].half_size_outputs = VK_TRUE;
-         d.settings.specular = ALCOVE_SPECULAR_TABLE;
-         d.views[0].multi_bounce = {};
-         for (const Output& output : kOutputs) {
-           (d.views[0].*output.image).width = 8;
-           (d.views[0].*output.image).height = 6;
-         }
-       }},
-
       // Dynamic resolution.
       {"within 15x12",
        [](V& v) {

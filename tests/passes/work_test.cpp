@@ -34,7 +34,6 @@ AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const Alcove
           .output_x = view.output_x,
           .output_y = view.output_y,
           .visibility_channel = view.visibility_channel,
-          .half_size_outputs = view.half_size_outputs,
           .depth = image(view.depth),
           .depth_format = static_cast<std::uint32_t>(view.depth_format),
           .normals = image(view.normals),
@@ -169,12 +168,6 @@ INSTANTIATE_TEST_SUITE_P(
                            request_all_outputs(view);
                            view.settings.depth_layers = 2;
                            view.motion = {};
-                         }},
-                    Case{"OutputsOfHalfSize", Quality::console,
-                         [](HostView& view) {
-                           view.settings.bent_normal = true;
-                           view.settings.specular = Specular::slices;
-                           view.half_size_outputs = true;
                          }},
                     Case{"AreaAndMask", Quality::medium, request_all_outputs, true},
                     Case{"HalfResolutionAreaAndMask", Quality::console, request_all_outputs, true},

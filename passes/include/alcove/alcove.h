@@ -131,10 +131,10 @@ typedef struct AlcoveImage {
   VkImageView view;
   VkFormat format;
   // The size in pixels. All inputs of a view must have the same size. Outputs have it too, except
-  // with half_size_outputs and with areas (AlcoveView::read_area). With dynamic resolution
-  // (AlcoveView::largest_width) it may be the size of the part in use, which then begins at the top
-  // left corner. An output keeps its contents outside of the part that is written, unless its
-  // initial layout is VK_IMAGE_LAYOUT_UNDEFINED.
+  // with areas (AlcoveView::read_area). With dynamic resolution (AlcoveView::largest_width) it may
+  // be the size of the part in use, which then begins at the top left corner. An output keeps its
+  // contents outside of the part that is written, unless its initial layout is
+  // VK_IMAGE_LAYOUT_UNDEFINED.
   uint32_t width;
   uint32_t height;
   uint32_t layer;  // of an array image, such as one layer for each eye
@@ -210,9 +210,7 @@ typedef struct AlcoveView {
   // apart from its innermost tiles. Set reset_history when the distances between the borders of the
   // two areas change.
   AlcoveArea written_area;
-  // The position of the results in the output images, whose other pixels are not written. With
-  // half_size_outputs it counts texels of the outputs, and the distance from read_area to
-  // written_area must be even.
+  // The position of the results in the output images, whose other pixels are not written.
   uint32_t output_x;
   uint32_t output_y;
 
@@ -286,13 +284,6 @@ typedef struct AlcoveView {
   // input of the frame. Writing one channel costs an additional read of the image.
   // [ALCOVE_CHANNEL_ALL]
   AlcoveChannel visibility_channel;
-  // Whether the outputs have half the size of the depth image, rounded up, and are not upsampled:
-  // for engines that upsample them themselves. Needs AlcoveSettings::half_resolution. Texel (x, y)
-  // has the values of one of the 2x2 pixels from (2x, 2y) on: of the nearest one if x + y is even,
-  // and otherwise of the farthest one that is not the sky. If the 2x2 pixels show one surface, the
-  // values are for that surface at their common corner. Specular occlusion then needs the model
-  // SLICES, and multi-bounce is an error. [VK_FALSE]
-  VkBool32 half_size_outputs;
   // The mean visible direction: a unit vector in the space of the normals, in three signed
   // channels. R8G8B8A8_SNORM is enough.
   AlcoveImage bent_normal;

@@ -148,7 +148,7 @@ typedef struct AlcoveWork {
 } AlcoveWork;
 
 // An image of the engine. All images of a view have the size of the depth image, except outputs
-// with half_size_outputs or with areas. A format of 0 means that there is no image.
+// with areas. A format of 0 means that there is no image.
 typedef struct AlcoveWorkImage {
   uint32_t format;  // the number of its VkFormat
   uint32_t width;   // in pixels
@@ -180,7 +180,6 @@ typedef struct AlcoveWorkInfo {
   uint32_t output_x;
   uint32_t output_y;
   AlcoveChannel visibility_channel;
-  uint32_t half_size_outputs;
   AlcoveWorkImage depth;
   uint32_t depth_format;  // the number of its VkFormat; 0: that of `depth`
   AlcoveWorkImage normals;

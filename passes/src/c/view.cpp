@@ -105,7 +105,6 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
                                         view.normals_forward_z != VK_FALSE};
   inputs.occlusion.motion_convention = motion_convention(view);
   inputs.occlusion.visibility_channel = *channel;
-  inputs.occlusion.half_size_outputs = view.half_size_outputs != VK_FALSE;
   inputs.occlusion.not_receiving = view.not_receiving;
   inputs.occlusion.not_occluding = view.not_occluding;
   struct Import {

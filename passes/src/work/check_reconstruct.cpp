@@ -42,15 +42,7 @@ tl::expected<void, Error> check_result_sizes(const WorkList& list, const WorkFra
                                              const ReconstructInputs& inputs) {
   const VkExtent2D read = read_size(frame, list.size(inputs.depth_ndc));
   const AlcoveArea written = written_area(frame, read);
-  const std::uint32_t texel = inputs.half_size_outputs ? 2 : 1;
-  if (written.x % texel != 0 || written.y % texel != 0) {
-    return tl::unexpected(
-        Error{"The area that is written begins at (" + std::to_string(written.x) + ", " +
-              std::to_string(written.y) +
-              ") of the area that is read; with outputs of half size both must be even."});
-  }
-  const VkExtent2D wanted{(written.width + texel - 1) / texel,
-                          (written.height + texel - 1) / texel};
+  const VkExtent2D wanted{written.width, written.height};
   const std::array<NamedInput, 3> given{{{"visibility", inputs.into.visibility},
                                          {"bent normals", inputs.into.bent_normal},
                                          {"specular occlusion", inputs.into.specular}}};
@@ -134,12 +126,6 @@ tl::expected<void, Error> check_reconstruct(const WorkList& list, const WorkFram
   }
   return validate(settings)
       .and_then([&] { return check_motion(inputs.motion_convention); })
-      .and_then([&]() -> tl::expected<void, Error> {
-        if (inputs.half_size_outputs && !settings.half_resolution)
-          return tl::unexpected(
-              Error{"Outputs of half size need the setting half_resolution; it is off."});
-        return {};
-      })
       .and_then([&] { return check_textures(list, inputs); })
       .and_then([&] { return check_areas(frame.areas, list.size(inputs.depth_ndc)); })
       .and_then([&] { return check_result_sizes(list, frame, inputs); })

@@ -1,7 +1,5 @@
-#include <string>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
 #include "alcove/passes/work.h"
 #include "work/bindings.h"
 #include "work/mask_depth.h"
@@ -53,11 +51,6 @@ tl::expected<OcclusionOutputs, Error> describe_occlusion(WorkList& list, const W
                                                          const OcclusionInputs& inputs,
                                                          const OcclusionSettings& settings) {
   if (auto good = validate(settings); !good) return tl::unexpected(std::move(good.error()));
-  if (inputs.half_size_outputs && specular_reads_bent_normal(settings)) {
-    return tl::unexpected(Error{
-        "The setting 'specular' is " + std::string(name_of(settings.specular)) +
-        "; outputs of half size need slices, because that model reads outputs of full size."});
-  }
   const auto depths = describe_depths(list, frame, inputs);
   if (!depths) return tl::unexpected(depths.error());
   const VkFormat depth_format = stored_format(list, inputs.depth_ndc, inputs.depth_format);
@@ -92,11 +85,6 @@ tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFr
                                                     const OcclusionSettings& settings) {
   auto outputs = describe_occlusion(list, frame, inputs.occlusion, settings);
   if (!outputs || !inputs.multi_bounce) return outputs;
-  if (inputs.occlusion.half_size_outputs) {
-    return tl::unexpected(
-        Error{"Multi-bounce is made from visibility of full size, which outputs of half size do "
-              "not have; leave one of them out."});
-  }
   return describe_multi_bounce(list, frame,
                                {outputs->visibility, inputs.albedo, inputs.multi_bounce,
                                 channel_of_visibility(inputs.occlusion)},

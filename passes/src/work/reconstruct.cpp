@@ -86,8 +86,7 @@ Textures add_textures(WorkList& list, const WorkFrame& frame, const ReconstructI
   const bool half = settings.half_resolution;
   const bool history = settings.history_frames > 0;
   const AlcoveArea written = written_area(frame, sizes.now);
-  const VkExtent2D size =
-      output_size(frame, texels({written.width, written.height}, inputs.half_size_outputs));
+  const VkExtent2D size = output_size(frame, {written.width, written.height});
   Textures textures;
   if (needs_visibility(settings)) {
     textures.result.visibility = given_or_added(list, inputs.into.visibility, "visibility",
@@ -238,8 +237,7 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                             .depth_ndc = inputs.depth_ndc,
                             .normals = inputs.normals,
                             .normal_convention = inputs.normal_convention,
-                            .visibility_channel = inputs.visibility_channel,
-                            .half_size_results = inputs.half_size_outputs},
+                            .visibility_channel = inputs.visibility_channel},
                            textures.result, settings);
 }
 

@@ -15,8 +15,6 @@
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
 #include "spirv/gtso_by_table.h"
-#include "spirv/half_output.h"
-#include "spirv/half_output_specular.h"
 #include "spirv/inspect.h"
 #include "spirv/linear_depth.h"
 #include "spirv/mask_depth.h"
@@ -59,8 +57,6 @@ constexpr ShaderSource kSources[] = {
     {"reconstruct_half_specular_history", kReconstructHalfSpecularHistory},
     {"upsample", kUpsample},
     {"upsample_specular", kUpsampleSpecular},
-    {"half_output", kHalfOutput},
-    {"half_output_specular", kHalfOutputSpecular},
     {"resolve_depth", kResolveDepth},
     {"mask_depth", kMaskDepth},
     {"mask_depth_integer", kMaskDepthInteger},

@@ -19,12 +19,6 @@ namespace {
 // Fitted to the error over the development views (`alcove compare --set half_resolution=true`).
 constexpr float kTolerancePx = 1.0f;
 
-Shader shader_of(const UpsampleInputs& inputs, const Occlusion& result) {
-  if (inputs.half_size_results)
-    return result.specular ? Shader::half_output_specular : Shader::half_output;
-  return result.specular ? Shader::upsample_specular : Shader::upsample;
-}
-
 std::array<NamedConstant, 9> constants_of(const WorkFrame& frame, const UpsampleInputs& inputs,
                                           const Occlusion& result,
                                           const OcclusionSettings& settings,
@@ -51,9 +45,8 @@ maths::UpsampleParameters parameters_of(const WorkList& list, const WorkFrame& f
   const maths::vec2 per_px = maths::ray_per_px(projection);
   maths::UpsampleParameters parameters{};
   set_areas(parameters, frame, read);
-  parameters.to_outputs =
-      maths::ivec2(frame.areas.output_x, frame.areas.output_y) -
-      maths::ivec2(parameters.written.x, parameters.written.y) / (inputs.half_size_results ? 2 : 1);
+  parameters.to_outputs = maths::ivec2(frame.areas.output_x, frame.areas.output_y) -
+                          maths::ivec2(parameters.written.x, parameters.written.y);
   parameters.normal_from_view =
       maths::transpose(view_from_normal(frame.view, inputs.normal_convention));
   parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
@@ -82,7 +75,7 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
   const bool keeps = inputs.visibility_channel != VisibilityChannel::all;
   const NamedTexture images[] = {
       {"half_image", inputs.half},
-      {"half_depth_image", inputs.half_size_results ? inputs.half : inputs.half_depth},
+      {"half_depth_image", inputs.half_depth},
       {"depth_image", inputs.depth_ndc},
       {"normal_image", or_else(bent ? inputs.normals : Texture{}, inputs.depth_ndc)},
       {"residual_image", bent ? inputs.residuals : inputs.half},
@@ -95,12 +88,12 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
   // which the first lies one pixel before the image.
   const AlcoveArea area = written_area(frame, read);
   const auto invocations = [&](std::uint32_t begin, std::uint32_t size) {
-    return inputs.half_size_results ? (size + 1) / 2 : (begin + size) / 2 - (begin + 1) / 2 + 1;
+    return (begin + size) / 2 - (begin + 1) / 2 + 1;
   };
   return list
       .dispatch(
-          {.label = inputs.half_size_results ? "half-resolution output" : "upsample",
-           .shader = shader_of(inputs, result),
+          {.label = "upsample",
+           .shader = result.specular ? Shader::upsample_specular : Shader::upsample,
            .constants = constants_of(frame, inputs, result, settings, *projection),
            .images = images,
            .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection, read)),

@@ -14,7 +14,6 @@ struct UpsampleInputs {
   framegraph::Texture normals;    // as OcclusionInputs has it
   NormalConvention normal_convention;
   VisibilityChannel visibility_channel = VisibilityChannel::all;  // as OcclusionInputs has it
-  bool half_size_results = false;  // as OcclusionInputs has it: nothing is upsampled
 };
 
 // Describes the pass that writes `result`. Its textures have the size of the results and were

@@ -66,8 +66,6 @@ struct OcclusionInputs {
   MotionConvention motion_convention;
   // The channel of `into.visibility` that is written; `all` if that is null.
   VisibilityChannel visibility_channel = VisibilityChannel::all;
-  // As AlcoveView::half_size_outputs: the results have half of the depth's size, rounded up.
-  bool half_size_outputs = false;
 };
 
 }  // namespace alcove::passes

@@ -41,8 +41,6 @@ enum class Shader : std::uint8_t {
   reconstruct_half_specular_history,
   upsample,
   upsample_specular,
-  half_output,
-  half_output_specular,
   resolve_depth,
   mask_depth,
   mask_depth_integer,
