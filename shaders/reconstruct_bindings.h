@@ -22,10 +22,7 @@ layout(constant_id = 9) const bool kVisibility = true;    // whether visibility_
 layout(constant_id = 10) const uint kNormalEncoding = 0;  // as NormalEncoding has them
 layout(constant_id = 11) const bool kShaped = false;      // power or intensity is not 1
 layout(constant_id = 12) const bool kReversed = false;    // raw depth is 1 at the near plane
-// Writes visibility to the channel kVisibilityChannel alone and keeps the others.
-layout(constant_id = 13) const bool kKeepsChannels = false;
-layout(constant_id = 14) const int kVisibilityChannel = 0;
-layout(constant_id = 15) const bool kAreas = false;  // images are read or written in part (areas.h)
+layout(constant_id = 13) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 #ifdef SPECULAR
 const bool kLobe = true;
@@ -51,9 +48,6 @@ layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // hal
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
-// The same image as visibility_image, bound for reading the channels that keep their contents. It
-// is read only with kKeepsChannels; otherwise another image is bound in its place.
-layout(set = 0, binding = 16) uniform texture2D kept_image;
 #endif
 
 #ifdef HISTORY

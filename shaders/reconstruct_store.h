@@ -7,7 +7,6 @@
 #include "maths/half_texel.h"
 #include "maths/history.h"
 #include "reconstruct_filter.h"
-#include "store_visibility.h"
 #ifdef HALF
 #include "reconstruct_half_surface.h"
 #else
@@ -75,9 +74,7 @@ void store(Surface surface, Result result) {
   float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
   if (kVisibility) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    imageStore(visibility_image, texel,
-               visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
-                                kept_image, texel));
+    imageStore(visibility_image, texel, vec4(kShaped ? shaped : visibility));
   }
   if (kBentNormal) {
     vec3 residual = surface.sky ? vec3(0.0) : result.residual;

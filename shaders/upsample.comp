@@ -21,7 +21,6 @@
 #include "maths/normal_encoding.h"
 #include "maths/raw_occlusion.h"
 #include "maths/slice_line.h"
-#include "store_visibility.h"
 #include "upsample_parameters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,10 +31,7 @@ layout(constant_id = 2) const bool kShaped = false;     // power or intensity is
 layout(constant_id = 3) const bool kBentNormal = false;
 layout(constant_id = 4) const uint kNormalEncoding = 0;  // as NormalEncoding has them
 layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at the near plane
-// Writes visibility to the channel kVisibilityChannel alone and keeps the others.
-layout(constant_id = 6) const bool kKeepsChannels = false;
-layout(constant_id = 7) const int kVisibilityChannel = 0;
-layout(constant_id = 8) const bool kAreas = false;  // images are read or written in part (areas.h)
+layout(constant_id = 6) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
 // The samplers are nearest and clamp to the edge.
@@ -49,9 +45,6 @@ layout(set = 0, binding = 5) uniform sampler2D residual_image;
 layout(set = 0, binding = 6) uniform writeonly image2D visibility_image;
 // In the space of the normals.
 layout(set = 0, binding = 7) uniform writeonly image2D bent_normal_image;
-// The same image as visibility_image, bound for reading the channels that keep their contents. It
-// is read only with kKeepsChannels; otherwise another image is bound in its place.
-layout(set = 0, binding = 8) uniform texture2D kept_image;
 #ifdef SPECULAR
 layout(set = 0, binding = 9) uniform utexture2D lobe_image;  // LobeTexel
 layout(set = 0, binding = 10) uniform writeonly image2D specular_image;
@@ -182,9 +175,7 @@ void main() {
     float visibility = sky ? 1.0 : saturate(1.0 - occlusion);
     if (kVisibility && inside) {
       float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-      imageStore(visibility_image, output_pixel,
-                 visibility_texel(kShaped ? shaped : visibility, kKeepsChannels, kVisibilityChannel,
-                                  kept_image, output_pixel));
+      imageStore(visibility_image, output_pixel, vec4(kShaped ? shaped : visibility));
     }
     if (kBentNormal && inside) {
       vec3 stored =

@@ -243,25 +243,6 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       {"give at least one bit", [](V& v) { v.not_receiving = 0; }},
       {"values up to 255", [](V& v) { v.not_occluding = 256; }},
 
-      // One channel of visibility.
-      {"visibility_channel is 5", [](V& v) { set_number(v.visibility_channel, 5); }},
-      {"it must be a normalised or float format of at least 2 channels",
-       [](V& v) { v.visibility_channel = ALCOVE_CHANNEL_G; }},
-      {"Visibility cannot be written to a channel of the format",
-       [](V& v) {
-         v.visibility.initial_state = kResting;
-         v.visibility.format = VK_FORMAT_R8G8B8A8_SNORM;
-         v.visibility_channel = ALCOVE_CHANNEL_A;
-       }},
-      {"the image of visibility arrives in VK_IMAGE_LAYOUT_UNDEFINED, without contents",
-       [](V& v) { v.visibility_channel = ALCOVE_CHANNEL_R; }},
-      {"the image of visibility was made without VK_IMAGE_USAGE_SAMPLED_BIT",
-       [](V& v) {
-         v.visibility.initial_state = kResting;
-         v.visibility.usage = VK_IMAGE_USAGE_STORAGE_BIT;
-         v.visibility_channel = ALCOVE_CHANNEL_R;
-       }},
-
       // Dynamic resolution.
       {"within 15x12",
        [](V& v) {

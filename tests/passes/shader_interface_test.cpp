@@ -45,7 +45,7 @@ TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslF
                           "6 result_image " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE),
                           "7  " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)));
   EXPECT_THAT(constants, ElementsAre("0 kRoughnessTexture", "1 kRoughnessChannel",
-                                     "2 kNormalEncoding", "3 kVisibilityChannel", "4 kAreas"));
+                                     "2 kNormalEncoding", "3 kAreas"));
 }
 
 TEST(ShaderInterface, CombinedImageSamplersAreDistinguishedFromSampledImages) {
@@ -113,7 +113,6 @@ TEST_F(DispatchByName, SpecialisationConstantWithoutAValueIsReportedByName) {
 
 TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithThoseOfOtherShaders) {
   const auto result = add_gtso({{"kTileSize", 9},
-                                {"kVisibilityChannel", 1},
                                 {"kAreas", 0},
                                 {"kNormalEncoding", 3},
                                 {"kRoughnessTexture", 1},
@@ -123,7 +122,7 @@ TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithTh
   for (const AlcoveWorkConstant& constant :
        std::span(work_->dispatches[0].constants).first(work_->dispatches[0].constant_count))
     values.push_back(constant.value);
-  EXPECT_THAT(values, ElementsAre(1, 2, 3, 1, 0));
+  EXPECT_THAT(values, ElementsAre(1, 2, 3, 0));
 }
 
 TEST_F(DispatchByName, ShaderBindingWithoutAnImageIsReportedByName) {

@@ -33,7 +33,6 @@ AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const Alcove
           .written_area = view.written_area,
           .output_x = view.output_x,
           .output_y = view.output_y,
-          .visibility_channel = view.visibility_channel,
           .depth = image(view.depth),
           .depth_format = static_cast<std::uint32_t>(view.depth_format),
           .normals = image(view.normals),

@@ -139,9 +139,8 @@ typedef struct AlcoveImage {
   uint32_t height;
   uint32_t layer;  // of an array image, such as one layer for each eye
   // The usage with which the image was created. Inputs need SAMPLED, outputs need STORAGE.
-  // Visibility also needs SAMPLED if one channel of it is written (visibility_channel), and if
-  // multi-bounce or specular occlusion by TABLE or CONE is computed. Bent normals need SAMPLED for
-  // TABLE and CONE.
+  // Visibility also needs SAMPLED if multi-bounce or specular occlusion by TABLE or CONE is
+  // computed. Bent normals need SAMPLED for TABLE and CONE.
   VkImageUsageFlags usage;
   // The number of samples per pixel with which the image was created; 0 means 1. Of
   // AlcoveView::depth with several samples, a pass copies sample 0, because an average of several
@@ -276,14 +275,6 @@ typedef struct AlcoveView {
   // Outputs, in any format with enough channels that the device can store to. The sky (pixels whose
   // depth is at the far plane or is NaN) gets the visibility 1, and its bent normal is the normal.
   AlcoveImage visibility;  // one channel, [0,1], 1 is open; R8_UNORM is enough
-  // The channel of `visibility` that is written, for an image that holds something else in its
-  // other channels, such as a g-buffer with occlusion in alpha. The other channels keep their
-  // contents. The image must then have contents, and a layout other than UNDEFINED, when the frame
-  // begins. It needs the usages STORAGE and SAMPLED, and a format that has the channel and is
-  // unsigned normalised or float, without sRGB and without a shared exponent. It must not be an
-  // input of the frame. Writing one channel costs an additional read of the image.
-  // [ALCOVE_CHANNEL_ALL]
-  AlcoveChannel visibility_channel;
   // The mean visible direction: a unit vector in the space of the normals, in three signed
   // channels. R8G8B8A8_SNORM is enough.
   AlcoveImage bent_normal;

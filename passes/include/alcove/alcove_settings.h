@@ -58,17 +58,6 @@ typedef enum AlcoveNormalEncoding {
   ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
 } AlcoveNormalEncoding;
 
-// The channels of AlcoveView::visibility that visibility is written to.
-typedef enum AlcoveChannel {
-  ALCOVE_CHANNEL_ALL = 0,  // every channel: the image holds visibility alone
-  // One channel. The others keep their contents.
-  ALCOVE_CHANNEL_R = 1,
-  ALCOVE_CHANNEL_G = 2,
-  ALCOVE_CHANNEL_B = 3,
-  ALCOVE_CHANNEL_A = 4,
-  ALCOVE_CHANNEL_MAX_ENUM = 0x7fffffff
-} AlcoveChannel;
-
 // The precision of intermediate results that have no image of the engine. Images have their own.
 typedef enum AlcovePrecision {
   ALCOVE_PRECISION_UNORM8 = 0,   // 8 bits a channel
@@ -96,8 +85,8 @@ typedef struct AlcoveSettings {
   // depth is sampled in both directions. Raising it reduces noise, and raises the cost in
   // proportion.
   uint32_t slices;
-  // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders. A traced
-  // pixel costs 2 * slices * steps * depth_layers depth fetches.
+  // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders. A
+  // traced pixel costs 2 * slices * steps * depth_layers depth fetches.
   uint32_t steps;
   // The thickness of occluders as a fraction of the radius, or in another unit with
   // AlcoveAdvancedSettings::thickness_unit; at least 0. It is an upper limit: an occluder is no

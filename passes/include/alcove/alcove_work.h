@@ -179,7 +179,6 @@ typedef struct AlcoveWorkInfo {
   AlcoveArea written_area;
   uint32_t output_x;
   uint32_t output_y;
-  AlcoveChannel visibility_channel;
   AlcoveWorkImage depth;
   uint32_t depth_format;  // the number of its VkFormat; 0: that of `depth`
   AlcoveWorkImage normals;

@@ -134,15 +134,13 @@ tl::expected<void, Failure> check_image(const ImageRole& role, const AlcoveImage
   if (image.final_state.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
       image.final_state.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
     return fail("has no layout to be left in; set AlcoveImage::final_state.");
-  if ((!role.output || role.keeps_channels) &&
-      image.initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
+  if (!role.output && image.initial_state.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
     return fail(
         "arrives in VK_IMAGE_LAYOUT_UNDEFINED, without contents; set AlcoveImage::initial_state to "
         "how it was left.");
   }
   const bool lacks_storage = role.output && (image.usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
-  const bool lacks_sampled =
-      (!role.output || role.keeps_channels) && (image.usage & VK_IMAGE_USAGE_SAMPLED_BIT) == 0;
+  const bool lacks_sampled = !role.output && (image.usage & VK_IMAGE_USAGE_SAMPLED_BIT) == 0;
   if (lacks_storage || lacks_sampled) {
     return fail(std::string("was made without ") +
                 (lacks_storage ? "VK_IMAGE_USAGE_STORAGE_BIT" : "VK_IMAGE_USAGE_SAMPLED_BIT") +

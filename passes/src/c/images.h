@@ -18,7 +18,6 @@ struct ImageRole {
   enum class Kind : std::uint8_t { depth, colour, signed_colour, mask } kind = Kind::colour;
   std::uint32_t channels = 1;  // that the format has at least
   bool output = false;
-  bool keeps_channels = false;    // one channel of the output is written, the others are kept
   bool may_have_samples = false;  // more than one per pixel
 };
 

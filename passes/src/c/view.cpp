@@ -20,6 +20,7 @@ constexpr ImageRole kMotion{"motion vectors", Kind::signed_colour, 2};
 constexpr ImageRole kBackDepth{"back-face depth", Kind::depth};
 constexpr ImageRole kSecondDepth{"second depth", Kind::depth};
 constexpr ImageRole kAlbedo{"albedo", Kind::colour, 3};
+constexpr ImageRole kVisibility{"visibility", Kind::colour, 1, true};
 constexpr ImageRole kBentNormal{"bent normals", Kind::signed_colour, 3, true};
 constexpr ImageRole kSpecular{"specular occlusion", Kind::colour, 1, true};
 constexpr ImageRole kMultiBounce{"multi-bounce", Kind::colour, 3, true};
@@ -73,11 +74,6 @@ ImageRole normals_role(NormalEncoding encoding) {
   return {"normals", packed ? Kind::colour : Kind::signed_colour, two ? 2u : 3u};
 }
 
-ImageRole visibility_role(VisibilityChannel channel) {
-  return {"visibility", Kind::colour, channel_index(channel) + 1, true,
-          channel != VisibilityChannel::all};
-}
-
 MotionConvention motion_convention(const AlcoveView& view) {
   MotionConvention result{{view.motion_scale[0], view.motion_scale[1]},
                           {view.motion_offset[0], view.motion_offset[1]}};
@@ -94,17 +90,12 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
   const auto encoding =
       to_enum(view, "normal_encoding", view.normal_encoding, NormalEncoding::unsigned_octahedral);
   if (!encoding) return tl::unexpected(encoding.error());
-  const auto channel =
-      to_enum(view, "visibility_channel", view.visibility_channel, VisibilityChannel::alpha);
-  if (!channel) return tl::unexpected(channel.error());
   const ImageRole normals = normals_role(*encoding);
-  const ImageRole visibility = visibility_role(*channel);
   ViewInputs inputs;
   inputs.occlusion.depth_format = view.depth_format;
   inputs.occlusion.normal_convention = {*encoding, view.normals_in_view_space != VK_FALSE,
                                         view.normals_forward_z != VK_FALSE};
   inputs.occlusion.motion_convention = motion_convention(view);
-  inputs.occlusion.visibility_channel = *channel;
   inputs.occlusion.not_receiving = view.not_receiving;
   inputs.occlusion.not_occluding = view.not_occluding;
   struct Import {
@@ -122,7 +113,7 @@ tl::expected<ViewInputs, Failure> import_images(const AlcoveView& view,
       {kSecondDepth, view.second_depth, inputs.occlusion.second_depth_ndc},
       {kAlbedo, view.albedo, inputs.albedo},
       {kMask, view.mask, inputs.occlusion.mask},
-      {visibility, view.visibility, inputs.occlusion.into.visibility},
+      {kVisibility, view.visibility, inputs.occlusion.into.visibility},
       {kBentNormal, view.bent_normal, inputs.occlusion.into.bent_normal},
       {kSpecular, view.specular, inputs.occlusion.into.specular},
       {kMultiBounce, view.multi_bounce, inputs.multi_bounce}};

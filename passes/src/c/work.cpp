@@ -55,7 +55,6 @@ AlcoveView to_alcove_view(const AlcoveWorkInfo& info) {
                   .not_receiving = info.not_receiving,
                   .not_occluding = info.not_occluding,
                   .visibility = to_image(info.visibility, 8),
-                  .visibility_channel = info.visibility_channel,
                   .bent_normal = to_image(info.bent_normal, 9),
                   .specular = to_image(info.specular, 10),
                   .multi_bounce = to_image(info.multi_bounce, 11)};

@@ -7,7 +7,6 @@
 #include "work/areas.h"
 #include "work/check_inputs.h"
 #include "work/format_name.h"
-#include "work/kept_channels.h"
 #include "work/number_text.h"
 #include "work/output_format.h"
 
@@ -50,17 +49,6 @@ tl::expected<void, Error> check_result_sizes(const WorkList& list, const WorkFra
     if (!texture.texture) continue;
     if (auto good = check_output(frame, wanted, list.size(texture.texture), texture.name); !good)
       return good;
-  }
-  return {};
-}
-
-// Checks that the channels beside that of visibility can be read and written back.
-tl::expected<void, Error> check_channel(const WorkList& list, const ReconstructInputs& inputs) {
-  if (inputs.visibility_channel == VisibilityChannel::all) return {};
-  const VkFormat format = list.format(inputs.into.visibility);
-  if (channel_index(inputs.visibility_channel) >= kept_channels(format)) {
-    return tl::unexpected(Error{"Visibility cannot be written to a channel of the format " +
-                                format_name(format) + "; " + kKeptFormats + "."});
   }
   return {};
 }
@@ -129,7 +117,6 @@ tl::expected<void, Error> check_reconstruct(const WorkList& list, const WorkFram
       .and_then([&] { return check_textures(list, inputs); })
       .and_then([&] { return check_areas(frame.areas, list.size(inputs.depth_ndc)); })
       .and_then([&] { return check_result_sizes(list, frame, inputs); })
-      .and_then([&] { return check_channel(list, inputs); })
       .and_then([&] {
         return check_raw_occlusion(list, read_size(frame, list.size(inputs.depth_ndc)), inputs,
                                    settings.half_resolution);

@@ -66,7 +66,6 @@ tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& fram
       {"kRoughnessTexture", flag(textured)},
       {"kRoughnessChannel", channel_if(textured, settings.roughness_channel)},
       {"kNormalEncoding", static_cast<std::uint32_t>(inputs.normal_convention.encoding)},
-      {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
       {"kAreas", flag(has_areas(frame))}};
   const NamedTexture images[] = {{"visibility_image", inputs.visibility},
                                  {"bent_normal_image", inputs.bent_normal},

@@ -39,9 +39,7 @@ tl::expected<Texture, Error> describe_multi_bounce(WorkList& list, const WorkFra
   const VkExtent2D size{written.width, written.height};
   const Texture result = given_or_added(list, inputs.into, "multi-bounce", colour_format(precision),
                                         output_size(frame, size));
-  const NamedConstant constants[] = {
-      {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
-      {"kAreas", flag(has_areas(frame))}};
+  const NamedConstant constants[] = {{"kAreas", flag(has_areas(frame))}};
   const NamedTexture images[] = {{"visibility_image", inputs.visibility},
                                  {"albedo_image", inputs.albedo},
                                  {"result_image", result}};

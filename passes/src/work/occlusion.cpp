@@ -18,11 +18,6 @@ tl::expected<framegraph::Texture, Error> describe_linear(WorkList& list, const W
               : tl::expected<framegraph::Texture, Error>(framegraph::Texture{});
 }
 
-// Returns the channel that holds visibility in its texture.
-VisibilityChannel channel_of_visibility(const OcclusionInputs& inputs) {
-  return inputs.into.visibility ? inputs.visibility_channel : VisibilityChannel::all;
-}
-
 // Adds specular occlusion from visibility and bent normals to `outputs`.
 tl::expected<OcclusionOutputs, Error> describe_model(WorkList& list, const WorkFrame& frame,
                                                      OcclusionOutputs outputs,
@@ -36,8 +31,7 @@ tl::expected<OcclusionOutputs, Error> describe_model(WorkList& list, const WorkF
               .depth = outputs.linear_depth,
               .roughness = inputs.roughness,
               .normal_convention = inputs.normals ? inputs.normal_convention : kOwnNormals,
-              .into = inputs.into.specular,
-              .visibility_channel = channel_of_visibility(inputs)},
+              .into = inputs.into.specular},
              settings)
       .map([&](framegraph::Texture specular) {
         outputs.specular = specular;
@@ -86,8 +80,7 @@ tl::expected<OcclusionOutputs, Error> describe_view(WorkList& list, const WorkFr
   auto outputs = describe_occlusion(list, frame, inputs.occlusion, settings);
   if (!outputs || !inputs.multi_bounce) return outputs;
   return describe_multi_bounce(list, frame,
-                               {outputs->visibility, inputs.albedo, inputs.multi_bounce,
-                                channel_of_visibility(inputs.occlusion)},
+                               {outputs->visibility, inputs.albedo, inputs.multi_bounce},
                                settings.precision)
       .map([&](framegraph::Texture) { return *outputs; });
 }

@@ -45,7 +45,7 @@ Past past_of(const WorkFrame& frame, const ReconstructSizes& sizes, bool history
   return Past::unchanged;
 }
 
-std::array<NamedConstant, 16> constants_of(const WorkFrame& frame, const ReconstructInputs& inputs,
+std::array<NamedConstant, 14> constants_of(const WorkFrame& frame, const ReconstructInputs& inputs,
                                            const OcclusionSettings& settings,
                                            const maths::Projection& projection, Past past) {
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
@@ -62,8 +62,6 @@ std::array<NamedConstant, 16> constants_of(const WorkFrame& frame, const Reconst
            {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_convention.encoding)},
            {"kShaped", flag(!settings.half_resolution && shaped)},
            {"kReversed", flag(is_reversed(projection))},
-           {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
-           {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
            {"kAreas", flag(has_areas(frame))}}};
 }
 
@@ -127,7 +125,7 @@ Textures add_textures(WorkList& list, const WorkFrame& frame, const ReconstructI
 // Returns the image of each binding that a variant of the shader can have. An image that the
 // variant does not use is replaced by another image of the same type. The image may be null if the
 // variant does not have the binding.
-std::array<NamedTexture, 19> images_of(const ReconstructInputs& in, const Textures& textures,
+std::array<NamedTexture, 18> images_of(const ReconstructInputs& in, const Textures& textures,
                                        bool half) {
   // At half resolution the upsampling pass writes the results, and only the weights of GGX lobes
   // need normals.
@@ -135,7 +133,6 @@ std::array<NamedTexture, 19> images_of(const ReconstructInputs& in, const Textur
   const Texture written = or_else(or_else(out.visibility, out.bent_normal), out.specular);
   const Texture normals = half && !in.raw_occlusion.lobe ? Texture{} : in.normals;
   const Texture sampled = in.depth_ndc;
-  const bool keeps = in.visibility_channel != VisibilityChannel::all;
   const Texture raw = in.raw_occlusion.raw_occlusion;
   return {{{"raw_image", raw},
            {"bent_image", or_else(in.raw_occlusion.bent, raw)},
@@ -145,7 +142,6 @@ std::array<NamedTexture, 19> images_of(const ReconstructInputs& in, const Textur
            {"half_depth_image", textures.depth.current},
            {"visibility_image", or_else(out.visibility, written)},
            {"bent_normal_image", or_else(out.bent_normal, written)},
-           {"kept_image", keeps ? out.visibility : sampled},
            {"history_image", textures.texels.previous},
            {"history_depth_image", textures.depth.previous},
            {"next_history_image", textures.texels.current},
@@ -179,8 +175,6 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
   if (frame.view == frame.previous_view && frame.static_frames > 0) inputs.motion = {};
   if (!inputs.raw_occlusion.lobe) inputs.roughness = {};
   if (!inputs.normals) inputs.normal_convention = kOwnNormals;
-  if (!inputs.into.visibility || !needs_visibility(settings))
-    inputs.visibility_channel = VisibilityChannel::all;
   if (auto good = check_reconstruct(list, frame, inputs, settings); !good)
     return tl::unexpected(good.error());
   if (!history) inputs.motion = {};
@@ -236,8 +230,7 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                             .lobes = textures.lobe.current,
                             .depth_ndc = inputs.depth_ndc,
                             .normals = inputs.normals,
-                            .normal_convention = inputs.normal_convention,
-                            .visibility_channel = inputs.visibility_channel},
+                            .normal_convention = inputs.normal_convention},
                            textures.result, settings);
 }
 

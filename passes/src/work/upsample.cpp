@@ -19,7 +19,7 @@ namespace {
 // Fitted to the error over the development views (`alcove compare --set half_resolution=true`).
 constexpr float kTolerancePx = 1.0f;
 
-std::array<NamedConstant, 9> constants_of(const WorkFrame& frame, const UpsampleInputs& inputs,
+std::array<NamedConstant, 7> constants_of(const WorkFrame& frame, const UpsampleInputs& inputs,
                                           const Occlusion& result,
                                           const OcclusionSettings& settings,
                                           const maths::Projection& projection) {
@@ -31,8 +31,6 @@ std::array<NamedConstant, 9> constants_of(const WorkFrame& frame, const Upsample
            {"kBentNormal", flag(bool(result.bent_normal))},
            {"kNormalEncoding", encoding},
            {"kReversed", flag(is_reversed(projection))},
-           {"kKeepsChannels", flag(inputs.visibility_channel != VisibilityChannel::all)},
-           {"kVisibilityChannel", channel_index(inputs.visibility_channel)},
            {"kAreas", flag(has_areas(frame))}}};
 }
 
@@ -72,7 +70,6 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
   if (!projection) return tl::unexpected(projection.error());
   const Texture written = or_else(or_else(result.visibility, result.bent_normal), result.specular);
   const bool bent = bool(result.bent_normal);
-  const bool keeps = inputs.visibility_channel != VisibilityChannel::all;
   const NamedTexture images[] = {
       {"half_image", inputs.half},
       {"half_depth_image", inputs.half_depth},
@@ -81,7 +78,6 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
       {"residual_image", bent ? inputs.residuals : inputs.half},
       {"visibility_image", or_else(result.visibility, written)},
       {"bent_normal_image", or_else(result.bent_normal, written)},
-      {"kept_image", keeps ? result.visibility : inputs.depth_ndc},
       {"lobe_image", or_else(inputs.lobes, inputs.half)},
       {"specular_image", or_else(result.specular, written)}};
   // An invocation of the upsampling computes the pixels between the centres of four texels, of

@@ -13,7 +13,6 @@ struct UpsampleInputs {
   framegraph::Texture depth_ndc;  // as OcclusionInputs has it
   framegraph::Texture normals;    // as OcclusionInputs has it
   NormalConvention normal_convention;
-  VisibilityChannel visibility_channel = VisibilityChannel::all;  // as OcclusionInputs has it
 };
 
 // Describes the pass that writes `result`. Its textures have the size of the results and were

@@ -53,18 +53,9 @@ struct NormalConvention {
   bool forward_z = false;
 };
 
-// The channels of the visibility texture to which visibility is written: all of them, or one, while
-// the others keep their contents. AlcoveView::visibility_channel says what one channel needs.
-enum class VisibilityChannel : std::uint8_t { all, red, green, blue, alpha };
-
-// Returns the index of the channel that visibility is read from, 0 to 3.
-[[nodiscard]] constexpr std::uint32_t channel_index(VisibilityChannel channel) {
-  return channel == VisibilityChannel::all ? 0u : static_cast<std::uint32_t>(channel) - 1u;
-}
-
-// The parts of images that the occlusion passes read and write: AlcoveView::read_area, written_area,
-// output_x and output_y (alcove.h). If the size of `read` is zero, images are read and written as a
-// whole.
+// The parts of images that the occlusion passes read and write: AlcoveView::read_area,
+// written_area, output_x and output_y (alcove.h). If the size of `read` is zero, images are read
+// and written as a whole.
 struct ImageAreas {
   AlcoveArea read{};
   AlcoveArea written{};

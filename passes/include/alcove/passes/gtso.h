@@ -17,7 +17,6 @@ struct GtsoInputs {
   NormalConvention normal_convention;
   framegraph::Texture
       into;  // the texture to write completely; null: a transient of OcclusionSettings::precision
-  VisibilityChannel visibility_channel = VisibilityChannel::all;  // that holds it; `all`: red
 };
 
 // Adds a pass that computes specular occlusion from visibility and bent normals. Returns a texture

@@ -64,8 +64,6 @@ struct OcclusionInputs {
   // result was not requested is ignored.
   Occlusion into;
   MotionConvention motion_convention;
-  // The channel of `into.visibility` that is written; `all` if that is null.
-  VisibilityChannel visibility_channel = VisibilityChannel::all;
 };
 
 }  // namespace alcove::passes

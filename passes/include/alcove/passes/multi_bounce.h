@@ -9,7 +9,6 @@ struct MultiBounceInputs {
   framegraph::Texture visibility;  // [0,1], 1 open
   framegraph::Texture albedo;      // linear RGB, [0,1], of the size of the visibility
   framegraph::Texture into;        // the texture to write completely; null: a transient
-  VisibilityChannel visibility_channel = VisibilityChannel::all;  // that holds it; `all`: red
 };
 
 // Adds a pass that computes visibility per colour channel. Returns an RGB texture with the fraction

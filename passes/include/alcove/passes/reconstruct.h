@@ -20,9 +20,8 @@ struct ReconstructInputs : OcclusionInputs {
 // previous frame had no history, and after Graph::reset_history(history_name).
 //
 // Errors: an input that is missing or whose size differs from the depth's, raw occlusion whose size
-// does not fit the number of tiles, a texture for visibility whose other channels cannot be kept, a
-// view or previous view that cannot be used, a size above Frame::largest_size, settings that
-// validate() refuses, or no output that was requested.
+// does not fit the number of tiles, a view or previous view that cannot be used, a size
+// above Frame::largest_size, settings that validate() refuses, or no output that was requested.
 [[nodiscard]] tl::expected<Occlusion, Error> add_reconstruct(
     const Frame& frame, const ReconstructInputs& inputs, const OcclusionSettings& settings,
     std::string_view history_name = "occlusion");
