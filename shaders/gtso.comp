@@ -17,7 +17,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool kRoughnessTexture = false;
 layout(constant_id = 1) const int kRoughnessChannel = 0;
 layout(constant_id = 2) const uint kNormalEncoding = 0;  // NormalEncoding of normal_image
-layout(constant_id = 3) const bool kAreas = false;  // images are read or written in part
+layout(constant_id = 3) const bool kAreas = false;       // images are read or written in part
 
 layout(set = 0, binding = 0) uniform Parameters { GtsoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D visibility_image;
@@ -70,8 +70,7 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
 #endif
 
 float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
-  float visibility =
-      converged_visibility(texelFetch(visibility_image, in_outputs(pixel), 0).r);
+  float visibility = converged_visibility(texelFetch(visibility_image, in_outputs(pixel), 0).r);
   float roughness = fetch_roughness(pixel);
   vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, in_outputs(pixel), 0u, normal),
                                  normal, visibility);

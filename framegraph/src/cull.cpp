@@ -72,7 +72,7 @@ class Culler {
       writes = true;
       const std::uint32_t why = first_need(access);
       if (why != kUnneeded || graph_.resources[access.resource].origin == Origin::imported)
-        plan_.contents[&access - graph_.accesses.data()] |= kIsNeeded;
+        plan_.contents[static_cast<std::size_t>(&access - graph_.accesses.data())] |= kIsNeeded;
       if (why == kUnneeded) continue;
       needed = 1;
       if (!pass_is_live) cull_reason = explain(why, access.resource);

@@ -86,7 +86,7 @@ class Replay {
                  [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub]); });
     // The contents are those of passes that run, because an attachment also reads them.
     if ((access.access & kAttachmentBits) != 0 && written_ && !(access.flags & kDiscard))
-      v_.plan.contents[&access - v_.graph.accesses.data()] = kHasContents;
+      v_.plan.contents[static_cast<std::size_t>(&access - v_.graph.accesses.data())] = kHasContents;
     if (conflict_) report_conflict(pass, access);
     if (unwritten_) report_unwritten(pass, access);
   }
