@@ -160,7 +160,7 @@ class ScenePage {
 }  // namespace
 
 Result<void> run_report(const Options& options) {
-  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY_VOID(create_folder(options.out));
   // A missing Chart.js is reported before the measurement, which takes minutes.
   ALCOVE_TRY_VOID(report_page({}));
   Json data{{"size", fmt::format("{}x{}", options.view.width, options.view.height)},

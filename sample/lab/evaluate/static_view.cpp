@@ -9,22 +9,18 @@ using passes::OcclusionSettings;
 
 FrameRequest frame_request(const StaticSetup& setup, const OcclusionSettings& settings,
                            std::uint32_t frame) {
-  const auto matrices = [&](std::uint32_t at) {
-    const float angle =
-        setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1));
-    return camera_matrices(orbited(setup.camera, angle), setup.width, setup.height);
+  const auto camera = [&](std::uint32_t at) {
+    return orbited(setup.camera,
+                   setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1)));
   };
-  const CameraMatrices now = matrices(frame);
-  const CameraMatrices before = setup.orbit == 0.0f ? now : matrices(std::max(frame, 1u) - 1);
   FrameRequest request;
-  request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
-                  before.clip_from_view, setup.camera.reversed_z};
+  request.view =
+      gbuffer_view(camera(frame), camera(std::max(frame, 1u) - 1), {setup.width, setup.height});
   request.index = setup.first_frame + frame;
   request.restart = frame == 0;
   request.static_frames = setup.orbit == 0.0f ? frame : 0;
   request.occlusion = settings;
   request.occlusion.specular = passes::Specular::none;
-  request.occlusion.bent_normal = false;
   return request;
 }
 

@@ -24,8 +24,8 @@ struct StaticSetup {
   float orbit = 0;                // radians per frame, of an orbit that ends at the camera
 };
 
-// Returns the request for a frame of the view: visibility alone, with motion relative to the frame
-// before.
+// Returns the request for a frame of the view: visibility, and bent normals if the settings have
+// them, with motion relative to the frame before.
 [[nodiscard]] FrameRequest frame_request(const StaticSetup& setup,
                                          const passes::OcclusionSettings& settings,
                                          std::uint32_t frame);
