@@ -47,9 +47,7 @@ Camera camera_at(float x) {
 glm::vec3 unmoved(const glm::vec3& position) { return position; }
 
 TEST(MotionErrors, StaticSurfaceIsReprojectedCorrectlyAfterAnyCameraStep) {
-  const auto seed = static_cast<std::uint32_t>(std::random_device{}());
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(1);
   std::uniform_real_distribution<float> step(-0.5f, 0.5f);
   for (int i = 0; i < 20; ++i) {
     Camera moved = camera_at(step(random));
