@@ -38,8 +38,7 @@ Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene, const StaticSetup&
   return draw_frames(*renderer, setup, settings);
 }
 
-Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-                                          const OcclusionSettings& settings, VkExtent2D band) {
+StaticSetup with_guard_band(const StaticSetup& setup, VkExtent2D band) {
   StaticSetup wide = setup;
   wide.width += 2 * band.width;
   wide.height += 2 * band.height;
@@ -48,10 +47,13 @@ Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const St
   camera.fov_y = 2.0f * std::atan(scale.y * std::tan(0.5f * camera.fov_y));
   camera.ortho_height *= scale.y;
   camera.offset_ndc /= scale;
-  ALCOVE_TRY(const FrameImages images, draw_static(gpu, scene, wide, settings));
-  Image<float> middle(setup.width, setup.height);
-  for (std::uint32_t y = 0; y < setup.height; ++y)
-    std::copy_n(&images.visibility.at(band.width, y + band.height), setup.width, &middle.at(0, y));
+  return wide;
+}
+
+Image<float> without_guard_band(const Image<float>& image, VkExtent2D band) {
+  Image<float> middle(image.width - 2 * band.width, image.height - 2 * band.height);
+  for (std::uint32_t y = 0; y < middle.height; ++y)
+    std::copy_n(&image.at(band.width, y + band.height), middle.width, &middle.at(0, y));
   return middle;
 }
 
