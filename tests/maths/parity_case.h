@@ -25,7 +25,7 @@ ALCOVE_INLINE vec4 parity_case(uint which, vec4 a) {
   switch (which) {
     case 0u:
       return vec4(pattern.direction, pattern.offset, float(pack_unorm(a.x, 12u)),
-                  float(bitCount(sectors_between(floor(a.y * 32.0f), floor(a.z * 32.0f)))));
+                  float(bitCount(sectors_beyond(biased_position(a.z, a.y)))));
     case 1u:
       lobe = unpack_lobe(pack_lobe(lobe));
       return vec4(lobe.visible, lobe.open, unpack_unorm(uint(a.z * 4095.0f), 12u),
