@@ -47,12 +47,6 @@ enum class Shader : std::uint8_t {
   multi_bounce,
   gtso,
   gtso_by_table,
-  apply,
-  apply_specular,
-  environment_map,
-  environment_half,
-  environment_prefilter,
-  environment_harmonics,
   inspect,
   count,
 };
