@@ -13,7 +13,7 @@ namespace {
 
 using LightTest = GpuTest;
 
-// Returns the direction of the centre of a pixel.
+// Returns the direction of the centre of a pixel of an environment.
 glm::vec3 direction(const EnvironmentImage& sky, std::uint32_t pixel) {
   const float fall = (float(pixel / sky.width) + 0.5f) / float(sky.height) * maths::kPi;
   const float turn = (float(pixel % sky.width) + 0.5f) / float(sky.width) * 2.0f * maths::kPi;
@@ -49,9 +49,8 @@ TEST_F(LightTest, UnoccludedLightAgreesWithTheIntegralOfTheBrdfOverTheSky) {
   constexpr std::uint32_t kWidth = 16, kHeight = 9;
   const CameraMatrices matrices = camera_matrices(camera, kWidth, kHeight);
   EnvironmentImage sky(256, 128);
-  const EnvironmentImage large_sky = procedural_sky();
   for (std::uint32_t i = 0; i < sky.pixels.size(); ++i)
-    sky.pixels[i] = radiance(large_sky, direction(sky, i));
+    sky.pixels[i] = glm::exp(3.0f * direction(sky, i));
   const auto renderer = FrameRenderer::create(gpu(), scene, {kWidth, kHeight}, {}).value();
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     const IndirectRequest light{{roughness}, sky, true};
@@ -64,14 +63,14 @@ TEST_F(LightTest, UnoccludedLightAgreesWithTheIntegralOfTheBrdfOverTheSky) {
     const FrameImages images = renderer->draw_and_read(request).value();
     double squares = 0.0, sum = 0.0;
     for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
-      const glm::vec2 pixel(float(i % kWidth) + 0.5f, float(i / kWidth) + 0.5f);
       if (images.depth_ndc.pixels[i] == (camera.reversed_z ? 0.0f : 1.0f)) continue;
+      const glm::vec2 pixel(float(i % kWidth) + 0.5f, float(i / kWidth) + 0.5f);
       const Ray ray = camera_ray(matrices, camera.orthographic, pixel, kWidth, kHeight);
       const glm::vec3 truth =
-          integral(light.environment, images.normal_ws.pixels[i], -ray.direction_ws,
-                   images.albedo.pixels[i], roughness, images.metallic.pixels[i]);
-      squares += glm::dot(truth - images.lit.unoccluded.pixels[i],
-                          truth - images.lit.unoccluded.pixels[i]);
+          integral(sky, images.normal_ws.pixels[i], -ray.direction_ws, images.albedo.pixels[i],
+                   roughness, images.metallic.pixels[i]);
+      const glm::vec3 error = images.lit.unoccluded.pixels[i] - truth;
+      squares += glm::dot(error, error);
       sum += glm::dot(truth, truth);
     }
     EXPECT_LT(std::sqrt(squares / sum), 0.015) << "roughness " << roughness;

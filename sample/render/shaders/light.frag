@@ -58,17 +58,13 @@ vec3 irradiance(vec3 normal) {
   return sum / float(kSamples);
 }
 
-struct Specular {
-  vec3 light;
-  vec3 reflectance;  // the light in a white environment
-};
-
-Specular specular_light(vec3 normal, vec3 view_ws, vec3 f0, float alpha) {
+// `reflectance` is the light in a white environment.
+vec3 specular_light(vec3 normal, vec3 view_ws, vec3 f0, float alpha, out vec3 reflectance) {
   const vec3 up = vec3(0.0, 0.0, 1.0);
   mat3 frame = frame_of(normal);
   vec3 view = view_ws * frame;
   view = normalize(vec3(view.xy, max(view.z, 1e-3)));
-  Specular sum = Specular(vec3(0.0), vec3(0.0));
+  vec3 sum = reflectance = vec3(0.0);
   for (int i = 0; i < kSamples; ++i) {
     vec2 u = sample_point(i);
     vec3 half_vector = sample_ggx_normal(view, alpha, u.x, u.y);
@@ -78,8 +74,8 @@ Specular specular_light(vec3 normal, vec3 view_ws, vec3 f0, float alpha) {
     vec3 share = mix(f0, vec3(1.0), schlick) * ggx_shadowing(view.z, light.z, alpha) /
                  (ggx_masking(view.z, alpha) * float(kSamples));
     float density = ggx_reflection_density(up, view, light, alpha);
-    sum.light += share * environment(frame * light, 1.0 / (density * float(kSamples)));
-    sum.reflectance += share;
+    sum += share * environment(frame * light, 1.0 / (density * float(kSamples)));
+    reflectance += share;
   }
   return sum;
 }
@@ -113,17 +109,17 @@ void main() {
   vec4 base = texelFetch(images[kLightAlbedo], pixel, 0);
   float roughness = saturate(parameters.roughness < 0.0 ? base.a : parameters.roughness);
   float metallic = saturate(texelFetch(images[kLightEmissive], pixel, 0).a);
-  Specular specular =
-      specular_light(normal, view, mix(vec3(0.04), base.rgb, metallic), roughness * roughness);
+  vec3 reflectance, f0 = mix(vec3(0.04), base.rgb, metallic);
+  vec3 specular = specular_light(normal, view, f0, roughness * roughness, reflectance);
   vec3 diffuse = diffuse_light(pixel, normal, base.rgb);
   if (uses(kUsesSpecular)) {
     // With multi-bounce, the occluded part of the lobe shows occluders that are assumed to have the
     // albedo and the lighting of the surface itself.
     vec3 occluder = uses(kUsesMultiBounce) ? diffuse * base.rgb : vec3(0.0);
     float visible = texelFetch(images[kLightSpecular], pixel, 0).r;
-    specular.light = mix(occluder * specular.reflectance, specular.light, visible);
+    specular = mix(occluder * reflectance, specular, visible);
   }
-  out_diffuse.rgb = diffuse * base.rgb * (1.0 - metallic) * (1.0 - specular.reflectance);
-  out_specular.rgb = specular.light;
+  out_diffuse.rgb = diffuse * base.rgb * (1.0 - metallic) * (1.0 - reflectance);
+  out_specular.rgb = specular;
   out_lit.rgb = out_diffuse.rgb + out_specular.rgb;
 }
