@@ -47,8 +47,7 @@ struct ViewState {
   Scene scene;
   AlcoveView view{};  // with every image
   AlcoveSettings settings{};
-  AlcoveAdvancedSettings advanced{};  // what `settings` points to
-  VkExtent2D largest{};               // of the images
+  VkExtent2D largest{};  // of the images
   Kind kind;
 };
 
@@ -125,13 +124,10 @@ void CResize::TearDown() {
 
 Kind CResize::any_kind() {
   OcclusionSettings settings = quality_settings(static_cast<Quality>(below(3)), 0.5f);
-  settings.advanced.estimator = static_cast<Estimator>(below(3));
-  settings.advanced.thickness_unit = static_cast<ThicknessUnit>(below(3));
+  settings.estimator = static_cast<Estimator>(below(2));
+  settings.thickness_unit = static_cast<ThicknessUnit>(below(2));
   settings.depth_layers = 1 + below(2);
-  const bool fades = !has_thickness(settings.advanced.estimator);
-  settings.advanced.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
-  settings.advanced.filter_radius = below(4);
-  settings.specular = static_cast<Specular>(1 + below(3));
+  settings.specular = static_cast<Specular>(1 + below(2));
   settings.roughness_channel = below(2);
   return {settings, below(128) & kOptionalInputs, below(15)};  // never without all outputs
 }
@@ -191,7 +187,7 @@ void CResize::change_numbers(ViewState& state) {
   settings.history_frames = chance(4) ? 0 : 1 + below(127);
   settings.roughness = random_.uniform(0.0f, 1.0f);
   settings.precision = static_cast<Precision>(below(3));
-  state.settings = from_settings(settings, state.advanced);
+  state.settings = from_settings(settings);
 }
 
 void CResize::show(ViewState& state) {
@@ -306,7 +302,7 @@ AlcoveMemory CResize::rest() {
   for (const Specular specular : {Specular::table, Specular::slices}) {
     OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
     settings.specular = specular;
-    resting_[0].settings = from_settings(settings, resting_[0].advanced);
+    resting_[0].settings = from_settings(settings);
     for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) draw_frame(resting_, false);
     memory = get_memory(*context_);
   }
