@@ -38,7 +38,7 @@ void expect_verified(const RandomOptions& options, const Limits& limits) {
     graph.reset();
     Dice dice(seed + i * 7919);
     declare_random(graph, dice, options);
-    const auto plan = compile(graph, limits);
+    const auto plan = compile(graph.description(), limits);
     if (!plan) fail(plan.error());
     const auto verified = verify(graph.description(), limits, *plan);
     if (!verified) fail(verified.error());
