@@ -107,7 +107,7 @@ class Tracer {
 
  private:
   ShadingPoint surface_at(const Hit& hit, const glm::vec3& direction) const {
-    const Scene& scene = *scene_.impl().scene;
+    const Scene& scene = scene_.scene();
     const Material& material = scene.materials[hit.material];
     const glm::vec4 texel = sample_texture(scene, material.metal_roughness_texture, hit.uvs);
     return make_surface(reflectance_, hit.geometric_normal_ws, -direction, albedo_at(scene, hit),

@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "reference/ray_scene.h"
 #include "reference/sampling.h"
+#include "reference/truth.h"
+#include "scene/ray_scene.h"
 #include "support/parallel.h"
 
 namespace alcove::sample {
@@ -29,8 +30,8 @@ void for_each_surface(const SurfacePoints& points, uint32_t seed, const Progress
 
 // Returns the origin of the rays that leave the surface point of a pixel.
 inline glm::vec3 ray_start(const RayScene& scene, const SurfacePoints& points, size_t pixel) {
-  return scene.impl().off_surface(points.position_ws.pixels[pixel],
-                                  points.geometric_normal_ws.pixels[pixel]);
+  return scene.off_surface(points.position_ws.pixels[pixel],
+                           points.geometric_normal_ws.pixels[pixel]);
 }
 
 // A direction of a path, and the weight of its light: BRDF times cosine over density.
@@ -43,11 +44,10 @@ struct Scattered {
 // product of the weights of its bounces, or nothing if Russian roulette or `scatter` ends it.
 // `scatter(hit, direction_ws, bits)` samples the next direction with 64 random bits.
 template <class Scatter>
-std::optional<Scattered> follow_path(const RayScene& rays, glm::vec3 origin, glm::vec3 direction,
+std::optional<Scattered> follow_path(const RayScene& scene, glm::vec3 origin, glm::vec3 direction,
                                      float radius, uint64_t seed, const Scatter& scatter) {
   constexpr uint32_t kLongest = 256;  // the weight is below 1e-8 even at an albedo of 0.93
   constexpr uint32_t kSure = 3;       // bounces without Russian roulette, at the start of a path
-  const RayScene::Impl& scene = rays.impl();
   glm::vec3 weight(1.0f);
   for (uint32_t bounce = 0; bounce < kLongest; ++bounce) {
     const std::optional<Hit> hit = scene.nearest(origin, direction, radius);

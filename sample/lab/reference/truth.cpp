@@ -36,7 +36,7 @@ struct OpenRays {
   glm::vec3 sum{0.0f};
 };
 
-OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, const Basis& basis,
+OpenRays trace_hemisphere(const RayScene& scene, const glm::vec3& origin, const Basis& basis,
                           const TruthSettings& settings, uint64_t seed) {
   OpenRays open;
   std::array<glm::vec3, kPacket> directions;
@@ -56,7 +56,7 @@ OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, 
 }
 
 // The visible fraction of a GGX lobe.
-float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Basis& basis,
+float trace_lobe(const RayScene& scene, const glm::vec3& origin, const Basis& basis,
                  const LobeSampler& lobe, const TruthSettings& settings, uint64_t seed) {
   double open = 0.0, all = 0.0;
   std::array<glm::vec3, kPacket> directions;
@@ -103,10 +103,10 @@ GBuffer cast_gbuffer(const RayScene& scene, const Camera& camera, uint32_t width
       const float cosine = glm::dot(ray.direction_ws, forward);
       ray.origin_ws += ray.direction_ws * (camera.near_plane / cosine);
       const float far = (camera.far_plane - camera.near_plane) / cosine;
-      const auto hit = scene.impl().nearest(ray.origin_ws, ray.direction_ws, far);
+      const auto hit = scene.nearest(ray.origin_ws, ray.direction_ws, far);
       if (!hit) continue;
       const size_t pixel = size_t{y} * width + x;
-      store_hit(*scene.impl().scene, *hit, ray, forward, pixel, out);
+      store_hit(scene.scene(), *hit, ray, forward, pixel, out);
       out.depth_vs.pixels[pixel] += camera.near_plane;
     }
   });
@@ -119,7 +119,7 @@ OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& point
   OcclusionTruth out{{width, height, 1.0f}, {width, height}};
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
-    const OpenRays open = trace_hemisphere(scene.impl(), ray_start(scene, points, pixel),
+    const OpenRays open = trace_hemisphere(scene, ray_start(scene, points, pixel),
                                            make_basis(normal), settings, seed);
     const float length = glm::length(open.sum);
     out.visibility.pixels[pixel] =
@@ -148,7 +148,7 @@ Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
     const Basis basis = make_basis(points.normal_ws.pixels[pixel]);
     const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
     out.pixels[pixel] =
-        trace_lobe(scene.impl(), ray_start(scene, points, pixel), basis,
+        trace_lobe(scene, ray_start(scene, points, pixel), basis,
                    LobeSampler(basis.to_local(view), roughness.pixels[pixel]), settings, seed);
   });
   return out;
@@ -161,7 +161,7 @@ Image<glm::vec3> interreflection_truth(const RayScene& scene, const SurfacePoint
     const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
     const Basis basis = make_basis(hit.geometric_normal_ws);
     return std::optional(
-        Scattered{basis.to_world(cosine_direction(u)), albedo_at(*scene.impl().scene, hit)});
+        Scattered{basis.to_world(cosine_direction(u)), albedo_at(scene.scene(), hit)});
   };
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const Basis basis = make_basis(points.normal_ws.pixels[pixel]);
