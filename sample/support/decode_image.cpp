@@ -1,5 +1,6 @@
 #include "support/decode_image.h"
 
+#include "support/foreign_file.h"
 #include "support/image_rows.h"
 
 namespace alcove::sample {
@@ -7,6 +8,8 @@ namespace alcove::sample {
 Result<ImageHeader> read_image_header(std::span<const uint8_t> bytes) {
   if (is_png(bytes)) return read_png_header(bytes);
   if (is_jpeg(bytes)) return read_jpeg_header(bytes);
+  if (const auto kind = foreign_kind(bytes, "glTF has only PNG and JPEG"); !kind.empty())
+    return Failure(kind);
   return Failure("is not a PNG or JPEG (glTF has no other image formats)");
 }
 
