@@ -141,7 +141,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "Ambient occlusion of a scene, and how far it is from the truth.\n"
       "  alcove render scene.gltf --camera hall --out out\n"
       "  alcove compare groove:60 --radius 1\n"
-      "  alcove motion scene.gltf --path strafe\n"
+      "  alcove motion scene.gltf --path orbit\n"
       "  alcove recommend scene.gltf --tolerance 0.05\n"
       "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality high",
       "alcove");
