@@ -308,7 +308,10 @@ TEST(CostReport, TimeOfXeGtaoIsThatOfItsShadersAndGrowsWithTheImage) {
 TEST(CostReport, FramesAreComparedWithXeGtaoAtTheSameSize) {
   ModelledPass pass;
   pass.limits_ms[0] = 1;
-  SettingsCost cost{{"medium", {}}, &kGpuParts[1], {{FrameState::moving, {pass}}}, {}};
+  SettingsCost cost;
+  cost.settings.label = "medium";
+  cost.part = &kGpuParts[1];
+  cost.frames = {{FrameState::moving, {pass}}};
   cost.settings.inputs.width = 960;
   cost.settings.inputs.height = 540;
   const auto json = to_json({&cost, 1});
