@@ -133,8 +133,8 @@ Result<std::vector<SettingsCost>> model_costs(std::span<const LabelledSettings> 
       ALCOVE_TRY(cost.occupancies, occupancies(part, device, one.inputs));
       for (const CacheAssumptions& assumptions : kCacheAssumptions) {
         if (!range) break;
-        ALCOVE_TRY(const auto frame, modelled_frame(part, device, one.inputs, FrameState::moving,
-                                                    &assumptions));
+        ALCOVE_TRY(const auto frame,
+                   modelled_frame(part, device, one.inputs, FrameState::moving, &assumptions));
         cost.assumed_ms.push_back(frame.milliseconds());
       }
       costs.push_back(std::move(cost));

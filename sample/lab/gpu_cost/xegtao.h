@@ -20,11 +20,10 @@ struct XeGtao {
   // through the caches.
   std::array<double, kGpuParts.size()> milliseconds;
 };
-inline constexpr std::array<XeGtao, 4> kXeGtao{
-    {{"XeGTAO low", 1, 2, {1, 1, 1}},
-     {"XeGTAO medium", 2, 2, {1, 1, 1}},
-     {"XeGTAO high", 3, 3, {1, 1, 1}},
-     {"XeGTAO ultra", 9, 3, {1, 1, 1}}}};
+inline constexpr std::array<XeGtao, 4> kXeGtao{{{"XeGTAO low", 1, 2, {1, 1, 1}},
+                                                {"XeGTAO medium", 2, 2, {1, 1, 1}},
+                                                {"XeGTAO high", 3, 3, {1, 1, 1}},
+                                                {"XeGTAO ultra", 9, 3, {1, 1, 1}}}};
 inline constexpr const XeGtao& kXeGtaoHigh = kXeGtao[2];
 
 // Returns the modelled time of a frame with one denoise pass, in milliseconds. It grows with the
