@@ -160,7 +160,7 @@ double simulated_ms(const GpuPart& part, const XeGtao& preset, std::uint32_t wid
 
 TEST(XeGtao, ConstantsAreThoseOfTheSimulation) {
   for (std::size_t i = 0; i < kGpuParts.size(); ++i) {
-    for (const XeGtao& preset : kXeGtao) {
+    for (const XeGtao& preset : {kXeGtao[0], kXeGtaoHigh}) {
       EXPECT_NEAR(simulated_ms(kGpuParts[i], preset, 1920, 1080) / preset.milliseconds[i], 1, 0.01)
           << kGpuParts[i].name << ", " << preset.name;
     }

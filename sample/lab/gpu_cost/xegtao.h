@@ -16,14 +16,14 @@ struct XeGtao {
   std::uint32_t slices;
   std::uint32_t steps;  // of a half-slice
   // At 1920x1080 on each of kGpuParts, without its three dispatches. XeGTAO's own shaders (32-bit
-  // floats) went through this project's instruction model once, and gpu_cost_test runs its accesses
+  // floats) went through this project's instruction model once, and a test runs its accesses
   // through the caches.
   std::array<double, kGpuParts.size()> milliseconds;
 };
-inline constexpr std::array<XeGtao, 4> kXeGtao{{{"XeGTAO low", 1, 2, {1, 1, 1}},
-                                                {"XeGTAO medium", 2, 2, {1, 1, 1}},
-                                                {"XeGTAO high", 3, 3, {1, 1, 1}},
-                                                {"XeGTAO ultra", 9, 3, {1, 1, 1}}}};
+inline constexpr std::array<XeGtao, 4> kXeGtao{{{"XeGTAO low", 1, 2, {1.645, .248, .135}},
+                                                {"XeGTAO medium", 2, 2, {2.21, .331, .164}},
+                                                {"XeGTAO high", 3, 3, {3.40, .491, .243}},
+                                                {"XeGTAO ultra", 9, 3, {8.38, 1.143, .566}}}};
 inline constexpr const XeGtao& kXeGtaoHigh = kXeGtao[2];
 
 // Returns the modelled time of a frame with one denoise pass, in milliseconds. It grows with the
