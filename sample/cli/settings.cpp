@@ -87,12 +87,7 @@ std::string settings_help() {
   std::ostringstream text;
   text << "Settings, for --set NAME=VALUE. Brackets hold what it may be, and the default:";
   const OcclusionSettings settings;
-  bool advanced = false;
   for_each_option(settings, [&](const SettingInfo& info, const auto& field) {
-    if (info.group == SettingGroup::advanced && !advanced) {
-      advanced = true;
-      text << "\n\nAdvanced settings, which most users never change:";
-    }
     text << "\n  " << std::left << std::setw(kColumn) << info.name << info.help << " ["
          << allowed(info, field) << "; " << value_text(field) << "]";
   });

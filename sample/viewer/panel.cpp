@@ -88,22 +88,14 @@ void lay_out_picture(ViewState& state, const PanelFacts& facts) {
 // (control and click) may be out of range; the passes refuse invalid ones. `radius` is the default
 // radius of the scene, and scales the slider of the radius.
 void lay_out_settings(OcclusionSettings& settings, float radius) {
-  const auto lay_out = [&](bool advanced) {
-    passes::for_each_setting(settings, [&](const SettingInfo& info, auto& value) {
-      if ((info.group == SettingGroup::advanced) != advanced || info.group == SettingGroup::surface)
-        return;
-      ImGui::BeginDisabled(info.matters != nullptr && !info.matters(settings));
-      widget(info, value, std::string_view(info.name) == "radius" ? radius : 1.0f);
-      ImGui::EndDisabled();
-      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-        ImGui::SetTooltip("%s", info.help);
-    });
-  };
-  lay_out(false);
-  if (ImGui::TreeNode("Advanced")) {
-    lay_out(true);
-    ImGui::TreePop();
-  }
+  passes::for_each_setting(settings, [&](const SettingInfo& info, auto& value) {
+    if (info.group == SettingGroup::surface) return;
+    ImGui::BeginDisabled(info.matters != nullptr && !info.matters(settings));
+    widget(info, value, std::string_view(info.name) == "radius" ? radius : 1.0f);
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+      ImGui::SetTooltip("%s", info.help);
+  });
 }
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {

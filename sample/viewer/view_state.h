@@ -50,7 +50,7 @@ struct ViewState {
   passes::OcclusionSettings settings = state.settings;
   switch (state.comparison) {
     case Comparison::horizons:
-      settings.advanced.estimator = passes::Estimator::horizons;
+      settings.estimator = passes::Estimator::horizons;
       return settings;
     case Comparison::reference:
       settings = passes::quality_settings(passes::Quality::reference, settings.radius);

@@ -58,7 +58,7 @@ TEST_F(BadInput, SettingsAndInputsThatTheyNeedAreReportedByName) {
       {"'radius' is 0; it must be above 0 and finite.", [](auto& s) { s.radius = 0.0f; }},
       {"needs a texture of second depth", [](auto& s) { s.depth_layers = 2; }},
       {"needs a texture of back-face depth",
-       [](auto& s) { s.advanced.thickness_unit = ThicknessUnit::back_faces; }},
+       [](auto& s) { s.thickness_unit = ThicknessUnit::back_faces; }},
   };
   for (const SettingsCase& bad : kCases) expect_refusal(bad);
   expect_a_good_frame();
@@ -165,7 +165,7 @@ TEST_F(BadInput, InputImagesOfDifferentSizesAreReported) {
     const framegraph::Texture depth = upload(graph, drawing_.depth_ndc);
     const framegraph::Texture image = upload(graph, low.depth_ndc);
     OcclusionSettings settings;
-    settings.advanced.thickness_unit = ThicknessUnit::back_faces;
+    settings.thickness_unit = ThicknessUnit::back_faces;
     settings.depth_layers = 2;
     const auto expect = [&](framegraph::Texture OcclusionInputs::*input, const char* name) {
       OcclusionInputs inputs{

@@ -172,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(
                            view.normals = {};
                          }},
                     Case{"SpecularByConeAlone", Quality::medium,
-                         [](HostView& view) { view.settings.specular = Specular::cone; }},
+                         [](HostView& view) { view.settings.specular = Specular::table; }},
                     Case{"TwoDepthLayers", Quality::low,
                          [](HostView& view) { view.settings.depth_layers = 2; }},
                     Case{"WithoutHistory", Quality::low,

@@ -129,7 +129,7 @@ AlcoveContextInfo failing_info(const Engine& engine) {
 // Creates a context, prepares a frame and records two while a call that creates an object fails.
 TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorAndLeaksNothing) {
   HostView from = draw_view(8, 6, groove(0.8));
-  from.settings.advanced.estimator = Estimator::horizons;
+  from.settings.estimator = Estimator::horizons;
   const AlcoveView view = create_view(from);
   const AlcoveFrame frame = make_frame({&view, 1}, 0);
   const AlcoveContextInfo info = failing_info(engine());

@@ -114,7 +114,7 @@ TEST_F(CInputs, NormalsOfACameraAlongPlusZAreMirroredOnInputAndBentNormalsOnOutp
 TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
   HostView moving = draw_view(kWidth, kHeight, step(0.31, 0.6));
   moving.settings.bent_normal = true;
-  moving.settings.advanced.estimator = Estimator::horizons;
+  moving.settings.estimator = Estimator::horizons;
   moving.settings.radius = 1.5f;
   for (std::size_t i = 0; i < moving.motion.texels.size(); ++i)
     moving.motion.texels[i] = i % 2 == 0 ? 0.05f : -0.025f;

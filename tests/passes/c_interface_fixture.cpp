@@ -237,14 +237,13 @@ Results CInterface::read_results(const AlcoveView& view) {
 }
 
 AlcoveView CInterface::create_view(const HostView& from) {
-  Settings& settings = settings_.emplace_back();
-  settings.settings = from_settings(from.settings, settings.advanced);
+  const AlcoveSettings& settings = settings_.emplace_back(from_settings(from.settings));
   AlcoveView view{.struct_size = sizeof(AlcoveView),
                   .id = from.id,
                   .reset_history = to_bool32(from.reset),
                   .normals_in_view_space = to_bool32(from.normals_in_view_space),
                   .static_frames = from.static_frames,
-                  .settings = &settings.settings,
+                  .settings = &settings,
                   .camera = to_camera(from.view),
                   .previous_camera = to_camera(from.previous_view),
                   .largest_width = from.largest_size.width,

@@ -148,13 +148,9 @@ class CInterface : public PassTest {
   bool shares_inputs_ = true;  // images with the same contents are one image
 
  private:
-  struct Settings {
-    AlcoveSettings settings;
-    AlcoveAdvancedSettings advanced;
-  };
   static Context shared_context;
   std::unique_ptr<Engine> engine_;
-  std::deque<Settings> settings_;  // of the views
+  std::deque<AlcoveSettings> settings_;  // of the views
   std::vector<std::pair<HostImage, AlcoveImage>> inputs_;
   std::set<std::uint32_t> ids_;  // of the recorded views
 };

@@ -64,21 +64,8 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
        },
        2},
       {"bytes", [](V&, S& s) { s.precision = Precision::unorm8; }},
-      {"horizons with falloff",
-       [](V&, S& s) {
-         s.advanced.estimator = Estimator::horizons;
-         s.advanced.falloff = 0.5f;
-       }},
-      {"bitmask",
-       [](V&, S& s) {
-         s.advanced.estimator = Estimator::bitmask;
-         s.thickness = 0.05f;
-         s.hidden_occlusion = 0.9f;
-       }},
-      {"thickness by distance",
-       [](V&, S& s) { s.advanced.thickness_unit = ThicknessUnit::distance; }},
-      {"thickness by back faces",
-       [](V&, S& s) { s.advanced.thickness_unit = ThicknessUnit::back_faces; }},
+      {"horizons", [](V&, S& s) { s.estimator = Estimator::horizons; }},
+      {"thickness by back faces", [](V&, S& s) { s.thickness_unit = ThicknessUnit::back_faces; }},
       {"depth copied from 16 bits", [](V& v, S&) { v.depth_format = VK_FORMAT_D16_UNORM; }},
       {"two layers", [](V&, S& s) { s.depth_layers = 2; }},
       {"slices and steps",
@@ -86,12 +73,7 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
          s.slices = 3;
          s.steps = 5;
        }},
-      {"filter",
-       [](V&, S& s) {
-         s.advanced.filter_radius = 1;
-         s.advanced.filter_tolerance_px = 0.5f;
-         s.history_frames = 0;
-       }},
+      {"no history", [](V&, S& s) { s.history_frames = 0; }},
       {"static noise",
        [](V&, S& s) {
          s.history_frames = 0;
@@ -107,17 +89,11 @@ TEST_F(CInterface, EverySettingHasTheSameEffectAsInTheCppInterface) {
          s.specular = Specular::table;
          s.bent_normal = true;
        }},
-      {"cone, one roughness",
+      {"table, one roughness",
        [](V& v, S& s) {
-         s.specular = Specular::cone;
+         s.specular = Specular::table;
          s.roughness = 0.2f;
          v.roughness = {};
-       }},
-      {"parts of the search",
-       [](V&, S& s) {
-         s.advanced.snap_to_texels = false;
-         s.advanced.extrapolation = false;
-         s.advanced.unobserved = false;
        }},
       {"power and intensity",
        [](V&, S& s) {
@@ -188,7 +164,7 @@ TEST_F(CInterface, EightViewsWithAllInputsAndOutputsCanBeRecordedInOneFrame) {
     HostView& view = views.emplace_back(draw_view(8, 6, groove(0.8)));
     view.id = id;
     request_all_outputs(view);
-    view.settings.advanced.thickness_unit = ThicknessUnit::back_faces;
+    view.settings.thickness_unit = ThicknessUnit::back_faces;
     view.settings.depth_layers = 2;
     if (id % 2 == 1) {
       view.normals = {};  // a pass more, an image less
@@ -258,7 +234,7 @@ TEST_F(CInterface, ProgramCompiledAsCRecordsTheSameFrameAsTheCppInterface) {
   const AlcoveContextInfo info = engine().context_info();
   HostView from = moving_view(0, 16, 12);
   from.settings = quality_settings(Quality::high, 0.5f);
-  from.settings.advanced.estimator = Estimator::horizons;
+  from.settings.estimator = Estimator::horizons;
   from.normals = {};
   from.roughness = {};
   const AlcoveView view = create_view(from);

@@ -130,7 +130,7 @@ TEST_F(CPipelines, PreparingAFrameCreatesAllPipelinesThatItsViewsEverNeed) {
        }},
       {"hidden depths, every output by the table",
        [](HostView& v) {
-         v.settings.advanced.thickness_unit = ThicknessUnit::back_faces;
+         v.settings.thickness_unit = ThicknessUnit::back_faces;
          v.settings.depth_layers = 2;
          request_all_outputs(v);
          v.settings.specular = Specular::table;

@@ -24,7 +24,7 @@ using testing::Not;
 // Returns a view with the least work.
 HostView draw_least() {
   HostView view = draw_view(32, 24, groove(0.8));
-  view.settings.advanced.estimator = Estimator::horizons;
+  view.settings.estimator = Estimator::horizons;
   view.settings.steps = 4;
   view.settings.history_frames = 0;
   view.motion = {};
@@ -151,14 +151,14 @@ TEST_F(CPlan, EstimatedMemoryIsWithinFivePercentOfThatOfRecordedFrames) {
         Case{"from depth", kVisibility, kNone, 0, Quality::low},
         Case{"bent", kBent, kNone, kNormals, Quality::medium},
         Case{"all", kAll, kSlices, kNormals, Quality::low},
-        Case{"by cone", ALCOVE_OUTPUT_SPECULAR, Specular::cone, kNormals, Quality::low},
+        Case{"by table", ALCOVE_OUTPUT_SPECULAR, Specular::table, kNormals, Quality::low},
         Case{"half resolution", kAll, kSlices, kNormals, Quality::medium, true},
         Case{"console", kVisibility, kNone, kNormals, Quality::console, true},
         Case{"no history", kVisibility, kNone, kNormals, Quality::reference, false, false},
         Case{"half, no history", kAll, kSlices, kNormals, Quality::medium, true, false},
         Case{"mask", kVisibility, kNone, kNormals | kMask, Quality::low},
         Case{"samples", kVisibility, kNone, kSamples, Quality::low},
-        Case{"mask, samples, cone", ALCOVE_OUTPUT_SPECULAR, Specular::cone, kMask | kSamples,
+        Case{"mask, samples, table", ALCOVE_OUTPUT_SPECULAR, Specular::table, kMask | kSamples,
              Quality::low}}) {
     SCOPED_TRACE(wanted.name);
     HostView from = draw_view(kWidth, kHeight, {tilted_plane(20.0, 4.0)});
@@ -257,7 +257,7 @@ TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
     const std::string text = print_settings(settings);
     EXPECT_THAT(text, HasSubstr("radius = 2.5\n"));
     EXPECT_THAT(text, HasSubstr("specular = slices\n"));
-    EXPECT_EQ(std::ranges::count(text, '\n'), 24);
+    EXPECT_EQ(std::ranges::count(text, '\n'), 19);
     char little[8];
     EXPECT_EQ(alcovePrintSettings(&settings, little, sizeof little), text.size());
     EXPECT_EQ(std::string(little), text.substr(0, 7));
@@ -271,14 +271,11 @@ TEST(CSettings, SettingValuesArePrintedShortAndExactInEveryLocale) {
   AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.15f);
   settings.thickness = 0.12345678f;
   settings.hidden_occlusion = 1e-7f;
-  AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
-  ASSERT_EQ(alcoveGetAdvancedSettings(ALCOVE_QUALITY_MEDIUM, &advanced), ALCOVE_SUCCESS);
-  advanced.filter_tolerance_px = 1234567.0f;
-  settings.advanced = &advanced;
+  settings.power = 1.5f;
   const std::string text = print_settings(settings);
   EXPECT_THAT(text, testing::StartsWith("radius = 0.15\ntile_size = 4\n"));
-  for (const char* line : {"\nthickness = 0.12345678\n", "\nhidden_occlusion = 1e-07\n",
-                           "\nfilter_tolerance_px = 1234567\n"})
+  for (const char* line :
+       {"\nthickness = 0.12345678\n", "\nhidden_occlusion = 1e-07\n", "\npower = 1.5\n"})
     EXPECT_THAT(text, HasSubstr(line));
 }
 

@@ -3,12 +3,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <random>
 #include <string>
 
-#include "alcove/alcove_advanced.h"
 #include "alcove/passes/setting_table.h"
 #include "c/settings.h"
+#include "maths/random_input.h"
 
 namespace alcove::passes {
 namespace {
@@ -21,7 +20,7 @@ struct Settings {
     EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.7f, &settings), ALCOVE_SUCCESS);
   }
   AlcoveResult read(const std::string& text) {
-    return alcoveReadSettings(text.data(), text.size(), &settings, &advanced, message.data());
+    return alcoveReadSettings(text.data(), text.size(), &settings, message.data());
   }
   std::string printed() const {
     std::string text(alcovePrintSettings(&settings, nullptr, 0) + 1, '\0');
@@ -31,7 +30,6 @@ struct Settings {
   std::string sentence() const { return message.data(); }
 
   AlcoveSettings settings{.struct_size = sizeof settings};
-  AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
   std::array<char, ALCOVE_MAX_MESSAGE> message{};
 };
 
@@ -66,11 +64,10 @@ OcclusionSettings unusual_settings() {
   settings.static_noise = true;
   settings.half_resolution = true;
   settings.bent_normal = true;
-  settings.specular = Specular::cone;
+  settings.specular = Specular::table;
   settings.precision = Precision::float16;
-  settings.advanced.thickness_unit = ThicknessUnit::back_faces;
-  settings.advanced.filter_radius = 1;
-  settings.advanced.unobserved = false;
+  settings.thickness_unit = ThicknessUnit::back_faces;
+  settings.estimator = Estimator::horizons;
   return settings;
 }
 
@@ -79,9 +76,8 @@ TEST(CReadSettings, EverySettingOfARecommendationIsRead) {
   Settings found;
   ASSERT_EQ(found.read(file_of(wanted)), ALCOVE_SUCCESS) << found.sentence();
   EXPECT_EQ(found.sentence(), "");
-  EXPECT_EQ(found.settings.advanced, &found.advanced);
   Settings expected;
-  expected.settings = from_settings(wanted, expected.advanced);
+  expected.settings = from_settings(wanted);
   EXPECT_EQ(found.printed(), expected.printed());
 }
 
@@ -129,7 +125,7 @@ TEST(CReadSettings, TextThatCannotBeUsedIsReportedInASentenceAndChangesNothing) 
       {"{\"settings\":{\"tile_size\":3}}", "1, 2, 4 or 8"},
       {"{\"settings\":{\"thickness\":nan}}", "'thickness' is nan"},
       {"{\"settings\":{\"thickness\":1e99}}", "'thickness' is 1e99"},
-      {"{\"settings\":{\"estimator\":\"magic\"}}", "horizons, bitmask or connected"},
+      {"{\"settings\":{\"estimator\":\"magic\"}}", "horizons or connected"},
       {"{\"settings\":{\"half_resolution\":1}}", "false or true"},
       {"{\"settings\":{\"tile_size\":1,\"half_resolution\":true}}", "tile_size of 1"},
   };
@@ -140,15 +136,12 @@ TEST(CReadSettings, TextThatCannotBeUsedIsReportedInASentenceAndChangesNothing) 
     EXPECT_THAT(found.sentence(), HasSubstr(part)) << text.substr(0, 80);
     EXPECT_THAT(found.sentence(), EndsWith(".")) << text.substr(0, 80);
     EXPECT_EQ(found.printed(), before);
-    EXPECT_EQ(found.settings.advanced, nullptr);
   }
 }
 
 TEST(CReadSettings, DamagedTextNeverChangesSettingsIfItIsRefused) {
   const std::string good = file_of(unusual_settings());
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  maths_test::RandomInput random;
   for (std::size_t length = 0; length < good.size() - 2; ++length) {
     Settings found;
     EXPECT_EQ(found.read(good.substr(0, length)), ALCOVE_ERROR_INVALID_INPUT) << length;
@@ -156,7 +149,7 @@ TEST(CReadSettings, DamagedTextNeverChangesSettingsIfItIsRefused) {
   for (int i = 0; i < 2000; ++i) {
     std::string text = good;
     for (int change = 0; change < 3; ++change)
-      text[random() % text.size()] = static_cast<char>(random());
+      text[random.bits() % text.size()] = static_cast<char>(random.bits());
     Settings found;
     const std::string before = found.printed();
     if (found.read(text) != ALCOVE_SUCCESS) {
@@ -168,16 +161,10 @@ TEST(CReadSettings, DamagedTextNeverChangesSettingsIfItIsRefused) {
 
 TEST(CReadSettings, ArgumentsThatAreMissingAreReported) {
   Settings found;
-  EXPECT_EQ(alcoveReadSettings(nullptr, 0, &found.settings, &found.advanced, found.message.data()),
+  EXPECT_EQ(alcoveReadSettings(nullptr, 0, &found.settings, found.message.data()),
             ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_THAT(found.sentence(), HasSubstr("no text"));
-  EXPECT_EQ(alcoveReadSettings("{}", 2, nullptr, &found.advanced, nullptr),
-            ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(alcoveReadSettings("{}", 2, &found.settings, nullptr, nullptr),
-            ALCOVE_ERROR_INVALID_INPUT);
-  found.advanced.struct_size = 4;
-  EXPECT_EQ(found.read("{\"settings\":{}}"), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_THAT(found.sentence(), HasSubstr("AlcoveAdvancedSettings::struct_size is 4"));
+  EXPECT_EQ(alcoveReadSettings("{}", 2, nullptr, nullptr), ALCOVE_ERROR_INVALID_INPUT);
 }
 
 // Returns another value of a setting than `value`, the `number`th that is tried.
@@ -196,7 +183,6 @@ Value another(Value value, std::uint32_t number) {
 TEST(CReadSettings, EachSettingGoesToCAndBack) {
   OcclusionSettings base;
   base.specular = Specular::slices;
-  base.advanced.estimator = Estimator::horizons;  // allows a falloff above 0
   for_each_setting(base, [&](const SettingInfo& info, const auto&) {
     if (info.group == SettingGroup::output) return;
     int changes = 0;
@@ -206,8 +192,7 @@ TEST(CReadSettings, EachSettingGoesToCAndBack) {
         if (std::string_view(other.name) == info.name) field = another(field, number);
       });
       if (changed == base || changed.specular == Specular::none || !validate(changed)) continue;
-      AlcoveAdvancedSettings advanced;
-      const AlcoveSettings in_c = from_settings(changed, advanced);
+      const AlcoveSettings in_c = from_settings(changed);
       const auto back = to_settings(&in_c);
       EXPECT_TRUE(back && *back == changed) << info.name;
       ++changes;

@@ -5,11 +5,11 @@
 #include <array>
 #include <cctype>
 #include <cstring>
-#include <random>
 #include <string>
 #include <variant>
 
 #include "c_interface_fixture.h"
+#include "maths/random_input.h"
 
 namespace alcove::passes {
 namespace {
@@ -33,7 +33,6 @@ struct Draft {
   AlcoveFrame frame;
   std::array<AlcoveView, 9> views;
   AlcoveSettings settings;
-  AlcoveAdvancedSettings advanced;
 };
 
 struct Areas {
@@ -45,7 +44,7 @@ struct Areas {
 struct Refusal {
   const char* message;
   std::variant<Areas, void (*)(AlcoveFrame&), void (*)(AlcoveView&), void (*)(AlcoveSettings&),
-               void (*)(AlcoveAdvancedSettings&), void (*)(Draft&)>
+               void (*)(Draft&)>
       change;
 };
 
@@ -66,8 +65,7 @@ class CRefusals : public CInterface {
   // Expects the same error from alcovePrepareFrame and alcoveRecordFrame.
   void expect_refused(const Refusal& refusal) {
     SCOPED_TRACE(refusal.message);
-    Draft draft{.settings = *view_.settings, .advanced = *view_.settings->advanced};
-    draft.settings.advanced = &draft.advanced;
+    Draft draft{.settings = *view_.settings};
     draft.views.fill(view_);
     for (std::uint32_t i = 0; i < draft.views.size(); ++i) {
       draft.views.at(i).id = i;
@@ -84,8 +82,6 @@ class CRefusals : public CInterface {
             change(draft.views[0]);
           else if constexpr (std::is_invocable_v<decltype(change), AlcoveSettings&>)
             change(draft.settings);
-          else if constexpr (std::is_invocable_v<decltype(change), AlcoveAdvancedSettings&>)
-            change(draft.advanced);
           else
             change(draft);
         },
@@ -121,7 +117,6 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
   using F = AlcoveFrame;
   using V = AlcoveView;
   using S = AlcoveSettings;
-  using A = AlcoveAdvancedSettings;
   using D = Draft;
   const Refusal refusals[] = {
       {"AlcoveFrame::struct_size is 0", [](F& f) { f.struct_size = 0; }},
@@ -142,16 +137,14 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       // Settings: the names and ranges of all are tested without the C interface.
       {"no settings", [](V& v) { v.settings = nullptr; }},
       {"AlcoveSettings::struct_size", [](S& s) { s.struct_size = 4; }},
-      {"AlcoveAdvancedSettings::struct_size is 4;", [](A& a) { a.struct_size = 4; }},
       {"'radius' is nan;", [](S& s) { s.radius = kNaN; }},
       {"'history_frames' is 128; it must be 0 to 127.", [](S& s) { s.history_frames = 128; }},
       {"'specular' is 0;", [](S& s) { set_number(s.specular, 0); }},
-      {"'specular' is 4;", [](S& s) { set_number(s.specular, 4); }},
+      {"'specular' is 3;", [](S& s) { set_number(s.specular, 3); }},
       {"'precision' is 3;", [](S& s) { set_number(s.precision, 3); }},
-      {"'estimator' is 3; it must be horizons,", [](A& a) { set_number(a.estimator, 3); }},
-      {"'estimator' is 255;", [](A& a) { set_number(a.estimator, kMost); }},
-      {"'thickness_unit' is 3;", [](A& a) { set_number(a.thickness_unit, 3); }},
-      {"'falloff' is 0.5 with the estimator connected", [](A& a) { a.falloff = 0.5f; }},
+      {"'estimator' is 2; it must be horizons or", [](S& s) { set_number(s.estimator, 2); }},
+      {"'estimator' is 255;", [](S& s) { set_number(s.estimator, kMost); }},
+      {"'thickness_unit' is 2;", [](S& s) { set_number(s.thickness_unit, 2); }},
 
       // Cameras. In a row-major matrix the translation lies where this matrix has its last row.
       {"The view cannot be used: view_from_world",
@@ -178,13 +171,13 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       {"roughness has the format VK_FORMAT", [](V& v) { v.roughness.format = VK_FORMAT_R8_UNORM; }},
       {"back-face depth of 16x13",
        [](D& d) {
-         d.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+         d.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
          d.views[0].back_depth.height = 13;
          d.views[0].second_depth = {};  // the same image
        }},
       {"no image of back_depth",
        [](D& d) {
-         d.advanced.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+         d.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
          d.views[0].back_depth = {};
        }},
       {"second depth of 16x13",
@@ -406,34 +399,24 @@ TEST_F(CRefusals, SettingsOfAnUnknownQualityRadiusOrSizeAreNotFilledIn) {
 // Random numbers in settings and cameras never crash: either the frame is recorded, or it is
 // refused with a sentence.
 TEST_F(CRefusals, FramesWithRandomSettingsAndCamerasAreRecordedOrRefusedWithAMessage) {
-  const std::uint32_t seed = std::random_device{}();
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  std::mt19937 random(seed);
+  maths_test::RandomInput random;
   const std::array<float, 8> floats{0.0f, -0.0f, 1.0f, -1.0f, 1e30f, 1e-30f, kNaN, -1e38f};
   constexpr std::size_t kFirst = offsetof(AlcoveSettings, radius);
   constexpr std::size_t kCount = (offsetof(AlcoveSettings, intensity) + 4 - kFirst) / 4;
-  constexpr std::size_t kFirstAdvanced = offsetof(AlcoveAdvancedSettings, estimator);
-  constexpr std::size_t kAdvancedCount = (sizeof(AlcoveAdvancedSettings) - kFirstAdvanced) / 4;
   int refused = 0;
   for (int i = 0; i < 40; ++i) {
     AlcoveSettings settings = get_settings(ALCOVE_QUALITY_LOW, 0.5f);
-    AlcoveAdvancedSettings advanced{.struct_size = sizeof advanced};
-    ASSERT_EQ(alcoveGetAdvancedSettings(ALCOVE_QUALITY_LOW, &advanced), ALCOVE_SUCCESS);
-    settings.advanced = &advanced;
     AlcoveView changed = view();
     changed.settings = &settings;
-    const std::uint32_t small = random() % 8;
-    const float number = floats.at(random() % floats.size());
-    char* const field =
-        random() % 2 == 0
-            ? reinterpret_cast<char*>(&settings) + kFirst + 4 * (random() % kCount)
-            : reinterpret_cast<char*>(&advanced) + kFirstAdvanced + 4 * (random() % kAdvancedCount);
-    if (random() % 2 == 0)
+    const std::uint32_t small = random.bits() % 8;
+    const float number = floats.at(random.bits() % floats.size());
+    char* const field = reinterpret_cast<char*>(&settings) + kFirst + 4 * (random.bits() % kCount);
+    if (random.bits() % 2 == 0)
       std::memcpy(field, &small, 4);
-    else if (random() % 2 == 0)
+    else if (random.bits() % 2 == 0)
       std::memcpy(field, &number, 4);
     else
-      changed.camera.clip_from_view[random() % 16] = number;
+      changed.camera.clip_from_view[random.bits() % 16] = number;
     const AlcoveResult result = record(context(), make_frame({&changed, 1}, 0));
     if (result != ALCOVE_SUCCESS) {
       ++refused;

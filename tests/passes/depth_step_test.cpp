@@ -46,7 +46,7 @@ class DepthPrecision : public PassTest {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", quality " << int(quality)
                                         << ", estimator " << int(estimator));
         OcclusionSettings settings = quality_settings(quality, radius);
-        settings.advanced.estimator = estimator;
+        settings.estimator = estimator;
         const HostImage image = visibility(drawing, format, settings);
         EXPECT_GE(*std::ranges::min_element(image.texels), 0.98f);
       }

@@ -24,7 +24,7 @@ constexpr std::uint32_t kHeight = 39;
 // pipelines compile quickly.
 OcclusionSettings everything(Quality quality, float radius) {
   OcclusionSettings settings = quality_settings(quality, radius);
-  settings.advanced.estimator = Estimator::horizons;
+  settings.estimator = Estimator::horizons;
   settings.steps = 6;
   settings.bent_normal = true;
   settings.specular = Specular::slices;
@@ -117,18 +117,14 @@ TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
 }
 
 TEST_F(Extremes, PlaneBehindTheEyeOfAnOrthographicViewDoesNotOccludeItself) {
-  for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
-    OcclusionSettings settings = everything(Quality::medium, 1.0f);
-    settings.advanced.estimator = estimator;
-    settings.advanced.thickness_unit = ThicknessUnit::distance;
-    for (const double distance : {4.0, -4.0}) {
-      SCOPED_TRACE(testing::Message() << (estimator == Estimator::bitmask ? "bitmask" : "connected")
-                                      << ", a plane at " << distance);
-      const TestView view = orthographic_view("", 3.0, 2.0, -16.0, 16.0);
-      const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, distance)});
-      const Images images = render(drawing, settings);
-      EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(1.0f - 1.0f / 255.0f)));
-    }
+  OcclusionSettings settings = everything(Quality::medium, 1.0f);
+  settings.estimator = Estimator::connected;
+  for (const double distance : {4.0, -4.0}) {
+    SCOPED_TRACE(testing::Message() << "a plane at " << distance);
+    const TestView view = orthographic_view("", 3.0, 2.0, -16.0, 16.0);
+    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, distance)});
+    const Images images = render(drawing, settings);
+    EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(1.0f - 1.0f / 255.0f)));
   }
 }
 
@@ -224,7 +220,7 @@ TEST_F(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
                   &far.normal_vs.texels[std::size_t{i} * 4]);
     }
     OcclusionSettings settings = everything(Quality::low, static_cast<float>(0.3 * distance));
-    settings.advanced.estimator = Estimator::connected;
+    settings.estimator = Estimator::connected;
     settings.history_frames = 0;
     const Images images = render(far, settings);
     expect_sound(images);
@@ -241,7 +237,7 @@ TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
     for (const float radius : {1e-30f, 1e-5f, 1e-3f, 1.0f, 1e6f, 1e12f, 1e30f, 3e38f}) {
       SCOPED_TRACE(testing::Message() << view.name << ", radius " << radius);
       OcclusionSettings settings = everything(Quality::high, radius);
-      settings.advanced.estimator = Estimator::connected;
+      settings.estimator = Estimator::connected;
       settings.history_frames = 0;
       const Images images = render(drawing, settings);
       expect_sound(images);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "drawing.h"
 #include "pass_fixture.h"
 
@@ -9,16 +7,12 @@
 // layer hides.
 namespace alcove::passes {
 
-// The estimators that read these depths.
-inline constexpr std::array kThickEstimators{Estimator::bitmask, Estimator::connected};
-
 // Returns settings without hidden occlusion, so that only the given depths occlude.
-inline OcclusionSettings without_hidden_occlusion(Estimator estimator, float radius) {
+inline OcclusionSettings without_hidden_occlusion(float radius) {
   OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.advanced.estimator = estimator;
+  settings.estimator = Estimator::connected;
   settings.slices = 16;
   settings.hidden_occlusion = 0.0f;
-  settings.advanced.unobserved = false;
   return settings;
 }
 

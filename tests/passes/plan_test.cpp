@@ -75,7 +75,7 @@ class OcclusionPlan : public PassTest {
 OcclusionSettings least() {
   OcclusionSettings settings;
   settings.tile_size = 1;
-  settings.advanced.estimator = Estimator::horizons;
+  settings.estimator = Estimator::horizons;
   settings.steps = 4;
   settings.history_frames = 0;
   return settings;
@@ -126,7 +126,7 @@ TEST_F(OcclusionPlan, MotionVectorsAreNotReadIfHistoryIsOff) {
 // Estimator horizons assumes infinitely thick occluders, which already cover hidden surfaces.
 TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsReadThem) {
   constexpr void (*kReads[])(OcclusionSettings&) = {
-      [](OcclusionSettings& s) { s.advanced.thickness_unit = ThicknessUnit::back_faces; },
+      [](OcclusionSettings& s) { s.thickness_unit = ThicknessUnit::back_faces; },
       [](OcclusionSettings& s) { s.depth_layers = 2; }};
   for (const auto read : kReads) {
     const FramePlan horizons = plan(least());
@@ -134,12 +134,10 @@ TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsR
     OcclusionSettings settings = least();
     read(settings);
     expect_same(plan(settings), horizons);
-    settings.advanced.thickness_unit = ThicknessUnit::distance;
-    expect_same(plan(settings), horizons);
     EXPECT_EQ(gpu().kernels().pipeline_count(), first_pipelines);
 
     settings = least();
-    settings.advanced.estimator = Estimator::connected;
+    settings.estimator = Estimator::connected;
     const FramePlan connected = plan(settings);
     const std::size_t pipelines = gpu().kernels().pipeline_count();
     expect_same(plan(settings, {}, {.hidden_depths = true}), connected);
@@ -147,24 +145,6 @@ TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsR
     read(settings);
     expect_same(plan(settings, {}, {.hidden_depths = true}), connected);
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1) << "the variant that reads them";
-  }
-}
-
-TEST_F(OcclusionPlan, TurningOffSnappingOrExtrapolationAddsOnlyAPipelineAndNoPass) {
-  const FramePlan as_it_is = plan(least());
-  std::size_t pipelines = gpu().kernels().pipeline_count();
-  (void)plan(least());
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
-  const AdvancedSettings base = least().advanced;
-  std::array<AdvancedSettings, 3> parts{base, base, base};
-  parts[0].snap_to_texels = false;
-  parts[1].extrapolation = false;
-  parts[2].unobserved = false;
-  for (const AdvancedSettings& each : parts) {
-    OcclusionSettings settings = least();
-    settings.advanced = each;
-    expect_same(plan(settings), as_it_is);
-    EXPECT_EQ(gpu().kernels().pipeline_count(), ++pipelines);
   }
 }
 
@@ -187,7 +167,7 @@ TEST_F(OcclusionPlan, SpecularOcclusionAddsMemoryAndPassesOnlyWhenItIsOnAndRead)
 }
 
 TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsRead) {
-  for (const Specular specular : {Specular::none, Specular::slices, Specular::cone}) {
+  for (const Specular specular : {Specular::none, Specular::slices, Specular::table}) {
     OcclusionSettings settings = least();
     settings.specular = specular;
     const bool read = specular != Specular::none;
@@ -214,7 +194,7 @@ TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyIfItsResultIsRead) {
   EXPECT_THAT(plan(asked, {.linear_depth = true}).passes, Contains("linear depth"));
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
   OcclusionSettings by_model = least();
-  by_model.specular = Specular::cone;
+  by_model.specular = Specular::table;
   EXPECT_THAT(plan(by_model, {.specular = true}).passes, Contains("linear depth"));
 }
 
@@ -273,12 +253,11 @@ TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistor
   }
 }
 
-TEST_F(OcclusionPlan, ChangedRadiusOrFilterToleranceCreatesNoNewPipeline) {
+TEST_F(OcclusionPlan, ChangedRadiusCreatesNoNewPipeline) {
   (void)plan(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
   OcclusionSettings other = least();
   other.radius = 3.0f;
-  other.advanced.filter_tolerance_px = 4.0f;
   (void)plan(other);
   EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
 }

@@ -95,9 +95,8 @@ HostImage Reconstruct::no_motion() {
   return {kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
 }
 
-OcclusionSettings precise(std::uint32_t filter_radius, std::uint32_t history_frames) {
+OcclusionSettings precise(std::uint32_t history_frames) {
   OcclusionSettings settings;
-  settings.advanced.filter_radius = filter_radius;
   settings.history_frames = history_frames;
   settings.precision = Precision::float32;
   return settings;

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-static_assert(std::is_aggregate_v<OcclusionSettings> && std::is_aggregate_v<AdvancedSettings>);
+static_assert(std::is_aggregate_v<OcclusionSettings>);
 
 TEST(Settings, DefaultSettingsAreThoseOfTheMediumPreset) {
   const OcclusionSettings settings;
@@ -25,12 +25,14 @@ TEST(Settings, DefaultSettingsAreThoseOfTheMediumPreset) {
   EXPECT_EQ(settings.history_frames, 32u);
 }
 
-TEST(Settings, OnlyTheReferencePresetChangesAdvancedSettings) {
+TEST(Settings, EveryPresetIsValidAndOnlyTheReferenceHasHorizonsAndNoFilter) {
   for (std::size_t i = 0; i < kNames<Quality>.size(); ++i) {
     const auto quality = static_cast<Quality>(i);
     const OcclusionSettings settings = quality_settings(quality, 1.0f);
     EXPECT_TRUE(validate(settings)) << name_of(quality);
-    EXPECT_EQ(settings.advanced == AdvancedSettings{}, quality != Quality::reference);
+    const bool reference = quality == Quality::reference;
+    EXPECT_EQ(settings.estimator == Estimator::horizons, reference);
+    EXPECT_EQ(filter_radius(settings), reference ? 0u : 2u);
   }
 }
 
@@ -48,7 +50,6 @@ TEST(Settings, SettingNamesAreUniqueAndHelpTextsAreSentences) {
 template <typename Value>
 std::string error_of(const std::string& name, Value value) {
   OcclusionSettings settings;
-  settings.advanced.estimator = Estimator::horizons;  // allows a falloff above 0
   for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
     if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>, Value>) {
       if (info.name == name) field = value;
@@ -116,7 +117,7 @@ TEST(Settings, ValidationEnforcesExactlyTheStatedRangeOfEachSetting) {
       EXPECT_THAT(said, HasSubstr(names_text<Value>()));
     }
   });
-  EXPECT_EQ(numbers, 15);
+  EXPECT_EQ(numbers, 12);
 }
 
 TEST(Settings, SliderRangesContainOnlyAcceptedValues) {
@@ -138,22 +139,6 @@ TEST(Settings, RangeTextsStateMinimumAndMaximumInWords) {
   EXPECT_EQ((SettingRange{.above_minimum = true}).text(), "above 0 and finite");
   EXPECT_EQ((SettingRange{}).text(), "at least 0 and finite");
   EXPECT_EQ((SettingRange{.maximum = 16, .above_minimum = true}).text(), "above 0 and at most 16");
-}
-
-TEST(Settings, FalloffIsRefusedWithEstimatorsOfFiniteOccluderThickness) {
-  for (std::size_t i = 0; i < kNames<Estimator>.size(); ++i) {
-    OcclusionSettings settings;
-    settings.advanced.estimator = static_cast<Estimator>(i);
-    settings.advanced.falloff = 0.5f;
-    const auto good = validate(settings);
-    ASSERT_EQ(bool(good), !has_thickness(settings.advanced.estimator));
-    if (!good) {
-      EXPECT_THAT(
-          good.error().message,
-          HasSubstr("with the estimator " + std::string(name_of(settings.advanced.estimator))));
-      EXPECT_THAT(good.error().message, HasSubstr("set it to 0"));
-    }
-  }
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTh
                        << scene.name << ", " << view.name << ", roughness " << roughness
                        << (estimator == Estimator::connected ? ", connected" : ", horizons"));
           OcclusionSettings settings = settings_of(Quality::reference, radius, roughness);
-          settings.advanced.estimator = estimator;
+          settings.estimator = estimator;
           settings.hidden_occlusion = 1.0f;
           const auto images = render(drawing, settings);
           EXPECT_LT(mean_error(images.specular, drawing, radius, roughness), 0.02);

@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
                          }},
                     Case{"SpecularByConeAtHalfResolution", Quality::low,
                          [](HostView& view) {
-                           view.settings.specular = Specular::cone;
+                           view.settings.specular = Specular::table;
                            view.settings.half_resolution = true;
                          }},
                     Case{"TwoDepthLayers", Quality::high,

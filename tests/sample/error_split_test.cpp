@@ -55,7 +55,6 @@ TEST_F(ErrorSplitTest, SingleSliceInEachPixelWithoutHistoryIsMostlyNoise) {
   settings.tile_size = 1;
   settings.slices = 1;
   settings.history_frames = 0;
-  settings.advanced.filter_radius = 0;
   expect_largest(split(builtin_scene(), settings, 1), 0);
 }
 

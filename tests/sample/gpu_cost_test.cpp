@@ -142,7 +142,7 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), IsEmpty())
       << "visibility has no loop over occluder runs";
   settings.depth_layers = 2;
-  settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  settings.thickness_unit = passes::ThicknessUnit::back_faces;
   EXPECT_THAT(search_iterations(settings, {loop(1, 48), loop(2, 48)}), ElementsAre(2, 2))
       << "both depth layers share the loads of back faces";
   settings.slices = 1;

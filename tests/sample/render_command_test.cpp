@@ -82,20 +82,14 @@ TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   settings.radius = 0.1f;
   settings.slices = 3;
   settings.steps = 7;
-  settings.advanced.estimator = passes::Estimator::horizons;
+  settings.estimator = passes::Estimator::horizons;
   settings.thickness = 1.0f / 7.0f;
-  settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  settings.thickness_unit = passes::ThicknessUnit::back_faces;
   settings.hidden_occlusion = 0.123456789f;
-  settings.advanced.falloff = 0.25f;
   settings.tile_size = 4;
-  settings.advanced.snap_to_texels = false;
-  settings.advanced.extrapolation = false;
-  settings.advanced.unobserved = false;
-  settings.advanced.filter_radius = 0;
-  settings.advanced.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;
   settings.bent_normal = true;
-  settings.specular = passes::Specular::cone;
+  settings.specular = passes::Specular::table;
   settings.precision = passes::Precision::float32;
   expect_round_trip(kDefaults, shot);
 }

@@ -146,7 +146,7 @@ TEST_F(ViewerWindowTest, InvalidSettingIsReportedAndAnImageStaysVisible) {
 TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDepthLayer) {
   ViewState& state = view_->state();
   state.saved = state.settings;
-  state.saved.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  state.saved.thickness_unit = passes::ThicknessUnit::back_faces;
   state.comparison = Comparison::saved;
   state.settings.depth_layers = 2;
   state.settings.specular = passes::Specular::table;

@@ -52,7 +52,7 @@ TEST(PresetSweep, SweepContainsHalfResolutionWithSeveralTileSizesAndSteps) {
 TEST(PresetSweep, SweepChangesOnlyNumbersOfSamplesHalfResolutionAndDepthLayers) {
   OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
   base.history_frames = 0;
-  base.advanced.estimator = passes::Estimator::horizons;
+  base.estimator = passes::Estimator::horizons;
   base.hidden_occlusion = 0.1f;
   for (const Variant& way : preset_sweep(base)) {
     OcclusionSettings settings = way.settings;

@@ -252,7 +252,7 @@ typedef struct AlcoveView {
   float motion_offset[2];
   AlcoveImage roughness;  // perceptual, [0,1]; without an image, AlcoveSettings::roughness
   // The depth of the nearest back faces: the scene drawn like `depth`, but with front faces culled.
-  // Required with ALCOVE_THICKNESS_UNIT_BACK_FACES (alcove_advanced.h), and not read otherwise.
+  // Required with ALCOVE_THICKNESS_UNIT_BACK_FACES, and not read otherwise.
   AlcoveImage back_depth;
   // The second depth layer: the scene drawn like `depth`, but with back faces culled and without
   // the fragments that are not behind `depth` by at least a thousandth of their distance. Required

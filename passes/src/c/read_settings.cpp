@@ -161,20 +161,15 @@ tl::expected<OcclusionSettings, Failure> read(std::string_view text, OcclusionSe
   return settings;
 }
 
-Result read(const char* text, std::size_t length, AlcoveSettings* settings,
-            AlcoveAdvancedSettings* advanced) {
-  if (text == nullptr || advanced == nullptr)
-    return invalid("There is no text of settings or no AlcoveAdvancedSettings.");
-  if (auto right = check_size(advanced->struct_size, sizeof *advanced, "AlcoveAdvancedSettings");
-      !right)
-    return right;
+Result read(const char* text, std::size_t length, AlcoveSettings* settings) {
+  if (text == nullptr) return invalid("There is no text of settings.");
   return to_settings(settings)
       .and_then([&](const OcclusionSettings& known) {
         return read({text, length}, known);
       })
       .map([&](const OcclusionSettings& found) {
         const AlcoveSpecular specular = settings->specular;
-        *settings = from_settings(found, *advanced);
+        *settings = from_settings(found);
         settings->specular = found.specular == Specular::none ? specular : settings->specular;
       });
 }
@@ -185,9 +180,9 @@ Result read(const char* text, std::size_t length, AlcoveSettings* settings,
 using namespace alcove::passes;
 
 AlcoveResult alcoveReadSettings(const char* text, size_t length, AlcoveSettings* settings,
-                                AlcoveAdvancedSettings* advanced, char* message) {
+                                char* message) {
   Message said{};
-  const AlcoveResult result = guarded(said, [&] { return read(text, length, settings, advanced); });
+  const AlcoveResult result = guarded(said, [&] { return read(text, length, settings); });
   copy_text(result == ALCOVE_SUCCESS ? "" : said.data(), message,
             message == nullptr ? 0 : said.size());
   return result;

@@ -26,14 +26,13 @@ static_assert(same(Quality::console, ALCOVE_QUALITY_CONSOLE) &&
               same(Quality::ultra, ALCOVE_QUALITY_ULTRA) &&
               same(Quality::reference, ALCOVE_QUALITY_REFERENCE));
 static_assert(same(Estimator::horizons, ALCOVE_ESTIMATOR_HORIZONS) &&
-              same(Estimator::bitmask, ALCOVE_ESTIMATOR_BITMASK) &&
               same(Estimator::connected, ALCOVE_ESTIMATOR_CONNECTED));
+static_assert(same(Weighting::cosine, ALCOVE_WEIGHTING_COSINE) &&
+              same(Weighting::uniform, ALCOVE_WEIGHTING_UNIFORM));
 static_assert(same(ThicknessUnit::radius, ALCOVE_THICKNESS_UNIT_RADIUS) &&
-              same(ThicknessUnit::distance, ALCOVE_THICKNESS_UNIT_DISTANCE) &&
               same(ThicknessUnit::back_faces, ALCOVE_THICKNESS_UNIT_BACK_FACES));
 static_assert(same(Specular::slices, ALCOVE_SPECULAR_SLICES) &&
-              same(Specular::table, ALCOVE_SPECULAR_TABLE) &&
-              same(Specular::cone, ALCOVE_SPECULAR_CONE));
+              same(Specular::table, ALCOVE_SPECULAR_TABLE));
 static_assert(same(Precision::unorm8, ALCOVE_PRECISION_UNORM8) &&
               same(Precision::float16, ALCOVE_PRECISION_FLOAT16) &&
               same(Precision::float32, ALCOVE_PRECISION_FLOAT32));
@@ -45,7 +44,10 @@ void for_each_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.tile_size, ours.tile_size);
   visit(theirs.slices, ours.slices);
   visit(theirs.steps, ours.steps);
+  visit(theirs.estimator, ours.estimator);
+  visit(theirs.weighting, ours.weighting);
   visit(theirs.thickness, ours.thickness);
+  visit(theirs.thickness_unit, ours.thickness_unit);
   visit(theirs.hidden_occlusion, ours.hidden_occlusion);
   visit(theirs.depth_layers, ours.depth_layers);
   visit(theirs.history_frames, ours.history_frames);
@@ -57,18 +59,6 @@ void for_each_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
   visit(theirs.precision, ours.precision);
   visit(theirs.power, ours.power);
   visit(theirs.intensity, ours.intensity);
-}
-
-template <typename Theirs, typename Ours, typename Visit>
-void for_each_advanced_pair(Theirs& theirs, Ours& ours, const Visit& visit) {
-  visit(theirs.estimator, ours.estimator);
-  visit(theirs.thickness_unit, ours.thickness_unit);
-  visit(theirs.falloff, ours.falloff);
-  visit(theirs.filter_radius, ours.filter_radius);
-  visit(theirs.filter_tolerance_px, ours.filter_tolerance_px);
-  visit(theirs.snap_to_texels, ours.snap_to_texels);
-  visit(theirs.extrapolation, ours.extrapolation);
-  visit(theirs.unobserved, ours.unobserved);
 }
 
 constexpr auto kToCpp = [](const auto& theirs, auto& ours) {
@@ -87,19 +77,6 @@ constexpr auto kToCpp = [](const auto& theirs, auto& ours) {
 constexpr auto kToC = [](auto& theirs, const auto& ours) {
   theirs = static_cast<std::remove_reference_t<decltype(theirs)>>(ours);
 };
-
-AlcoveAdvancedSettings from_advanced(const AdvancedSettings& settings) {
-  AlcoveAdvancedSettings result{.struct_size = sizeof(AlcoveAdvancedSettings)};
-  for_each_advanced_pair(result, settings, kToC);
-  return result;
-}
-
-// Returns the constants that AlcoveSettings::advanced points to in the preset REFERENCE.
-const AlcoveAdvancedSettings* reference_advanced() {
-  static const AlcoveAdvancedSettings settings =
-      from_advanced(quality_settings(Quality::reference, 1.0f).advanced);
-  return &settings;
-}
 
 bool is_quality(std::uint32_t number) { return number < kNames<Quality>.size(); }
 
@@ -146,23 +123,14 @@ tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given
         "The setting 'specular' is 0; it must be a value of AlcoveSpecular. Without an image "
         "AlcoveView::specular nothing is computed for it.");
   }
-  if (given->advanced != nullptr) {
-    if (auto right = check_size(given->advanced->struct_size, sizeof *given->advanced,
-                                "AlcoveAdvancedSettings");
-        !right)
-      return tl::unexpected(std::move(right.error()));
-    for_each_advanced_pair(*given->advanced, settings.advanced, kToCpp);
-  }
   if (auto good = validate(settings); !good) return invalid(std::move(good.error().message));
   return settings;
 }
 
-AlcoveSettings from_settings(const OcclusionSettings& settings, AlcoveAdvancedSettings& advanced) {
-  advanced = from_advanced(settings.advanced);
+AlcoveSettings from_settings(const OcclusionSettings& settings) {
   AlcoveSettings result{.struct_size = sizeof(AlcoveSettings)};
   for_each_pair(result, settings, kToC);
   if (settings.specular == Specular::none) result.specular = ALCOVE_SPECULAR_SLICES;
-  result.advanced = &advanced;
   return result;
 }
 
@@ -177,19 +145,9 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
       return invalid("");
     const OcclusionSettings preset = quality_settings(static_cast<Quality>(number), radius);
     if (!validate(preset)) return invalid("");
-    AlcoveAdvancedSettings unused;
-    *settings = from_settings(preset, unused);
-    settings->advanced = preset.advanced == AdvancedSettings{} ? nullptr : reference_advanced();
+    *settings = from_settings(preset);
     return {};
   });
-}
-
-AlcoveResult alcoveGetAdvancedSettings(AlcoveQuality quality, AlcoveAdvancedSettings* settings) {
-  const std::uint32_t number = number_of(quality);
-  if (settings == nullptr || settings->struct_size != sizeof *settings || !is_quality(number))
-    return ALCOVE_ERROR_INVALID_INPUT;
-  *settings = from_advanced(quality_settings(static_cast<Quality>(number), 1.0f).advanced);
-  return ALCOVE_SUCCESS;
 }
 
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size) {

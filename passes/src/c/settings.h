@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "alcove/alcove.h"
-#include "alcove/alcove_advanced.h"
 #include "alcove/passes/settings.h"
 #include "c/failure.h"
 
@@ -26,9 +25,7 @@ template <typename Theirs>
 // say which outputs are requested. Returns a failure if `given` is null.
 [[nodiscard]] tl::expected<OcclusionSettings, Failure> to_settings(const AlcoveSettings* given);
 
-// Converts settings to those of the C interface. `advanced` receives the advanced settings, and the
-// result points to it.
-[[nodiscard]] AlcoveSettings from_settings(const OcclusionSettings& settings,
-                                           AlcoveAdvancedSettings& advanced);
+// Converts settings to those of the C interface.
+[[nodiscard]] AlcoveSettings from_settings(const OcclusionSettings& settings);
 
 }  // namespace alcove::passes

@@ -37,36 +37,26 @@ Reads reads_of(const GtaoInputs& inputs, const OcclusionSettings& settings) {
 // in radii, and the squares of such lengths would underflow.
 constexpr float kLargestRadius = 1e12f;
 
-// Returns whether the thickness is a fraction of the occluder's distance.
-bool of_distance(const OcclusionSettings& settings) {
-  return has_thickness(settings.advanced.estimator) &&
-         settings.advanced.thickness_unit == ThicknessUnit::distance;
-}
-
-std::array<NamedConstant, 20> constants_of(const WorkFrame& frame, const GtaoInputs& inputs,
+std::array<NamedConstant, 16> constants_of(const WorkFrame& frame, const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
-  const AdvancedSettings& advanced = settings.advanced;
+  const bool horizons = settings.estimator == Estimator::horizons;
   return {{{"kSliceCount", settings.slices},
            {"kStepCount", settings.steps},
            {"kBentNormal", flag(needs_bent_normal(settings))},
-           {"kEstimator", static_cast<std::uint32_t>(advanced.estimator)},
+           {"kHorizons", flag(horizons)},
            {"kTileSize", settings.tile_size},
            {"kPerspective", flag(is_perspective(projection))},
            {"kRoughnessTexture", flag(reads.roughness)},
            {"kRoughnessChannel", channel_if(reads.roughness, settings.roughness_channel)},
-           {"kFalloff", flag(advanced.falloff > 0.0f)},
-           {"kThicknessOfDistance", flag(of_distance(settings))},
            {"kBackFaces", flag(reads.back_faces)},
-           {"kSnapToTexels", flag(advanced.snap_to_texels)},
            {"kSecondLayer", flag(reads.second_layer)},
-           {"kExtrapolation", flag(advanced.extrapolation)},
-           {"kUnobserved", flag(advanced.unobserved)},
            {"kNormalEncoding", encoding_of(inputs.normals, inputs.normal_convention.encoding)},
            {"kReversed", flag(is_reversed(projection))},
            {"kInfiniteFar", flag(has_infinite_far(projection))},
            {"kAreas", flag(has_areas(frame))},
-           {"kMask", flag(bool(inputs.receiver_depth_ndc))}}};
+           {"kMask", flag(bool(inputs.receiver_depth_ndc))},
+           {"kUniform", flag(horizons && settings.weighting == Weighting::uniform)}}};
 }
 
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
@@ -88,7 +78,7 @@ AlcoveArea traced_tiles(const WorkFrame& frame, VkExtent2D read,
   // The groups of the reconstruction begin at multiples of 8 texels, of which one precedes the
   // first that is written at half resolution, and filter so many tiles on each side.
   const std::uint32_t texel = settings.half_resolution ? 2 : 1;
-  const std::uint32_t around = settings.advanced.filter_radius + 1;
+  const std::uint32_t around = filter_radius(settings) + 1;
   const auto first = [&](std::uint32_t begin) {
     const std::uint32_t texels = begin / texel;
     const std::uint32_t group = (texels - std::min(texels, texel - 1)) / 8 * 8;
@@ -123,9 +113,8 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
       radius,
       index,
-      settings.thickness * (of_distance(settings) ? 1.0f : radius),
+      settings.thickness,
       maths::hidden_exponent(settings.hidden_occlusion),
-      settings.advanced.falloff,
       settings.roughness,
       step.constant,
       step.per_inverse_depth};

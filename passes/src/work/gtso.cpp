@@ -21,8 +21,7 @@ tl::expected<void, Error> check(const WorkList& list, const WorkFrame& frame,
   if (auto good = validate(settings); !good) return good;
   if (!specular_reads_bent_normal(settings)) {
     return tl::unexpected(Error{"The pass specular occlusion has the setting 'specular' " +
-                                std::string(name_of(settings.specular)) +
-                                "; it must be table or cone."});
+                                std::string(name_of(settings.specular)) + "; it must be table."});
   }
   if (has_areas(frame)) {
     const AlcoveArea written = written_area(frame, list.size(inputs.depth));
@@ -87,13 +86,12 @@ tl::expected<Texture, Error> describe_gtso(WorkList& list, const WorkFrame& fram
       maths::uvec2(results.width, results.height),
       settings.roughness};
   return list
-      .dispatch(
-          {.label = "specular occlusion",
-           .shader = settings.specular == Specular::table ? Shader::gtso_by_table : Shader::gtso,
-           .constants = constants,
-           .images = images,
-           .parameters = bytes_of(parameters),
-           .size = {results.width, results.height, 1}})
+      .dispatch({.label = "specular occlusion",
+                 .shader = Shader::gtso,
+                 .constants = constants,
+                 .images = images,
+                 .parameters = bytes_of(parameters),
+                 .size = {results.width, results.height, 1}})
       .map([&] { return result; });
 }
 

@@ -50,7 +50,7 @@ std::array<NamedConstant, 14> constants_of(const WorkFrame& frame, const Reconst
                                            const maths::Projection& projection, Past past) {
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
   return {{{"kTileSize", inputs.raw_occlusion.tile_size},
-           {"kFilterRadius", settings.advanced.filter_radius},
+           {"kFilterRadius", filter_radius(settings)},
            {"kBentNormal", flag(bool(inputs.raw_occlusion.bent))},
            {"kMotion", flag(inputs.motion && past == Past::moving)},
            {"kPerspective", flag(is_perspective(projection))},

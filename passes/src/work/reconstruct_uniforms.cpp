@@ -107,11 +107,6 @@ maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& vie
   return maths::mat4(maths::transpose(plane_from_view * maths::mat3(view_from_normal)));
 }
 
-// Whether each pixel averages the traced pixels around it, as kBetween of the shader.
-bool is_between(const ReconstructInputs& inputs, const OcclusionSettings& settings) {
-  return inputs.raw_occlusion.tile_size > 1 && settings.advanced.filter_radius > 0;
-}
-
 // Returns 1 / ReconstructParameters::wide_sharpness. The four traced pixels around a pixel are
 // needed less the more slices each of them has. A static image averages ever more frames, which
 // make the samples of neighbours dispensable. Fitted to error and grain of `alcove compare --frames
@@ -160,6 +155,11 @@ maths::vec4 traced_range(maths::vec2 size_px, maths::vec2 offset, float tile_siz
   return maths::vec4(maths::min(offset, largest), largest);
 }
 
+// The distance from a pixel's tangent plane at which the filter gives a neighbour a quarter of the
+// full weight, in units of a pixel's width at its depth, with one slice and no history. Fitted to
+// the errors of `alcove compare`.
+constexpr float kFilterTolerancePx = 1.5f;
+
 }  // namespace
 
 maths::ReconstructParameters reconstruct_parameters(
@@ -188,9 +188,8 @@ maths::ReconstructParameters reconstruct_parameters(
   parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                                  projection.uv_to_slope.w);
   // More slices reduce the distance from the tangent plane that is tolerated.
-  parameters.tolerance =
-      std::sqrt(static_cast<float>(inputs.raw_occlusion.slices)) /
-      (settings.advanced.filter_tolerance_px * std::abs(maths::ray_per_px(projection).y));
+  parameters.tolerance = std::sqrt(static_cast<float>(inputs.raw_occlusion.slices)) /
+                         (kFilterTolerancePx * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   // The distances between the borders of the area that is read and those of the area that is
   // written were the same in the previous frame.
@@ -234,8 +233,9 @@ maths::ReconstructParameters reconstruct_parameters(
       maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px / texel + 0.5f);
   parameters.roughness = settings.roughness;
   const float window = window_px(inputs.raw_occlusion);
-  const float sharpness =
-      is_between(inputs, settings) ? near_sharpness(frame, inputs, texel) : 1.0f;
+  // kBetween of the shader: each pixel averages the traced pixels around it.
+  const bool is_between = inputs.raw_occlusion.tile_size > 1;
+  const float sharpness = is_between ? near_sharpness(frame, inputs, texel) : 1.0f;
   parameters.wide_sharpness = 1.0f / sharpness;
   parameters.first_sharpness = sharpness * 0.125f / (window * window);
   parameters.smallest_window = smallest_window(inputs.raw_occlusion, texel) / sharpness;

@@ -95,8 +95,7 @@ OcclusionSettings quality_settings(Quality quality, float radius) {
       settings.steps = 64;
       settings.history_frames = 0;
       settings.precision = Precision::float32;
-      settings.advanced.estimator = Estimator::horizons;
-      settings.advanced.filter_radius = 0;
+      settings.estimator = Estimator::horizons;
       break;
   }
   return settings;
@@ -108,14 +107,6 @@ tl::expected<void, Error> validate(const OcclusionSettings& settings) {
     return tl::unexpected(Error{
         "The setting 'half_resolution' is true with a tile_size of 1; choose a tile_size of at "
         "least 2."});
-  }
-  const AdvancedSettings& advanced = settings.advanced;
-  if (advanced.falloff > 0.0f && has_thickness(advanced.estimator)) {
-    return tl::unexpected(
-        Error{"The setting 'falloff' is " + number_text(advanced.falloff) + " with the estimator " +
-              std::string(name_of(advanced.estimator)) +
-              ", whose sectors are either occluded or open; set it to 0, or choose the estimator "
-              "horizons."});
   }
   return {};
 }

@@ -14,7 +14,6 @@
 #include "spirv/gtao.h"
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
-#include "spirv/gtso_by_table.h"
 #include "spirv/inspect.h"
 #include "spirv/linear_depth.h"
 #include "spirv/mask_depth.h"
@@ -61,8 +60,7 @@ constexpr ShaderSource kSources[] = {
     {"mask_depth", kMaskDepth},
     {"mask_depth_integer", kMaskDepthInteger},
     {"multi_bounce", kMultiBounce},
-    {"gtso", kGtso},
-    {"gtso_by_table", kGtsoByTable, kGtsoTable},
+    {"gtso", kGtso, kGtsoTable},
     {"apply", kApply},
     {"apply_specular", kApplySpecular, kReflectanceTable},
     {"environment_map", kEnvironmentMap},

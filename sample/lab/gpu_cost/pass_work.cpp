@@ -31,7 +31,7 @@ struct Samples {
 };
 
 Samples samples_of(const passes::OcclusionSettings& settings) {
-  const bool connected = settings.advanced.estimator == passes::Estimator::connected;
+  const bool connected = settings.estimator == passes::Estimator::connected;
   Samples samples;
   samples.loads_per_step = passes::needs_back_depth(settings) ? 2 : 1;
   samples.half_slice =
@@ -85,17 +85,11 @@ std::optional<double> sampling_iterations(const passes::OcclusionSettings& setti
   return std::nullopt;
 }
 
-// Whether a loop over the ends of occluder runs exists.
-bool integrates_runs(const passes::OcclusionSettings& settings) {
-  return settings.advanced.estimator == passes::Estimator::bitmask ||
-         passes::needs_back_depth(settings);
-}
-
-// gtao.comp.
+// gtao.comp. With back faces there is a loop over the ends of occluder runs.
 std::optional<double> gtao_iterations(const passes::OcclusionSettings& settings, Loops loops,
                                       std::uint32_t index) {
   if (loops[index].loads == 0)
-    return integrates_runs(settings) ? std::optional(kOccluderRuns) : std::nullopt;
+    return passes::needs_back_depth(settings) ? std::optional(kOccluderRuns) : std::nullopt;
   return sampling_iterations(settings, loops, index);
 }
 

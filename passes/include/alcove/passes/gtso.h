@@ -1,5 +1,4 @@
-// Ground-truth specular occlusion: Jimenez, Wu, Pesce and Jarabo 2016, section 6, by cones or by
-// its table.
+// Ground-truth specular occlusion by the table of Jimenez, Wu, Pesce and Jarabo 2016, section 6.
 #pragma once
 
 #include "alcove/passes/frame.h"
@@ -29,7 +28,7 @@ struct GtsoInputs {
 // whole lobe; this pass leaves out the part of the lobe that lies below the surface.
 //
 // Errors: a missing input, inputs of different sizes, settings that validate() refuses, or a
-// setting `specular` other than `table` and `cone`.
+// setting `specular` other than `table`.
 [[nodiscard]] tl::expected<framegraph::Texture, Error> add_gtso(const Frame& frame,
                                                                 const GtsoInputs& inputs,
                                                                 const OcclusionSettings& settings);

@@ -46,7 +46,6 @@ enum class Shader : std::uint8_t {
   mask_depth_integer,
   multi_bounce,
   gtso,
-  gtso_by_table,
   apply,
   apply_specular,
   environment_map,

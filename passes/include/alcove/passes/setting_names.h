@@ -20,14 +20,16 @@ template <>
 inline constexpr auto kNames<Quality> =
     std::to_array<std::string_view>({"console", "low", "medium", "high", "ultra", "reference"});
 template <>
-inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons", "bitmask",
+inline constexpr auto kNames<Estimator> = std::to_array<std::string_view>({"horizons",
                                                                            "connected"});
 template <>
-inline constexpr auto kNames<ThicknessUnit> = std::to_array<std::string_view>({"radius", "distance",
+inline constexpr auto kNames<Weighting> = std::to_array<std::string_view>({"cosine", "uniform"});
+template <>
+inline constexpr auto kNames<ThicknessUnit> = std::to_array<std::string_view>({"radius",
                                                                                "back_faces"});
 template <>
-inline constexpr auto kNames<Specular> = std::to_array<std::string_view>({"none", "slices", "table",
-                                                                          "cone"});
+inline constexpr auto kNames<Specular> = std::to_array<std::string_view>({"none", "slices",
+                                                                          "table"});
 template <>
 inline constexpr auto kNames<Precision> = std::to_array<std::string_view>({"unorm8", "float16",
                                                                            "float32"});
@@ -38,7 +40,7 @@ constexpr std::string_view name_of(Choice value) {
   return kNames<Choice>[static_cast<std::size_t>(value)];
 }
 
-// Returns all names of an enum in one text, for example "horizons, bitmask or connected".
+// Returns all names of an enum in one text, for example "unorm8, float16 or float32".
 template <typename Choice>
 std::string names_text() {
   const auto& names = kNames<Choice>;

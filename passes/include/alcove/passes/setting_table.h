@@ -30,7 +30,6 @@ enum class SettingGroup : std::uint8_t {
   main,
   output,   // an output to compute; in C, an output is selected by giving an image for it
   surface,  // a material parameter that is used if there is no texture for it
-  advanced,
 };
 
 struct SettingInfo {
@@ -44,11 +43,10 @@ struct SettingInfo {
 };
 
 // Calls `visit(info, field)` for every setting except the outputs `visibility` and `linear_depth`.
-// The main settings come first, the advanced ones last.
 template <typename Settings, typename Visit>
 void for_each_setting(Settings& settings, const Visit& visit) {
   using S = const OcclusionSettings&;
-  constexpr auto has_thickness = [](S s) { return passes::has_thickness(s.advanced.estimator); };
+  constexpr auto has_thickness = [](S s) { return passes::has_thickness(s); };
   visit(
       SettingInfo{
           .name = "radius",
@@ -75,12 +73,29 @@ void for_each_setting(Settings& settings, const Visit& visit) {
                             "find thinner occluders.",
                     .range = {.minimum = 2, .maximum = 64}},
         settings.steps);
+  visit(SettingInfo{.name = "estimator",
+                    .help = "Assumption about the thickness of occluders: infinite (horizons), or "
+                            "finite and without gaps between the samples of one surface "
+                            "(connected)."},
+        settings.estimator);
+  visit(SettingInfo{.name = "weighting",
+                    .help = "For the estimator horizons: weight of a direction in visibility, the "
+                            "cosine of its angle to the normal, or 1 (uniform).",
+                    .matters = [](S s) { return s.estimator == Estimator::horizons; }},
+        settings.weighting);
   visit(SettingInfo{.name = "thickness",
-                    .help = "Largest thickness of occluders, in the unit that thickness_unit "
-                            "selects: by default a fraction of the radius. Larger values darken.",
+                    .help = "Largest thickness of occluders as a fraction of the radius. Larger "
+                            "values darken.",
                     .slider = {.maximum = 1.0f},
                     .matters = has_thickness},
         settings.thickness);
+  visit(
+      SettingInfo{.name = "thickness_unit",
+                  .help = "What limits the thickness of occluders: the setting thickness (radius), "
+                          "or the back face behind them in a second depth buffer and, where there "
+                          "is none, the setting thickness (back_faces).",
+                  .matters = has_thickness},
+      settings.thickness_unit);
   visit(SettingInfo{.name = "hidden_occlusion",
                     .help =
                         "Average fraction of the volume hidden behind occluders that is treated as "
@@ -115,7 +130,7 @@ void for_each_setting(Settings& settings, const Visit& visit) {
   visit(SettingInfo{.name = "specular",
                     .help = "Method of specular occlusion: none, integration over the slices "
                             "(slices, smallest error), or from visibility and the bent normal with "
-                            "a table (table) or with cones (cone)."},
+                            "a table (table)."},
         settings.specular);
   visit(
       SettingInfo{
@@ -151,67 +166,6 @@ void for_each_setting(Settings& settings, const Visit& visit) {
           .group = SettingGroup::surface,
           .range = {.maximum = 3}},
       settings.roughness_channel);
-
-  constexpr SettingGroup advanced = SettingGroup::advanced;
-  visit(
-      SettingInfo{
-          .name = "estimator",
-          .help = "Assumption about the thickness of occluders: infinite (horizons), finite for "
-                  "each sample (bitmask), or finite and without gaps between the samples of one "
-                  "surface (connected).",
-          .group = advanced},
-      settings.advanced.estimator);
-  visit(
-      SettingInfo{
-          .name = "thickness_unit",
-          .help = "Unit of the setting thickness: a fraction of the radius (radius), or of the "
-                  "occluder's depth along the view axis (distance). With back_faces, an occluder "
-                  "ends at the back face behind it in a second depth buffer; if there is none, "
-                  "thickness counts as with radius.",
-          .group = advanced,
-          .matters = has_thickness},
-      settings.advanced.thickness_unit);
-  visit(SettingInfo{.name = "falloff",
-                    .help = "For the estimator horizons: fraction of the radius, at its outer end, "
-                            "over which occluders fade out. 0 turns fading off.",
-                    .group = advanced,
-                    .range = {.maximum = 1.0f},
-                    .matters = [](S s) { return !passes::has_thickness(s.advanced.estimator); }},
-        settings.advanced.falloff);
-  visit(SettingInfo{.name = "filter_radius",
-                    .help = "Radius of the spatial filter in tiles for pixels with fewer than two "
-                            "frames of history; other pixels use 1. 0 turns the filter off.",
-                    .group = advanced,
-                    .range = {.maximum = 3}},
-        settings.advanced.filter_radius);
-  visit(
-      SettingInfo{
-          .name = "filter_tolerance_px",
-          .help =
-              "Distance of a neighbour from the pixel's tangent plane, in pixels, at which the "
-              "spatial filter gives it the weight 0.25. Smaller values keep edges sharper. The "
-              "value holds for one slice and no history, and shrinks with more slices and frames.",
-          .group = advanced,
-          .range = {.above_minimum = true},
-          .slider = {.minimum = 0.1f, .maximum = 8.0f},
-          .matters = [](S s) { return s.advanced.filter_radius > 0; }},
-      settings.advanced.filter_tolerance_px);
-  visit(SettingInfo{.name = "snap_to_texels",
-                    .help = "Moves each depth sample to the centre of its texel, which keeps "
-                            "tilted planes from occluding themselves.",
-                    .group = advanced},
-        settings.advanced.snap_to_texels);
-  visit(SettingInfo{.name = "extrapolation",
-                    .help = "For the estimator connected: assumes that surfaces which leave the "
-                            "image continue beyond its border, where they can occlude.",
-                    .group = advanced},
-        settings.advanced.extrapolation);
-  visit(SettingInfo{.name = "unobserved",
-                    .help = "For the estimator connected: partly excludes directions that the "
-                            "depth buffer does not show (behind a foreground, or beyond the "
-                            "image's border) from the average. If off, they count as unoccluded.",
-                    .group = advanced},
-        settings.advanced.unobserved);
 }
 
 }  // namespace alcove::passes

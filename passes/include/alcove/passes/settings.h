@@ -4,7 +4,6 @@
 
 #include <cstdint>
 
-#include "alcove/passes/advanced.h"
 #include "alcove/passes/frame.h"
 
 namespace alcove::passes {
@@ -29,9 +28,22 @@ enum class Quality : std::uint8_t {
   reference,
 };
 
-// How specular occlusion is computed: AlcoveSpecular (alcove_settings.h). `table` and `cone` are
-// those of [Jimenez 2016], section 6 (shaders/maths/gtso.h).
-enum class Specular : std::uint8_t { none, slices, table, cone };
+// How the thickness of occluders is estimated: AlcoveEstimator (alcove_settings.h).
+enum class Estimator : std::uint8_t { horizons, connected };
+
+// How visibility weights directions: AlcoveWeighting (alcove_settings.h).
+enum class Weighting : std::uint8_t { cosine, uniform };
+
+// The unit of OcclusionSettings::thickness: AlcoveThicknessUnit (alcove_settings.h). With
+// `back_faces`, an occluder ends at the nearest back face on its view ray
+// (OcclusionInputs::back_depth_ndc). For a closed solid, that is the point where the ray leaves it,
+// unless another solid stands inside it. A card in front of a solid is assumed to extend to the
+// solid's back, because two depths cannot distinguish this case.
+enum class ThicknessUnit : std::uint8_t { radius, back_faces };
+
+// How specular occlusion is computed: AlcoveSpecular (alcove_settings.h). `table` is that of
+// [Jimenez 2016], section 6 (shaders/maths/gtso_table.h).
+enum class Specular : std::uint8_t { none, slices, table };
 
 // AlcoveSettings (alcove_settings.h) describes the fields, apart from those for outputs.
 struct OcclusionSettings {
@@ -39,7 +51,10 @@ struct OcclusionSettings {
   std::uint32_t tile_size = 4;
   std::uint32_t slices = 2;
   std::uint32_t steps = 12;
-  float thickness = 0.3f;  // in the unit AdvancedSettings::thickness_unit
+  Estimator estimator = Estimator::connected;
+  Weighting weighting = Weighting::cosine;
+  float thickness = 0.3f;
+  ThicknessUnit thickness_unit = ThicknessUnit::radius;
   float hidden_occlusion = 0.286f;
   std::uint32_t depth_layers = 1;
   std::uint32_t history_frames = 32;
@@ -59,8 +74,6 @@ struct OcclusionSettings {
   float power = 1.0f;
   float intensity = 1.0f;
 
-  AdvancedSettings advanced;
-
   friend bool operator==(const OcclusionSettings&, const OcclusionSettings&) = default;
 };
 
@@ -72,16 +85,28 @@ struct OcclusionSettings {
 // calls it.
 [[nodiscard]] tl::expected<void, Error> validate(const OcclusionSettings& settings);
 
+// Returns whether occluders have a finite thickness, so that thickness, hidden_occlusion and
+// depth_layers have an effect.
+[[nodiscard]] constexpr bool has_thickness(const OcclusionSettings& settings) {
+  return settings.estimator == Estimator::connected;
+}
+
+// Returns the radius of the spatial filter in tiles, for pixels with fewer than two frames of
+// history. Pixels with more history use a radius of 1. There is no filter (0) if every pixel is
+// traced with 8 slices or more, whose noise is smaller than the detail that a filter would blur.
+[[nodiscard]] constexpr std::uint32_t filter_radius(const OcclusionSettings& settings) {
+  return settings.tile_size == 1 && settings.slices >= 8 ? 0 : 2;
+}
+
 // Returns whether OcclusionInputs::back_depth_ndc is read. If not, an engine need not draw back
 // faces.
 [[nodiscard]] constexpr bool needs_back_depth(const OcclusionSettings& settings) {
-  return has_thickness(settings.advanced.estimator) &&
-         settings.advanced.thickness_unit == ThicknessUnit::back_faces;
+  return has_thickness(settings) && settings.thickness_unit == ThicknessUnit::back_faces;
 }
 
 // Returns whether OcclusionInputs::second_depth_ndc is read.
 [[nodiscard]] constexpr bool needs_second_depth(const OcclusionSettings& settings) {
-  return has_thickness(settings.advanced.estimator) && settings.depth_layers > 1;
+  return has_thickness(settings) && settings.depth_layers > 1;
 }
 
 // Returns whether all frames have the same noise, so that Frame::index is not read.
@@ -98,7 +123,7 @@ struct OcclusionSettings {
 
 // Returns whether add_gtso() computes specular occlusion, from visibility and the bent normal.
 [[nodiscard]] constexpr bool specular_reads_bent_normal(const OcclusionSettings& settings) {
-  return settings.specular == Specular::table || settings.specular == Specular::cone;
+  return settings.specular == Specular::table;
 }
 
 // Returns whether bent normals are computed, as an output or for specular occlusion.
