@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <random>
 #include <string>
 
 #include "alcove/passes/setting_table.h"
 #include "c/settings.h"
+#include "maths/random_input.h"
 
 namespace alcove::passes {
 namespace {
@@ -141,9 +141,7 @@ TEST(CReadSettings, TextThatCannotBeUsedIsReportedInASentenceAndChangesNothing) 
 
 TEST(CReadSettings, DamagedTextNeverChangesSettingsIfItIsRefused) {
   const std::string good = file_of(unusual_settings());
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  maths_test::RandomInput random;
   for (std::size_t length = 0; length < good.size() - 2; ++length) {
     Settings found;
     EXPECT_EQ(found.read(good.substr(0, length)), ALCOVE_ERROR_INVALID_INPUT) << length;
@@ -151,7 +149,7 @@ TEST(CReadSettings, DamagedTextNeverChangesSettingsIfItIsRefused) {
   for (int i = 0; i < 2000; ++i) {
     std::string text = good;
     for (int change = 0; change < 3; ++change)
-      text[random() % text.size()] = static_cast<char>(random());
+      text[random.bits() % text.size()] = static_cast<char>(random.bits());
     Settings found;
     const std::string before = found.printed();
     if (found.read(text) != ALCOVE_SUCCESS) {

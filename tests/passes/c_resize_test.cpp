@@ -1,11 +1,9 @@
-// Records frames whose sizes, settings, images and number of views change at random. The test runs
-// for a few seconds, or for as many as the environment variable ALCOVE_RESIZE_SECONDS says, which
-// is an hour in the soak test.
+// Records frames whose sizes, settings, images and number of views change at random. The soak test
+// sets ALCOVE_RESIZE_FRAMES, the number of frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -20,20 +18,19 @@
 namespace alcove::passes {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::uint32_t kMostViews = 3;
 constexpr std::uint32_t kMostSide = 40;
-constexpr std::uint32_t kRound = 200;  // frames between two calls of CResize::rest()
-constexpr std::chrono::seconds kProgress(30);
+constexpr std::uint32_t kRound = 40;        // frames between two calls of CResize::rest()
+constexpr std::uint32_t kProgress = 4'000;  // frames between two lines of progress
 
-std::chrono::seconds wanted_time() {
-  const char* text = std::getenv("ALCOVE_RESIZE_SECONDS");
-  return std::chrono::seconds(text != nullptr ? std::strtol(text, nullptr, 10) : 3);
+std::uint32_t wanted_frames() {
+  const char* text = std::getenv("ALCOVE_RESIZE_FRAMES");
+  return text != nullptr ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : kRound;
 }
 
-// Settings and optional images of a view. The test makes only a few kinds, because each needs
-// pipelines of its own, and a software device takes longer to create pipelines than to run frames.
+// Settings and optional images of a view. A round has only two kinds and two cameras, because each
+// needs pipelines of its own, and a software device takes longer to create pipelines than to run
+// frames.
 struct Kind {
   OcclusionSettings settings;
   // The images that are not given: bit i stands for element i of kInputs or kOutputs.
@@ -70,7 +67,7 @@ class CResize : public CInterface {
   void SetUp() override;
   void TearDown() override;
 
-  void run_for(std::chrono::seconds time);
+  void run_frames(std::uint32_t count);
 
  private:
   std::uint32_t below(std::uint32_t count) { return random_.bits() % count; }
@@ -86,13 +83,15 @@ class CResize : public CInterface {
   void drop(ViewState& state);
   void change(ViewState& state);
   void draw_frame(std::span<ViewState> all, bool discards);
-  void run_round(Clock::time_point end);
+  void choose_kinds();
+  void run_round();
   AlcoveMemory rest();
   void expect_right(ViewState& state);
 
   maths_test::RandomInput random_;
   Context context_;
-  std::array<Kind, 8> kinds_;
+  std::array<Kind, 2> kinds_;
+  std::array<TestView, 2> cameras_;
   std::array<ViewState, kMostViews> views_;
   std::array<ViewState, 1> resting_;
   std::uint32_t frame_ = 0;
@@ -108,7 +107,7 @@ void CResize::SetUp() {
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
   info.debug_utils = VK_TRUE;
   context_ = create_context(info);
-  std::ranges::generate(kinds_, [&] { return any_kind(); });
+  choose_kinds();
   for (std::uint32_t i = 0; i < kMostViews; ++i) views_.at(i).id = i;
   resting_[0].id = kMostViews;
   make_images(resting_[0], {16, 12});
@@ -135,8 +134,7 @@ Kind CResize::any_kind() {
 
 // Makes new images of `size` pixels that are used completely, with another random camera and scene.
 void CResize::make_images(ViewState& state, VkExtent2D size) {
-  const std::vector<TestView> views = test_views();
-  state.camera = views[below(static_cast<std::uint32_t>(views.size()))];
+  state.camera = cameras_.at(below(cameras_.size()));
   state.scene = chance(2) ? ball_on_floor() : groove(0.8);
   HostView from = draw_view(size.width, size.height, state.scene, state.camera);
   from.id = state.id;
@@ -239,12 +237,14 @@ void CResize::draw_frame(std::span<ViewState> all, bool discards) {
   for (ViewState& state : all)
     if (state.is_shown) views.push_back(recorded_view(state));
   if (views.empty()) return;
+  const AlcoveResult result = record(*context_, make_frame(views, frame_), discards);
+  ASSERT_EQ(result, ALCOVE_SUCCESS) << alcoveGetMessage(context_.get());
+  most_transients_ = std::max(most_transients_, get_memory(*context_).transients);
   if (discards) {
-    discard_frame(*context_, views, frame_);
+    EXPECT_EQ(alcoveDiscardFrame(context_.get()), ALCOVE_SUCCESS);
     return;
   }
-  run_frame(*context_, views, frame_++);
-  most_transients_ = std::max(most_transients_, get_memory(*context_).transients);
+  ++frame_;
   for (ViewState& state : all)
     if (state.is_shown) remember(state);
 }
@@ -269,8 +269,16 @@ void CResize::expect_right(ViewState& state) {
   expect_within(found.multi_bounce, 0.0f, "multi-bounce");
 }
 
-void CResize::run_round(Clock::time_point end) {
-  for (std::uint32_t i = 0; i < kRound && Clock::now() < end && !HasFailure(); ++i) {
+void CResize::choose_kinds() {
+  std::ranges::generate(kinds_, [&] { return any_kind(); });
+  const std::vector<TestView> views = test_views();
+  std::ranges::generate(cameras_,
+                        [&] { return views[below(static_cast<std::uint32_t>(views.size()))]; });
+}
+
+void CResize::run_round() {
+  choose_kinds();
+  for (std::uint32_t i = 0; i < kRound && !HasFailure(); ++i) {
     SCOPED_TRACE("frame " + std::to_string(frame_));
     std::ranges::for_each(views_, [&](ViewState& state) { change(state); });
     const bool discards = chance(20);
@@ -302,26 +310,22 @@ AlcoveMemory CResize::rest() {
   return memory;
 }
 
-void CResize::run_for(std::chrono::seconds time) {
+void CResize::run_frames(std::uint32_t count) {
   const AlcoveMemory first = rest();
-  const Clock::time_point begin = Clock::now();
-  Clock::time_point told = begin;
-  while (Clock::now() - begin < time && !HasFailure()) {
-    run_round(begin + time);
+  for (std::uint32_t done = kRound; done <= count && !HasFailure(); done += kRound) {
+    run_round();
     const AlcoveMemory now = rest();
     EXPECT_EQ(now.history, first.history);
-    // The memory of transients does not shrink: it is that of the largest frame so far.
+    // The heap of transients may still have the size of the largest frame, recorded or discarded,
+    // because it shrinks only after many smaller ones.
     EXPECT_LE(now.allocated, first.allocated + most_transients_);
-    if (Clock::now() - told > kProgress) {
-      told = Clock::now();
-      std::cout << std::chrono::duration_cast<std::chrono::seconds>(told - begin).count() << " s, "
-                << frame_ << " frames, " << now.allocated << " bytes" << std::endl;
-    }
+    if (done % kProgress == 0)
+      std::cout << done << " frames, " << now.allocated << " bytes" << std::endl;
   }
 }
 
 TEST_F(CResize, ResultsStayInRangeAndMemoryBoundedWhileSizesSettingsAndViewsChangeAtRandom) {
-  run_for(wanted_time());
+  run_frames(wanted_frames());
 }
 
 }  // namespace
