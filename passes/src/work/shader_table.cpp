@@ -5,12 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "spirv/apply.h"
-#include "spirv/apply_specular.h"
-#include "spirv/environment_half.h"
-#include "spirv/environment_harmonics.h"
-#include "spirv/environment_map.h"
-#include "spirv/environment_prefilter.h"
 #include "spirv/gtao.h"
 #include "spirv/gtao_bent.h"
 #include "spirv/gtao_bent_specular.h"
@@ -36,7 +30,6 @@
 #include "spirv/upsample_bent_specular.h"
 #include "spirv/upsample_specular.h"
 #include "tables/gtso.h"
-#include "tables/reflectance.h"
 
 namespace alcove::passes {
 
@@ -69,12 +62,6 @@ constexpr ShaderSource kSources[] = {
     {"mask_depth_integer", kMaskDepthInteger},
     {"multi_bounce", kMultiBounce},
     {"gtso", kGtso, kGtsoTable},
-    {"apply", kApply},
-    {"apply_specular", kApplySpecular, kReflectanceTable},
-    {"environment_map", kEnvironmentMap},
-    {"environment_half", kEnvironmentHalf},
-    {"environment_prefilter", kEnvironmentPrefilter},
-    {"environment_harmonics", kEnvironmentHarmonics},
     {"inspect", kInspect},
 };
 static_assert(std::size(kSources) == kShaderCount);
