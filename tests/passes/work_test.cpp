@@ -292,7 +292,9 @@ TEST_F(WorkOfView, ImageThatADispatchWritesIsBoundOnceAndVisibilityNeedsAtMostFo
         EXPECT_EQ(bindings[binding.resource], 1u) << binding.name;
         ++written;
       }
-      if ((choice & 7) == 1) EXPECT_LE(written, 4u);
+      if ((choice & 7) == 1) {
+        EXPECT_LE(written, 4u);
+      }
     }
   }
 }
