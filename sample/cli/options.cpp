@@ -47,7 +47,7 @@ constexpr std::array<CommandRow, 10> kCommands{{
     {Command::motion, kLaboratory, "motion",
      "measure errors and flicker while the camera or an object moves", Scenes::one, 960, 540, 48},
     {Command::cost, kLaboratory, "cost",
-     "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
+     "print registers, instructions and modelled time of the passes on three GPUs; needs no GPU",
      Scenes::none, 1920, 1080},
     {Command::measure, kLaboratory, "measure",
      "time each pass on the device, beside the times that the model of `cost` predicts",
