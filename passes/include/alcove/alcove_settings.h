@@ -12,8 +12,7 @@ extern "C" {
 
 // Presets for alcoveGetSettings. A field that is not in the table has the default that
 // AlcoveSettings states. There are three exceptions: CONSOLE sets half_resolution, ULTRA sets
-// depth_layers to 2, and REFERENCE sets the precision FLOAT32 and, in its advanced settings, the
-// paper's infinitely thick occluders and no filter.
+// depth_layers to 2, and REFERENCE sets the precision FLOAT32 and the paper's estimator HORIZONS.
 //
 //              slices  steps  tile_size  history_frames  depth fetches per pixel and frame
 //   CONSOLE         1      8        8              32                                0.25
@@ -28,35 +27,43 @@ typedef enum AlcoveQuality {
   ALCOVE_QUALITY_MEDIUM = 2,   // LOW with two slices and more steps; the preset to begin with
   ALCOVE_QUALITY_HIGH = 3,     // traces one of 2x2 pixels in each frame
   // HIGH with 10 steps in each of two depth layers. A view without the image
-  // AlcoveView::second_depth then fails with a sentence; set depth_layers to 1, or choose HIGH.
+  // ALCOVE_IMAGE_SECOND_DEPTH then fails with a sentence; set depth_layers to 1, or choose HIGH.
   ALCOVE_QUALITY_ULTRA = 4,
   ALCOVE_QUALITY_REFERENCE = 5,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
-// How specular occlusion is computed, if AlcoveView::specular has an image.
+// Estimators of occlusion: they differ in how thick they assume occluders to be, because a depth
+// buffer shows only the front faces of occluders.
+typedef enum AlcoveEstimator {
+  // Occluders are infinitely thick. The horizon search of [Jimenez 2016].
+  ALCOVE_ESTIMATOR_HORIZONS = 0,
+  // A visibility bitmask in which consecutive samples of one surface are connected, so that no
+  // light passes between them. It is the default, and suits both thin objects and walls.
+  ALCOVE_ESTIMATOR_CONNECTED = 1,
+  ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
+} AlcoveEstimator;
+
+// What limits the thickness of occluders.
+typedef enum AlcoveThicknessUnit {
+  // AlcoveSettings::thickness, in radii.
+  ALCOVE_THICKNESS_UNIT_RADIUS = 0,
+  // The back faces in ALCOVE_IMAGE_BACK_DEPTH, at which occluders end. At pixels without a back face
+  // the thickness is that of RADIUS.
+  ALCOVE_THICKNESS_UNIT_BACK_FACES = 1,
+  ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
+} AlcoveThicknessUnit;
+
+// How specular occlusion is computed, if a view has the image ALCOVE_IMAGE_SPECULAR.
 typedef enum AlcoveSpecular {
+  ALCOVE_SPECULAR_NONE = 0,  // not at all: a view with that image is refused
   // Integrates the GGX lobe over the slices that visibility is computed from: the most exact.
   ALCOVE_SPECULAR_SLICES = 1,
-  // The next two use visibility and the bent normal, which are then computed too.
-  ALCOVE_SPECULAR_TABLE = 2,  // the GGX lobe within the visibility cone, by a 54 KiB table
-  ALCOVE_SPECULAR_CONE = 3,   // the exact intersection of two cones
+  // The GGX lobe within a cone around the bent normal, by a table of 54 KiB. Visibility and the bent
+  // normal are then computed too.
+  ALCOVE_SPECULAR_TABLE = 2,
   ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
 } AlcoveSpecular;
-
-// How AlcoveView::normals holds normals. The decoded vectors may have any length but 0.
-typedef enum AlcoveNormalEncoding {
-  // xyz in a signed or float format of at least 3 channels.
-  ALCOVE_NORMAL_ENCODING_SIGNED_XYZ = 0,
-  // The components x, y and z packed into [0,1] as 0.5 + 0.5 * normal, in any format of at least 3
-  // channels, such as A2B10G10R10_UNORM or R8G8B8A8_UNORM.
-  ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ = 1,
-  // The octahedral map (Cigolle et al. 2014) in xy of a signed or float format.
-  ALCOVE_NORMAL_ENCODING_OCTAHEDRAL = 2,
-  // The octahedral map packed into [0,1], in any format of at least 2 channels.
-  ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL = 3,
-  ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
-} AlcoveNormalEncoding;
 
 // The precision of intermediate results that have no image of the engine. Images have their own.
 typedef enum AlcovePrecision {
@@ -65,8 +72,6 @@ typedef enum AlcovePrecision {
   ALCOVE_PRECISION_FLOAT32 = 2,  // floats
   ALCOVE_PRECISION_MAX_ENUM = 0x7fffffff
 } AlcovePrecision;
-
-struct AlcoveAdvancedSettings;  // alcove_advanced.h
 
 // The settings of a view. Fill the struct with alcoveGetSettings, then change individual fields.
 // Values in square brackets are the defaults of all qualities except REFERENCE, if not said
@@ -88,10 +93,12 @@ typedef struct AlcoveSettings {
   // Samples in each of the two directions of a slice, 2 to 64. More find thinner occluders. A
   // traced pixel costs 2 * slices * steps * depth_layers depth fetches.
   uint32_t steps;
-  // The thickness of occluders as a fraction of the radius, or in another unit with
-  // AlcoveAdvancedSettings::thickness_unit; at least 0. It is an upper limit: an occluder is no
-  // thicker than it is seen to be wide. [0.3]
+  AlcoveEstimator estimator;  // [CONNECTED]
+  // The thickness of occluders as a fraction of the radius, at least 0. It is an upper limit: an
+  // occluder is no thicker than it is seen to be wide. Read by CONNECTED, as are the next three.
+  // [0.3]
   float thickness;
+  AlcoveThicknessUnit thickness_unit;  // [RADIUS]
   // The average fraction of the volume hidden behind occluders that is treated as solid, 0 to 1.
   // The actual fraction grows with the occluder's width in the image: it is larger behind a wall
   // than behind a twig. [0.286]
@@ -111,45 +118,39 @@ typedef struct AlcoveSettings {
   // along depth edges. This takes less time and less memory for the history, and has a larger
   // error. It needs a tile_size of at least 2. [0, but 1 for CONSOLE]
   uint32_t half_resolution;
-  AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
-  float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
-  uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
+  AlcoveSpecular specular;     // read if ALCOVE_IMAGE_SPECULAR is given [SLICES]
+  float roughness;             // perceptual, 0 to 1, without ALCOVE_IMAGE_ROUGHNESS [0.5]
+  uint32_t roughness_channel;  // the channel of ALCOVE_IMAGE_ROUGHNESS, 0 to 3 [0]
   AlcovePrecision precision;   // of intermediate results [UNORM8]
   // The passes write the visibility 1 - intensity * (1 - visibility^power), clamped to [0,1]. If
   // both values are 1, visibility is unchanged and the shaders skip the computation. Multi-bounce
-  // and the specular models TABLE and CONE read the changed visibility.
+  // and the specular model TABLE read the changed visibility.
   float power;      // above 0, at most 16 [1]
   float intensity;  // 0 to 16 [1]
-  // Settings that most engines never change. Null: the defaults, which suit every scene. [null]
-  const struct AlcoveAdvancedSettings* advanced;
 } AlcoveSettings;
 
 // Fills `settings`, whose struct_size must be set, with a preset. `radius` is in scene units and
-// above 0. For REFERENCE, `advanced` then points to constants of the library. Returns
-// ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message, because there is no
-// context.
+// above 0. Returns ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message,
+// because there is no context.
 AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettings* settings);
 
-// Writes the settings, including those of `advanced`, to `text` as lines of `name = value`. At most
-// `size` bytes are written, including the terminating zero. A float is written as the shortest text
-// that reads back as the same float, in every locale. Returns the number of bytes of the whole text
-// without that zero, or 0 if the settings are invalid. `text` may be null if `size` is 0.
+// Writes the settings to `text` as lines of `name = value`. At most `size` bytes are written,
+// including the terminating zero. A float is written as the shortest text that reads back as the
+// same float, in every locale. Returns the number of bytes of the whole text without that zero, or
+// 0 if the settings are invalid. `text` may be null if `size` is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
 
-// Changes the settings that a text names. `text` holds `length` bytes of JSON, as in the file that
-// `alcove recommend --out` writes: an object whose member "settings" is an object of names, as
-// alcovePrintSettings writes them, and values. `settings` must have been filled before, for example
-// by alcoveGetSettings with the scene's radius, which that file does not contain. `advanced`, whose
-// struct_size must be set, receives the advanced settings, and settings->advanced then points to
-// it. Names of outputs ("bent_normal") are ignored, because the images of a view select outputs,
-// and so is a `specular` of "none". Reads no file and allocates nothing that grows with the text.
+// Changes the settings that a text names. `text` holds `length` bytes: lines of `name = value`, as
+// alcovePrintSettings and `alcove recommend --out` write them. Empty lines are skipped. `settings`
+// must have been filled before, for example by alcoveGetSettings. Reads no file and allocates
+// nothing that grows with the text.
 //
-// If the text is no such JSON, is longer than 65536 bytes, or has an unknown name or a value that
-// the setting does not allow, nothing is changed and ALCOVE_ERROR_INVALID_INPUT is returned. If
-// `message` is not null, it must have room for ALCOVE_MAX_MESSAGE bytes, and receives a sentence,
-// or an empty text if there is no error.
+// If a line has another form, an unknown name or a value that the setting does not allow, nothing
+// is changed and ALCOVE_ERROR_INVALID_INPUT is returned. If `message` is not null, it must have
+// room for ALCOVE_MAX_MESSAGE bytes, and receives a sentence, or an empty text if there is no
+// error.
 AlcoveResult alcoveReadSettings(const char* text, size_t length, AlcoveSettings* settings,
-                                struct AlcoveAdvancedSettings* advanced, char* message);
+                                char* message);
 
 // A still image, such as a screenshot or a thumbnail, takes several frames of a scene and a camera
 // that do not move. Returns how many frames these settings need until their image has converged:

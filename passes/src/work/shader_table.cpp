@@ -5,16 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "spirv/apply.h"
-#include "spirv/apply_specular.h"
-#include "spirv/environment_half.h"
-#include "spirv/environment_harmonics.h"
-#include "spirv/environment_map.h"
-#include "spirv/environment_prefilter.h"
 #include "spirv/gtao.h"
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
-#include "spirv/gtso_by_table.h"
 #include "spirv/inspect.h"
 #include "spirv/linear_depth.h"
 #include "spirv/mask_depth.h"
@@ -33,7 +26,6 @@
 #include "spirv/upsample.h"
 #include "spirv/upsample_specular.h"
 #include "tables/gtso.h"
-#include "tables/reflectance.h"
 
 namespace alcove::passes {
 
@@ -61,14 +53,7 @@ constexpr ShaderSource kSources[] = {
     {"mask_depth", kMaskDepth},
     {"mask_depth_integer", kMaskDepthInteger},
     {"multi_bounce", kMultiBounce},
-    {"gtso", kGtso},
-    {"gtso_by_table", kGtsoByTable, kGtsoTable},
-    {"apply", kApply},
-    {"apply_specular", kApplySpecular, kReflectanceTable},
-    {"environment_map", kEnvironmentMap},
-    {"environment_half", kEnvironmentHalf},
-    {"environment_prefilter", kEnvironmentPrefilter},
-    {"environment_harmonics", kEnvironmentHarmonics},
+    {"gtso", kGtso, kGtsoTable},
     {"inspect", kInspect},
 };
 static_assert(std::size(kSources) == kShaderCount);
