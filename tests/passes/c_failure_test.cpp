@@ -129,7 +129,7 @@ AlcoveContextInfo failing_info(const Engine& engine) {
 // Creates a context, prepares a frame and records two while a call that creates an object fails.
 TEST_F(CFailure, OutOfDeviceMemoryAtAnyAllocationIsAnErrorAndLeaksNothing) {
   HostView from = draw_view(8, 6, groove(0.8));
-  from.settings.advanced.estimator = Estimator::horizons;
+  from.settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   const AlcoveView view = create_view(from);
   const AlcoveFrame frame = make_frame({&view, 1}, 0);
   const AlcoveContextInfo info = failing_info(engine());
@@ -245,10 +245,10 @@ TEST_F(CFailure, RecordFrameSucceedsAfterItFailedForLackOfHostMemory) {
     commands = recording;
     fail_each_allocation(
         [&](std::size_t number) {
-          for_each_image(view, [&](AlcoveImage& image) {
+          for (AlcoveImage& image : view.images) {
             image.width = 8 + static_cast<std::uint32_t>(number % 56);
             image.height = 8 + static_cast<std::uint32_t>(number / 56);
-          });
+          }
           return record_frame();
         },
         [&](AlcoveResult, bool) {

@@ -2,15 +2,12 @@
 
 #include <stdio.h>
 
-#include "alcove/alcove_advanced.h"
-
 AlcoveResult run_c_program(const AlcoveContextInfo* info, const AlcoveCamera* camera,
                            const AlcoveImage* depth, const AlcoveImage* visibility,
                            VkCommandBuffer commands, AlcoveContext** context, char* text,
                            size_t size) {
   char message[ALCOVE_MAX_MESSAGE];
   AlcoveSettings settings = {.struct_size = sizeof settings};
-  AlcoveAdvancedSettings advanced = {.struct_size = sizeof advanced};
   AlcoveView view = {.struct_size = sizeof view};
   AlcoveFrame frame = {.struct_size = sizeof frame};
   AlcoveMemory memory = {.struct_size = sizeof memory};
@@ -22,16 +19,13 @@ AlcoveResult run_c_program(const AlcoveContextInfo* info, const AlcoveCamera* ca
   }
   result = alcoveGetSettings(ALCOVE_QUALITY_HIGH, 0.5f, &settings);
   if (result != ALCOVE_SUCCESS) return result;
-  result = alcoveGetAdvancedSettings(ALCOVE_QUALITY_HIGH, &advanced);
-  if (result != ALCOVE_SUCCESS) return result;
-  advanced.estimator = ALCOVE_ESTIMATOR_HORIZONS;
-  settings.advanced = &advanced;
+  settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
 
-  view.settings = &settings;
-  view.camera = *camera;
-  view.previous_camera = *camera;
-  view.depth = *depth;
-  view.visibility = *visibility;
+  view.info.settings = &settings;
+  view.info.camera = *camera;
+  view.info.previous_camera = *camera;
+  view.images[ALCOVE_IMAGE_DEPTH] = *depth;
+  view.images[ALCOVE_IMAGE_VISIBILITY] = *visibility;
   frame.view_count = 1;
   frame.views = &view;
   result = alcoveRecordFrame(*context, commands, &frame);

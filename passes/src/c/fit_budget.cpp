@@ -53,23 +53,11 @@ double median_ms(std::span<const double> milliseconds) {
   return *middle;
 }
 
-Result check(const AlcoveBudget* given, const AlcoveSettings* settings) {
-  if (given == nullptr || settings == nullptr)
-    return invalid("There is no AlcoveBudget or there are no settings.");
-  const AlcoveBudget& budget = *given;
-  if (auto right = check_size(budget.struct_size, sizeof budget, "AlcoveBudget"); !right)
-    return right;
-  if (auto good = validate(*settings); !good) return invalid(std::move(good.error().message));
-  if (!std::isfinite(budget.target_ms) || budget.target_ms <= 0.0)
-    return invalid("The target of a budget is not a time above 0 milliseconds.");
-  if (budget.least_slices < 1 || budget.most_slices > 64 ||
-      budget.least_slices > budget.most_slices || budget.least_steps < 2 ||
-      budget.most_steps > 64 || budget.least_steps > budget.most_steps) {
-    return invalid(
-        "The limits of a budget exclude each other or are out of range; slices are 1 to 64 and "
-        "steps 2 to 64, the least at most the most.");
-  }
-  return {};
+bool is_usable(const AlcoveBudget& budget) {
+  return budget.struct_size == sizeof budget && std::isfinite(budget.target_ms) &&
+         budget.target_ms > 0.0 && budget.least_slices >= 1 && budget.most_slices <= 64 &&
+         budget.least_slices <= budget.most_slices && budget.least_steps >= 2 &&
+         budget.most_steps <= 64 && budget.least_steps <= budget.most_steps;
 }
 
 Samples fit(const AlcoveBudget& budget, std::span<const double> milliseconds, const Samples& now) {
@@ -100,14 +88,13 @@ using namespace alcove::passes;
 AlcoveResult alcoveFitBudget(const AlcoveBudget* budget, const double* milliseconds, uint32_t count,
                              AlcoveSettings* settings, uint32_t* changed) {
   return guarded([&]() -> Result {
-    if (changed == nullptr || (milliseconds == nullptr && count > 0))
-      return invalid("There are no times or no place for the result.");
-    return check(budget, settings).map([&] {
-      const Samples fitted =
-          fit(*budget, {milliseconds, count}, {settings->slices, settings->steps});
-      *changed = settings->slices != fitted.slices || settings->steps != fitted.steps ? 1 : 0;
-      settings->slices = fitted.slices;
-      settings->steps = fitted.steps;
-    });
+    if (budget == nullptr || settings == nullptr || changed == nullptr ||
+        (milliseconds == nullptr && count > 0) || !is_usable(*budget) || !validate(*settings))
+      return invalid("");
+    const Samples fitted = fit(*budget, {milliseconds, count}, {settings->slices, settings->steps});
+    *changed = settings->slices != fitted.slices || settings->steps != fitted.steps ? 1 : 0;
+    settings->slices = fitted.slices;
+    settings->steps = fitted.steps;
+    return {};
   });
 }

@@ -43,7 +43,7 @@ void drop_view(Graph& graph, std::uint32_t id) {
   for (const HistoryRole role : kHistoryRoles) graph.drop_history(HistoryName(id, role));
 }
 
-tl::expected<Surface, Error> add_surface(Graph& graph, Kernels& kernels, const AlcoveCamera& camera,
+tl::expected<SurfaceTextures, Error> add_surface(Graph& graph, Kernels& kernels, const AlcoveCamera& camera,
                                          Texture depth) {
   GraphWork work(graph, kernels, 0);
   const VkExtent3D size = graph.extent(depth);
@@ -62,7 +62,7 @@ tl::expected<Surface, Error> add_surface(Graph& graph, Kernels& kernels, const A
   const Texture linear_depth = describe_linear_depth(view, listed);
   const Texture normals = describe_normals(view, linear_depth);
   return work.list().result().and_then([&] { return work.add(); }).map([&] {
-    return Surface{work.texture(linear_depth), work.texture(normals)};
+    return SurfaceTextures{work.texture(linear_depth), work.texture(normals)};
   });
 }
 

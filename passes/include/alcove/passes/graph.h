@@ -38,7 +38,7 @@ using ViewTextures = std::array<framegraph::Texture, ALCOVE_IMAGE_COUNT>;
 void drop_view(framegraph::Graph& graph, std::uint32_t id);
 
 // What lighting reads besides the outputs, from a depth texture as add_view() takes it.
-struct Surface {
+struct SurfaceTextures {
   // R32_SFLOAT: the distance along the view direction in scene units. Sky, NaN and infinitely far
   // depths are 1e12.
   framegraph::Texture linear_depth;
@@ -46,7 +46,7 @@ struct Surface {
   // one of the two neighbours is used whose depth continues the pixel's surface more smoothly.
   framegraph::Texture normals;
 };
-[[nodiscard]] tl::expected<Surface, Error> add_surface(framegraph::Graph& graph, Kernels& kernels,
+[[nodiscard]] tl::expected<SurfaceTextures, Error> add_surface(framegraph::Graph& graph, Kernels& kernels,
                                                        const AlcoveCamera& camera,
                                                        framegraph::Texture depth);
 
