@@ -126,7 +126,7 @@ float nearest_offset(HalfSlice half_slice) {
 
 // Samples in one iteration of the loop over samples. An iteration costs as many instructions as
 // half a sample, but each of its samples holds registers, and several slices hold more registers
-// than one. passes/cost/work.cpp has the same numbers.
+// than one. sample/lab/gpu_cost/pass_work.cpp has the same numbers.
 const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
 
 // Up to this number, samples are not reduced to one per pixel.

@@ -23,8 +23,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::cost::CompiledLoop;
-using passes::cost::FrameState;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -120,7 +118,7 @@ TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
 // The number of times that each loop of the search runs; empty if one is not known.
 std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
                                       const std::vector<CompiledLoop>& loops) {
-  return passes::cost::iterations({"gtao", settings}, loops).value_or(std::vector<double>{});
+  return loop_iterations({"gtao", settings}, loops).value_or(std::vector<double>{});
 }
 
 TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
@@ -158,8 +156,7 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
   const passes::OcclusionSettings settings;
   const CompiledLoop loop{.depth = 1, .instructions = 7};
-  const auto iterations =
-      passes::cost::iterations({"normals", settings, FrameState::moving}, {&loop, 1});
+  const auto iterations = loop_iterations({"normals", settings, FrameState::moving}, {&loop, 1});
   ASSERT_FALSE(iterations);
   EXPECT_THAT(iterations.error(), HasSubstr("'normals' (moving frame)"));
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
@@ -200,18 +197,12 @@ TEST(GpuCost, BranchCountsByTheShareOfWavesThatExecuteIt) {
   EXPECT_EQ(work.instructions, 1 + 0.25 * 2 + 1 + 1);
 }
 
-using passes::cost::at_invocation;
-using passes::cost::Direction;
-using passes::cost::DispatchAccesses;
-using passes::cost::PassImage;
-using passes::cost::Texel;
-
 constexpr double kWaves = 4;  // on a SIMD
 
 // An image of 4 bytes a texel, and a dispatch that has an invocation for each texel.
 constexpr std::uint32_t kSide = 1024;
 const PassImage kImage{"image", Direction::read, 4, kSide, kSide};
-DispatchAccesses over_image(std::vector<passes::cost::ImageAccess> accesses) {
+DispatchAccesses over_image(std::vector<ImageAccess> accesses) {
   return {kSide / 8, kSide / 8, std::move(accesses)};
 }
 
@@ -287,8 +278,7 @@ TEST(CacheTraffic, TrafficOfTheSearchAgreesWithAnotherModel) {
   for (std::size_t i = 0; i < kGpuParts.size(); ++i) {
     const Expected& expected = kExpected[i];
     const CacheTraffic found = cache_traffic(
-        kGpuParts[i],
-        passes::cost::accesses_of({"gtao", settings, FrameState::moving, images, {1, 60, 34}}),
+        kGpuParts[i], accesses_of({"gtao", settings, FrameState::moving, images, {1, 60, 34}}),
         expected.waves);
     EXPECT_NEAR(found.lines_per_load / expected.lines, 1, 0.1) << kGpuParts[i].name;
     EXPECT_NEAR(found.l2_bytes / kPixels / expected.l2_bytes_per_pixel, 1, 0.1)
@@ -318,7 +308,10 @@ TEST(CostReport, TimeOfXeGtaoIsThatOfItsShadersAndGrowsWithTheImage) {
 TEST(CostReport, FramesAreComparedWithXeGtaoAtTheSameSize) {
   ModelledPass pass;
   pass.limits_ms[0] = 1;
-  SettingsCost cost{{"medium", {}}, &kGpuParts[1], {{FrameState::moving, {pass}}}, {}};
+  SettingsCost cost;
+  cost.settings.label = "medium";
+  cost.part = &kGpuParts[1];
+  cost.frames = {{FrameState::moving, {pass}}};
   cost.settings.inputs.width = 960;
   cost.settings.inputs.height = 540;
   const auto json = to_json({&cost, 1});

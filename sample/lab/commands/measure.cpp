@@ -158,8 +158,7 @@ std::vector<std::pair<const GpuPart*, ModelledFrame>> modelled(const CostInputs&
     if (!device) continue;
     const auto frames = modelled_frames(part, *device, inputs);
     if (frames) {
-      const auto moving =
-          std::ranges::find(*frames, passes::cost::FrameState::moving, &ModelledFrame::state);
+      const auto moving = std::ranges::find(*frames, FrameState::moving, &ModelledFrame::state);
       all.emplace_back(&part, *moving);
     }
   }

@@ -16,7 +16,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 using passes::OcclusionSettings;
-using passes::cost::FrameState;
 
 constexpr float kOrbit = 0.007f;             // radians per frame
 constexpr std::uint32_t kMovingFrames = 16;  // of the orbit

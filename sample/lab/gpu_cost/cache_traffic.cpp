@@ -9,10 +9,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::cost::Direction;
-using passes::cost::ImageAccess;
-using passes::cost::Texel;
-
 // At most this many accesses of waves are simulated: the rows of groups in the middle of a larger
 // dispatch stand for all. At 1920x1080 the searches of console, low and medium are simulated
 // completely.
@@ -90,7 +86,7 @@ struct Wave {
 
 class Simulation {
  public:
-  Simulation(const GpuPart& part, const passes::cost::DispatchAccesses& dispatch, double held)
+  Simulation(const GpuPart& part, const DispatchAccesses& dispatch, double held)
       : part_(part),
         dispatch_(dispatch),
         held_(static_cast<std::size_t>(held * part.simds / part.compute_units)),
@@ -233,7 +229,7 @@ class Simulation {
   }
 
   const GpuPart& part_;
-  const passes::cost::DispatchAccesses& dispatch_;
+  const DispatchAccesses& dispatch_;
   std::size_t held_;             // waves of a compute unit
   std::uint32_t first_row_ = 0;  // of the groups that are simulated
   std::vector<Unit> units_;
@@ -250,7 +246,7 @@ class Simulation {
 
 }  // namespace
 
-CacheTraffic cache_traffic(const GpuPart& part, const passes::cost::DispatchAccesses& dispatch,
+CacheTraffic cache_traffic(const GpuPart& part, const DispatchAccesses& dispatch,
                            double waves_per_simd) {
   return Simulation(part, dispatch, std::max(waves_per_simd, 1.0)).run();
 }

@@ -1,13 +1,13 @@
 // The memory traffic of a dispatch: the texels that its waves read and write, run through the
 // caches of a GPU.
 //
-// Every wave of the frame is followed, with the addresses that passes/cost declares. The waves of a
+// Every wave of the frame is followed, with the addresses that accesses.h declares. The waves of a
 // compute unit are in flight together, as many as their registers allow, and drift apart. Images
 // are stored in square tiles of one cache line. Stores go to L2. Left out: the last-level cache of
 // RDNA2 parts, compressed depth, and conflicts between banks.
 #pragma once
 
-#include "cost/accesses.h"
+#include "gpu_cost/accesses.h"
 #include "gpu_cost/gpu_part.h"
 
 namespace alcove::sample {
@@ -20,8 +20,7 @@ struct CacheTraffic {
 };
 
 // `waves_per_simd` is the number of waves in flight on a SIMD.
-[[nodiscard]] CacheTraffic cache_traffic(const GpuPart& part,
-                                         const passes::cost::DispatchAccesses& dispatch,
+[[nodiscard]] CacheTraffic cache_traffic(const GpuPart& part, const DispatchAccesses& dispatch,
                                          double waves_per_simd);
 
 // The time that L2, and memory, take for the traffic, in milliseconds.

@@ -32,7 +32,7 @@ std::string wave_rows(const ModelledPass& pass) {
       pass.wave.selects, pass.wave.scalar_instructions, pass.wave.loads, pass.wave.stores,
       pass.wave.shared_operations);
   for (const Loop& one : pass.loops) {
-    const passes::cost::CompiledLoop& loop = one.summary;
+    const CompiledLoop& loop = one.summary;
     out += fmt::format(
         "      loop {}, depth {}: {} instructions, {} fetches, {} stores, {} on shared memory; "
         "runs {:.1f} times\n",

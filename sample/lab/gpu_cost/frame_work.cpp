@@ -9,9 +9,6 @@ namespace alcove::sample {
 namespace {
 
 using framegraph::Texture;
-using passes::cost::Direction;
-using passes::cost::FrameState;
-using passes::cost::PassImage;
 
 // A camera of 60 degrees, or an orthographic view.
 passes::View camera(ProjectionKind kind) {
@@ -79,7 +76,7 @@ std::uint32_t texel_bytes(const AlcoveWorkResource& resource) {
 }  // namespace
 
 Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs) {
-  std::vector<AlcoveWork> frames(passes::cost::kFrameStates);
+  std::vector<AlcoveWork> frames(kFrameStates);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     passes::WorkList list(frames[i], i == 0 ? nullptr : &frames[i - 1]);
     if (const auto described = describe(list, inputs, static_cast<FrameState>(i)); !described)

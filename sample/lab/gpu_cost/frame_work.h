@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "alcove/alcove_work.h"
-#include "cost/work.h"
+#include "gpu_cost/pass_work.h"
 #include "support/result.h"
 
 namespace alcove::sample {
@@ -38,7 +38,7 @@ struct CostInputs {
 [[nodiscard]] Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs);
 
 // Returns the images that a dispatch of `work` reads and writes, in the order of its bindings.
-[[nodiscard]] std::vector<passes::cost::PassImage> dispatch_images(
-    const AlcoveWork& work, const AlcoveWorkDispatch& dispatch);
+[[nodiscard]] std::vector<PassImage> dispatch_images(const AlcoveWork& work,
+                                                     const AlcoveWorkDispatch& dispatch);
 
 }  // namespace alcove::sample

@@ -9,9 +9,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::cost::CompiledLoop;
-using passes::cost::FrameState;
-using passes::cost::PassWork;
 using Failure = tl::unexpected<std::string>;
 
 Result<ShaderStatistics> read_statistics(const CompiledShader& shader) {
@@ -91,7 +88,7 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
   cost.loops = find_loops(*blocks);
   std::vector<CompiledLoop> summaries;
   for (const Loop& loop : cost.loops) summaries.push_back(loop.summary);
-  ALCOVE_TRY(const auto iterations, passes::cost::iterations(work, summaries));
+  ALCOVE_TRY(const auto iterations, loop_iterations(work, summaries));
   for (std::size_t i = 0; i < iterations.size(); ++i) cost.loops[i].iterations = iterations[i];
   std::vector<Branch> branches = find_branches(*blocks);
   for (Branch& branch : branches) {
@@ -99,7 +96,7 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
         static_cast<std::uint32_t>(std::ranges::count_if(cost.loops, [&](const Loop& loop) {
           return branch.first <= loop.first && loop.last <= branch.last;
         }));
-    branch.share = passes::cost::branch_share(work, branch.summary);
+    branch.share = branch_share(work, branch.summary);
     if (branch.share < 1.0) cost.branches.push_back(branch);
   }
   const double wave = shader.wave;
@@ -113,8 +110,7 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
   cost.instructions_per_pixel = cost.wave.instructions * lanes / pixels;
   cost.fetches_per_pixel = cost.wave.loads * lanes / pixels;
   cost.stores_per_pixel = cost.wave.stores * lanes / pixels;
-  const CacheTraffic traffic =
-      cache_traffic(part, passes::cost::accesses_of(work), cost.waves_per_simd);
+  const CacheTraffic traffic = cache_traffic(part, accesses_of(work), cost.waves_per_simd);
   cost.l2_bytes_per_pixel = traffic.l2_bytes / pixels;
   cost.bytes_per_pixel = traffic.memory_bytes / pixels;
   cost.cache_lines_per_load = traffic.lines_per_load;

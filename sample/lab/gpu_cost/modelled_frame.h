@@ -63,7 +63,7 @@ struct ModelledPass {
 };
 
 struct ModelledFrame {
-  passes::cost::FrameState state = passes::cost::FrameState::first;
+  FrameState state = FrameState::first;
   std::vector<ModelledPass> passes;
   double milliseconds() const;
 };

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "cost/work.h"
 #include "gpu_cost/null_device.h"
+#include "gpu_cost/pass_work.h"
 #include "support/result.h"
 
 namespace alcove::sample {
@@ -59,7 +59,7 @@ struct BasicBlock {
 
 // A loop, which consists of the blocks from `first` to `last`.
 struct Loop {
-  passes::cost::CompiledLoop summary;
+  CompiledLoop summary;
   std::uint32_t first = 0;
   std::uint32_t last = 0;
   double iterations = 1;  // each time that it is entered
@@ -68,7 +68,7 @@ struct Loop {
 
 // One side of a divergent branch: the blocks from `first` to `last`.
 struct Branch {
-  passes::cost::CompiledBranch summary;
+  CompiledBranch summary;
   std::uint32_t first = 0;
   std::uint32_t last = 0;
   double share = 1;  // of the waves that execute it

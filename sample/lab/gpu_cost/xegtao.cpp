@@ -12,13 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::cost::at_invocation;
-using passes::cost::Direction;
-using passes::cost::DispatchAccesses;
-using passes::cost::ImageAccess;
-using passes::cost::PassImage;
-using passes::cost::Texel;
-
 constexpr double kPixels = 1920.0 * 1080.0;  // of the times below
 constexpr float kRadius = 96.0f / 1080.0f;   // length of a search over the height of the image
 constexpr std::uint32_t kFrame = 3;
@@ -82,7 +75,7 @@ ImageAccess depth_sample(const PassImage& depth, const XeGtao& preset, std::uint
     const float px = (part * part + maths::kNearestStep / radius) * radius;
     const auto level =
         static_cast<std::uint32_t>(std::lround(std::clamp(std::log2(px) - 3.3f, 0.0f, 4.0f)));
-    const Texel at = passes::cost::along_slice(pixel, angle, side * px);
+    const Texel at = along_slice(pixel, angle, side * px);
     return Texel{std::max(at.x, 0) >> level, std::max(at.y, 0) >> level, level};
   };
   return {depth, 1, texel};

@@ -1,5 +1,5 @@
-// The texels that a dispatch of the passes reads and writes, from which the GPU cost model
-// (sample/lab/gpu_cost) computes the traffic of caches and memory.
+// The texels that a dispatch of the passes reads and writes, from which cache_traffic.h computes
+// the traffic of caches and memory.
 //
 // A commit that changes the texels that a shader reads must also change accesses.cpp.
 #pragma once
@@ -8,9 +8,9 @@
 #include <functional>
 #include <vector>
 
-#include "work.h"
+#include "gpu_cost/pass_work.h"
 
-namespace alcove::passes::cost {
+namespace alcove::sample {
 
 struct Texel {
   std::int32_t x = 0;
@@ -47,4 +47,4 @@ struct DispatchAccesses {
 [[nodiscard]] ImageAccess at_invocation(const PassImage& image, std::int32_t scale = 1,
                                         Texel offset = {}, std::uint32_t footprint = 1);
 
-}  // namespace alcove::passes::cost
+}  // namespace alcove::sample

@@ -1,4 +1,4 @@
-#include "work.h"
+#include "gpu_cost/pass_work.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace alcove::passes::cost {
+namespace alcove::sample {
 namespace {
 
 using Loops = std::span<const CompiledLoop>;
@@ -30,14 +30,14 @@ struct Samples {
   std::uint32_t rolled_half_slice = 1;
 };
 
-Samples samples_of(const OcclusionSettings& settings) {
-  const bool connected = settings.advanced.estimator == Estimator::connected;
+Samples samples_of(const passes::OcclusionSettings& settings) {
+  const bool connected = settings.advanced.estimator == passes::Estimator::connected;
   Samples samples;
-  samples.loads_per_step = needs_back_depth(settings) ? 2 : 1;
+  samples.loads_per_step = passes::needs_back_depth(settings) ? 2 : 1;
   samples.half_slice =
-      settings.steps * samples.loads_per_step * (needs_second_depth(settings) ? 2 : 1);
-  samples.unrolled_half_slice = settings.steps * ((needs_back_depth(settings) ? 1 : 0) +
-                                                  (needs_second_depth(settings) ? 2 : 1));
+      settings.steps * samples.loads_per_step * (passes::needs_second_depth(settings) ? 2 : 1);
+  samples.unrolled_half_slice = settings.steps * ((passes::needs_back_depth(settings) ? 1 : 0) +
+                                                  (passes::needs_second_depth(settings) ? 2 : 1));
   samples.steps_per_iteration = connected ? (settings.slices > 1 ? 2 : 4) : 1;
   // With connected samples the first two steps, and a remainder, are outside of the loop.
   samples.iterations =
@@ -49,11 +49,11 @@ Samples samples_of(const OcclusionSettings& settings) {
   return samples;
 }
 
-std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
+std::optional<double> sampling_iterations(const passes::OcclusionSettings& settings, Loops loops,
                                           std::uint32_t index);
 
 // Image loads in one iteration of a loop, those of its inner loops as often as they run.
-std::optional<double> loads_per_iteration(const OcclusionSettings& settings, Loops loops,
+std::optional<double> loads_per_iteration(const passes::OcclusionSettings& settings, Loops loops,
                                           std::uint32_t index) {
   const CompiledLoop& loop = loops[index];
   double loads = loop.loads;
@@ -71,7 +71,7 @@ std::optional<double> loads_per_iteration(const OcclusionSettings& settings, Loo
 // Returns how often a loop with image loads runs: once for each step of a half-slice, each of the
 // two half-slices of a slice, or each slice of a pixel. Its number of loads decides which of these
 // loops it is.
-std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
+std::optional<double> sampling_iterations(const passes::OcclusionSettings& settings, Loops loops,
                                           std::uint32_t index) {
   const Samples samples = samples_of(settings);
   const auto loads = loads_per_iteration(settings, loops, index);
@@ -86,12 +86,13 @@ std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loo
 }
 
 // Whether a loop over the ends of occluder runs exists.
-bool integrates_runs(const OcclusionSettings& settings) {
-  return settings.advanced.estimator == Estimator::bitmask || needs_back_depth(settings);
+bool integrates_runs(const passes::OcclusionSettings& settings) {
+  return settings.advanced.estimator == passes::Estimator::bitmask ||
+         passes::needs_back_depth(settings);
 }
 
 // gtao.comp.
-std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops loops,
+std::optional<double> gtao_iterations(const passes::OcclusionSettings& settings, Loops loops,
                                       std::uint32_t index) {
   if (loops[index].loads == 0)
     return integrates_runs(settings) ? std::optional(kOccluderRuns) : std::nullopt;
@@ -101,7 +102,7 @@ std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops l
 // reconstruct.comp. The outermost loop runs over the blocks of a column. The loops of sum_wide()
 // are counted as not run: pixels with a history run them only while it is less than two frames old,
 // which is rare.
-double reconstruct_iterations(const OcclusionSettings& settings, const CompiledLoop& loop) {
+double reconstruct_iterations(const passes::OcclusionSettings& settings, const CompiledLoop& loop) {
   const bool column = settings.tile_size > (settings.half_resolution ? 2u : 1u);
   return column && loop.depth == 1 ? 4.0 : 0.0;
 }
@@ -114,7 +115,7 @@ std::string_view name_of(FrameState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-tl::expected<std::vector<double>, std::string> iterations(const PassWork& work, Loops loops) {
+Result<std::vector<double>> loop_iterations(const PassWork& work, Loops loops) {
   std::vector<double> found;
   for (std::uint32_t i = 0; i < loops.size(); ++i) {
     const CompiledLoop& loop = loops[i];
@@ -123,10 +124,10 @@ tl::expected<std::vector<double>, std::string> iterations(const PassWork& work, 
         : work.pass == "reconstruct" ? std::optional(reconstruct_iterations(work.settings, loop))
                                      : std::nullopt;
     if (!known) {
-      std::string message = "The pass '" + std::string(work.pass) + "' (" +
-                            std::string(name_of(work.state)) +
-                            " frame) has a loop whose number of iterations is not declared: loop " +
-                            std::to_string(i) + "; declare it in passes/cost/work.cpp. Its loops:";
+      std::string message =
+          "The pass '" + std::string(work.pass) + "' (" + std::string(name_of(work.state)) +
+          " frame) has a loop whose number of iterations is not declared: loop " +
+          std::to_string(i) + "; declare it in sample/lab/gpu_cost/pass_work.cpp. Its loops:";
       for (const CompiledLoop& each : loops) {
         message += " depth " + std::to_string(each.depth) + " with " +
                    std::to_string(each.instructions) + " instructions and " +
@@ -141,7 +142,7 @@ tl::expected<std::vector<double>, std::string> iterations(const PassWork& work, 
 
 bool has_depth_planes(const PassWork& work) {
   return !work.settings.half_resolution && work.settings.history_frames > 0 &&
-         work.state != FrameState::first && work.settings.specular != Specular::slices;
+         work.state != FrameState::first && work.settings.specular != passes::Specular::slices;
 }
 
 // The branches that read a normal or compute it from depth, which loads the depth of the pixel and
@@ -167,4 +168,4 @@ double branch_share(const PassWork& work, const CompiledBranch& branch) {
   return from_depth ? kNormalFromDepth : 1.0;
 }
 
-}  // namespace alcove::passes::cost
+}  // namespace alcove::sample

@@ -1,21 +1,21 @@
 // Facts about the occlusion passes that a compiler cannot know: how often each loop of a shader
-// runs, how rare a branch is, and (accesses.h) which texels a pass reads and writes. The GPU cost
-// model (sample/lab/gpu_cost) multiplies the instructions of each loop by these counts.
+// runs, how rare a branch is, and (accesses.h) which texels a pass reads and writes. The model
+// multiplies the instructions of each loop by these counts.
 //
-// A commit that changes a loop of a shader must also change work.cpp. A loop without a count is an
-// error that names the loop, so that no count is guessed.
+// A commit that changes a loop of a shader must also change pass_work.cpp. A loop without a count
+// is an error that names the loop, so that no count is guessed.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/passes/occlusion.h"
+#include "support/result.h"
 
-namespace alcove::passes::cost {
+namespace alcove::sample {
 
 // The frames before a frame, which decide how much of the history its reconstruction reads.
 enum class FrameState : std::uint8_t {
@@ -61,7 +61,7 @@ struct Groups {
 // reads and writes.
 struct PassWork {
   std::string_view pass;  // AlcoveWorkDispatch::label
-  const OcclusionSettings& settings;
+  const passes::OcclusionSettings& settings;
   FrameState state = FrameState::first;
   std::span<const PassImage> images;
   Groups groups;
@@ -72,8 +72,8 @@ struct PassWork {
 // Returns how often the body of each loop of a shader runs each time that the loop is entered. In a
 // wave, that is the number of iterations of the lane that needs the most. It is an error if no
 // count is known for a loop.
-[[nodiscard]] tl::expected<std::vector<double>, std::string> iterations(
-    const PassWork& work, std::span<const CompiledLoop> loops);
+[[nodiscard]] Result<std::vector<double>> loop_iterations(const PassWork& work,
+                                                          std::span<const CompiledLoop> loops);
 
 // Whether reconstruct.comp computes the tangent planes of most pixels from depth alone, so that few
 // waves read normals.
@@ -91,4 +91,4 @@ struct CompiledBranch {
 // unless the branch is known to be rare.
 [[nodiscard]] double branch_share(const PassWork& work, const CompiledBranch& branch);
 
-}  // namespace alcove::passes::cost
+}  // namespace alcove::sample
