@@ -59,7 +59,7 @@ struct ViewOptions {
 };
 
 struct OcclusionOptions {
-  passes::Quality quality = passes::Quality::medium;
+  AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM;
   bool quality_given = false;   // --quality was given
   std::optional<float> radius;  // scene units; none: radius_for_view()
   NormalSource normals = NormalSource::shading;

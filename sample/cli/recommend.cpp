@@ -27,13 +27,13 @@ SituationWeights chosen_weights(const Options& options) {
 
 // The command line that renders the view with these settings.
 std::string render_line(const Options& options, const Session& session,
-                        const passes::OcclusionSettings& settings) {
+                        const OcclusionSettings& settings) {
   return shell_line(
       render_arguments(options, {session.camera, settings, std::nullopt, options.view.width,
                                  options.view.height, options.view.frames}));
 }
 
-std::string samples_text(const passes::OcclusionSettings& settings) {
+std::string samples_text(const OcclusionSettings& settings) {
   return fmt::format("tile_size={} slices={} steps={}{}{}", settings.tile_size, settings.slices,
                      settings.steps, settings.half_resolution ? " half_resolution=true" : "",
                      settings.depth_layers > 1 ? " depth_layers=2" : "");
@@ -87,11 +87,13 @@ void check_other_views(const Options& options, const Session& session,
   }
 }
 
-Result<void> write_settings(const Options& options, const passes::OcclusionSettings& settings) {
+Result<void> write_settings(const Options& options, const OcclusionSettings& settings) {
   if (options.settings_out.empty()) return {};
-  nlohmann::ordered_json json{{"settings", to_json(settings)}};
-  json["settings"].erase("radius");  // it belongs to the scene
-  return write_text(options.settings_out, json.dump(2) + "\n").map([&] {
+  std::string lines;
+  for (const passes::SettingInfo& info : passes::setting_table())
+    if (!info.of_material && info.name != std::string_view("radius"))  // it belongs to the scene
+      lines += fmt::format("{} = {}\n", info.name, setting_text(settings, info));
+  return write_text(options.settings_out, lines).map([&] {
     std::cout << "The settings are in " << options.settings_out.string()
               << "; --settings reads them\n";
   });
@@ -121,11 +123,11 @@ Result<void> run_recommend(const Options& options) {
   const Progress progress = print_progress("settings");
   const auto advance = [&] { progress(std::min(++calls / kExpected, 0.99)); };
   const RecommendationWorld measured = recommendation_world(errors, times);
-  const RecommendationWorld world{[&](const passes::OcclusionSettings& settings) {
+  const RecommendationWorld world{[&](const OcclusionSettings& settings) {
                                     advance();
                                     return measured.measure(settings);
                                   },
-                                  [&](const passes::OcclusionSettings& settings) {
+                                  [&](const OcclusionSettings& settings) {
                                     advance();
                                     return measured.time(settings);
                                   }};

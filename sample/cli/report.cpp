@@ -59,7 +59,8 @@ Json rendering_report(const Rendering& rendering, const Options& options) {
   report["settings"] = to_json(rendering.settings);
   report.update(costs_json(rendering.costs));
   report["with_specular"] = costs_json(rendering.costs_with_specular);
-  report["with_specular"]["model"] = passes::name_of(specular_model(rendering.settings));
+  report["with_specular"]["model"] = 
+      specular_model(rendering.settings) == ALCOVE_SPECULAR_TABLE ? "table" : "slices";
   report["memory"] = {{"transient_bytes", rendering.memory.aliased},
                       {"transient_bytes_without_aliasing", rendering.memory.unaliased},
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},

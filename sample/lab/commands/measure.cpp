@@ -247,13 +247,13 @@ Result<void> run_measure(const Options& options) {
               {"dispatch_behind_barrier_us", dispatch.behind_barrier_us}};
   std::optional<CostInputs> last;
   for (const auto& [width, height] : options.sizes) {
-    for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+    for (const AlcoveQuality quality : chosen_presets(options.occlusion)) {
       OcclusionOptions one = options.occlusion;
       one.quality = quality;
       ALCOVE_TRY(const auto settings, occlusion_settings(one, session.settings.radius));
       last = CostInputs{.width = width, .height = height, .settings = settings};
       ALCOVE_TRY(const auto frame,
-                 measure(session, options, {std::string(passes::name_of(quality)), *last}));
+                 measure(session, options, {std::string(passes::kQualityNames.at(quality)), *last}));
       report["measured"].push_back(print(frame));
     }
   }

@@ -14,7 +14,6 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using passes::OcclusionSettings;
 
 double mean_squared_error(const Image<float>& image, const Image<float>& truth, const Mask& mask) {
   const double rmse = compare_images(image, truth, mask).rmse;
@@ -28,7 +27,7 @@ OcclusionSettings sampled_fully(OcclusionSettings settings) {
   settings.half_resolution = false;
   settings.slices = std::max(settings.slices, 8u);
   settings.steps = std::max(settings.steps, 16u);
-  settings.advanced.filter_radius = 0;
+  settings.filter_radius = 0;
   settings.history_frames = std::max(settings.history_frames, 32u);
   return settings;
 }
@@ -116,7 +115,7 @@ Result<ErrorSplit> Splitter::split(const StaticSetup& setup, const OcclusionSett
   layers.depth_layers = 2;
   ALCOVE_TRY_VOID(try_settings("layer", "hidden surfaces, which a second layer shows", layers));
   OcclusionSettings back_faces = best;
-  back_faces.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  back_faces.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   ALCOVE_TRY_VOID(try_settings("back_faces", "thickness, which back faces tell", back_faces));
   ALCOVE_TRY(auto wide, draw_with_guard_band(gpu_, scene_, averaged, best,
                                              {setup.width / 2, setup.height / 2}));

@@ -28,7 +28,7 @@ Image<glm::vec3> grey(const Image<float>& values) {
 
 // Returns the specular occlusion that `model` derives from visibility and bent normal. The model
 // `slices` also uses the slices themselves, which do not exist here, so the table is used instead.
-float modelled_specular(passes::Specular model, float visibility, const glm::vec3& bent,
+float modelled_specular(AlcoveSpecular model, float visibility, const glm::vec3& bent,
                         const glm::vec3& normal, const glm::vec3& view, float roughness) {
   const float alpha = roughness * roughness;
   const glm::vec3 mirror = maths::mirror_direction(normal, view);

@@ -90,10 +90,10 @@ class MotionRenderer {
     request.restart = step.restart;
     request.motion_vectors = step.moving;
     request.occlusion = setup_.occlusion;
-    request.occlusion.specular = passes::Specular::none;
+    request.occlusion.specular = ALCOVE_SPECULAR_NONE;
     request.occlusion.bent_normal = true;
     if (step.filtering != Filtering::spatial_and_temporal) request.occlusion.history_frames = 0;
-    if (step.filtering == Filtering::none) request.occlusion.advanced.filter_radius = 0;
+    if (step.filtering == Filtering::none) request.occlusion.filter_radius = 0;
     return request;
   }
 

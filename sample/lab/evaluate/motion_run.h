@@ -20,7 +20,7 @@ namespace alcove::sample {
 
 // The inputs of a run other than its path, which has the cameras and the number of frames.
 struct MotionSetup {
-  passes::OcclusionSettings occlusion;  // with a history
+  OcclusionSettings occlusion;  // with a history
   StaticSetup view;
   TruthOptions truth;  // at least 2 rays per pixel
 };

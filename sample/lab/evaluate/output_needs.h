@@ -18,7 +18,7 @@ namespace alcove::sample {
 
 // Returns by how much a change of the settings raises the modelled time: 0.2 for 20 %.
 using TimeIncrease = std::function<Result<double>(
-    const std::function<void(passes::OcclusionSettings& settings)>& change)>;
+    const std::function<void(OcclusionSettings& settings)>& change)>;
 
 // Returns a sentence for each output and input of the passes on which the materials in view decide:
 // specular occlusion, multi-bounce, bent normals, normals, settings for thin occluders, and motion

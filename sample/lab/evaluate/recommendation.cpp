@@ -12,7 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
 
 struct Feature {
   const char* name;
@@ -22,15 +21,15 @@ struct Feature {
 constexpr Feature kFeatures[] = {
     {"a second depth layer", [](OcclusionSettings& s) { s.depth_layers = 2; }},
     {"thickness from back faces",
-     [](OcclusionSettings& s) { s.advanced.thickness_unit = passes::ThicknessUnit::back_faces; }},
+     [](OcclusionSettings& s) { s.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; }},
     {"a thickness of 0.05", [](OcclusionSettings& s) { s.thickness = 0.05f; }},
     {"a thickness of 0.5", [](OcclusionSettings& s) { s.thickness = 0.5f; }},
     {"a hidden occlusion of 0.1", [](OcclusionSettings& s) { s.hidden_occlusion = 0.1f; }},
     {"a hidden occlusion of 0.7", [](OcclusionSettings& s) { s.hidden_occlusion = 0.7f; }},
     {"unobserved directions that count as open",
-     [](OcclusionSettings& s) { s.advanced.unobserved = false; }},
+     [](OcclusionSettings& s) { s.unobserved = false; }},
     {"horizons, infinitely thick",
-     [](OcclusionSettings& s) { s.advanced.estimator = passes::Estimator::horizons; }},
+     [](OcclusionSettings& s) { s.estimator = ALCOVE_ESTIMATOR_HORIZONS; }},
     {"half resolution", [](OcclusionSettings& s) { s.half_resolution = true; }},
     {"full resolution", [](OcclusionSettings& s) { s.half_resolution = false; }},
     {"a history of twice as many frames",

@@ -20,7 +20,7 @@ inline constexpr std::array<std::string_view, 3> kSituationNames{"first", "movin
 // The result of settings: the RMSE of visibility against scene truth, and the time of the occlusion
 // passes in milliseconds, in each situation.
 struct Achievement {
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   std::array<double, 3> rmse{};
   std::array<double, 3> ms{};
 };
@@ -71,8 +71,8 @@ struct Recommendation {
 
 // Functions that a search calls. `time` gives Achievement::ms alone and takes much less time.
 struct RecommendationWorld {
-  std::function<Result<Achievement>(const passes::OcclusionSettings&)> measure;
-  std::function<Result<std::array<double, 3>>(const passes::OcclusionSettings&)> time;
+  std::function<Result<Achievement>(const OcclusionSettings&)> measure;
+  std::function<Result<std::array<double, 3>>(const OcclusionSettings&)> time;
 };
 
 // Searches from `base`, whose settings beyond those that the search changes are kept. First it
@@ -80,7 +80,7 @@ struct RecommendationWorld {
 // that lowers the error is also tried with fewer samples. Last it changes slices, steps and tile
 // size a little, one at a time. If nothing meets the goal, the result is the closest. Errors: those
 // of `measure` and `time` for numbers of samples.
-[[nodiscard]] Result<Recommendation> recommend(const passes::OcclusionSettings& base,
+[[nodiscard]] Result<Recommendation> recommend(const OcclusionSettings& base,
                                                const RecommendationGoal& goal,
                                                const RecommendationWorld& world);
 

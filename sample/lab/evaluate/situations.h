@@ -31,14 +31,14 @@ class SituationErrors {
 
   // The errors in the order of Situation. They are kept in the cache on disk, if TruthOptions allow
   // it, for this build of the program and this device.
-  [[nodiscard]] Result<std::array<double, 3>> measure(const passes::OcclusionSettings& settings);
+  [[nodiscard]] Result<std::array<double, 3>> measure(const OcclusionSettings& settings);
   // The errors with a guard band of kGuardBand of the image's height. They are not kept.
   [[nodiscard]] Result<std::array<double, 3>> measure_with_guard_band(
-      const passes::OcclusionSettings& settings) const;
+      const OcclusionSettings& settings) const;
 
   // Renders frames of an orbit that ends at the view, with `orbit` radians per frame, and returns
   // the visibility of the last one.
-  [[nodiscard]] Result<Image<float>> draw(const passes::OcclusionSettings& settings,
+  [[nodiscard]] Result<Image<float>> draw(const OcclusionSettings& settings,
                                           std::uint32_t frames, float orbit);
   const Truths& truths() const { return truths_; }
 
@@ -70,7 +70,7 @@ inline constexpr std::array<std::string_view, 3> kClockNames{"modelled", "timest
 // Returns the times of settings in the order of Situation, in milliseconds, without or with a guard
 // band of kGuardBand of the image's height.
 using SettingTimes = std::function<Result<std::array<double, 3>>(
-    const passes::OcclusionSettings& settings, bool guard_band)>;
+    const OcclusionSettings& settings, bool guard_band)>;
 
 // Times that are modelled for a GPU. They are kept in the cache on disk for this build of the
 // program. `inputs` are those of the view; settings are replaced. Error: Mesa's AMD driver is

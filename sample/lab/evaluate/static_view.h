@@ -27,21 +27,21 @@ struct StaticSetup {
 // Returns the request for a frame of the view: visibility alone, with motion relative to the frame
 // before.
 [[nodiscard]] FrameRequest frame_request(const StaticSetup& setup,
-                                         const passes::OcclusionSettings& settings,
+                                         const OcclusionSettings& settings,
                                          std::uint32_t frame);
 
 // Renders the frames of a view and reads the last one back.
 [[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
-                                              const passes::OcclusionSettings& settings);
+                                              const OcclusionSettings& settings);
 [[nodiscard]] Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene,
                                               const StaticSetup& setup,
-                                              const passes::OcclusionSettings& settings);
+                                              const OcclusionSettings& settings);
 
 // Renders the frames of a view with a guard band, which is this many pixels wide beyond the borders
 // at the sides, and at top and bottom, and returns the visibility of the view without the band.
 [[nodiscard]] Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene,
                                                         const StaticSetup& setup,
-                                                        const passes::OcclusionSettings& settings,
+                                                        const OcclusionSettings& settings,
                                                         VkExtent2D band);
 
 }  // namespace alcove::sample
