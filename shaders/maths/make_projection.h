@@ -24,6 +24,9 @@ inline bool all_finite(const mat4& m) {
 // floats are well below it.
 constexpr double kRounding = 1e-5;
 
+// Least length in scene units, as kSkyDepth is the largest. Squares of both are normal floats.
+const double kLeastLength = 1.0 / kSkyDepth;
+
 // Returns whether the projection is orthographic: w does not depend on z within rounding errors.
 inline bool is_orthographic(const dmat4& m) {
   const double w_per_z = std::abs(m[2][3]);
@@ -54,8 +57,12 @@ inline const char* projection_fault(const dmat4& m) {
   const double depth_size = std::abs(m[2][2]) + w_size;
   if (is_view_projection(m))
     return "the projection matrix looks like a view-projection: pass the projection alone";
-  if (m[0][0] == 0.0 || m[1][1] == 0.0)
-    return "the projection matrix flattens x or y: its first two diagonal elements must not be 0";
+  const auto is_scale = [&](double s) {
+    return s >= kLeastLength * w_size && s * kLeastLength <= w_size;
+  };
+  if (!is_scale(std::abs(m[0][0])) || !is_scale(std::abs(m[1][1])))
+    return "the projection matrix flattens or stretches x or y: its first two diagonal elements "
+           "must be 1e-12 to 1e12 or the negative of that";
   if (std::abs(m[0][1]) > kRounding * size || std::abs(m[1][0]) > kRounding * size)
     return "the projection matrix mixes x and y: pass it without the display's rotation";
   if (std::abs(m[0][3]) > kRounding * w_size || std::abs(m[1][3]) > kRounding * w_size)
@@ -68,8 +75,6 @@ inline const char* projection_fault(const dmat4& m) {
            "ALCOVE_CAMERA_CONVENTION_FORWARD_Z";
   if (!orthographic && !has_no_constant_w(m))
     return "the projection matrix moves the eye along z: in perspective its w must be 0 where z is";
-  if (m[2][2] * m[3][3] == m[3][2] * m[2][3])
-    return "the projection matrix gives every point the same depth";
   return nullptr;
 }
 
@@ -123,9 +128,15 @@ inline dmat4 without_rounding(dmat4 m) {
   const auto depth_at = [&](double ndc) {
     const double below = unproject.z * ndc + unproject.w;
     const double above = unproject.x * ndc + unproject.y;
-    return float(below > 0.0 ? std::min(above / below, double(kSkyDepth)) : double(kSkyDepth));
+    return below > 0.0 ? std::min(above / below, double(kSkyDepth)) : double(kSkyDepth);
   };
-  p.near_far = vec2(depth_at(reversed ? 1.0 : 0.0), depth_at(reversed ? 0.0 : 1.0));
+  const dvec2 near_far(depth_at(reversed ? 1.0 : 0.0), depth_at(reversed ? 0.0 : 1.0));
+  if (near_far.x < (w_per_depth > 0.0 ? detail::kLeastLength : -kSkyDepth) ||
+      near_far.x >= near_far.y)
+    return tl::unexpected<const char*>(
+        "the projection matrix has no range of depth: its near plane must lie less than 1e12 from "
+        "the eye, in perspective at least 1e-12 in front of it, and before the far plane");
+  p.near_far = vec2(near_far);
 
   if (w_per_depth > 0.0)
     p.eye = vec4(-constant / scale, 0.0, 1.0);

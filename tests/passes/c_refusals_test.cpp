@@ -5,11 +5,11 @@
 #include <array>
 #include <cctype>
 #include <cstring>
-#include <random>
 #include <string>
 #include <variant>
 
 #include "c_interface_fixture.h"
+#include "maths/random_input.h"
 
 namespace alcove::passes {
 namespace {
@@ -358,7 +358,7 @@ TEST_F(CRefusals, InvalidCreationInfoOfAContextIsReported) {
 // Random numbers in settings and cameras never crash: either the frame is recorded, or it is
 // refused with a sentence.
 TEST_F(CRefusals, FramesWithRandomSettingsAndCamerasAreRecordedOrRefusedWithAMessage) {
-  std::mt19937 random(7);
+  maths_test::RandomInput random;
   const std::array<float, 8> floats{0.0f, -0.0f, 1.0f, -1.0f, 1e30f, 1e-30f, kNaN, -1e38f};
   constexpr std::size_t kFirst = offsetof(AlcoveSettings, radius);
   constexpr std::size_t kCount = (offsetof(AlcoveSettings, intensity) + 4 - kFirst) / 4;
@@ -367,15 +367,15 @@ TEST_F(CRefusals, FramesWithRandomSettingsAndCamerasAreRecordedOrRefusedWithAMes
     AlcoveSettings settings = get_settings(ALCOVE_QUALITY_LOW, 0.5f);
     AlcoveView changed = view();
     changed.info.settings = &settings;
-    const std::uint32_t small = random() % 8;
-    const float number = floats.at(random() % floats.size());
-    char* const field = reinterpret_cast<char*>(&settings) + kFirst + 4 * (random() % kCount);
-    if (random() % 2 == 0)
+    const std::uint32_t small = random.bits() % 8;
+    const float number = floats.at(random.bits() % floats.size());
+    char* const field = reinterpret_cast<char*>(&settings) + kFirst + 4 * (random.bits() % kCount);
+    if (random.bits() % 2 == 0)
       std::memcpy(field, &small, 4);
-    else if (random() % 2 == 0)
+    else if (random.bits() % 2 == 0)
       std::memcpy(field, &number, 4);
     else
-      changed.info.camera.clip_from_view[random() % 16] = number;
+      changed.info.camera.clip_from_view[random.bits() % 16] = number;
     const AlcoveResult result = record(context(), make_frame({&changed, 1}, 0));
     if (result != ALCOVE_SUCCESS) {
       ++refused;

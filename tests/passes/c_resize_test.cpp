@@ -1,11 +1,9 @@
-// Records frames whose sizes, settings, images and number of views change at random. The test runs
-// for a few seconds, or for as many as the environment variable ALCOVE_RESIZE_SECONDS says, which
-// is an hour in the soak test.
+// Records frames whose sizes, settings, images and number of views change at random. The soak test
+// sets ALCOVE_RESIZE_FRAMES, the number of frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -20,20 +18,19 @@
 namespace alcove::passes {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::uint32_t kMostViews = 3;
 constexpr std::uint32_t kMostSide = 40;
-constexpr std::uint32_t kRound = 200;  // frames between two calls of CResize::rest()
-constexpr std::chrono::seconds kProgress(30);
+constexpr std::uint32_t kRound = 40;        // frames between two calls of CResize::rest()
+constexpr std::uint32_t kProgress = 4'000;  // frames between two lines of progress
 
-std::chrono::seconds wanted_time() {
-  const char* text = std::getenv("ALCOVE_RESIZE_SECONDS");
-  return std::chrono::seconds(text != nullptr ? std::strtol(text, nullptr, 10) : 3);
+std::uint32_t wanted_frames() {
+  const char* text = std::getenv("ALCOVE_RESIZE_FRAMES");
+  return text != nullptr ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : kRound;
 }
 
-// Settings and optional images of a view. The test makes only a few kinds, because each needs
-// pipelines of its own, and a software device takes longer to create pipelines than to run frames.
+// Settings and optional images of a view. A round has only two kinds and two cameras, because each
+// needs pipelines of its own, and a software device takes longer to create pipelines than to run
+// frames.
 struct Kind {
   OcclusionSettings settings;
   // The images that are not given: bit i stands for element i of kInputs or kOutputs.
@@ -50,7 +47,6 @@ struct ViewState {
   Scene scene;
   AlcoveView view{};  // with every image
   AlcoveSettings settings{};
-  AlcoveAdvancedSettings advanced{};  // what `settings` points to
   VkExtent2D largest{};               // of the images
   Kind kind;
 };
@@ -58,11 +54,11 @@ struct ViewState {
 // Returns the AlcoveView to record: `state.view` without the images that its kind leaves out.
 AlcoveView recorded_view(const ViewState& state) {
   AlcoveView view = state.view;
-  view.settings = &state.settings;
+  view.info.settings = &state.settings;
   for (std::size_t i = 0; i < kInputs.size(); ++i)
-    if ((state.kind.without_inputs >> i & 1) != 0) view.*kInputs.at(i).image = {};
+    if ((state.kind.without_inputs >> i & 1) != 0) view.images[kInputs.at(i).role] = {};
   for (std::size_t i = 0; i < kOutputs.size(); ++i)
-    if ((state.kind.without_outputs >> i & 1) != 0) view.*kOutputs.at(i).image = {};
+    if ((state.kind.without_outputs >> i & 1) != 0) view.images[kOutputs.at(i).role] = {};
   return view;
 }
 
@@ -71,7 +67,7 @@ class CResize : public CInterface {
   void SetUp() override;
   void TearDown() override;
 
-  void run_for(std::chrono::seconds time);
+  void run_frames(std::uint32_t count);
 
  private:
   std::uint32_t below(std::uint32_t count) { return random_.bits() % count; }
@@ -87,13 +83,15 @@ class CResize : public CInterface {
   void drop(ViewState& state);
   void change(ViewState& state);
   void draw_frame(std::span<ViewState> all, bool discards);
-  void run_round(Clock::time_point end);
+  void choose_kinds();
+  void run_round();
   AlcoveMemory rest();
   void expect_right(ViewState& state);
 
   maths_test::RandomInput random_;
   Context context_;
-  std::array<Kind, 8> kinds_;
+  std::array<Kind, 2> kinds_;
+  std::array<TestView, 2> cameras_;
   std::array<ViewState, kMostViews> views_;
   std::array<ViewState, 1> resting_;
   std::uint32_t frame_ = 0;
@@ -109,7 +107,7 @@ void CResize::SetUp() {
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
   info.debug_utils = VK_TRUE;
   context_ = create_context(info);
-  std::ranges::generate(kinds_, [&] { return any_kind(); });
+  choose_kinds();
   for (std::uint32_t i = 0; i < kMostViews; ++i) views_.at(i).id = i;
   resting_[0].id = kMostViews;
   make_images(resting_[0], {16, 12});
@@ -125,34 +123,30 @@ void CResize::TearDown() {
 }
 
 Kind CResize::any_kind() {
-  OcclusionSettings settings = quality_settings(static_cast<Quality>(below(3)), 0.5f);
-  settings.advanced.estimator = static_cast<Estimator>(below(3));
-  settings.advanced.thickness_unit = static_cast<ThicknessUnit>(below(3));
+  OcclusionSettings settings = OcclusionSettings(static_cast<AlcoveQuality>(below(3)), 0.5f);
+  settings.estimator = static_cast<AlcoveEstimator>(below(2));
+  settings.thickness_unit = static_cast<AlcoveThicknessUnit>(below(2));
   settings.depth_layers = 1 + below(2);
-  const bool fades = !has_thickness(settings.advanced.estimator);
-  settings.advanced.falloff = fades ? random_.uniform(0.0f, 1.0f) : 0.0f;
-  settings.advanced.filter_radius = below(4);
-  settings.specular = static_cast<Specular>(1 + below(3));
+  settings.specular = static_cast<AlcoveSpecular>(1 + below(2));
   settings.roughness_channel = below(2);
   return {settings, below(128) & kOptionalInputs, below(15)};  // never without all outputs
 }
 
 // Makes new images of `size` pixels that are used completely, with another random camera and scene.
 void CResize::make_images(ViewState& state, VkExtent2D size) {
-  const std::vector<TestView> views = test_views();
-  state.camera = views[below(static_cast<std::uint32_t>(views.size()))];
+  state.camera = cameras_.at(below(cameras_.size()));
   state.scene = chance(2) ? ball_on_floor() : groove(0.8);
   HostView from = draw_view(size.width, size.height, state.scene, state.camera);
   from.id = state.id;
   request_all_outputs(from);
-  from.settings.precision = chance(3) ? Precision::unorm8 : Precision::float32;
+  from.settings.precision = chance(3) ? ALCOVE_PRECISION_UNORM8 : ALCOVE_PRECISION_FLOAT32;
   state.view = create_view(from);
   state.largest = size;
   // Half of the views use dynamic resolution. In the others, a change of the used part of the
   // images begins a new history.
   if (chance(2)) {
-    state.view.largest_width = size.width;
-    state.view.largest_height = size.height;
+    state.view.info.largest_width = size.width;
+    state.view.info.largest_height = size.height;
   }
 }
 
@@ -168,7 +162,7 @@ void CResize::destroy_images(ViewState& state) {
 void CResize::use_part(ViewState& state, VkExtent2D size) {
   const HostView part = draw_view(size.width, size.height, state.scene, state.camera);
   for (const Input& each : kInputs) {
-    AlcoveImage whole = state.view.*each.image;
+    AlcoveImage whole = state.view.images[each.role];
     whole.width = state.largest.width;
     whole.height = state.largest.height;
     fill_image(whole, placed_in(state.largest, part.*each.texels));
@@ -177,7 +171,7 @@ void CResize::use_part(ViewState& state, VkExtent2D size) {
     image.width = size.width;
     image.height = size.height;
   });
-  state.view.read_area = {0, 0, size.width, size.height};
+  state.view.info.read_area = {0, 0, size.width, size.height};
 }
 
 void CResize::change_kind(ViewState& state) {
@@ -192,8 +186,8 @@ void CResize::change_numbers(ViewState& state) {
   settings.hidden_occlusion = random_.uniform(0.0f, 1.0f);
   settings.history_frames = chance(4) ? 0 : 1 + below(127);
   settings.roughness = random_.uniform(0.0f, 1.0f);
-  settings.precision = static_cast<Precision>(below(3));
-  state.settings = from_settings(settings, state.advanced);
+  settings.precision = static_cast<AlcovePrecision>(below(3));
+  state.settings = settings;
 }
 
 void CResize::show(ViewState& state) {
@@ -206,14 +200,14 @@ void CResize::show(ViewState& state) {
 void CResize::drop(ViewState& state) {
   state.is_shown = false;
   EXPECT_EQ(alcoveDropView(context_.get(), state.id), ALCOVE_SUCCESS);
-  state.view.previous_width = state.view.previous_height = state.view.static_frames = 0;
+  state.view.info.previous_width = state.view.info.previous_height = state.view.info.static_frames = 0;
 }
 
 // Changes a view at random in five of twelve cases. A view that changes has static_frames 0.
 void CResize::change(ViewState& state) {
   const std::uint32_t what = below(12);
   if (what > 4) return;
-  state.view.static_frames = 0;
+  state.view.info.static_frames = 0;
   if (what == 0 && state.is_shown && chance(2))
     drop(state);
   else if (what == 0)
@@ -225,17 +219,17 @@ void CResize::change(ViewState& state) {
   else if (what == 3)
     change_numbers(state);
   else
-    state.view.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
+    state.view.info.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
 }
 
 // Stores the camera and the size of this frame as the previous ones of the next frame.
 void remember(ViewState& state) {
-  state.view.previous_camera = state.view.camera;
-  if (state.view.largest_width != 0) {
-    state.view.previous_width = state.view.depth.width;
-    state.view.previous_height = state.view.depth.height;
+  state.view.info.previous_camera = state.view.info.camera;
+  if (state.view.info.largest_width != 0) {
+    state.view.info.previous_width = state.view.images[ALCOVE_IMAGE_DEPTH].width;
+    state.view.info.previous_height = state.view.images[ALCOVE_IMAGE_DEPTH].height;
   }
-  ++state.view.static_frames;
+  ++state.view.info.static_frames;
 }
 
 void CResize::draw_frame(std::span<ViewState> all, bool discards) {
@@ -243,12 +237,14 @@ void CResize::draw_frame(std::span<ViewState> all, bool discards) {
   for (ViewState& state : all)
     if (state.is_shown) views.push_back(recorded_view(state));
   if (views.empty()) return;
+  const AlcoveResult result = record(*context_, make_frame(views, frame_), discards);
+  ASSERT_EQ(result, ALCOVE_SUCCESS) << alcoveGetMessage(context_.get());
+  most_transients_ = std::max(most_transients_, get_memory(*context_).transients);
   if (discards) {
-    discard_frame(*context_, views, frame_);
+    EXPECT_EQ(alcoveDiscardFrame(context_.get()), ALCOVE_SUCCESS);
     return;
   }
-  run_frame(*context_, views, frame_++);
-  most_transients_ = std::max(most_transients_, get_memory(*context_).transients);
+  ++frame_;
   for (ViewState& state : all)
     if (state.is_shown) remember(state);
 }
@@ -273,8 +269,16 @@ void CResize::expect_right(ViewState& state) {
   expect_within(found.multi_bounce, 0.0f, "multi-bounce");
 }
 
-void CResize::run_round(Clock::time_point end) {
-  for (std::uint32_t i = 0; i < kRound && Clock::now() < end && !HasFailure(); ++i) {
+void CResize::choose_kinds() {
+  std::ranges::generate(kinds_, [&] { return any_kind(); });
+  const std::vector<TestView> views = test_views();
+  std::ranges::generate(cameras_,
+                        [&] { return views[below(static_cast<std::uint32_t>(views.size()))]; });
+}
+
+void CResize::run_round() {
+  choose_kinds();
+  for (std::uint32_t i = 0; i < kRound && !HasFailure(); ++i) {
     SCOPED_TRACE("frame " + std::to_string(frame_));
     std::ranges::for_each(views_, [&](ViewState& state) { change(state); });
     const bool discards = chance(20);
@@ -295,10 +299,10 @@ AlcoveMemory CResize::rest() {
   AlcoveMemory memory{};
   // Frames with two specular models are recorded, so that the tables of their shaders are loaded
   // from the first call of this function on.
-  for (const Specular specular : {Specular::table, Specular::slices}) {
-    OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+  for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_TABLE, ALCOVE_SPECULAR_SLICES}) {
+    OcclusionSettings settings = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, 0.5f);
     settings.specular = specular;
-    resting_[0].settings = from_settings(settings, resting_[0].advanced);
+    resting_[0].settings = settings;
     for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) draw_frame(resting_, false);
     memory = get_memory(*context_);
   }
@@ -306,26 +310,22 @@ AlcoveMemory CResize::rest() {
   return memory;
 }
 
-void CResize::run_for(std::chrono::seconds time) {
+void CResize::run_frames(std::uint32_t count) {
   const AlcoveMemory first = rest();
-  const Clock::time_point begin = Clock::now();
-  Clock::time_point told = begin;
-  while (Clock::now() - begin < time && !HasFailure()) {
-    run_round(begin + time);
+  for (std::uint32_t done = kRound; done <= count && !HasFailure(); done += kRound) {
+    run_round();
     const AlcoveMemory now = rest();
     EXPECT_EQ(now.history, first.history);
-    // The memory of transients does not shrink: it is that of the largest frame so far.
+    // The heap of transients may still have the size of the largest frame, recorded or discarded,
+    // because it shrinks only after many smaller ones.
     EXPECT_LE(now.allocated, first.allocated + most_transients_);
-    if (Clock::now() - told > kProgress) {
-      told = Clock::now();
-      std::cout << std::chrono::duration_cast<std::chrono::seconds>(told - begin).count() << " s, "
-                << frame_ << " frames, " << now.allocated << " bytes" << std::endl;
-    }
+    if (done % kProgress == 0)
+      std::cout << done << " frames, " << now.allocated << " bytes" << std::endl;
   }
 }
 
 TEST_F(CResize, ResultsStayInRangeAndMemoryBoundedWhileSizesSettingsAndViewsChangeAtRandom) {
-  run_for(wanted_time());
+  run_frames(wanted_frames());
 }
 
 }  // namespace

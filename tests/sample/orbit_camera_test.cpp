@@ -27,9 +27,7 @@ glm::vec2 ndc(const Camera& camera, const glm::vec3& point_ws) {
 }
 
 TEST(OrbitCamera, OrbitingKeepsTheTargetAndTheDistanceOfTheCamera) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(1);
   std::uniform_real_distribution<float> angle(-3.0f, 3.0f);
   Camera camera = some_camera();
   const float distance = arm(camera);

@@ -28,9 +28,7 @@ TEST(Printable, InvalidUtf8IsReplaced) {
 }
 
 TEST(Printable, AnyBytesMadePrintableCanBeWrittenAsJson) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(1);
   for (int i = 0; i < 20000; ++i) {
     std::string bytes(random() % 6, '\0');
     // Most bytes are 0x80 or above, which only multi-byte characters contain.
