@@ -13,14 +13,14 @@ namespace {
 
 class BackFaceDepth : public HiddenDepthTest {};
 
-OcclusionSettings exact(Estimator estimator, float radius) {
+OcclusionSettings exact(AlcoveEstimator estimator, float radius) {
   OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
-  settings.advanced.thickness_unit = ThicknessUnit::back_faces;
+  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   return settings;
 }
 
 OcclusionSettings of_thickness(OcclusionSettings settings, float thickness) {
-  settings.advanced.thickness_unit = ThicknessUnit::radius;
+  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_RADIUS;
   settings.thickness = thickness;
   return settings;
 }
@@ -47,7 +47,7 @@ TEST_F(BackFaceDepth, VisibilityUnderASlabWithBackFaceDepthMatchesTheClosedForm)
     }
     return sum;
   };
-  for (const Estimator estimator : kThickEstimators) {
+  for (const AlcoveEstimator estimator : kThickEstimators) {
     SCOPED_TRACE(static_cast<int>(estimator));
     const OcclusionSettings settings = exact(estimator, 8.0f);
     const double error = mean_error(settings);
@@ -89,7 +89,7 @@ TEST_F(BackFaceDepth, VisibilityUnderABallWithBackFaceDepthMatchesTheClosedFormI
       }
       return sum / count;
     };
-    for (const Estimator estimator : kThickEstimators) {
+    for (const AlcoveEstimator estimator : kThickEstimators) {
       SCOPED_TRACE(testing::Message() << view.name << ", " << static_cast<int>(estimator));
       const OcclusionSettings settings = exact(estimator, 3.0f);
       const double error = mean_error(settings);
@@ -111,11 +111,11 @@ TEST_F(BackFaceDepth, SolidThickerThanTheRadiusOccludesAtMostLikeAnInfinitelyThi
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage backs = draw_back_faces(view, 60, 40, scene);
-    for (const Estimator estimator : kThickEstimators) {
+    for (const AlcoveEstimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, radius);
       const HostImage image = visibility(drawing, backs, settings);
       const HostImage thick = visibility(drawing, backs, of_thickness(settings, 1e4f));
-      settings.advanced.estimator = Estimator::horizons;
+      settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
       const HostImage horizons = visibility(drawing, backs, settings);
       for (std::size_t i = 0; i < image.texels.size(); ++i) {
         if (estimator == Estimator::bitmask) {
@@ -140,7 +140,7 @@ TEST_F(BackFaceDepth, ThicknessSettingIsUsedWhereNoBackFaceLiesBehindTheVisibleS
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
-    for (const Estimator estimator : kThickEstimators) {
+    for (const AlcoveEstimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, 1.2f);
       settings.thickness = 0.2f;
       const HostImage expected =

@@ -123,7 +123,7 @@ void CResize::TearDown() {
 }
 
 Kind CResize::any_kind() {
-  OcclusionSettings settings = OcclusionSettings(static_cast<AlcoveQuality>(below(3)), 0.5f);
+  OcclusionSettings settings(static_cast<AlcoveQuality>(below(3)));
   settings.estimator = static_cast<AlcoveEstimator>(below(2));
   settings.thickness_unit = static_cast<AlcoveThicknessUnit>(below(2));
   settings.depth_layers = 1 + below(2);
@@ -152,11 +152,11 @@ void CResize::make_images(ViewState& state, VkExtent2D size) {
 
 void CResize::destroy_images(ViewState& state) {
   engine().wait();
-  for_each_image(state.view, [&](const AlcoveImage& image) {
-    if (image.image == VK_NULL_HANDLE) return;
+  for (const AlcoveImage& image : state.view.images) {
+    if (image.image == VK_NULL_HANDLE) continue;
     EXPECT_EQ(alcoveForgetImage(context_.get(), image.image), ALCOVE_SUCCESS);
     engine().destroy_image(image);
-  });
+  }
 }
 
 void CResize::use_part(ViewState& state, VkExtent2D size) {
@@ -167,10 +167,10 @@ void CResize::use_part(ViewState& state, VkExtent2D size) {
     whole.height = state.largest.height;
     fill_image(whole, placed_in(state.largest, part.*each.texels));
   }
-  for_each_image(state.view, [size](AlcoveImage& image) {
+  for (AlcoveImage& image : state.view.images) {
     image.width = size.width;
     image.height = size.height;
-  });
+  }
   state.view.info.read_area = {0, 0, size.width, size.height};
 }
 
@@ -300,7 +300,7 @@ AlcoveMemory CResize::rest() {
   // Frames with two specular models are recorded, so that the tables of their shaders are loaded
   // from the first call of this function on.
   for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_TABLE, ALCOVE_SPECULAR_SLICES}) {
-    OcclusionSettings settings = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, 0.5f);
+    OcclusionSettings settings;
     settings.specular = specular;
     resting_[0].settings = settings;
     for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) draw_frame(resting_, false);

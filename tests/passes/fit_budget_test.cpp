@@ -75,9 +75,9 @@ bool is_least(const AlcoveSettings& settings) {
 TEST(FitBudget, TargetIsApproachedFromBelowWhateverTheFixedShareOfTheTime) {
   for (const double fixed : {0.0, 0.2, 0.5, 0.8, 1.2}) {
     for (const double target : {1.0, 1.5, 2.0, 2.6}) {
-      for (const Quality begin : {Quality::console, Quality::low, Quality::medium}) {
+      for (const AlcoveQuality begin : {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
         SCOPED_TRACE(testing::Message() << fixed << " ms fixed, target " << target);
-        Simulation view{.fixed_ms = fixed, .settings = quality_settings(begin, 1.0f)};
+        Simulation view{.fixed_ms = fixed, .settings = OcclusionSettings(begin, 1.0f)};
         view.budget.target_ms = target;
         view.run(600);
         const double reached = view.exact_ms(view.settings);

@@ -18,9 +18,9 @@ class GtaoPass : public PassTest {
   }
 };
 
-OcclusionSettings precise(Quality quality) {
-  OcclusionSettings settings = quality_settings(quality, 0.5f);
-  settings.precision = Precision::float32;
+OcclusionSettings precise(AlcoveQuality quality) {
+  OcclusionSettings settings(quality, 0.5f);
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
@@ -28,11 +28,11 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   for (const TestView& view : test_views()) {
     for (const double degrees : {0.0, 30.0, 60.0, 75.0, 85.0}) {
       const Drawing drawing = draw(view, 96, 64, {tilted_plane(degrees, 4.0)});
-      for (const Quality quality :
-           {Quality::console, Quality::low, Quality::medium, Quality::high, Quality::reference}) {
+      for (const AlcoveQuality quality :
+           {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH, ALCOVE_QUALITY_REFERENCE}) {
         SCOPED_TRACE(testing::Message()
                      << view.name << " tilted " << degrees << " degrees, " << name_of(quality));
-        const std::uint32_t frames = quality == Quality::reference ? 1 : 4;
+        const std::uint32_t frames = quality == ALCOVE_QUALITY_REFERENCE ? 1 : 4;
         for (std::uint32_t index = 0; index < frames; ++index)
           EXPECT_GE(lowest(drawing, precise(quality), index), kLeast) << "in frame " << index;
       }
@@ -41,15 +41,15 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
 }
 
 TEST_F(GtaoPass, TiltedPlaneOccludesItselfIfSamplesAreNotSnappedToTexelCentres) {
-  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
-    OcclusionSettings settings = precise(Quality::medium);
-    settings.advanced.estimator = estimator;
+  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+    OcclusionSettings settings = precise(ALCOVE_QUALITY_MEDIUM);
+    settings.estimator = estimator;
     for (const double degrees : {60.0, 75.0}) {
       SCOPED_TRACE(testing::Message() << "tilted " << degrees << " degrees");
       const Drawing drawing = draw(test_views()[2], 96, 64, {tilted_plane(degrees, 4.0)});
-      settings.advanced.snap_to_texels = false;
+      settings.snap_to_texels = false;
       EXPECT_LT(lowest(drawing, settings), 0.98f);
-      settings.advanced.snap_to_texels = true;
+      settings.snap_to_texels = true;
       EXPECT_GE(lowest(drawing, settings), kLeast);
     }
   }

@@ -16,11 +16,11 @@ namespace {
 
 // Returns settings with which any estimator assumes infinitely thick occluders, so that its result
 // can be compared with that of the estimator `horizons`.
-OcclusionSettings exact(Estimator estimator, float radius) {
-  OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.advanced.estimator = estimator;
+OcclusionSettings exact(AlcoveEstimator estimator, float radius) {
+  OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
+  settings.estimator = estimator;
   settings.hidden_occlusion = 1.0f;
-  settings.advanced.unobserved = false;
+  settings.unobserved = false;
   return settings;
 }
 
@@ -32,7 +32,7 @@ struct Errors {
 class GtaoTruth : public PassTest {
  protected:
   // Returns the mean and the largest error of visibility over every 5th pixel of every 3rd row.
-  Errors errors_of(Estimator estimator, const TestView& view, const Scene& scene) {
+  Errors errors_of(AlcoveEstimator estimator, const TestView& view, const Scene& scene) {
     const float radius = 1.2f;
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage visibility = render(drawing, exact(estimator, radius)).visibility;
@@ -85,7 +85,7 @@ TEST_F(GtaoTruth, EstimatorHorizonsAgreesWithBruteForceInEverySceneAndView) {
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name);
-      const Errors errors = errors_of(Estimator::horizons, view, scene.scene);
+      const Errors errors = errors_of(ALCOVE_ESTIMATOR_HORIZONS, view, scene.scene);
       EXPECT_LT(errors.mean, 0.008);
       // The largest errors are at silhouettes, which lie between pixels, and at the ball's contact,
       // which is narrower than a pixel.
@@ -97,7 +97,7 @@ TEST_F(GtaoTruth, EstimatorHorizonsAgreesWithBruteForceInEverySceneAndView) {
 TEST_F(GtaoTruth, EstimatorConnectedAgreesWithBruteForceIfVolumeBehindOccludersIsSolid) {
   for (const NamedScene& scene : gtao_scenes()) {
     SCOPED_TRACE(scene.name);
-    const Errors errors = errors_of(Estimator::connected, test_views()[2], scene.scene);
+    const Errors errors = errors_of(ALCOVE_ESTIMATOR_CONNECTED, test_views()[2], scene.scene);
     EXPECT_LT(errors.mean, 0.02);
     EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.08);
   }
@@ -108,7 +108,7 @@ TEST_F(GtaoTruth, VisibilityOfAFloorInFrontOfAPlatformMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
-  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
+  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
     SCOPED_TRACE(name_of(estimator));
     const auto images = render(drawing, exact(estimator, 8.0f));
     for (std::uint32_t x = 44; x < 62; ++x) {
@@ -127,7 +127,7 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
   for (const double half_angle : {0.5, std::numbers::pi / 4.0, 1.2}) {
     const Drawing drawing = draw(view, 128, 128, groove(half_angle, 9.0));
     const double expected = (1.0 - std::cos(2.0 * half_angle)) / 2.0;
-    for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
+    for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
       SCOPED_TRACE(testing::Message() << name_of(estimator) << ", half angle " << half_angle);
       const auto images = render(drawing, exact(estimator, 8.0f));
       for (const std::uint32_t x : {61u, 62u, 65u, 66u})
@@ -139,10 +139,10 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
 TEST_F(GtaoTruth, LargerFalloffFadesOccludersTowardsTheRadiusAndKeepsNearOnes) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, groove(0.8));
-  OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
+  OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_HORIZONS, 1.2f);
   double before = 0.0;
   for (const float falloff : {0.0f, 0.3f, 1.0f}) {
-    settings.advanced.falloff = falloff;
+    settings.falloff = falloff;
     const auto faded = render(drawing, settings).visibility;
     EXPECT_GT(mean(faded), before + 0.01) << falloff;
     before = mean(faded);
@@ -155,7 +155,7 @@ TEST_F(GtaoTruth, EstimatorBitmaskWithThickOccludersEqualsEstimatorHorizons) {
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5));
   OcclusionSettings thick = exact(Estimator::bitmask, 1.2f);
   thick.thickness = 1e4f;
-  const OcclusionSettings horizons = exact(Estimator::horizons, 1.2f);
+  const OcclusionSettings horizons = exact(ALCOVE_ESTIMATOR_HORIZONS, 1.2f);
   const auto by_sectors = render(drawing, thick).visibility;
   const auto by_horizons = render(drawing, horizons).visibility;
   EXPECT_THAT(by_sectors.texels, testing::Pointwise(testing::FloatNear(0.02f), by_horizons.texels));
@@ -166,12 +166,12 @@ TEST_F(GtaoTruth, EqualThicknessGivenInRadiiOrInDistancesGivesTheSameMeanVisibil
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 60, 40, step(0.0, 0.5, 4.0));
   const float radius = 1.2f, distance = 3.5f;
-  for (const Estimator estimator : {Estimator::bitmask, Estimator::connected}) {
+  for (const AlcoveEstimator estimator : {Estimator::bitmask, ALCOVE_ESTIMATOR_CONNECTED}) {
     OcclusionSettings settings = exact(estimator, radius);
     settings.hidden_occlusion = 0.0f;
     settings.thickness = 0.05f;
     const auto of_radius = render(drawing, settings).visibility;
-    settings.advanced.thickness_unit = ThicknessUnit::distance;
+    settings.thickness_unit = ThicknessUnit::distance;
     settings.thickness *= radius / distance;
     const auto of_distance = render(drawing, settings).visibility;
     EXPECT_NEAR(mean(of_distance), mean(of_radius), 1e-4);
@@ -192,7 +192,7 @@ TEST_F(GtaoTruth, LargerFractionOfTheVolumeBehindAWideOccluderIsSolidThanBehindA
         return p.x > 0.0 && p.x < slats * apart && std::fmod(p.x, apart) < width;
       };
       const auto beside = [&](float hidden_occlusion) {
-        OcclusionSettings settings = exact(Estimator::connected, 1.2f);
+        OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_CONNECTED, 1.2f);
         settings.thickness = 0.01f;  // small, so that a hidden volume remains behind the occluder
         settings.hidden_occlusion = hidden_occlusion;
         return visibility_beside(view, front, settings);
@@ -224,7 +224,7 @@ TEST_F(GtaoTruth, ThicknessSettingLargerThanTheVisibleWidthDarkensNothing) {
       Surface front = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
       const auto beside = [&](float thickness) {
-        OcclusionSettings settings = exact(Estimator::connected, 1.2f);
+        OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_CONNECTED, 1.2f);
         settings.steps = 8;
         settings.hidden_occlusion = 0.0f;
         settings.thickness = thickness;
@@ -242,7 +242,7 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
   const float radius = 1.0f;
-  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
+  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
     SCOPED_TRACE(name_of(estimator));
     const auto images = render(drawing, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
@@ -252,7 +252,7 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
       // 1.15 allows for that.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
-      if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius)
+      if ((estimator == ALCOVE_ESTIMATOR_CONNECTED ? across / 1.15 : distance) > radius)
         EXPECT_GT(images.visibility.at(x, 64), 0.996) << "column " << x;
       else if (distance < 0.8 * radius) {
         EXPECT_LT(images.visibility.at(x, 64), 0.96) << "column " << x;
@@ -272,9 +272,9 @@ TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible)
     const TestView part_view = columns_of(view, kWhole, 0, kPart);
     const Drawing part = draw(part_view, kPart, kHeight, groove(0.8));
     const auto visibility = [&](const Drawing& drawing, bool extrapolation) {
-      OcclusionSettings settings = exact(Estimator::connected, kRadius);
+      OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_CONNECTED, kRadius);
       settings.steps = 12;
-      settings.advanced.extrapolation = extrapolation;
+      settings.extrapolation = extrapolation;
       return render(drawing, settings).visibility;
     };
     const HostImage truth = visibility(whole, true);
@@ -296,7 +296,7 @@ TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForceInEveryScene) {
   const float radius = 1.2f;
   for (const TestView& view : {test_views()[2], test_views()[5]}) {
     for (const NamedScene& scene : gtao_scenes()) {
-      for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
+      for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
         SCOPED_TRACE(testing::Message()
                      << scene.name << ", " << view.name << ", " << name_of(estimator));
         const Drawing drawing = draw(view, 60, 40, scene.scene);
@@ -304,7 +304,7 @@ TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForceInEveryScene) {
         settings.bent_normal = true;
         const auto images = render(drawing, settings);
         EXPECT_LT(mean_bent_error(images.bent_normal, drawing, radius),
-                  estimator == Estimator::horizons ? 2.0 : 6.0);
+                  estimator == ALCOVE_ESTIMATOR_HORIZONS ? 2.0 : 6.0);
       }
     }
   }

@@ -28,14 +28,14 @@ constexpr std::uint32_t kWidth = 45;
 constexpr std::uint32_t kHeight = 31;
 constexpr float kSky = 1e12f;
 
-constexpr std::array kModels{Specular::cone, Specular::table};
+constexpr std::array kModels{Specular::cone, ALCOVE_SPECULAR_TABLE};
 
-OcclusionSettings settings_of(Specular model, float roughness = 0.5f, std::uint32_t channel = 0) {
+OcclusionSettings settings_of(AlcoveSpecular model, float roughness = 0.5f, std::uint32_t channel = 0) {
   OcclusionSettings settings;
   settings.specular = model;
   settings.roughness = roughness;
   settings.roughness_channel = channel;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
@@ -78,7 +78,7 @@ Texture add(const Frame& frame, const GtsoInputs& inputs, const OcclusionSetting
 
 class GtsoPass : public PassTest {
  protected:
-  void run_model(const View& view, const Inputs& inputs, Specular model) {
+  void run_model(const AlcoveCamera& view, const Inputs& inputs, AlcoveSpecular model) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
       read_back(graph, add(frame,
@@ -93,14 +93,14 @@ class GtsoPass : public PassTest {
   }
 };
 
-maths::Projection projection_of(const View& view) {
+maths::Projection projection_of(const AlcoveCamera& view) {
   maths::mat4 clip_from_view;
   std::memcpy(&clip_from_view[0][0], view.clip_from_view.data(), sizeof(clip_from_view));
   return maths::make_projection(clip_from_view, kWidth, kHeight).value();
 }
 
 // Returns the value that the pass should write at a pixel.
-float expected(const Inputs& inputs, const maths::Projection& projection, Specular model,
+float expected(const Inputs& inputs, const maths::Projection& projection, AlcoveSpecular model,
                std::uint32_t x, std::uint32_t y) {
   const float depth = inputs.depth.at(x, y);
   if (depth == kSky) return 1.0f;
@@ -126,7 +126,7 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Specul
 TEST_F(GtsoPass, SpecularOcclusionAgreesWithTheFormulasOnTheCpuInEveryKindOfView) {
   const Inputs inputs = random_inputs();
   for (const TestView& view : test_views()) {
-    for (const Specular model : kModels) {
+    for (const AlcoveSpecular model : kModels) {
       SCOPED_TRACE(testing::Message() << view.name << ", model " << static_cast<int>(model));
       run_model(view.view, inputs, model);
       const maths::Projection projection = projection_of(view.view);
@@ -148,7 +148,7 @@ TEST_F(GtsoPass, InvalidTexelsInAnyInputGiveSpecularOcclusionInRange) {
     std::fill_n(image.texels.begin() + std::ptrdiff_t{i} * image.channels, image.channels,
                 kWrong.at(i / images.size() % kWrong.size()));
   }
-  for (const Specular model : kModels) {
+  for (const AlcoveSpecular model : kModels) {
     run_model(test_views()[2].view, inputs, model);
     EXPECT_THAT(result().texels,
                 testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))))
@@ -201,7 +201,7 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
                                 .normals = upload(graph, plane.normal_vs),
                                 .depth = *depth,
                                 .normal_convention = {.in_view_space = true}};
-        for (const Specular model : kModels)
+        for (const AlcoveSpecular model : kModels)
           for (const float r : roughness)
             read_back(graph, add(frame, inputs, settings_of(model, r)));
       });
@@ -216,7 +216,7 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
 
 TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   const Inputs inputs = random_inputs();
-  const auto with = [&](View view, bool in_view_space) {
+  const auto with = [&](AlcoveCamera view, bool in_view_space) {
     run([&](Graph& graph) {
       read_back(graph, add({graph, gpu().kernels(), view, 0},
                            {.visibility = upload(graph, inputs.visibility),
@@ -224,11 +224,11 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
                             .normals = upload(graph, inputs.normals),
                             .depth = upload(graph, inputs.depth),
                             .normal_convention = {.in_view_space = in_view_space}},
-                           settings_of(Specular::table, 0.4f)));
+                           settings_of(ALCOVE_SPECULAR_TABLE, 0.4f)));
     });
     return result();
   };
-  View view = test_views().front().view;
+  AlcoveCamera view = test_views().front().view;
   const HostImage in_view_space = with(view, true);
   EXPECT_EQ(in_view_space.texels, with(view, false).texels);
   // The camera is rotated by 180 degrees about the view axis.
@@ -247,7 +247,7 @@ TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
                .bent_normal = upload(graph, inputs.bent),
                .normals = upload(graph, inputs.normals),
                .depth = depth},
-              settings_of(Specular::table));
+              settings_of(ALCOVE_SPECULAR_TABLE));
     read_back(graph, depth);
   });
   for (const framegraph::PassTiming& timing : gpu().timings())
@@ -257,7 +257,7 @@ TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
 TEST_F(GtsoPass, LookupTableIsCreatedOnlyForTheSpecularModelTable) {
   open_gpu();
   const Inputs inputs = random_inputs();
-  const auto run_with = [&](Specular model) {
+  const auto run_with = [&](AlcoveSpecular model) {
     run([&](Graph& graph) {
       read_back(graph, add({graph, gpu().kernels(), test_views().front().view, 0},
                            {.visibility = upload(graph, inputs.visibility),
@@ -269,7 +269,7 @@ TEST_F(GtsoPass, LookupTableIsCreatedOnlyForTheSpecularModelTable) {
     return gpu().kernels().table_bytes();
   };
   EXPECT_EQ(run_with(Specular::cone), 0u);
-  EXPECT_EQ(run_with(Specular::table), maths::kGtsoEntries);
+  EXPECT_EQ(run_with(ALCOVE_SPECULAR_TABLE), maths::kGtsoEntries);
 }
 
 TEST_F(GtsoPass, InvalidInputOfTheSpecularOcclusionPassIsReportedByName) {
@@ -286,16 +286,16 @@ TEST_F(GtsoPass, InvalidInputOfTheSpecularOcclusionPassIsReportedByName) {
     expect_error(add_gtso(frame, without_bent, settings_of(Specular::cone)), "bent normals");
     GtsoInputs unequal = good;
     unequal.depth = upload(graph, small);
-    expect_error(add_gtso(frame, unequal, settings_of(Specular::table)), "2x2");
+    expect_error(add_gtso(frame, unequal, settings_of(ALCOVE_SPECULAR_TABLE)), "2x2");
     expect_error(add_gtso(frame, good,
-                          settings_of(Specular::table, std::numeric_limits<float>::quiet_NaN())),
+                          settings_of(ALCOVE_SPECULAR_TABLE, std::numeric_limits<float>::quiet_NaN())),
                  "0 to 1");
-    expect_error(add_gtso(frame, good, settings_of(Specular::table, 1.5f)), "0 to 1");
-    expect_error(add_gtso(frame, good, settings_of(Specular::table, 0.5f, 4)),
+    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_TABLE, 1.5f)), "0 to 1");
+    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_TABLE, 0.5f, 4)),
                  "'roughness_channel' is 4");
-    expect_error(add_gtso(frame, good, settings_of(Specular::slices)),
+    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_SLICES)),
                  "slices; it must be table or cone");
-    expect_error(add_gtso(frame, good, settings_of(Specular::none)),
+    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_NONE)),
                  "none; it must be table or cone");
     read_back(graph, add(frame, good, settings_of(Specular::cone)));
   });

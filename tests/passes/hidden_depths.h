@@ -10,15 +10,15 @@
 namespace alcove::passes {
 
 // The estimators that read these depths.
-inline constexpr std::array kThickEstimators{Estimator::bitmask, Estimator::connected};
+inline constexpr std::array kThickEstimators{Estimator::bitmask, ALCOVE_ESTIMATOR_CONNECTED};
 
 // Returns settings without hidden occlusion, so that only the given depths occlude.
-inline OcclusionSettings without_hidden_occlusion(Estimator estimator, float radius) {
-  OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.advanced.estimator = estimator;
+inline OcclusionSettings without_hidden_occlusion(AlcoveEstimator estimator, float radius) {
+  OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
+  settings.estimator = estimator;
   settings.slices = 16;
   settings.hidden_occlusion = 0.0f;
-  settings.advanced.unobserved = false;
+  settings.unobserved = false;
   return settings;
 }
 

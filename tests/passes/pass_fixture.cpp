@@ -202,9 +202,7 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& input,
                                       {ALCOVE_IMAGE_BACK_DEPTH, input.back_depth_ndc},
                                       {ALCOVE_IMAGE_SECOND_DEPTH, input.second_depth_ndc}})
       if (image != nullptr) textures[role] = upload(graph, *image);
-    const auto added =
-        sample::add_occlusion(graph, gpu().kernels(), info, input.index, settings, textures);
-    ASSERT_TRUE(added) << added.error().message;
+    add_view_of(graph, info, input.index, settings, textures);
     for (const auto role :
          {ALCOVE_IMAGE_VISIBILITY, ALCOVE_IMAGE_BENT_NORMAL, ALCOVE_IMAGE_SPECULAR})
       if (textures[role]) read_back(graph, textures[role]);

@@ -102,6 +102,13 @@ class PassTest : public testing::Test {
     HostImage bent_normal;  // empty if not requested, as is specular
     HostImage specular;
   };
+  // Adds the occlusion of a view to a graph. Fails the test if it is refused.
+  void add_view_of(framegraph::Graph& graph, const AlcoveViewInfo& view, std::uint32_t index,
+                   const OcclusionSettings& settings, ViewTextures& textures) {
+    const auto added =
+        sample::add_occlusion(graph, gpu().kernels(), view, index, settings, textures);
+    ASSERT_TRUE(added) << added.error().message;
+  }
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
   // Runs frame `index` of a drawing with its normals. Frame 0 resets the history first.
   OcclusionImages render(const Drawing& drawing, const OcclusionSettings& settings,

@@ -111,9 +111,9 @@ HostImage Reconstruct::no_motion() {
 
 OcclusionSettings precise(std::uint32_t filter_radius, std::uint32_t history_frames) {
   OcclusionSettings settings;
-  settings.advanced.filter_radius = filter_radius;
+  settings.filter_radius = filter_radius;
   settings.history_frames = history_frames;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 class SecondDepthLayer : public HiddenDepthTest {};
 
-OcclusionSettings exact(Estimator estimator, float radius) {
+OcclusionSettings exact(AlcoveEstimator estimator, float radius) {
   OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
   settings.thickness = 1.0f;
   return settings;
@@ -46,7 +46,7 @@ TEST_F(SecondDepthLayer, VisibilityBesideAStepHiddenUnderAPlateMatchesTheClosedF
     }
     return sum;
   };
-  for (const Estimator estimator : kThickEstimators) {
+  for (const AlcoveEstimator estimator : kThickEstimators) {
     SCOPED_TRACE(static_cast<int>(estimator));
     const OcclusionSettings settings = exact(estimator, 1.5f);
     const double error = mean_error(of_layers(settings, 2));
@@ -67,7 +67,7 @@ TEST_F(SecondDepthLayer, SecondLayerWithoutHiddenSurfacesDoesNotChangeVisibility
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
-    for (const Estimator estimator : kThickEstimators) {
+    for (const AlcoveEstimator estimator : kThickEstimators) {
       OcclusionSettings settings = exact(estimator, 1.2f);
       settings.thickness = 0.2f;
       settings.hidden_occlusion = 0.4f;
@@ -93,7 +93,7 @@ TEST_F(SecondDepthLayer, SearchingASecondDepthLayerNeverRaisesVisibility) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage second = draw_second_layer(view, 60, 40, scene);
-    for (const Estimator estimator : kThickEstimators) {
+    for (const AlcoveEstimator estimator : kThickEstimators) {
       const OcclusionSettings settings = exact(estimator, 1.2f);
       const HostImage one = visibility(drawing, second, settings);
       const HostImage two = visibility(drawing, second, of_layers(settings, 2));
@@ -111,7 +111,7 @@ TEST_F(SecondDepthLayer, EstimatorHorizonsIgnoresTheSecondDepthLayer) {
   const Scene scene = tilted_and_box();
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, scene);
-  const OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
+  const OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_HORIZONS, 1.2f);
   const HostImage second = draw_second_layer(view, 60, 40, scene);
   EXPECT_EQ(visibility(drawing, second, of_layers(settings, 2)).texels,
             visibility(drawing, second, settings).texels);

@@ -16,12 +16,12 @@ class UnobservedDirectionsPass : public PassTest {
   static constexpr std::uint32_t kWidth = 96, kHeight = 40;
 
   HostImage visibility(const TestView& view, const Drawing& drawing, bool unobserved,
-                       Estimator estimator = Estimator::connected, float radius = kRadius,
+                       AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED, float radius = kRadius,
                        const HostImage* second_layer = nullptr) {
-    OcclusionSettings settings = quality_settings(Quality::reference, radius);
-    settings.advanced.estimator = estimator;
+    OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
+    settings.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
-    settings.advanced.unobserved = unobserved;
+    settings.unobserved = unobserved;
     settings.depth_layers = second_layer == nullptr ? 1 : 2;
     return run_occlusion({.view = view.view,
                           .depth_ndc = drawing.depth_ndc,
@@ -115,7 +115,7 @@ TEST_F(UnobservedDirectionsPass, FewDirectionsAreExcludedIfTheRadiusIsWiderThanT
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
     const auto seen = [&](bool unobserved, float radius) {
-      return visibility(view, drawing, unobserved, Estimator::connected, radius);
+      return visibility(view, drawing, unobserved, ALCOVE_ESTIMATOR_CONNECTED, radius);
     };
     const auto left_out = [&](float radius) {
       return mean_difference(seen(true, radius), seen(false, radius), 0, kWidth);
@@ -171,7 +171,7 @@ TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExc
   const HostImage second = draw_second_layer(view, kWidth, kHeight, covered_trench());
   const auto excluded = [&](const HostImage* layer) {
     const auto seen = [&](bool unobserved) {
-      return visibility(view, drawing, unobserved, Estimator::connected, kRadius, layer);
+      return visibility(view, drawing, unobserved, ALCOVE_ESTIMATOR_CONNECTED, kRadius, layer);
     };
     return mean_difference(seen(true), seen(false), kWidth / 2 - 4, kWidth / 2);
   };
@@ -182,7 +182,7 @@ TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExc
 TEST_F(UnobservedDirectionsPass, OnlyTheConnectedEstimatorExcludesUnobservedDirections) {
   const TestView view = two_views()[0];
   const Drawing drawing = draw(view, kWidth, kHeight, covered_trench());
-  for (const Estimator estimator : {Estimator::horizons, Estimator::bitmask}) {
+  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, Estimator::bitmask}) {
     EXPECT_EQ(visibility(view, drawing, true, estimator).texels,
               visibility(view, drawing, false, estimator).texels);
   }

@@ -13,7 +13,7 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
+using OcclusionSettings;
 
 class ErrorSplitTest : public GpuTest {
  protected:
@@ -41,7 +41,7 @@ class ErrorSplitTest : public GpuTest {
 };
 
 OcclusionSettings medium_settings(float radius) {
-  return passes::quality_settings(passes::Quality::medium, radius);
+  return OcclusionSettings(ALCOVE_QUALITY_MEDIUM, radius);
 }
 
 Scene scene_of(SceneBuilder& builder, const Camera& camera) {
@@ -55,7 +55,7 @@ TEST_F(ErrorSplitTest, SingleSliceInEachPixelWithoutHistoryIsMostlyNoise) {
   settings.tile_size = 1;
   settings.slices = 1;
   settings.history_frames = 0;
-  settings.advanced.filter_radius = 0;
+  settings.filter_radius = 0;
   expect_largest(split(builtin_scene(), settings, 1), 0);
 }
 

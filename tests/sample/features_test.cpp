@@ -19,7 +19,7 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
+using OcclusionSettings;
 using passes::Quality;
 
 // A floor with three rows of thin pickets and a wall behind them.
@@ -59,19 +59,19 @@ class FeaturesTest : public GpuTest {
 
   const Scene scene_ = builtin_scene();
   StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::geometric};
-  const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
+  const OcclusionSettings base_ = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, default_radius(scene_));
 };
 
 TEST_F(FeaturesTest, SixtyFourStepsHaveNoLargerErrorThanSixteenInEveryScene) {
   for (const Scene& scene : {builtin_scene(), fence_scene()}) {
     SCOPED_TRACE(scene.name);
     const StaticSetup setup{scene.cameras.front(), 240, 135, 1, NormalSource::geometric};
-    OcclusionSettings settings = passes::quality_settings(Quality::medium, scene.suggested_radius);
+    OcclusionSettings settings(ALCOVE_QUALITY_MEDIUM, scene.suggested_radius);
     settings.tile_size = 1;
     settings.slices = 8;
     settings.steps = 16;
     settings.history_frames = 0;
-    settings.advanced.filter_radius = 0;
+    settings.filter_radius = 0;
     const FrameImages sixteen = draw(gpu(), scene, setup, settings);
     const TracedTruth truth = trace_truth(scene, setup.camera, settings.radius, sixteen);
     settings.steps = 64;
@@ -88,7 +88,7 @@ TEST_F(FeaturesTest, EstimatorConnectedHasTheSmallestErrorOfAllEstimators) {
   const double connected = truth.rmse(images.visibility);
   EXPECT_GT(connected, 0.01);
   OcclusionSettings horizons = base_;
-  horizons.advanced.estimator = passes::Estimator::horizons;
+  horizons.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   OcclusionSettings bitmask = base_;
   bitmask.advanced.estimator = passes::Estimator::bitmask;
   OcclusionSettings plain_bitmask = bitmask;
@@ -115,7 +115,7 @@ TEST_F(FeaturesTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesT
   const FrameImages images = draw(base_);
   const TracedTruth truth = truth_of(images);
   OcclusionSettings back_faces = base_;
-  back_faces.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  back_faces.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   OcclusionSettings second_layer = base_;
   second_layer.depth_layers = 2;
   const double base = truth.rmse(images.visibility);
@@ -156,7 +156,7 @@ TEST_F(FeaturesTest, SnappingToTexelCentresKeepsUnoccludedSurfacesUnoccluded) {
   for (std::size_t i = 0; i < truth.pixels.size(); ++i)
     open.pixels[i] = surfaces.pixels[i] != 0 && truth.pixels[i] >= 1.0f ? 1 : 0;
   OcclusionSettings settings = base_;
-  settings.advanced.snap_to_texels = false;
+  settings.snap_to_texels = false;
   const double with = compare_images(images.visibility, truth, open).bias;
   const double without = compare_images(draw(settings).visibility, truth, open).bias;
   EXPECT_GT(with, -0.01);
@@ -166,7 +166,7 @@ TEST_F(FeaturesTest, SnappingToTexelCentresKeepsUnoccludedSurfacesUnoccluded) {
 // One renderer alternates between settings with and without hidden depths.
 TEST_F(FeaturesTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThem) {
   OcclusionSettings backs = base_;
-  backs.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  backs.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   OcclusionSettings layers = base_;
   layers.depth_layers = 2;
   const auto renderer =

@@ -116,13 +116,13 @@ TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
 }
 
 // The number of times that each loop of the search runs; empty if one is not known.
-std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
+std::vector<double> search_iterations(const OcclusionSettings& settings,
                                       const std::vector<CompiledLoop>& loops) {
   return loop_iterations({"gtao", settings}, loops).value_or(std::vector<double>{});
 }
 
 TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   settings.slices = 2;
   settings.steps = 16;
   const auto loop = [](std::uint32_t depth, std::uint32_t loads) {
@@ -143,7 +143,7 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), IsEmpty())
       << "visibility has no loop over occluder runs";
   settings.depth_layers = 2;
-  settings.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   EXPECT_THAT(search_iterations(settings, {loop(1, 48), loop(2, 48)}), ElementsAre(2, 2))
       << "both depth layers share the loads of back faces";
   settings.slices = 1;
@@ -154,7 +154,7 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
 }
 
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
-  const passes::OcclusionSettings settings;
+  const OcclusionSettings settings;
   const CompiledLoop loop{.depth = 1, .instructions = 7};
   const auto iterations = loop_iterations({"normals", settings, FrameState::moving}, {&loop, 1});
   ASSERT_FALSE(iterations);
@@ -267,7 +267,7 @@ TEST(CacheTraffic, TrafficOfTheSearchAgreesWithAnotherModel) {
     double waves, lines, l2_bytes_per_pixel, memory_bytes_per_pixel;
   };
   constexpr Expected kExpected[] = {{3, 52.4, 154.8, 92.5}, {6, 42.6, 239.6, 31.2}};
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   settings.tile_size = 4;
   settings.slices = 2;
   settings.steps = 12;
@@ -372,9 +372,9 @@ tl::expected<double, std::string> instructions_of(const GpuPart& part, const Nul
 
 // Loops, rare branches and strips of groups must not hide samples from the model.
 TEST_P(CompiledPresets, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
-  for (const passes::Quality quality : {passes::Quality::low, passes::Quality::medium}) {
+  for (const AlcoveQuality quality : {ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
     CostInputs inputs;
-    inputs.settings = passes::quality_settings(quality, 0.5f);
+    inputs.settings = OcclusionSettings(quality, 0.5f);
     const auto frames = modelled_frames(part_, device_, inputs);
     ASSERT_TRUE(frames) << frames.error();
     const ModelledPass& search = frames->front().passes.front();
@@ -390,15 +390,15 @@ TEST_P(CompiledPresets, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPer
   using passes::NormalEncoding;
   struct PackedEncoding {
     const char* name;
-    NormalEncoding encoding;
+    AlcoveNormalEncoding encoding;
     std::array<double, 2> most;  // instructions per pixel by GPU, a little above the measured ones
   };
   constexpr PackedEncoding kPacked[] = {
-      {"unsigned xyz", NormalEncoding::unsigned_xyz, {4.5, 1.2}},
-      {"octahedral", NormalEncoding::octahedral, {13.0, 2.8}},
-      {"unsigned octahedral", NormalEncoding::unsigned_octahedral, {16.0, 3.5}}};
+      {"unsigned xyz", ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, {4.5, 1.2}},
+      {"octahedral", ALCOVE_NORMAL_ENCODING_OCTAHEDRAL, {13.0, 2.8}},
+      {"unsigned octahedral", ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL, {16.0, 3.5}}};
   CostInputs inputs;
-  inputs.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
+  inputs.settings = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, 0.5f);
   inputs.settings.bent_normal = !part_.rdna;
   const auto plain = instructions_of(part_, device_, inputs);
   ASSERT_TRUE(plain) << plain.error();

@@ -47,7 +47,7 @@ class QuadTest : public GpuTest {
                                         .clip_from_view = matrices.clip_from_view,
                                         .previous_view_from_world = matrices.view_from_world,
                                         .previous_clip_from_view = matrices.clip_from_view},
-                               .occlusion = passes::quality_settings(passes::Quality::low, 0.2f)};
+                               .occlusion = OcclusionSettings(ALCOVE_QUALITY_LOW, 0.2f)};
     auto images = (*renderer)->draw_and_read(request);
     EXPECT_TRUE(images) << images.error();
     return images ? std::move(*images) : FrameImages{};

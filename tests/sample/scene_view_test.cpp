@@ -146,10 +146,10 @@ TEST_F(ViewerWindowTest, InvalidSettingIsReportedAndAnImageStaysVisible) {
 TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDepthLayer) {
   ViewState& state = view_->state();
   state.saved = state.settings;
-  state.saved.advanced.thickness_unit = passes::ThicknessUnit::back_faces;
+  state.saved.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   state.comparison = Comparison::saved;
   state.settings.depth_layers = 2;
-  state.settings.specular = passes::Specular::table;
+  state.settings.specular = ALCOVE_SPECULAR_TABLE;
   draw(3);
   EXPECT_EQ(view_->facts().refusal, "");
 }
