@@ -12,18 +12,17 @@
 //     weighted_slice    a slice, rotated by the noise                    section 4.4
 //       search_slice    the inner integral, a sum of two half-slices     section 4.1
 //         make_half_slice   depth samples along the slice's line         gtao_search_line.h
-//         add_half_slice    occluders, and the closed form between them  gtao_connected.h
+//         add_connected     occluders, and the closed form between them  gtao_connected.h
 //     fade_unresolved   where depth has too few steps for the radius
 //   imageStore      the packed sums                                      maths/raw_occlusion.h
-// Two other estimators take the place of gtao_connected.h: the paper's horizons (section 4.1,
-// gtao_horizons.h) and the visibility bitmask (gtao_bitmask.h).
+// With kHorizons, the paper's estimator takes the place of gtao_connected.h (section 4.1,
+// gtao_horizons.h).
 //
 // Each traced pixel writes two sums over its slices: the visible part, and the same integral
 // without occluders. Filters and history sum both and divide at the end, because the mean of ratios
 // would be biased. The bent-normal residual is also a sum over slices, in view space. With
 // SPECULAR, the two sums of the surface's GGX lobe are also written.
 
-#include "gtao_bitmask.h"
 #include "gtao_connected.h"
 #include "gtao_horizons.h"
 #include "gtao_surface.h"
@@ -49,20 +48,6 @@ SliceResult no_result() {
   return SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), RawOcclusion(0.0, 0.0));
 }
 
-// Adds the visible part of a half-slice to the sums of its slice.
-void add_half_slice(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
-  switch (kEstimator) {
-    case kConnected:
-      add_connected(sum, half_slice, slice);
-      break;
-    case kBitmask:
-      add_bitmask(sum, half_slice, slice);
-      break;
-    default:  // horizons
-      add_horizons(sum, half_slice, slice);
-  }
-}
-
 RawOcclusion not_negative(RawOcclusion sum) {
   return RawOcclusion(max(sum.visible, 0.0), sum.open);
 }
@@ -78,7 +63,10 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
     HalfSlice half_slice = make_half_slice(surface, search_line, slice, side, border, step_offset);
-    add_half_slice(sum, half_slice, slice);
+    if (kHorizons)
+      add_horizons(sum, half_slice, slice);
+    else
+      add_connected(sum, half_slice, slice);
     search_line = opposite(search_line);
     border = border.yx;
     ++i;
@@ -91,8 +79,8 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   if (kBentNormal) {
     vec3 part = direction * sum.bent.x + surface.view * sum.bent.y;
     result.residual = residual_of(part, sum.visible, surface.normal);
-    result.expected_residual =
-        expected_residual(slice, direction, surface.view, surface.normal, open_slice(slice));
+    result.expected_residual = expected_residual(slice, direction, surface.view, surface.normal,
+                                                 kUniform ? 1.0 : open_slice(slice));
   }
   result.raw_occlusion = not_negative(sum.raw_occlusion);
   result.lobe = kLobe ? not_negative(sum.lobe) : RawOcclusion(0.0, 0.0);

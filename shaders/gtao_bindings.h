@@ -7,28 +7,19 @@
 layout(constant_id = 0) const uint kSliceCount = 1;
 layout(constant_id = 1) const uint kStepCount = 12;  // depth samples of a half-slice
 layout(constant_id = 2) const bool kBentNormal = false;
-layout(constant_id = 3) const uint kEstimator = 0;  // a value of the C++ enum Estimator
-layout(constant_id = 4) const int kTileSize = 1;    // one pixel is traced in a tile of this width
+layout(constant_id = 3) const bool kHorizons = false;  // else samples are connected
+layout(constant_id = 4) const int kTileSize = 1;  // one pixel is traced in a tile of this width
 layout(constant_id = 5) const bool kPerspective = true;
 layout(constant_id = 6) const bool kRoughnessTexture = false;
 layout(constant_id = 7) const int kRoughnessChannel = 0;
-layout(constant_id = 8) const bool kFalloff = false;  // occluders fade towards the radius
-layout(constant_id = 9) const bool kThicknessOfDistance = false;  // else a part of the radius
-layout(constant_id = 10) const bool kBackFaces = false;           // back_image tells the thickness
-layout(constant_id = 11) const bool kSnapToTexels = true;   // samples lie at centres of texels
-layout(constant_id = 12) const bool kSecondLayer = false;   // second_image occludes too
-layout(constant_id = 13) const bool kExtrapolation = true;  // surfaces continue beyond the image
-layout(constant_id = 14) const bool kUnobserved = true;     // excludes unobserved directions
-layout(constant_id = 15) const uint kNormalEncoding = 0;    // a value of the enum NormalEncoding
-layout(constant_id = 16) const bool kReversed = false;      // raw depth is 1 at the near plane
-layout(constant_id = 17) const bool kInfiniteFar = false;   // the far plane is infinitely far away
-layout(constant_id = 18) const bool kAreas = false;         // images are read in part (areas.h)
-layout(constant_id = 19) const bool kMask = false;          // depth_image has kNoOccluder
-
-// Values of kEstimator; 0 is `horizons`.
-const uint kBitmask = 1;
-const uint kConnected = 2;
-const bool kLeaveOutUnobserved = kEstimator == kConnected && kUnobserved;
+layout(constant_id = 8) const bool kBackFaces = false;     // back_image tells the thickness
+layout(constant_id = 9) const bool kSecondLayer = false;   // second_image occludes too
+layout(constant_id = 10) const uint kNormalEncoding = 0;   // a value of the enum NormalEncoding
+layout(constant_id = 11) const bool kReversed = false;     // raw depth is 1 at the near plane
+layout(constant_id = 12) const bool kInfiniteFar = false;  // the far plane is infinitely far away
+layout(constant_id = 13) const bool kAreas = false;        // images are read in part (areas.h)
+layout(constant_id = 14) const bool kMask = false;         // depth_image has kNoOccluder
+layout(constant_id = 15) const bool kUniform = false;      // directions have no cosine weight
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it

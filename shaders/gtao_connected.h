@@ -74,9 +74,7 @@ float run_count(uvec2 samples) {
 }
 
 // Whether the samples of a layer tell which directions are unobserved. Only the last layer's do.
-bool tells_unobserved(uint layer) {
-  return kLeaveOutUnobserved && layer == (kSecondLayer ? 1u : 0u);
-}
+bool tells_unobserved(uint layer) { return layer == (kSecondLayer ? 1u : 0u); }
 
 // Adds a sample. `connected` tells whether it continues the surface of the last sample. If it does
 // not, its surface begins at an edge, `edge` before it.
@@ -90,7 +88,7 @@ void add_sample(inout SegmentState state, float sectors, uint layer, uint k, Sli
   uint front = biased_position(sectors, height);
   uint beyond = sectors_beyond(front);
   // An occluder is at most as thick as it is seen to be wide.
-  float thickness = min(settings_thickness(here), here.point.x - state.begin);
+  float thickness = min(parameters.thickness * here.point.z, here.point.x - state.begin);
   uint back = biased_position(sectors, height_of_back(height, scale, thickness));
   if (kBackFaces && here.back.y < kNoBack) {
     back = biased_position(sectors, 1.0 - diamond_angle(here.back));
@@ -101,7 +99,7 @@ void add_sample(inout SegmentState state, float sectors, uint layer, uint k, Sli
   bool nearer = here.point.y > 0.0;
   // A sample is part of an occluder run if it stands above the tangent plane by more than a sector,
   // and lies within the radius or nearer to the eye than the shaded point.
-  bool hides = front < kPositionBits + kEvenSectorCount && (inside || nearer);
+  bool hides = front < kPositionBits + kSectorCount && (inside || nearer);
   add_to_set(state.runs, k, hides);
   state.half_width += hides ? state.half_interval : 0.0;
   if (tells_unobserved(layer)) add_to_set(state.unobserved, k, !inside && nearer);
@@ -229,7 +227,7 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   // No sample follows the last one, so it is connected only if there is no discontinuity before it.
   add_sample(state, sectors, layer, last, here, !is_discontinuous(state.discontinuity),
              edge_distance(state));
-  uint extrapolated = kExtrapolation ? extrapolated_sectors(state, half_slice, sectors, here) : 0u;
+  uint extrapolated = extrapolated_sectors(state, half_slice, sectors, here);
   Occluders found;
   found.occluded = state.occluded | extrapolated;
   found.hidden_occlusion = hidden_occlusion_of(state, half_slice, here.point.x);
@@ -276,14 +274,13 @@ SearchedPart search_half_slice(HalfSlice half_slice, Slice slice) {
   float tangent_angle = tangent_diamond_angle(slice, half_slice.side);
   SearchedPart part;
   part.found = find_occluders(half_slice, 1.0 / tangent_angle);
-  float sector = tangent_angle * (1.0 / float(kEvenSectorCount));
+  float sector = tangent_angle * (1.0 / float(kSectorCount));
   part.sectors = 1.0 / sector;
   part.first_light = part.found.occluded == 0u
                          ? tangent_light(slice, half_slice.side)
                          : diamond_angle_light(lowest_of(part.found.occluded) * sector);
   part.beyond = (1.0 - part.found.hidden_occlusion) * visible_share_beyond(part.found.occluded);
-  if (kLeaveOutUnobserved)
-    part.unobserved = find_unobserved(half_slice, part.first_light, part.found);
+  part.unobserved = find_unobserved(half_slice, part.first_light, part.found);
   return part;
 }
 
@@ -299,11 +296,9 @@ void add_connected_lobe(inout SliceSum sum, HalfSlice half_slice, Slice slice, S
   } else {
     sum.lobe.visible += arc + part.beyond * (lobe.whole - arc);
   }
-  if (kLeaveOutUnobserved) {
-    float left_out = unobserved_lobe(part.unobserved, lobe, arc);
-    sum.lobe.visible -= left_out;
-    sum.lobe.open -= left_out;
-  }
+  float left_out = unobserved_lobe(part.unobserved, lobe, arc);
+  sum.lobe.visible -= left_out;
+  sum.lobe.open -= left_out;
 }
 
 // Adds the visible part of a half-slice. A share of its unobserved directions is left out.
@@ -312,8 +307,7 @@ void add_connected(inout SliceSum sum, HalfSlice half_slice, Slice slice) {
   float open = open_arc(slice, half_slice.side);
   float arc =
       part.found.occluded == 0u ? open : light_arc(slice, half_slice.side, part.first_light);
-  float left_out =
-      kLeaveOutUnobserved ? unobserved_part(part.unobserved, slice, half_slice.side, arc) : 0.0;
+  float left_out = unobserved_part(part.unobserved, slice, half_slice.side, arc);
   if (kBackFaces && part.found.known_back) {
     // Back faces show which directions behind an occluder are visible. They are integrated exactly.
     VisiblePart visible =

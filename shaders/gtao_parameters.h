@@ -15,10 +15,9 @@ struct GtaoParameters {
   vec2 interleave_offset;       // the pixel of each tile that is traced in this frame
   float radius;                 // scene units
   uint frame;                   // number of the frame, which rotates the directions of the slices
-  float thickness;        // of occluders, scene units, or a fraction of the distance from the eye
-  float hidden_exponent;  // of hidden_occlusion_behind()
-  float falloff;          // horizons: the last fraction of the radius, over which occluders fade
-  float roughness;        // perceptual, [0,1], of every surface if there is no roughness texture
+  float thickness;              // of occluders, a fraction of the radius
+  float hidden_exponent;        // of hidden_occlusion_behind()
+  float roughness;  // perceptual, [0,1], of every surface if there is no roughness texture
   // The two members of DepthStep. A struct would be aligned differently in a uniform block and in
   // C++.
   float depth_step;

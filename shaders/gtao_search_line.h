@@ -131,7 +131,7 @@ const uint kUnrolled = kSliceCount > 1u ? 2u : 4u;
 
 // Up to this number, samples are not reduced to one per pixel.
 const uint kFewSteps = 16u;
-const bool kMayReduceSteps = kEstimator == kConnected && kStepCount > kFewSteps;
+const bool kMayReduceSteps = !kHorizons && kStepCount > kFewSteps;
 
 // The number of samples of a half-slice that searches `reach_px` pixels: at most one per pixel,
 // because the steps between the texels of a tilted surface would otherwise look like
@@ -249,7 +249,7 @@ SamplePlace place_of(HalfSlice half_slice, float offset) {
   vec2 px = half_slice.search_line.px_per_offset * offset;
   vec2 biased = px + kRoundingBias;
   vec2 rounded = vec2(subtract_rounding_bias(biased.x), subtract_rounding_bias(biased.y));
-  return SamplePlace(floatBitsToInt(biased) + half_slice.texel_bias, kSnapToTexels ? rounded : px);
+  return SamplePlace(floatBitsToInt(biased) + half_slice.texel_bias, rounded);
 }
 
 // The distance along the line between the places of samples at two offsets.
@@ -292,14 +292,6 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
     found.back = vec2(0.0, kNoBack);
   }
   return found;
-}
-
-// The thickness that the settings give an occluder at a sample, times w, in units of the radius.
-float settings_thickness(SliceSample here) {
-  // In perspective w times the distance is 1; an orthographic depth may lie behind the eye.
-  float distance = kPerspective ? 1.0 : abs(here.inverse_depth);
-  return parameters.thickness / parameters.radius *
-         (kThicknessOfDistance ? distance : here.point.z);
 }
 
 float squared_length(vec2 v) { return dot(v, v); }

@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 
 // Computes specular occlusion: the visible fraction of each pixel's GGX lobe, from its visibility
-// and bent normal ([Jimenez 2016], section 6). It uses the intersection of two cones (maths/gtso.h)
-// or, with TABLE, the paper's table.
+// and bent normal, by the paper's table ([Jimenez 2016], section 6).
 
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
+#include "maths/gtso_table.h"
 #include "maths/normal_encoding.h"
 #include "maths/projection.h"
 #include "maths/slice.h"
@@ -26,12 +26,7 @@ layout(set = 0, binding = 3) uniform texture2D normal_image;
 layout(set = 0, binding = 4) uniform texture2D depth_image;      // linear
 layout(set = 0, binding = 5) uniform texture2D roughness_image;  // read with kRoughnessTexture
 layout(set = 0, binding = 6) uniform writeonly image2D result_image;
-
-#ifdef TABLE
-#include "maths/gtso_table.h"
-
 layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
-#endif
 
 // A pixel's position in the images of visibility, bent normals and the result. Pixels count from
 // the corner of the area that is read.
@@ -48,7 +43,6 @@ float fetch_roughness(ivec2 pixel) {
                            : parameters.roughness;
 }
 
-#ifdef TABLE
 float fetch_entry(uvec4 entry) {
   uint index = gtso_index(entry);
   return float((gtso_table[index / 4u] >> (index % 4u * 8u)) & 255u) / 255.0;
@@ -67,19 +61,13 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
     sum += gtso_corner_weight(at - vec4(entry), corner) * fetch_entry(gtso_corner(entry, corner));
   return sum;
 }
-#endif
 
 float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   float visibility = converged_visibility(texelFetch(visibility_image, in_outputs(pixel), 0).r);
   float roughness = fetch_roughness(pixel);
   vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, in_outputs(pixel), 0u, normal),
                                  normal, visibility);
-  vec3 reflection = mirror_direction(normal, view);
-#ifdef TABLE
-  return occlusion_by_table(visibility, bent, normal, reflection, roughness);
-#else
-  return specular_occlusion(visibility, bent, normal, reflection, roughness * roughness);
-#endif
+  return occlusion_by_table(visibility, bent, normal, mirror_direction(normal, view), roughness);
 }
 
 void main() {

@@ -18,7 +18,7 @@ const bool kByNormal = (kFresh || kStatic) && kFilterRadius > 0;
 
 // Whether a pixel averages the traced pixels around it. If not, either every pixel was traced
 // itself (kTileSize is 1), or a pixel takes the value of its tile (kFilterRadius is 0).
-const bool kBetween = kTileSize > 1 && kFilterRadius > 0;
+const bool kBetween = kTileSize > 1;
 // Base-2 logarithm of kTileSize.
 const int kShift = kTileSize == 8 ? 3 : kTileSize == 4 ? 2 : kTileSize == 2 ? 1 : 0;
 // Width of a block of 8x8 texels in pixels. It is a whole number of tiles.

@@ -8,8 +8,7 @@
 // halfway between them (kEdgeShare). Every sample has a thickness, either along the view direction
 // or up to its back face (height_of_back()). A surface that leaves the image is extrapolated beyond
 // the border (kExtrapolationRatio). hidden_occlusion_behind() in visibility_bitmask.h estimates how
-// much of the volume behind an occluder is solid. passes/ALGORITHM.md has figures;
-// sample/lab/README.md compares the estimators.
+// much of the volume behind an occluder is solid. passes/ALGORITHM.md has figures.
 #ifndef ALCOVE_MATHS_CONNECTED_SAMPLES_H
 #define ALCOVE_MATHS_CONNECTED_SAMPLES_H
 

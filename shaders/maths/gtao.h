@@ -48,13 +48,10 @@ ALCOVE_INLINE float open_arc(Slice s, float side) {
   return light_arc(s, side, vec2(s.cosine, tangent_horizon(s, side)));
 }
 
-// Returns the weight of an occluder at a distance, [0,1]. It falls linearly from 1 to 0 over the
-// last fraction `falloff`, [0,1], of the radius, and is 0 beyond the radius. With a falloff of 0 it
-// is a step.
-ALCOVE_INLINE float radius_weight(float distance, float radius, float falloff) {
-  float left = radius - distance;
-  return left < 0.0f ? 0.0f : min(left / max(falloff * radius, 1e-30f), 1.0f);
-}
+// Returns the share of a slice's directions, both of its halves weighted by the sine that solid
+// angles have, between the view direction and a direction: (1 - cos h) / 2 ([Jimenez 2016],
+// appendix A). The sum of both halves up to the tangent plane is 1.
+ALCOVE_INLINE float uniform_arc(vec2 light) { return 0.5f - 0.5f * light.y; }
 
 ALCOVE_MATHS_END
 

@@ -1,17 +1,11 @@
 // Specular occlusion from visibility and bent normal ([Jimenez 2016], section 6: GTSO).
 //
-// The visible directions are approximated by a cone around the bent normal, and the specular lobe
-// by a cone around the mirror direction. The specular visibility is the fraction of the lobe's cone
-// that lies within the visibility cone; 1 is open. The paper divides by the whole cone of the lobe,
-// which darkens unoccluded surfaces at grazing angles. These functions divide by the part of that
-// cone above the surface. `alpha` is the GGX width (perceptual roughness squared); all vectors are
-// unit.
+// The visible directions are approximated by a cone around the bent normal. The specular visibility
+// is the fraction of the GGX lobe within that cone (gtso_table.h); 1 is open. All vectors are unit.
 #ifndef ALCOVE_MATHS_GTSO_H
 #define ALCOVE_MATHS_GTSO_H
 
-#include "constants.h"
 #include "language.h"
-#include "spherical_cap.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -63,34 +57,6 @@ ALCOVE_INLINE vec3 raised_bent_normal(vec3 bent_normal, vec3 normal, float visib
   float squared = dot(across, across);
   if (squared < 1e-12f) return normal;
   return sqrt(v) * normal + sqrt((1.0f - v) / squared) * across;
-}
-
-// Returns the half-angle of the cone that approximates the lobe: its cosine is 10^(-alpha^2).
-ALCOVE_INLINE float lobe_cone(float alpha) {
-  float x = alpha * alpha * 2.302585f;
-  // 1 - cosine. For small x, a series avoids the cancellation of the subtraction.
-  float rise = x < 0.02f ? x * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : 1.0f - exp(-x);
-  return angle_of(rise * (2.0f - rise), 1.0f - rise);
-}
-
-// Returns the specular visibility for a visibility cone around `bent_normal` and a lobe cone around
-// `reflection`, the result of mirror_direction(). A lobe so narrow that its area is 0 is treated as
-// a mirror: its visibility is 0 or 1.
-ALCOVE_INLINE float cone_specular_occlusion(float visibility_angle, float lobe_angle,
-                                            vec3 bent_normal, vec3 normal, vec3 reflection) {
-  float above = cap_intersection(kHalfPi, lobe_angle, angle_between(normal, reflection));
-  float seen =
-      cap_intersection(visibility_angle, lobe_angle, angle_between(bent_normal, reflection));
-  if (above > 1e-12f) return clamp(seen / above, 0.0f, 1.0f);
-  return angle_between(bent_normal, reflection) <= visibility_angle ? 1.0f : 0.0f;
-}
-
-// Returns the specular visibility from visibility, bent normal and GGX width, with the exact area
-// of the intersection of the two cones.
-ALCOVE_INLINE float specular_occlusion(float visibility, vec3 bent_normal, vec3 normal,
-                                       vec3 reflection, float alpha) {
-  return cone_specular_occlusion(visibility_cone(visibility), lobe_cone(alpha), bent_normal, normal,
-                                 reflection);
 }
 
 ALCOVE_MATHS_END

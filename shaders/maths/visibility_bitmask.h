@@ -12,8 +12,7 @@
 // Weights are applied after the search. The integral of a weight over the visible sectors is a sum
 // of its antiderivative over the boundaries of the runs of occluded sectors; a half-slice has one
 // or two such runs. The same mask therefore gives visibility, the bent normal and the visible part
-// of a GGX lobe. sector_position() and sectors_between() work with 32 sectors; biased_position()
-// and sectors_beyond() are cheaper and work with 31.
+// of a GGX lobe.
 #ifndef ALCOVE_MATHS_VISIBILITY_BITMASK_H
 #define ALCOVE_MATHS_VISIBILITY_BITMASK_H
 
@@ -24,7 +23,9 @@
 
 ALCOVE_MATHS_BEGIN
 
-const uint kSectorCount = 32u;
+// With 31 instead of 32 sectors a position, 0 to 31, fits into five bits, and the sectors between
+// two positions, in any order, are the exclusive or of two masks of sectors_beyond().
+const uint kSectorCount = 31u;
 
 // Returns the diamond angle, in [0,2], of the direction to a point of the slice's plane. x is at
 // least 0 and points away from the view direction, y points along it. Only the ratio of x and y
@@ -49,60 +50,31 @@ ALCOVE_INLINE float tangent_diamond_angle(Slice s, float side) {
   return max(diamond_angle(tangent_light(s, side)), 1e-4f);
 }
 
-// Number of sectors of a half-slice per unit of diamond angle, at least 16.
-ALCOVE_INLINE float sectors_per_diamond_angle(Slice s, float side) {
-  return float(kSectorCount) / tangent_diamond_angle(s, side);
-}
-
-// Position of a point among the 32 sectors of its half-slice, in [0,32]. Points below the tangent
-// plane get the position of the tangent plane, 32.
-ALCOVE_INLINE float sector_position(float per_diamond_angle, vec2 point) {
-  return min(diamond_angle(point) * per_diamond_angle, float(kSectorCount));
-}
-
-// A mask of the sectors between two positions in [0,32], each rounded to the nearest sector
-// boundary. `from` must not be larger than `to`.
-ALCOVE_INLINE uint sectors_from_to(float from, float to) {
-  int low = int(from + 0.5f);
-  int count = int(to + 0.5f) - low;
-  return count > 0 ? (0xffffffffu >> uint(32 - count)) << uint(low) : 0u;
-}
-
-// A mask of the sectors between two positions in [0,32], in any order.
-ALCOVE_INLINE uint sectors_between(float a, float b) {
-  return sectors_from_to(min(a, b), max(a, b));
-}
-
-// The number of sectors that the default estimator uses. With 31 instead of 32 a position, 0 to 31,
-// fits into five bits, and the sectors between two positions, in any order, are the exclusive or of
-// two masks of sectors_beyond(). This costs fewer instructions than sectors_between().
-const uint kEvenSectorCount = 31u;
-
 // Bits of the float 2^23, which has no fraction bits: adding it rounds to an integer.
 const uint kPositionBits = 0x4b000000u;
 
-// Position among kEvenSectorCount sectors, in the low bits of a word that grows with the position.
+// Position among kSectorCount sectors, in the low bits of a word that grows with the position.
 // `height` is 1 less the diamond angle, `per_tangent` 1 over tangent_diamond_angle().
 ALCOVE_INLINE uint biased_position(float per_tangent, float height) {
   float share = clamp(per_tangent - height * per_tangent, 0.0f, 1.0f);
-  return floatBitsToUint(share * float(kEvenSectorCount) + 8388608.0f);
+  return floatBitsToUint(share * float(kSectorCount) + 8388608.0f);
 }
 
 // A mask of the bits from `position` (0 to 31) up to bit 31, which is one above the last sector.
 // The exclusive or of two such masks holds the sectors between the two positions.
 ALCOVE_INLINE uint sectors_beyond(uint position) { return 0xffffffffu << (position & 31u); }
 
-// Repeats the state of the last of kEvenSectorCount sectors in the highest bit, as visible_part()
+// Repeats the state of the last of kSectorCount sectors in the highest bit, as visible_part()
 // and visible_lobe() expect a mask.
 ALCOVE_INLINE uint repeat_last_sector(uint occluded) {
   return occluded | ((occluded << 1u) & 0x80000000u);
 }
 
 // The share of the sectors from the first occluded one on that is visible, [0,1), for a mask of
-// kEvenSectorCount sectors.
+// kSectorCount sectors.
 ALCOVE_INLINE float visible_share_beyond(uint occluded) {
   uint sectors = occluded & 0x7fffffffu;
-  float beyond = float(int(kEvenSectorCount) - findLSB(sectors));
+  float beyond = float(int(kSectorCount) - findLSB(sectors));
   return sectors == 0u ? 0.0f : 1.0f - float(bitCount(sectors)) / beyond;
 }
 

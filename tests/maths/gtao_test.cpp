@@ -223,6 +223,29 @@ TEST(Gtao, BottomOfAGrooveHasVisibilityOfTheSineOfItsHalfAngle) {
   }
 }
 
+// Two planes through a point leave a lune of the sphere visible.
+TEST(Gtao, UniformVisibilityAgreesWithQuadratureAndWithTheSolidAngleBetweenTwoPlanes) {
+  for (double h = 0.0; h <= kPi; h += kPi / 90) {
+    const double expected = 0.5 * integrate([](double t) { return std::sin(t); }, 0.0, h);
+    EXPECT_NEAR(maths::uniform_arc({float(std::sin(h)), float(std::cos(h))}), expected, 1e-6);
+  }
+  RandomInput random;
+  for (int i = 0; i < 200; ++i) {
+    const vec3 view = random.facing(vec3(0, 0, 1));
+    const vec3 normal = random.facing(view), other = random.facing(view);
+    constexpr int kSlices = 2048;
+    float sum = 0.0f;
+    for (int k = 0; k < 2 * kSlices; ++k) {
+      const vec3 direction =
+          maths::slice_direction(maths::make_view_basis(view), float(kPi * (k + 0.5) / kSlices));
+      const Slice s = maths::make_slice(normal, direction, view);
+      const Slice o = maths::make_slice(other, direction, view);
+      sum += maths::uniform_arc(maths::horizon_light(s, 1.0f, maths::tangent_horizon(o, 1.0f)));
+    }
+    EXPECT_NEAR(sum / kSlices, 1.0 - std::acos(dot(normal, other)) / kPi, 1e-3);
+  }
+}
+
 TEST(Gtao, VisibilityIsBetweenZeroAndOneForAnyHorizons) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
@@ -232,16 +255,6 @@ TEST(Gtao, VisibilityIsBetweenZeroAndOneForAnyHorizons) {
     EXPECT_GE(a, 0.0f);
     EXPECT_LE(a, 1.0f);
   }
-}
-
-TEST(Gtao, WeightOfAnOccluderFallsFromOneAtTheFalloffStartToZeroAtTheRadius) {
-  EXPECT_EQ(maths::radius_weight(1.0f, 2.0f, 0.5f), 1.0f);
-  EXPECT_FLOAT_EQ(maths::radius_weight(1.5f, 2.0f, 0.5f), 0.5f);
-  EXPECT_EQ(maths::radius_weight(2.0f, 2.0f, 0.5f), 0.0f);
-  EXPECT_EQ(maths::radius_weight(2.1f, 2.0f, 0.5f), 0.0f);
-  EXPECT_EQ(maths::radius_weight(1.9f, 2.0f, 0.0f), 1.0f);
-  EXPECT_EQ(maths::radius_weight(2.1f, 2.0f, 0.0f), 0.0f);
-  EXPECT_EQ(maths::radius_weight(0.0f, 2.0f, 1.0f), 1.0f);
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ TEST(LobeSlice, BitmaskOccludedBelowAHorizonLeavesTheLobeVisibleAboveThatHorizon
       const WholeLobe lobe(s, roughness * roughness);
       const float side = random.bits() % 2 == 0 ? 1.0f : -1.0f;
       const HalfLobe& half = side > 0.0f ? lobe.ahead : lobe.behind;
-      const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
+      const float per_diamond_angle = 32.0f / maths::tangent_diamond_angle(s, side);
       const unsigned first = random.bits() % 32;
       const unsigned hidden = 0xffffffffu << first;
       const float cosine = maths::diamond_angle_light(float(first) / per_diamond_angle).y;

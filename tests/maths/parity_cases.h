@@ -72,11 +72,8 @@ ALCOVE_INLINE vec4 parity_of_slices(uint which, vec4 a, vec4 b) {
     }
     case 3u: {
       vec2 point = vec2(b.z, ahead);
-      float per_diamond_angle = sectors_per_diamond_angle(s, 1.0f);
-      // On a narrow half-slice, sectors are narrower than the precision of their angles.
       return vec4(diamond_angle(point), diamond_angle_light(2.0f * b.w).x,
-                  sector_position(per_diamond_angle, point) / per_diamond_angle,
-                  height_of_back(ahead, b.z, b.w));
+                  tangent_diamond_angle(s, 1.0f), height_of_back(ahead, b.z, b.w));
     }
     case 4u:
       return vec4(arc_cosine(ahead), arc_cosine(behind),
@@ -126,11 +123,9 @@ ALCOVE_INLINE vec4 parity_of_light(uint which, vec4 a, vec4 b) {
       return vec4(ggx_reflection_density(normal, view, light, alpha), ggx_masking(view.z, alpha),
                   ggx_distribution(light.z, alpha), 0.0f);
     case 11u:
-      return vec4(cap_intersection(b.x * kHalfPi, b.y * kHalfPi, b.z * kPi), visibility_cone(b.w),
-                  lobe_cone(b.x), 0.0f);
+      return vec4(visibility_cone(b.w), angle_between(view, light), 0.0f, 0.0f);
     case 12u:
-      return vec4(specular_occlusion(b.y, view, normal, light, alpha),
-                  multi_bounce_channel(b.y, b.z), 0.0f, 0.0f);
+      return vec4(multi_bounce_channel(b.y, b.z), 0.0f, 0.0f, 0.0f);
   }
   return vec4(0.0f);
 }
@@ -185,17 +180,15 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       return vec4(hidden_occlusion_behind(b.x, b.y * b.z, b.z, hidden_exponent(b.w)),
                   hidden_exponent(b.w), 0.0f, 0.0f);
     case 18u:
-      return vec4(
-          float(bitCount(sectors_between(floor(b.x * 32.0f) + 0.2f, floor(b.y * 32.0f) + 0.2f))),
-          0.0f, 0.0f, 0.0f);
+      return vec4(visible_share_beyond(parity_word(pixel.x)), 0.0f, 0.0f, 0.0f);
     case 19u:
       return vec4(slice_angle(1u, 3u, b.w), 0.0f, 0.0f, 0.0f);
     case 20u: {
       Slice s = parity_slice(a);
       VisiblePart part =
-          visible_part(s, -1.0f, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.x),
+          visible_part(s, -1.0f, 32.0f / tangent_diamond_angle(s, -1.0f), parity_word(pixel.x),
                        hidden_occlusion_behind(b.y, 0.0f, 1.0f, hidden_exponent(b.x)), true);
-      return vec4(part.arc, part.bent.x, part.bent.y, radius_weight(b.y, 0.8f, b.z));
+      return vec4(part.arc, part.bent.x, part.bent.y, 0.0f);
     }
     case 21u: {
       Slice s = parity_slice(a);
@@ -205,8 +198,8 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
       float behind = b.z * 2.0f - 1.0f;
       return vec4(
           front.whole + rear.whole, lobe_arc(s, front, ahead) + lobe_arc(s, rear, behind),
-          visible_lobe(front, sectors_per_diamond_angle(s, 1.0f), parity_word(pixel.x), 0.4f),
-          visible_lobe(rear, sectors_per_diamond_angle(s, -1.0f), parity_word(pixel.y), 0.0f));
+          visible_lobe(front, 32.0f / tangent_diamond_angle(s, 1.0f), parity_word(pixel.x), 0.4f),
+          visible_lobe(rear, 32.0f / tangent_diamond_angle(s, -1.0f), parity_word(pixel.y), 0.0f));
     }
     case 24u: {
       Slice s = parity_slice(a);

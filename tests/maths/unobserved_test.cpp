@@ -30,7 +30,7 @@ struct Case {
   explicit Case(RandomInput& random)
       : slice(slice_of(random.uniform(0.05f, 1.0f), random.uniform(-1.5f, 1.5f))),
         side(random.bits() % 2 == 0 ? 1.0f : -1.0f),
-        per_diamond_angle(maths::sectors_per_diamond_angle(slice, side)),
+        per_diamond_angle(32.0f / maths::tangent_diamond_angle(slice, side)),
         occluded(random.bits() % 3 == 0 ? 0u : 0xffffffffu << random.bits() % 32),
         unobserved(maths::nothing_unobserved()) {
     const float first = random.uniform(0.0f, 1.2f) * kRadiusPx;

@@ -31,8 +31,12 @@ float random_side(RandomInput& random) { return random.bits() % 2 == 0 ? 1.0f : 
 std::uint32_t random_runs(RandomInput& random) {
   std::uint32_t occluded = 0;
   for (unsigned k = random.bits() % 4; k > 0; --k)
-    occluded |= maths::sectors_between(random.uniform(0, 32), random.uniform(0, 32));
-  return occluded;
+    occluded |= maths::sectors_beyond(random.bits()) ^ maths::sectors_beyond(random.bits());
+  return maths::repeat_last_sector(occluded & 0x7fffffffu);
+}
+
+float sectors_per_diamond_angle(const Slice& s, float side) {
+  return 31.0f / maths::tangent_diamond_angle(s, side);
 }
 
 // Returns the angle of a sector's boundary to the view direction in double precision.
@@ -42,7 +46,7 @@ double boundary_angle(float per_diamond_angle, int boundary) {
 }
 
 VisiblePart part_of(const Slice& s, float side, std::uint32_t occluded, float hidden_occlusion) {
-  return maths::visible_part(s, side, maths::sectors_per_diamond_angle(s, side), occluded,
+  return maths::visible_part(s, side, sectors_per_diamond_angle(s, side), occluded,
                              hidden_occlusion, true);
 }
 
@@ -59,34 +63,6 @@ TEST(VisibilityBitmask, DiamondAngleIncreasesWithTheAngleAndConvertsBackToTheDir
   EXPECT_EQ(maths::diamond_angle(vec2(1, 0)), 1.0f);
   EXPECT_EQ(maths::diamond_angle(vec2(0, -1)), 2.0f);
   EXPECT_TRUE(std::isfinite(maths::diamond_angle(vec2(0, 0))));
-}
-
-TEST(VisibilityBitmask, SectorPositionsRunFrom0AtTheViewDirectionTo32AtTheTangentPlane) {
-  RandomInput random;
-  for (int i = 0; i < 5000; ++i) {
-    const Slice s = random_slice(random);
-    const float side = random_side(random);
-    const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
-    const double tangent = std::acos(double(maths::tangent_horizon(s, side)));
-    EXPECT_EQ(maths::sector_position(per_diamond_angle, vec2(0, 1)), 0.0f);
-    // On a narrow half-slice, sectors are narrower than the precision of their cosines.
-    const float tolerance = 2e-3f + 2e-7f * per_diamond_angle * per_diamond_angle;
-    EXPECT_NEAR(maths::sector_position(per_diamond_angle, light_at(tangent)), 32.0f, tolerance);
-    EXPECT_EQ(maths::sector_position(per_diamond_angle, light_at(std::min(tangent + 0.01, kPi))),
-              32.0f);
-  }
-}
-
-TEST(VisibilityBitmask, MaskBetweenTwoPositionsSetsExactlyTheBitsOfTheSectorsBetweenThem) {
-  for (int from = 0; from <= 32; ++from) {
-    for (int to = 0; to <= 32; ++to) {
-      std::uint32_t expected = 0;
-      for (int k = std::min(from, to); k < std::max(from, to); ++k) expected |= 1u << k;
-      EXPECT_EQ(maths::sectors_between(static_cast<float>(from) + 0.2f,
-                                       static_cast<float>(to) - 0.2f * (to > 0 ? 1.0f : 0.0f)),
-                expected);
-    }
-  }
 }
 
 TEST(VisibilityBitmask, ExclusiveOrOfTheMasksBeyondTwoPositionsSetsTheSectorsBetweenThem) {
@@ -106,8 +82,10 @@ TEST(VisibilityBitmask, ExclusiveOrOfTheMasksBeyondTwoPositionsSetsTheSectorsBet
     if (std::abs(a * 31.0f - std::floor(a * 31.0f) - 0.5f) < 0.02f ||
         std::abs(b * 31.0f - std::floor(b * 31.0f) - 0.5f) < 0.02f || tangent < 0.02f)
       continue;
-    EXPECT_EQ(maths::sectors_beyond(position(a)) ^ maths::sectors_beyond(position(b)),
-              maths::sectors_between(expected(a), expected(b)));
+    std::uint32_t between = 0;
+    for (float k = std::min(expected(a), expected(b)); k < std::max(expected(a), expected(b)); ++k)
+      between |= 1u << std::uint32_t(k);
+    EXPECT_EQ(maths::sectors_beyond(position(a)) ^ maths::sectors_beyond(position(b)), between);
     EXPECT_EQ(position(a) - maths::kPositionBits, std::uint32_t(expected(a)));
   }
 }
@@ -126,10 +104,10 @@ struct Expected {
 Expected expected_part(const Slice& s, float side, std::uint32_t occluded,
                        double hidden_occlusion) {
   const SliceTruth truth(s);
-  const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
+  const float per_diamond_angle = sectors_per_diamond_angle(s, side);
   Expected sum;
   bool behind = false;
-  for (int k = 0; k < 32; ++k) {
+  for (int k = 0; k < 31; ++k) {
     if ((occluded >> k & 1u) != 0) {
       behind = true;
       continue;
@@ -181,12 +159,13 @@ TEST(VisibilityBitmask, VisibilityEndsAtTheFirstOccludedSectorIfVolumeBehindOccl
   for (int i = 0; i < 2000; ++i) {
     const Slice s = random_slice(random);
     const float side = random_side(random);
-    const float per_diamond_angle = maths::sectors_per_diamond_angle(s, side);
-    const int first = int(random.bits() % 32);
+    const float per_diamond_angle = sectors_per_diamond_angle(s, side);
+    const int first = int(random.bits() % 31);
     const auto horizon = float(std::cos(boundary_angle(per_diamond_angle, first)));
     // Near the view direction, a cosine stored as a float determines the angle only with an error
     // of sqrt(2^-23).
-    EXPECT_NEAR(part_of(s, side, 1u << first, 1.0f).arc, maths::slice_arc(s, side, horizon), 5e-4f);
+    EXPECT_NEAR(part_of(s, side, maths::repeat_last_sector(1u << first), 1.0f).arc,
+                maths::slice_arc(s, side, horizon), 5e-4f);
   }
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 class BackFaceDepth : public HiddenDepthTest {};
 
-OcclusionSettings exact(AlcoveEstimator estimator, float radius) {
-  OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
+OcclusionSettings exact(float radius) {
+  OcclusionSettings settings = without_hidden_occlusion(radius);
   settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   return settings;
 }
@@ -47,19 +47,12 @@ TEST_F(BackFaceDepth, VisibilityUnderASlabWithBackFaceDepthMatchesTheClosedForm)
     }
     return sum;
   };
-  for (const AlcoveEstimator estimator : kThickEstimators) {
-    SCOPED_TRACE(static_cast<int>(estimator));
-    const OcclusionSettings settings = exact(estimator, 8.0f);
-    const double error = mean_error(settings);
-    EXPECT_LT(error, 0.02);
-    // The visible width limits the setting of `connected`, so that a large one does no harm there.
-    if (estimator == Estimator::bitmask) {
-      EXPECT_LT(4.5 * error, mean_error(of_thickness(settings, 0.15f)))
-          << "with a setting far above the actual thickness";
-    }
-    EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1e-3f)))
-        << "with a setting far below it";
-  }
+  const OcclusionSettings settings = exact(8.0f);
+  const double error = mean_error(settings);
+  EXPECT_LT(error, 0.02);
+  // The visible width limits the thickness, so that a large setting does no harm.
+  EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1e-3f)))
+      << "with a setting far below the actual thickness";
 }
 
 // A ball with radius r, whose centre is at distance d and at angle t to the normal, lowers the
@@ -89,17 +82,7 @@ TEST_F(BackFaceDepth, VisibilityUnderABallWithBackFaceDepthMatchesTheClosedFormI
       }
       return sum / count;
     };
-    for (const AlcoveEstimator estimator : kThickEstimators) {
-      SCOPED_TRACE(testing::Message() << view.name << ", " << static_cast<int>(estimator));
-      const OcclusionSettings settings = exact(estimator, 3.0f);
-      const double error = mean_error(settings);
-      EXPECT_LT(error, 0.01);
-      // The visible width limits the setting of `connected`, so that a large one does no harm
-      // there.
-      if (estimator == Estimator::bitmask) {
-        EXPECT_LT(2.0 * error, mean_error(of_thickness(settings, 1.0f)));
-      }
-    }
+    EXPECT_LT(mean_error(exact(3.0f)), 0.01) << view.name;
   }
 }
 
@@ -111,23 +94,13 @@ TEST_F(BackFaceDepth, SolidThickerThanTheRadiusOccludesAtMostLikeAnInfinitelyThi
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage backs = draw_back_faces(view, 60, 40, scene);
-    for (const AlcoveEstimator estimator : kThickEstimators) {
-      OcclusionSettings settings = exact(estimator, radius);
-      const HostImage image = visibility(drawing, backs, settings);
-      const HostImage thick = visibility(drawing, backs, of_thickness(settings, 1e4f));
-      settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
-      const HostImage horizons = visibility(drawing, backs, settings);
-      for (std::size_t i = 0; i < image.texels.size(); ++i) {
-        if (estimator == Estimator::bitmask) {
-          EXPECT_NEAR(image.texels[i], thick.texels[i], 1e-5);
-          EXPECT_NEAR(image.texels[i], horizons.texels[i], 0.02);
-        } else {
-          // If the thickness comes from the setting, the estimator `connected` assumes that the
-          // occluder is thin at its leading edge, so that it occludes less than with back faces.
-          EXPECT_LT(image.texels[i], thick.texels[i] + 1e-5);
-        }
-      }
-    }
+    const OcclusionSettings settings = exact(radius);
+    const HostImage image = visibility(drawing, backs, settings);
+    const HostImage thick = visibility(drawing, backs, of_thickness(settings, 1e4f));
+    // If the thickness comes from the setting, the occluder is assumed to be thin at its leading
+    // edge, so that it occludes less than with back faces.
+    for (std::size_t i = 0; i < image.texels.size(); ++i)
+      EXPECT_LT(image.texels[i], thick.texels[i] + 1e-5);
   }
 }
 
@@ -140,18 +113,15 @@ TEST_F(BackFaceDepth, ThicknessSettingIsUsedWhereNoBackFaceLiesBehindTheVisibleS
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
-    for (const AlcoveEstimator estimator : kThickEstimators) {
-      OcclusionSettings settings = exact(estimator, 1.2f);
-      settings.thickness = 0.2f;
-      const HostImage expected =
-          visibility(drawing, drawing.depth_ndc, of_thickness(settings, 0.2f));
-      HostImage backs = drawing.depth_ndc;
-      EXPECT_EQ(visibility(drawing, backs, settings).texels, expected.texels);
-      const float sky = drawing.camera.sky();
-      for (const float none : {sky, 1.0f - sky, std::numeric_limits<float>::quiet_NaN()}) {
-        std::ranges::fill(backs.texels, none);
-        EXPECT_EQ(visibility(drawing, backs, settings).texels, expected.texels) << none;
-      }
+    OcclusionSettings settings = exact(1.2f);
+    settings.thickness = 0.2f;
+    const HostImage expected = visibility(drawing, drawing.depth_ndc, of_thickness(settings, 0.2f));
+    HostImage backs = drawing.depth_ndc;
+    EXPECT_EQ(visibility(drawing, backs, settings).texels, expected.texels);
+    const float sky = drawing.camera.sky();
+    for (const float none : {sky, 1.0f - sky, std::numeric_limits<float>::quiet_NaN()}) {
+      std::ranges::fill(backs.texels, none);
+      EXPECT_EQ(visibility(drawing, backs, settings).texels, expected.texels) << none;
     }
   }
 }

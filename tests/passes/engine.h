@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "alcove/alcove.h"
-#include "alcove/alcove_advanced.h"
 #include "gpu/gpu_image.h"
 #include "gpu/vulkan_device.h"
 

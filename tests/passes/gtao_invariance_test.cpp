@@ -23,15 +23,15 @@ class GtaoInvariance : public PassTest {
   }
 };
 
+// Returns settings with so many slices that there is no filter.
 OcclusionSettings unfiltered(AlcoveEstimator estimator, float radius) {
   OcclusionSettings settings;
   settings.radius = radius;
   settings.tile_size = 1;
-  settings.slices = 4;
+  settings.slices = 8;
   settings.steps = 8;
   settings.estimator = estimator;
   settings.history_frames = 0;
-  settings.filter_radius = 0;
   settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
@@ -124,7 +124,6 @@ TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
         settings.steps = 6;
         settings.tile_size = tile_size;
         settings.history_frames = history;
-        settings.filter_radius = history == 0 ? 0 : 2;
         settings.bent_normal = true;
         poison_memory(width, height);
         // In this frame the traced pixels of the last tiles lie outside the image.
@@ -155,7 +154,6 @@ TEST_F(GtaoInvariance, AllTileSizesGiveTheSameMeanVisibilityInAGroove) {
     for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
       OcclusionSettings settings = unfiltered(estimator, 1.0f);
       settings.tile_size = tile_size;
-      settings.filter_radius = 2;
       means.push_back(mean(render(drawing, settings).visibility));
     }
     EXPECT_THAT(means, testing::Each(testing::DoubleNear(means[0], 0.02)));
@@ -168,7 +166,7 @@ TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteRes
   for (const AlcoveEstimator estimator : kEstimators) {
     OcclusionSettings settings = unfiltered(estimator, 0.5f);
     settings.bent_normal = true;
-    settings.filter_radius = 2;
+    settings.slices = 4;  // with a filter
     Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
     const OcclusionFrame frame{view.view, drawing.depth_ndc, &drawing.normal_vs};
     const HostImage clean = run_occlusion(frame, settings).visibility;
@@ -207,10 +205,9 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
       for (const bool all_inputs : {false, true}) {
         OcclusionSettings settings = unfiltered(estimator, 0.5f);
         settings.bent_normal = true;
-        settings.filter_radius = 2;
+        settings.slices = 4;  // with a filter
         settings.history_frames = 8;
-        settings.thickness_unit =
-            all_inputs ? ALCOVE_THICKNESS_UNIT_BACK_FACES : ALCOVE_THICKNESS_UNIT_RADIUS;
+        settings.thickness_unit = all_inputs ? ALCOVE_THICKNESS_UNIT_BACK_FACES : ALCOVE_THICKNESS_UNIT_RADIUS;
         settings.depth_layers = all_inputs ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
           const OcclusionImages images =

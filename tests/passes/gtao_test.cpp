@@ -40,20 +40,5 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   }
 }
 
-TEST_F(GtaoPass, TiltedPlaneOccludesItselfIfSamplesAreNotSnappedToTexelCentres) {
-  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
-    OcclusionSettings settings = precise(ALCOVE_QUALITY_MEDIUM);
-    settings.estimator = estimator;
-    for (const double degrees : {60.0, 75.0}) {
-      SCOPED_TRACE(testing::Message() << "tilted " << degrees << " degrees");
-      const Drawing drawing = draw(test_views()[2], 96, 64, {tilted_plane(degrees, 4.0)});
-      settings.snap_to_texels = false;
-      EXPECT_LT(lowest(drawing, settings), 0.98f);
-      settings.snap_to_texels = true;
-      EXPECT_GE(lowest(drawing, settings), kLeast);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace alcove::passes

@@ -28,11 +28,9 @@ constexpr std::uint32_t kWidth = 45;
 constexpr std::uint32_t kHeight = 31;
 constexpr float kSky = 1e12f;
 
-constexpr std::array kModels{Specular::cone, ALCOVE_SPECULAR_TABLE};
-
-OcclusionSettings settings_of(AlcoveSpecular model, float roughness = 0.5f, std::uint32_t channel = 0) {
+OcclusionSettings settings_of(float roughness = 0.5f, std::uint32_t channel = 0) {
   OcclusionSettings settings;
-  settings.specular = model;
+  settings.specular = ALCOVE_SPECULAR_TABLE;
   settings.roughness = roughness;
   settings.roughness_channel = channel;
   settings.precision = ALCOVE_PRECISION_FLOAT32;
@@ -78,7 +76,7 @@ Texture add(const Frame& frame, const GtsoInputs& inputs, const OcclusionSetting
 
 class GtsoPass : public PassTest {
  protected:
-  void run_model(const AlcoveCamera& view, const Inputs& inputs, AlcoveSpecular model) {
+  void run_pass(const AlcoveCamera& view, const Inputs& inputs) {
     run([&](Graph& graph) {
       const Frame frame{graph, gpu().kernels(), view, 0};
       read_back(graph, add(frame,
@@ -88,7 +86,7 @@ class GtsoPass : public PassTest {
                             .depth = upload(graph, inputs.depth),
                             .roughness = upload(graph, inputs.surface),
                             .normal_convention = {.in_view_space = true}},
-                           settings_of(model, 0.5f, 3)));
+                           settings_of(0.5f, 3)));
     });
   }
 };
@@ -100,8 +98,8 @@ maths::Projection projection_of(const AlcoveCamera& view) {
 }
 
 // Returns the value that the pass should write at a pixel.
-float expected(const Inputs& inputs, const maths::Projection& projection, AlcoveSpecular model,
-               std::uint32_t x, std::uint32_t y) {
+float expected(const Inputs& inputs, const maths::Projection& projection, std::uint32_t x,
+               std::uint32_t y) {
   const float depth = inputs.depth.at(x, y);
   if (depth == kSky) return 1.0f;
   const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
@@ -109,31 +107,22 @@ float expected(const Inputs& inputs, const maths::Projection& projection, Alcove
   const vec3 normal = maths::facing_normal(direction(inputs.normals, x, y), view);
   const float visibility = maths::converged_visibility(inputs.visibility.at(x, y));
   const vec3 bent = maths::raised_bent_normal(direction(inputs.bent, x, y), normal, visibility);
-  const float alpha = inputs.surface.at(x, y, 3) * inputs.surface.at(x, y, 3);
   const vec3 mirror = maths::mirror_direction(normal, view);
-  switch (model) {
-    case Specular::cone:
-      return maths::specular_occlusion(visibility, bent, normal, mirror, alpha);
-    default: {
-      static const std::vector<std::uint32_t> table = gtso_table();
-      return look_up_gtso(table, visibility, maths::visibility_cone(visibility),
-                          maths::angle_between(bent, mirror), maths::angle_between(normal, mirror),
-                          inputs.surface.at(x, y, 3));
-    }
-  }
+  static const std::vector<std::uint32_t> table = gtso_table();
+  return look_up_gtso(table, visibility, maths::visibility_cone(visibility),
+                      maths::angle_between(bent, mirror), maths::angle_between(normal, mirror),
+                      inputs.surface.at(x, y, 3));
 }
 
 TEST_F(GtsoPass, SpecularOcclusionAgreesWithTheFormulasOnTheCpuInEveryKindOfView) {
   const Inputs inputs = random_inputs();
   for (const TestView& view : test_views()) {
-    for (const AlcoveSpecular model : kModels) {
-      SCOPED_TRACE(testing::Message() << view.name << ", model " << static_cast<int>(model));
-      run_model(view.view, inputs, model);
-      const maths::Projection projection = projection_of(view.view);
-      for (std::uint32_t y = 0; y < kHeight; ++y)
-        for (std::uint32_t x = 0; x < kWidth; ++x)
-          EXPECT_NEAR(result().at(x, y), expected(inputs, projection, model, x, y), 2e-3f);
-    }
+    SCOPED_TRACE(view.name);
+    run_pass(view.view, inputs);
+    const maths::Projection projection = projection_of(view.view);
+    for (std::uint32_t y = 0; y < kHeight; ++y)
+      for (std::uint32_t x = 0; x < kWidth; ++x)
+        EXPECT_NEAR(result().at(x, y), expected(inputs, projection, x, y), 2e-3f);
   }
 }
 
@@ -148,12 +137,8 @@ TEST_F(GtsoPass, InvalidTexelsInAnyInputGiveSpecularOcclusionInRange) {
     std::fill_n(image.texels.begin() + std::ptrdiff_t{i} * image.channels, image.channels,
                 kWrong.at(i / images.size() % kWrong.size()));
   }
-  for (const AlcoveSpecular model : kModels) {
-    run_model(test_views()[2].view, inputs, model);
-    EXPECT_THAT(result().texels,
-                testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))))
-        << "model " << static_cast<int>(model);
-  }
+  run_pass(test_views()[2].view, inputs);
+  EXPECT_THAT(result().texels, testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
 }
 
 // Returns visibility and bent normals of an unoccluded plane, with noise as after the filter.
@@ -201,14 +186,11 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
                                 .normals = upload(graph, plane.normal_vs),
                                 .depth = *depth,
                                 .normal_convention = {.in_view_space = true}};
-        for (const AlcoveSpecular model : kModels)
-          for (const float r : roughness)
-            read_back(graph, add(frame, inputs, settings_of(model, r)));
+        for (const float r : roughness) read_back(graph, add(frame, inputs, settings_of(r)));
       });
-      for (std::size_t image = 0; image < kModels.size() * roughness.size(); ++image) {
+      for (std::size_t image = 0; image < roughness.size(); ++image) {
         EXPECT_GE(lowest(result(image), plane), 0.99f)
-            << view.name << " tilted " << degrees << " degrees, model " << image / roughness.size()
-            << ", roughness " << roughness[image % roughness.size()];
+            << view.name << " tilted " << degrees << " degrees, roughness " << roughness[image];
       }
     }
   }
@@ -224,7 +206,7 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
                             .normals = upload(graph, inputs.normals),
                             .depth = upload(graph, inputs.depth),
                             .normal_convention = {.in_view_space = in_view_space}},
-                           settings_of(ALCOVE_SPECULAR_TABLE, 0.4f)));
+                           settings_of(0.4f)));
     });
     return result();
   };
@@ -247,29 +229,18 @@ TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
                .bent_normal = upload(graph, inputs.bent),
                .normals = upload(graph, inputs.normals),
                .depth = depth},
-              settings_of(ALCOVE_SPECULAR_TABLE));
+              settings_of());
     read_back(graph, depth);
   });
   for (const framegraph::PassTiming& timing : gpu().timings())
     EXPECT_NE(timing.name, "specular occlusion");
 }
 
-TEST_F(GtsoPass, LookupTableIsCreatedOnlyForTheSpecularModelTable) {
+TEST_F(GtsoPass, LookupTableIsCreatedWhenAPassReadsIt) {
   open_gpu();
-  const Inputs inputs = random_inputs();
-  const auto run_with = [&](AlcoveSpecular model) {
-    run([&](Graph& graph) {
-      read_back(graph, add({graph, gpu().kernels(), test_views().front().view, 0},
-                           {.visibility = upload(graph, inputs.visibility),
-                            .bent_normal = upload(graph, inputs.bent),
-                            .normals = upload(graph, inputs.normals),
-                            .depth = upload(graph, inputs.depth)},
-                           settings_of(model)));
-    });
-    return gpu().kernels().table_bytes();
-  };
-  EXPECT_EQ(run_with(Specular::cone), 0u);
-  EXPECT_EQ(run_with(ALCOVE_SPECULAR_TABLE), maths::kGtsoEntries);
+  EXPECT_EQ(gpu().kernels().table_bytes(), 0u);
+  run_pass(test_views().front().view, random_inputs());
+  EXPECT_EQ(gpu().kernels().table_bytes(), maths::kGtsoEntries);
 }
 
 TEST_F(GtsoPass, InvalidInputOfTheSpecularOcclusionPassIsReportedByName) {
@@ -283,21 +254,18 @@ TEST_F(GtsoPass, InvalidInputOfTheSpecularOcclusionPassIsReportedByName) {
                           .depth = upload(graph, inputs.depth)};
     GtsoInputs without_bent = good;
     without_bent.bent_normal = {};
-    expect_error(add_gtso(frame, without_bent, settings_of(Specular::cone)), "bent normals");
+    expect_error(add_gtso(frame, without_bent, settings_of()), "bent normals");
     GtsoInputs unequal = good;
     unequal.depth = upload(graph, small);
-    expect_error(add_gtso(frame, unequal, settings_of(ALCOVE_SPECULAR_TABLE)), "2x2");
-    expect_error(add_gtso(frame, good,
-                          settings_of(ALCOVE_SPECULAR_TABLE, std::numeric_limits<float>::quiet_NaN())),
+    expect_error(add_gtso(frame, unequal, settings_of()), "2x2");
+    expect_error(add_gtso(frame, good, settings_of(std::numeric_limits<float>::quiet_NaN())),
                  "0 to 1");
-    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_TABLE, 1.5f)), "0 to 1");
-    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_TABLE, 0.5f, 4)),
-                 "'roughness_channel' is 4");
-    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_SLICES)),
-                 "slices; it must be table or cone");
-    expect_error(add_gtso(frame, good, settings_of(ALCOVE_SPECULAR_NONE)),
-                 "none; it must be table or cone");
-    read_back(graph, add(frame, good, settings_of(Specular::cone)));
+    expect_error(add_gtso(frame, good, settings_of(1.5f)), "0 to 1");
+    expect_error(add_gtso(frame, good, settings_of(0.5f, 4)), "'roughness_channel' is 4");
+    OcclusionSettings other = settings_of();
+    other.specular = ALCOVE_SPECULAR_SLICES;
+    expect_error(add_gtso(frame, good, other), "slices; it must be table");
+    read_back(graph, add(frame, good, settings_of()));
   });
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "drawing.h"
 #include "pass_fixture.h"
 
@@ -9,16 +7,12 @@
 // layer hides.
 namespace alcove::passes {
 
-// The estimators that read these depths.
-inline constexpr std::array kThickEstimators{Estimator::bitmask, ALCOVE_ESTIMATOR_CONNECTED};
-
 // Returns settings without hidden occlusion, so that only the given depths occlude.
-inline OcclusionSettings without_hidden_occlusion(AlcoveEstimator estimator, float radius) {
+inline OcclusionSettings without_hidden_occlusion(float radius) {
   OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
-  settings.estimator = estimator;
+  settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
   settings.slices = 16;
   settings.hidden_occlusion = 0.0f;
-  settings.unobserved = false;
   return settings;
 }
 

@@ -48,7 +48,7 @@ class Reconstruct : public PassTest {
   return (pixels + tile_size - 1) / tile_size;
 }
 
-[[nodiscard]] OcclusionSettings precise(std::uint32_t filter_radius, std::uint32_t history_frames);
+[[nodiscard]] OcclusionSettings precise(std::uint32_t history_frames);
 
 // Returns a raw occlusion whose unoccluded part varies around 0.9, with the given visibility.
 template <typename Visibility>

@@ -21,7 +21,7 @@ TEST_F(Reconstruct, NoiseOfAStaticViewDecreasesOverFrames) {
   for (std::uint32_t frame = 0; frame < 40; ++frame) {
     const HostImage raw_occlusion = noise_raw_occlusion(random);
     last = reconstruct({.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
-                       precise(1, 32));
+                       precise(32));
     variances.push_back(variance(last));
   }
   EXPECT_LT(variances[7], 0.5 * variances[0]);
@@ -42,7 +42,7 @@ TEST_F(Reconstruct, StaticViewAveragesMoreFramesThanTheHistoryFramesSetting) {
                           .raw_occlusion = raw_occlusion,
                           .index = frame,
                           .static_frames = still ? frame : 0},
-                         precise(1, 8));
+                         precise(8));
     }
     return variance(last);
   };
@@ -57,13 +57,13 @@ TEST_F(Reconstruct, MotionVectorsOfAStaticViewAreNotRead) {
   HostImage wrong = no_motion();
   std::ranges::fill(wrong.texels, 0.25f);
   const auto second_frame = [&](const HostImage* motion) {
-    (void)reconstruct({.drawing = drawing, .raw_occlusion = first}, precise(1, 8));
+    (void)reconstruct({.drawing = drawing, .raw_occlusion = first}, precise(8));
     return reconstruct({.drawing = drawing,
                         .raw_occlusion = second,
                         .motion = motion,
                         .index = 1,
                         .static_frames = 1},
-                       precise(1, 8));
+                       precise(8));
   };
   EXPECT_EQ(second_frame(&wrong).texels, second_frame(nullptr).texels);
 }
@@ -79,7 +79,7 @@ TEST_F(Reconstruct, AccumulatedVisibilityDoesNotDriftOverHundredsOfEqualFrames) 
     HostImage found;
     for (std::uint32_t frame = 0; frame < 250; ++frame) {
       found = reconstruct({.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
-                          precise(1, 127));
+                          precise(127));
     }
     const auto expect_visibility = [&] {
       EXPECT_THAT(found.texels,
@@ -92,7 +92,7 @@ TEST_F(Reconstruct, AccumulatedVisibilityDoesNotDriftOverHundredsOfEqualFrames) 
     for (std::uint32_t frame = 0; frame < 130; ++frame) {
       found = reconstruct(
           {.drawing = drawing, .raw_occlusion = frame == 0 ? wrong : raw_occlusion, .index = frame},
-          precise(1, 8));
+          precise(8));
     }
     expect_visibility();
   }
@@ -102,7 +102,7 @@ TEST_F(Reconstruct, ResetOrChangedImageSizeDiscardsTheHistory) {
   const Drawing drawing = draw_plane(30.0);
   const Drawing smaller = draw(test_views()[2], kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});
   const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
-  const OcclusionSettings settings = precise(1, 32);
+  const OcclusionSettings settings = precise(32);
   // Returns a bright frame after six dark ones.
   const auto seventh_frame = [&](const Drawing& last, bool reset) {
     for (std::uint32_t frame = 0; frame < 6; ++frame)

@@ -27,14 +27,14 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
   const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
   const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
   for (std::uint32_t frame = 0; frame < 8; ++frame) {
-    (void)reconstruct({.drawing = first, .raw_occlusion = dark, .index = frame}, precise(1, 32));
+    (void)reconstruct({.drawing = first, .raw_occlusion = dark, .index = frame}, precise(32));
   }
   const HostImage found = reconstruct({.drawing = second,
                                        .raw_occlusion = bright,
                                        .view = moved,
                                        .previous_view = view.view,
                                        .index = 8},
-                                      precise(1, 32));
+                                      precise(32));
   int uncovered_pixels = 0;
   int visible_pixels = 0;
   for (std::uint32_t y = 0; y < kHeight; ++y) {
@@ -94,7 +94,7 @@ TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
                          .view = now,
                          .previous_view = before,
                          .index = frame},
-                        precise(0, 32));
+                        precise(32));
     before = now;
   }
   double worst = 0.0;
@@ -188,7 +188,7 @@ TEST_F(Reconstruct, MotionVectorsKeepThePatternOfAMovingPlaneSharp) {
                            .raw_occlusion = raw_occlusion,
                            .motion = with_motion ? &motion : nullptr,
                            .index = frame},
-                          precise(0, 32));
+                          precise(32));
     }
     // Compare only columns that have shown the plane since the first frame.
     double error = 0.0;
@@ -239,7 +239,7 @@ TEST_F(Reconstruct, ApproachingSurfaceKeepsItsHistory) {
     const HostImage raw_occlusion = noise_raw_occlusion(random);
     found = reconstruct(
         {.drawing = drawing, .raw_occlusion = raw_occlusion, .motion = &motion, .index = frame},
-        precise(1, 32));
+        precise(32));
     first = frame == 0 ? spread(found) : first;
   }
   EXPECT_LT(spread(found), 0.3 * first);
@@ -247,9 +247,8 @@ TEST_F(Reconstruct, ApproachingSurfaceKeepsItsHistory) {
   const HostImage still = no_motion();
   const Drawing behind = draw_plane(0.0, distance / nearer * 1.02);
   const HostImage bright = constant_raw_occlusion(kWidth, kHeight, 0.9f);
-  const HostImage uncovered =
-      reconstruct({.drawing = behind, .raw_occlusion = bright, .motion = &still, .index = frames},
-                  precise(1, 32));
+  const HostImage uncovered = reconstruct(
+      {.drawing = behind, .raw_occlusion = bright, .motion = &still, .index = frames}, precise(32));
   EXPECT_THAT(uncovered.texels, testing::Each(testing::FloatNear(0.9f, 2e-3f)));
 }
 
@@ -265,7 +264,7 @@ TEST_F(Reconstruct, VisibilityAdaptsWithinTwelveFramesOfAnOccludersMotionIfMotio
     const std::uint32_t tile_size = half_resolution ? 2 : 1;
     const HostImage shaded = constant_raw_occlusion(kWidth / tile_size, kHeight / tile_size, 0.6f);
     const HostImage open = constant_raw_occlusion(kWidth / tile_size, kHeight / tile_size, 1.0f);
-    OcclusionSettings settings = precise(1, 32);
+    OcclusionSettings settings = precise(32);
     settings.half_resolution = half_resolution;
     for (const bool with_motion : {true, false}) {
       SCOPED_TRACE(testing::Message()
@@ -302,9 +301,9 @@ TEST_F(Reconstruct, PixelsWhoseHistoryIsRejectedAreFilteredAsInAFirstFrame) {
   const HostImage first_raw_occlusion = noise_raw_occlusion(random);
   const HostImage raw_occlusion = noise_raw_occlusion(random);
   const auto second_frame = [&](bool reset) {
-    (void)reconstruct({.drawing = before, .raw_occlusion = first_raw_occlusion}, precise(2, 32));
+    (void)reconstruct({.drawing = before, .raw_occlusion = first_raw_occlusion}, precise(32));
     return reconstruct({.drawing = now, .raw_occlusion = raw_occlusion, .index = 1, .reset = reset},
-                       precise(2, 32));
+                       precise(32));
   };
   EXPECT_THAT(second_frame(false).texels,
               testing::Pointwise(testing::FloatNear(1e-3f), second_frame(true).texels));

@@ -27,7 +27,7 @@ std::vector<Shader> all_shaders() {
 }
 
 TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslFile) {
-  const ShaderInterface found = read_shader_interface(shader_source(Shader::gtso_by_table).code);
+  const ShaderInterface found = read_shader_interface(shader_source(Shader::gtso).code);
   std::vector<std::string> bindings, constants;
   for (const ShaderBinding& binding : found.bindings) {
     bindings.push_back(std::to_string(binding.number) + " " + std::string(binding.name) + " " +

@@ -13,7 +13,6 @@
 namespace alcove::sample {
 namespace {
 
-using OcclusionSettings;
 
 class ErrorSplitTest : public GpuTest {
  protected:
@@ -55,7 +54,6 @@ TEST_F(ErrorSplitTest, SingleSliceInEachPixelWithoutHistoryIsMostlyNoise) {
   settings.tile_size = 1;
   settings.slices = 1;
   settings.history_frames = 0;
-  settings.filter_radius = 0;
   expect_largest(split(builtin_scene(), settings, 1), 0);
 }
 

@@ -86,16 +86,10 @@ TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   settings.thickness = 1.0f / 7.0f;
   settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   settings.hidden_occlusion = 0.123456789f;
-  settings.falloff = 0.25f;
   settings.tile_size = 4;
-  settings.snap_to_texels = false;
-  settings.extrapolation = false;
-  settings.unobserved = false;
-  settings.filter_radius = 0;
-  settings.filter_tolerance_px = 2.5f;
   settings.history_frames = 17;
   settings.bent_normal = true;
-  settings.specular = passes::Specular::cone;
+  settings.specular = ALCOVE_SPECULAR_TABLE;
   settings.precision = ALCOVE_PRECISION_FLOAT32;
   expect_round_trip(kDefaults, shot);
 }

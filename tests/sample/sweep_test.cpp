@@ -14,7 +14,6 @@
 namespace alcove::sample {
 namespace {
 
-using OcclusionSettings;
 
 TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
   for (const AlcoveQuality quality : presets()) {

@@ -44,6 +44,17 @@ typedef enum AlcoveEstimator {
   ALCOVE_ESTIMATOR_MAX_ENUM = 0x7fffffff
 } AlcoveEstimator;
 
+// How visibility weights the directions of the hemisphere. Bent normals always use COSINE, and
+// multi-bounce and the specular model TABLE expect it.
+typedef enum AlcoveWeighting {
+  // By the cosine of the angle to the normal, as diffuse reflection needs it.
+  ALCOVE_WEIGHTING_COSINE = 0,
+  // All alike: visibility is the visible fraction of the hemisphere's solid angle ([Jimenez 2016],
+  // appendix A), as older effects have it.
+  ALCOVE_WEIGHTING_UNIFORM = 1,
+  ALCOVE_WEIGHTING_MAX_ENUM = 0x7fffffff
+} AlcoveWeighting;
+
 // What limits the thickness of occluders.
 typedef enum AlcoveThicknessUnit {
   // AlcoveSettings::thickness, in radii.
@@ -59,8 +70,8 @@ typedef enum AlcoveSpecular {
   ALCOVE_SPECULAR_NONE = 0,  // not at all: a view with that image is refused
   // Integrates the GGX lobe over the slices that visibility is computed from: the most exact.
   ALCOVE_SPECULAR_SLICES = 1,
-  // The GGX lobe within a cone around the bent normal, by a table of 54 KiB. Visibility and the bent
-  // normal are then computed too.
+  // The GGX lobe within a cone around the bent normal, by a table of 54 KiB. Visibility and the
+  // bent normal are then computed too.
   ALCOVE_SPECULAR_TABLE = 2,
   ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
 } AlcoveSpecular;
@@ -94,6 +105,7 @@ typedef struct AlcoveSettings {
   // traced pixel costs 2 * slices * steps * depth_layers depth fetches.
   uint32_t steps;
   AlcoveEstimator estimator;  // [CONNECTED]
+  AlcoveWeighting weighting;  // read by HORIZONS [COSINE]
   // The thickness of occluders as a fraction of the radius, at least 0. It is an upper limit: an
   // occluder is no thicker than it is seen to be wide. Read by CONNECTED, as are the next three.
   // [0.3]

@@ -77,6 +77,7 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
                         .slices = 2,
                         .steps = 12,
                         .estimator = ALCOVE_ESTIMATOR_CONNECTED,
+                        .weighting = ALCOVE_WEIGHTING_COSINE,
                         .thickness = 0.3f,
                         .thickness_unit = ALCOVE_THICKNESS_UNIT_RADIUS,
                         .hidden_occlusion = 0.286f,

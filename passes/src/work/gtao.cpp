@@ -24,13 +24,14 @@ Texture roughness_of(const ViewWork& view) {
   return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : Texture{};
 }
 
-std::array<NamedConstant, 15> constants_of(const ViewWork& view) {
+std::array<NamedConstant, 16> constants_of(const ViewWork& view) {
   const AlcoveSettings& settings = view.settings;
+  const bool horizons = settings.estimator == ALCOVE_ESTIMATOR_HORIZONS;
   const bool rough = bool(roughness_of(view));
   return {{{"kSliceCount", settings.slices},
            {"kStepCount", settings.steps},
            {"kBentNormal", flag(view.bent_normal())},
-           {"kHorizons", flag(settings.estimator == ALCOVE_ESTIMATOR_HORIZONS)},
+           {"kHorizons", flag(horizons)},
            {"kTileSize", settings.tile_size},
            {"kPerspective", flag(is_perspective(view.projection))},
            {"kRoughnessTexture", flag(rough)},
@@ -41,7 +42,8 @@ std::array<NamedConstant, 15> constants_of(const ViewWork& view) {
            {"kReversed", flag(is_reversed(view.projection))},
            {"kInfiniteFar", flag(has_infinite_far(view.projection))},
            {"kAreas", flag(view.in_part)},
-           {"kMask", flag(bool(view.image(ALCOVE_IMAGE_MASK)))}}};
+           {"kMask", flag(bool(view.image(ALCOVE_IMAGE_MASK)))},
+           {"kUniform", flag(horizons && settings.weighting == ALCOVE_WEIGHTING_UNIFORM)}}};
 }
 
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of

@@ -17,6 +17,7 @@ template <std::size_t kCount>
 using Names = std::array<std::string_view, kCount>;
 constexpr Names<2> kSwitch{"false", "true"};
 constexpr Names<2> kEstimators{"horizons", "connected"};
+constexpr Names<2> kWeightings{"cosine", "uniform"};
 constexpr Names<2> kThicknessUnits{"radius", "back_faces"};
 constexpr Names<3> kSpeculars{"none", "slices", "table"};
 constexpr Names<3> kPrecisions{"unorm8", "float16", "float32"};
@@ -55,6 +56,13 @@ constexpr SettingInfo kTable[] = {
      .offset = offsetof(AlcoveSettings, estimator),
      .kind = Kind::choice,
      .choices = kEstimators},
+    {.name = "weighting",
+     .help = "For the estimator horizons: weight of a direction in visibility, the cosine of its "
+             "angle to the normal, or 1 (uniform).",
+     .offset = offsetof(AlcoveSettings, weighting),
+     .kind = Kind::choice,
+     .choices = kWeightings,
+     .matters = [](S s) { return s.estimator == ALCOVE_ESTIMATOR_HORIZONS; }},
     {.name = "thickness",
      .help = "Largest thickness of occluders as a fraction of the radius. Larger values darken.",
      .offset = offsetof(AlcoveSettings, thickness),

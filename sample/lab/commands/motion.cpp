@@ -52,11 +52,9 @@ Json to_json(const MotionReport& report) {
   const Flicker& flicker = report.flicker;
   json["flicker"] = {{"with_history", flicker.with_history},
                      {"without_history", flicker.without_history},
-                     {"raw", flicker.raw},
                      {"static", flicker.static_camera},
                      {"truth", flicker.truth},
-                     {"ratio", flicker.ratio()},
-                     {"ratio_to_raw", flicker.ratio_to_raw()}};
+                     {"ratio", flicker.ratio()}};
   json["weave"] = {{"moving", to_json(report.weave)}, {"static", to_json(report.static_weave)}};
   return json;
 }
@@ -89,12 +87,10 @@ std::string format_table(MotionKind kind, const MotionReport& report) {
          fmt::format(
              "  change of visibility per frame    {:.4f} with history; {:.4f} without motion; the "
              "truth changes by at least {:.4f}\n"
-             "    raw occlusion                   {:.4f}: ratio {:.3f}\n"
              "    filtered, without history       {:.4f}: ratio {:.3f}\n"
              "  Moving: {}  Static: {}",
-             flicker.with_history, flicker.static_camera, flicker.truth, flicker.raw,
-             flicker.ratio_to_raw(), flicker.without_history, flicker.ratio(),
-             weave_line(report.weave), weave_line(report.static_weave));
+             flicker.with_history, flicker.static_camera, flicker.truth, flicker.without_history,
+             flicker.ratio(), weave_line(report.weave), weave_line(report.static_weave));
 }
 
 }  // namespace

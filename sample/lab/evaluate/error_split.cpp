@@ -27,7 +27,6 @@ OcclusionSettings sampled_fully(OcclusionSettings settings) {
   settings.half_resolution = false;
   settings.slices = std::max(settings.slices, 8u);
   settings.steps = std::max(settings.steps, 16u);
-  settings.filter_radius = 0;
   settings.history_frames = std::max(settings.history_frames, 32u);
   return settings;
 }

@@ -26,24 +26,17 @@ Image<glm::vec3> grey(const Image<float>& values) {
   return result;
 }
 
-// Returns the specular occlusion that `model` derives from visibility and bent normal. The model
-// `slices` also uses the slices themselves, which do not exist here, so the table is used instead.
-float modelled_specular(AlcoveSpecular model, float visibility, const glm::vec3& bent,
-                        const glm::vec3& normal, const glm::vec3& view, float roughness) {
-  const float alpha = roughness * roughness;
+// Returns the specular occlusion that the table has for visibility and bent normal.
+float specular_by_table(float visibility, const glm::vec3& bent, const glm::vec3& normal,
+                        const glm::vec3& view, float roughness) {
   const glm::vec3 mirror = maths::mirror_direction(normal, view);
   const glm::vec3 raised = maths::raised_bent_normal(bent, normal, visibility);
-  switch (model) {
-    case passes::Specular::cone:
-      return maths::specular_occlusion(visibility, raised, normal, mirror, alpha);
-    default:
-      return passes::look_up_gtso(kGtsoTable, visibility, maths::visibility_cone(visibility),
-                                  maths::angle_between(raised, mirror),
-                                  maths::angle_between(normal, mirror), roughness);
-  }
+  return passes::look_up_gtso(kGtsoTable, visibility, maths::visibility_cone(visibility),
+                              maths::angle_between(raised, mirror),
+                              maths::angle_between(normal, mirror), roughness);
 }
 
-// The rendering's model applied to the true visibility and bent normal.
+// The table applied to the true visibility and bent normal.
 Image<float> specular_from_truth(const Rendering& rendering, const OcclusionTruth& truth,
                                  const IndirectTruths& light, const Image<float>& roughness) {
   const Viewer viewer = make_viewer(rendering.camera);
@@ -51,9 +44,9 @@ Image<float> specular_from_truth(const Rendering& rendering, const OcclusionTrut
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     if (light.sampled.pixels[i] != 0) {
       const glm::vec3 view = view_from(viewer, light.points.position_ws.pixels[i]);
-      result.pixels[i] = modelled_specular(
-          rendering.settings.specular, truth.visibility.pixels[i], truth.bent_normal_ws.pixels[i],
-          light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
+      result.pixels[i] =
+          specular_by_table(truth.visibility.pixels[i], truth.bent_normal_ws.pixels[i],
+                            light.points.normal_ws.pixels[i], view, roughness.pixels[i]);
     }
   }
   return result;

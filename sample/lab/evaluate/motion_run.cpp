@@ -21,8 +21,8 @@ constexpr std::uint32_t kMotionTruthVersion = 3;
 
 constexpr std::uint32_t kCompared = 3;  // frames of a path
 
-// How raw occlusion is filtered: not at all, over neighbouring pixels, or also over frames.
-enum class Filtering : std::uint8_t { none, spatial, spatial_and_temporal };
+// How raw occlusion is filtered: over neighbouring pixels, or also over frames.
+enum class Filtering : std::uint8_t { spatial, spatial_and_temporal };
 
 // The parameters of one rendered frame.
 struct Step {
@@ -93,7 +93,6 @@ class MotionRenderer {
     request.occlusion.specular = ALCOVE_SPECULAR_NONE;
     request.occlusion.bent_normal = true;
     if (step.filtering != Filtering::spatial_and_temporal) request.occlusion.history_frames = 0;
-    if (step.filtering == Filtering::none) request.occlusion.filter_radius = 0;
     return request;
   }
 
@@ -173,16 +172,12 @@ bool is_compared(const MotionPath& path, std::uint32_t frame) {
   return false;
 }
 
-// The suffixes of a path's name in progress messages.
-constexpr std::array<const char*, 3> kFilteringNames{" without history and filter",
-                                                     " without history", ""};
-
 Result<PathResult> render_path(MotionRenderer& renderer, Filtering filtering) {
   const bool history = filtering == Filtering::spatial_and_temporal;
   PathResult path_result;
   const MotionPath& path = renderer.path();
-  const Progress progress = print_progress(std::string(name_of(path.kind())) +
-                                           kFilteringNames.at(static_cast<std::size_t>(filtering)));
+  const Progress progress =
+      print_progress(std::string(name_of(path.kind())) + (history ? "" : " without history"));
   // Frames before the first measured one are rendered only if there is a history to fill.
   const std::uint32_t first = history ? 0 : first_converged(path) - 1;
   RenderedFrame before;
@@ -344,7 +339,6 @@ Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& 
   if (path.cut()) return run_cut(renderer);
   ALCOVE_TRY(const auto path_result, render_path(renderer, Filtering::spatial_and_temporal));
   ALCOVE_TRY(const auto without_history, render_path(renderer, Filtering::spatial));
-  ALCOVE_TRY(const auto raw, render_path(renderer, Filtering::none));
   MotionReport report{.speed = {path_result.speed.mean(), path_result.fast.mean()}};
   Comparison sums;
   for (const ComparedFrame& compared : path_result.compared)
@@ -353,7 +347,7 @@ Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& 
   ErrorPair& angles = report.errors.back();
   angles.moving = glm::degrees(angles.moving);
   angles.static_camera = glm::degrees(angles.static_camera);
-  report.flicker = {path_result.change.mean(), without_history.change.mean(), raw.change.mean(),
+  report.flicker = {path_result.change.mean(), without_history.change.mean(),
                     sums.static_change.mean(), sums.truth_change.mean()};
   return report;
 }

@@ -46,12 +46,10 @@ struct ErrorPair {
 struct Flicker {
   double with_history = 0;
   double without_history = 0;  // after the spatial filter alone
-  double raw = 0;              // raw occlusion, without either filter
   double static_camera = 0;    // with history, when nothing moves
   double truth = 0;            // lower bound of the change of the truth in the compared frames
 
   double ratio() const { return without_history > 0.0 ? with_history / without_history : 0.0; }
-  double ratio_to_raw() const { return raw > 0.0 ? with_history / raw : 0.0; }
 };
 
 // The images of a compared frame.

@@ -26,8 +26,6 @@ constexpr Feature kFeatures[] = {
     {"a thickness of 0.5", [](OcclusionSettings& s) { s.thickness = 0.5f; }},
     {"a hidden occlusion of 0.1", [](OcclusionSettings& s) { s.hidden_occlusion = 0.1f; }},
     {"a hidden occlusion of 0.7", [](OcclusionSettings& s) { s.hidden_occlusion = 0.7f; }},
-    {"unobserved directions that count as open",
-     [](OcclusionSettings& s) { s.unobserved = false; }},
     {"horizons, infinitely thick",
      [](OcclusionSettings& s) { s.estimator = ALCOVE_ESTIMATOR_HORIZONS; }},
     {"half resolution", [](OcclusionSettings& s) { s.half_resolution = true; }},

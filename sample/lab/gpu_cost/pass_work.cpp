@@ -85,17 +85,11 @@ std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loo
   return std::nullopt;
 }
 
-// Whether a loop over the ends of occluder runs exists.
-bool integrates_runs(const OcclusionSettings& settings) {
-  return settings.estimator == passes::Estimator::bitmask ||
-         passes::needs_back_depth(settings);
-}
-
-// gtao.comp.
+// gtao.comp. With back faces there is a loop over the ends of occluder runs.
 std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops loops,
                                       std::uint32_t index) {
   if (loops[index].loads == 0)
-    return integrates_runs(settings) ? std::optional(kOccluderRuns) : std::nullopt;
+    return passes::needs_back_depth(settings) ? std::optional(kOccluderRuns) : std::nullopt;
   return sampling_iterations(settings, loops, index);
 }
 
