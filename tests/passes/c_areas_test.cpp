@@ -172,8 +172,8 @@ INSTANTIATE_TEST_SUITE_P(
                            view.settings.bent_normal = true;
                            view.normals = {};
                          }},
-                    Case{"SpecularByConeAlone", ALCOVE_QUALITY_MEDIUM,
-                         [](HostView& view) { view.settings.specular = Specular::cone; }},
+                    Case{"SpecularByTableAlone", ALCOVE_QUALITY_MEDIUM,
+                         [](HostView& view) { view.settings.specular = ALCOVE_SPECULAR_TABLE; }},
                     Case{"TwoDepthLayers", ALCOVE_QUALITY_LOW,
                          [](HostView& view) { view.settings.depth_layers = 2; }},
                     Case{"WithoutHistory", ALCOVE_QUALITY_LOW,

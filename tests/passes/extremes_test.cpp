@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 
@@ -80,7 +80,7 @@ TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
     std::vector<Images> expected;
     for (const int exponent : {0, -30, 17, 30}) {
       SCOPED_TRACE(testing::Message()
-                   << name_of(quality) << (orthographic ? ", orthographic, " : ", perspective, ")
+                   << kQualityNames.at(quality) << (orthographic ? ", orthographic, " : ", perspective, ")
                    << "in units of 2^" << -exponent);
       const double unit = std::ldexp(1.0, exponent);
       const TestView view =
@@ -293,7 +293,7 @@ TEST_F(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
     VkExtent2D previous = kSizes[0];
     for (const VkExtent2D size : kSizes) {
       SCOPED_TRACE(testing::Message()
-                   << name_of(quality) << ", " << size.width << " x " << size.height);
+                   << kQualityNames.at(quality) << ", " << size.width << " x " << size.height);
       const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
       const Images images = run_occlusion({.view = view.view,
                                            .depth_ndc = drawing.depth_ndc,

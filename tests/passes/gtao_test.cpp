@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "drawing.h"
 
 namespace alcove::passes {
@@ -31,7 +31,7 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
       for (const AlcoveQuality quality :
            {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH, ALCOVE_QUALITY_REFERENCE}) {
         SCOPED_TRACE(testing::Message()
-                     << view.name << " tilted " << degrees << " degrees, " << name_of(quality));
+                     << view.name << " tilted " << degrees << " degrees, " << kQualityNames.at(quality));
         const std::uint32_t frames = quality == ALCOVE_QUALITY_REFERENCE ? 1 : 4;
         for (std::uint32_t index = 0; index < frames; ++index)
           EXPECT_GE(lowest(drawing, precise(quality), index), kLeast) << "in frame " << index;

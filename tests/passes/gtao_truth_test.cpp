@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 #include "reference_occlusion.h"
@@ -108,7 +108,7 @@ TEST_F(GtaoTruth, VisibilityOfAFloorInFrontOfAPlatformMatchesTheClosedForm) {
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
   for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
-    SCOPED_TRACE(name_of(estimator));
+    SCOPED_TRACE(int{estimator});
     const auto images = render(drawing, exact(estimator, 8.0f));
     for (std::uint32_t x = 44; x < 62; ++x) {
       const double distance = (64 - x - 0.5) * 8.0 / 128;
@@ -143,7 +143,7 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
     const Drawing drawing = draw(view, 128, 128, groove(half_angle, 9.0));
     const double expected = (1.0 - std::cos(2.0 * half_angle)) / 2.0;
     for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
-      SCOPED_TRACE(testing::Message() << name_of(estimator) << ", half angle " << half_angle);
+      SCOPED_TRACE(testing::Message() << "estimator " << estimator << ", half angle " << half_angle);
       const auto images = render(drawing, exact(estimator, 8.0f));
       for (const std::uint32_t x : {61u, 62u, 65u, 66u})
         EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.03);
@@ -213,7 +213,7 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
   const float radius = 1.0f;
   for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
-    SCOPED_TRACE(name_of(estimator));
+    SCOPED_TRACE(int{estimator});
     const auto images = render(drawing, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
       // `across` is the distance along the floor to the platform's edge, and `distance` the
@@ -265,7 +265,7 @@ TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForceInEveryScene) {
     for (const NamedScene& scene : gtao_scenes()) {
       for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
         SCOPED_TRACE(testing::Message()
-                     << scene.name << ", " << view.name << ", " << name_of(estimator));
+                     << scene.name << ", " << view.name << ", " << "estimator " << estimator);
         const Drawing drawing = draw(view, 60, 40, scene.scene);
         OcclusionSettings settings = exact(estimator, radius);
         settings.bent_normal = true;

@@ -181,19 +181,6 @@ TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsR
   }
 }
 
-TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyIfItsResultIsRead) {
-  const FramePlan without = plan(least());
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
-  OcclusionSettings asked = least();
-  asked.linear_depth = true;
-  EXPECT_EQ(plan(asked).passes, without.passes) << "if nobody reads linear depth, no pass is added";
-  EXPECT_THAT(plan(asked, {.linear_depth = true}).passes, Contains("linear depth"));
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
-  OcclusionSettings by_model = least();
-  by_model.specular = ALCOVE_SPECULAR_TABLE;
-  EXPECT_THAT(plan(by_model, {.specular = true}).passes, Contains("linear depth"));
-}
-
 TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
   OcclusionSettings half = least();
   half.tile_size = 2;
@@ -202,47 +189,6 @@ TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
 
 TEST_F(OcclusionPlan, OutputsThatNobodyReadsAreCulledWithTheirPasses) {
   EXPECT_THAT(plan(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
-}
-
-// The frame is prepared in a separate graph that is never recorded.
-TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistory) {
-  const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
-  OcclusionSettings settings = least();
-  settings.history_frames = 8;
-  const AlcoveCamera view = test_views()[2].view;
-  AlcoveCamera other = view;
-  other.view_from_world[12] = 0.1f;
-  const auto add = [&](const Frame& frame) {
-    const auto outputs = add_occlusion(frame,
-                                       {.depth_ndc = upload(frame.graph, drawing.depth_ndc),
-                                        .normals = upload(frame.graph, drawing.normal_vs),
-                                        .normal_convention = {.in_view_space = true},
-                                        .motion = upload(frame.graph, uniform_image(2, 0.0f))},
-                                       settings);
-    ASSERT_TRUE(outputs) << outputs.error().message;
-    frame.graph.output(outputs->visibility);
-  };
-  Graph unrecorded;
-  Frame prepared{unrecorded, gpu().kernels(), view};
-  prepared.prepare = true;
-  add(prepared);
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
-  EXPECT_EQ(pipelines, 1u + 3u)
-      << "reconstruct for a first frame, for a moving and for a static view";
-  struct Case {
-    const AlcoveCamera& previous_view;
-    std::uint32_t static_frames;
-    bool cut = false;
-  };
-  const Case cases[] = {{view, 0}, {other, 0}, {view, 1}, {view, 16}, {view, 0, true}, {view, 0}};
-  for (std::uint32_t index = 0; index < std::size(cases); ++index) {
-    run([&](Graph& graph) {
-      if (cases[index].cut) graph.reset_histories();
-      add({graph, gpu().kernels(), view, index, cases[index].previous_view,
-           cases[index].static_frames});
-    });
-    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines) << index;
-  }
 }
 
 TEST_F(OcclusionPlan, ChangedRadiusCreatesNoNewPipeline) {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "gpu_cost/budget.h"
 #include "gpu_cost/cache_traffic.h"
 #include "gpu_cost/xegtao.h"

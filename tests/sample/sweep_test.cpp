@@ -28,7 +28,7 @@ TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
     for (const AlcoveQuality preset : presets()) {
       OcclusionSettings settings(preset, base.radius);
       settings.depth_layers = std::max(settings.depth_layers, base.depth_layers);
-      EXPECT_EQ(std::ranges::count(seen, settings), 1) << passes::name_of(preset);
+      EXPECT_EQ(std::ranges::count(seen, settings), 1) << passes::kQualityNames.at(preset);
     }
   }
 }
