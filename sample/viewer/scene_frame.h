@@ -7,6 +7,7 @@
 
 #include "gpu/gpu.h"
 #include "render/gbuffer.h"
+#include "render/light.h"
 #include "render/normal_source.h"
 #include "render/light.h"
 #include "render/surfaces.h"

@@ -6,7 +6,6 @@
 
 #include "maths/bent_normal.h"
 #include "maths/connected_samples.h"
-#include "maths/environment_map.h"
 #include "maths/ggx.h"
 #include "maths/gtao.h"
 #include "maths/gtso.h"
@@ -19,8 +18,6 @@
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
 #include "maths/sampling.h"
-#include "maths/spherical_harmonics.h"
-#include "maths/split_sum.h"
 #include "maths/unobserved.h"
 #include "maths/visibility_bitmask.h"
 
@@ -105,26 +102,15 @@ ALCOVE_INLINE vec4 parity_of_light(uint which, vec4 a, vec4 b) {
   float alpha = 0.05f + 0.95f * b.x;
   switch (which) {
     case 7u: {
-      vec3 direction = map_direction(vec2(b.x, b.y));
-      return vec4(map_uv(view).x, equirectangular_uv(view).y, direction.y,
-                  map_texel_angle(vec2(b.z, b.w), 8.0f));
-    }
-    case 8u: {
-      uint index = uint(b.x * float(kHarmonics));
-      return vec4(harmonic(index, view) * harmonic_irradiance(index),
-                  reflectance_coordinates(b.y, b.z).x, dominant_direction(normal, light, b.z).x,
-                  specular_reflectance(normal_reflectance(light, b.w), vec2(b.y, b.z)).z);
-    }
-    case 9u: {
       vec3 h = sample_ggx_normal(view, alpha, b.y, b.z);
       return vec4(h.x, h.y, h.z, ggx_shadowing(view.z, light.z, alpha));
     }
-    case 10u:
+    case 8u:
       return vec4(ggx_reflection_density(normal, view, light, alpha), ggx_masking(view.z, alpha),
                   ggx_distribution(light.z, alpha), 0.0f);
-    case 11u:
+    case 9u:
       return vec4(visibility_cone(b.w), angle_between(view, light), 0.0f, 0.0f);
-    case 12u:
+    case 10u:
       return vec4(multi_bounce_channel(b.y, b.z), 0.0f, 0.0f, 0.0f);
   }
   return vec4(0.0f);
@@ -132,23 +118,23 @@ ALCOVE_INLINE vec4 parity_of_light(uint which, vec4 a, vec4 b) {
 
 ALCOVE_INLINE vec4 parity_of_storage(uint which, vec4 a, vec4 b) {
   switch (which) {
-    case 13u: {
+    case 11u: {
       vec2 encoded = octahedral_encode(parity_direction(a.x, a.y));
       vec3 decoded = octahedral_decode(encoded);
       return vec4(encoded.x, encoded.y, decoded.x, decoded.z);
     }
-    case 14u: {
+    case 12u: {
       uint word = pack_unorm(a.x, 12u);
       return vec4(unpack_unorm(word, 12u), unpack_unorm(pack_unorm(a.y, 8u), 8u),
                   squared_angle(vec3(0.0f, 0.6f, 1.8f), stereographic_of_bits(uint(a.z * 255.0f))),
                   unpack_open(uint(a.w * 1000.0f)));
     }
-    case 15u:
+    case 13u:
       return vec4(weight_of_code(b.z * 31.0f), recent_of_code(texel_recent_code(b.x), b.z),
                   texel_codes(b.y), 0.0f);
-    case 16u:
+    case 14u:
       return vec4(weight_after_blur(b.z * 40.0f, b.y * 0.25f, b.x), 0.0f, 0.0f, 0.0f);
-    case 23u: {
+    case 21u: {
       RawOcclusion lobe;
       lobe.visible = a.x * a.y;
       lobe.open = a.x;
@@ -171,26 +157,26 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
   uvec2 pixel = parity_pixel(a);
   uint frame = uint(a.z * 1000.0f);
   switch (which) {
-    case 17u:
+    case 15u:
       return vec4(golden_pattern(pixel, frame, true).direction,
                   golden_pattern(pixel, frame, true).offset,
                   golden_pattern(pixel, frame, false).direction,
                   golden_pattern(pixel, frame, false).offset);
-    case 22u:
+    case 20u:
       return vec4(hidden_occlusion_behind(b.x, b.y * b.z, b.z, hidden_exponent(b.w)),
                   hidden_exponent(b.w), 0.0f, 0.0f);
-    case 18u:
+    case 16u:
       return vec4(visible_share_beyond(parity_word(pixel.x)), 0.0f, 0.0f, 0.0f);
-    case 19u:
+    case 17u:
       return vec4(slice_angle(1u, 3u, b.w), 0.0f, 0.0f, 0.0f);
-    case 20u: {
+    case 18u: {
       Slice s = parity_slice(a);
       VisiblePart part =
           visible_part(s, -1.0f, 32.0f / tangent_diamond_angle(s, -1.0f), parity_word(pixel.x),
                        hidden_occlusion_behind(b.y, 0.0f, 1.0f, hidden_exponent(b.x)), true);
       return vec4(part.arc, part.bent.x, part.bent.y, 0.0f);
     }
-    case 21u: {
+    case 19u: {
       Slice s = parity_slice(a);
       HalfLobe front = make_half_lobe(s, 1.0f, 0.05f + 0.95f * b.x);
       HalfLobe rear = make_half_lobe(s, -1.0f, 0.05f + 0.95f * b.x);
@@ -201,7 +187,7 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
           visible_lobe(front, 32.0f / tangent_diamond_angle(s, 1.0f), parity_word(pixel.x), 0.4f),
           visible_lobe(rear, 32.0f / tangent_diamond_angle(s, -1.0f), parity_word(pixel.y), 0.0f));
     }
-    case 24u: {
+    case 22u: {
       Slice s = parity_slice(a);
       HalfLobe lobe = make_half_lobe(s, 1.0f, 0.05f + 0.95f * b.x);
       Unobserved unobserved = nothing_unobserved();
@@ -219,14 +205,14 @@ ALCOVE_INLINE vec4 parity_of_sampling(uint which, vec4 a, vec4 b) {
   return vec4(0.0f);
 }
 
-const uint kParityCases = 25u;
+const uint kParityCases = 23u;
 
 // Returns four results of case `which` for eight numbers in [0,1).
 ALCOVE_INLINE vec4 parity_case(uint which, vec4 a, vec4 b, Projection p) {
   if (which < 5u) return parity_of_slices(which, a, b);
   if (which < 7u) return parity_of_cameras(which, a, b, p);
-  if (which < 13u) return parity_of_light(which, a, b);
-  if (which < 17u || which == 23u) return parity_of_storage(which, a, b);
+  if (which < 11u) return parity_of_light(which, a, b);
+  if (which < 15u || which == 21u) return parity_of_storage(which, a, b);
   return parity_of_sampling(which, a, b);
 }
 

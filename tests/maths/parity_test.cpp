@@ -35,8 +35,6 @@ constexpr Bound kBounds[] = {
     {"arc cosine and recent", 2e-5, 1e-5},
     {"position and depth", 1e-5, 1e-5},
     {"history weight and view direction", 2e-4, 1e-4},
-    {"environment map", 1e-4, 1e-4},
-    {"reflectance and harmonics", 1e-4, 1e-5},
     {"ggx normal", 2e-3, 1e-5},
     {"ggx densities", 1e-3, 2e-3},
     {"cone and angle", 1e-4, 1e-4},
