@@ -107,7 +107,7 @@ std::vector<PassImage> dispatch_images(const AlcoveWork& work, const AlcoveWorkD
   for (auto binding = bindings.begin(); binding != bindings.end(); ++binding) {
     // A binding that a shader does not use has a resource of another binding.
     const auto is_same = [&](const AlcoveWorkBinding& other) {
-      return other.resource == binding->resource && other.mip == binding->mip;
+      return other.resource == binding->resource;
     };
     if (binding->type <= ALCOVE_BINDING_TYPE_TABLE ||
         std::any_of(bindings.begin(), binding, is_same))

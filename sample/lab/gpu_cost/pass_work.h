@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "alcove/passes/setting_table.h"
+#include "gpu/occlusion.h"
 #include "support/result.h"
 
 namespace alcove::sample {
