@@ -141,7 +141,7 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
     rotated = glm::translate(rotated, distance * glm::dvec3(-1.0, -0.3, 0.8));
     AlcoveCamera far = view.view;
     for (int i = 0; i < 16; ++i)
-      far.view_from_world.at(static_cast<std::size_t>(i)) =
+      far.view_from_world[i] =
           static_cast<float>(rotated[i / 4][i % 4]);
     HostImage visibility;
     for (std::uint32_t i = 0; i < 8; ++i)

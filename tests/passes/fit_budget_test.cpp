@@ -15,9 +15,9 @@ namespace {
 constexpr AlcoveBudget kBudget{
     .struct_size = sizeof(AlcoveBudget), .target_ms = 2.0, .least_slices = 1, .most_slices = 2, .least_steps = 4, .most_steps = 16};
 
-AlcoveSettings low_settings() {
+AlcoveSettings settings_of(AlcoveQuality quality) {
   AlcoveSettings settings{.struct_size = sizeof settings};
-  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, &settings), ALCOVE_SUCCESS);
+  EXPECT_EQ(alcoveGetSettings(quality, 1.0f, &settings), ALCOVE_SUCCESS);
   return settings;
 }
 
@@ -29,7 +29,7 @@ struct Simulation {
   double ms_per_work = 0.05;
   double scatter = 0.0;  // relative, uniform to both sides
   double load = 1.0;
-  AlcoveSettings settings = low_settings();
+  AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
   std::mt19937 random{7};
   std::vector<double> times;
   int changes = 0;
@@ -77,7 +77,7 @@ TEST(FitBudget, TargetIsApproachedFromBelowWhateverTheFixedShareOfTheTime) {
     for (const double target : {1.0, 1.5, 2.0, 2.6}) {
       for (const AlcoveQuality begin : {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
         SCOPED_TRACE(testing::Message() << fixed << " ms fixed, target " << target);
-        Simulation view{.fixed_ms = fixed, .settings = OcclusionSettings(begin, 1.0f)};
+        Simulation view{.fixed_ms = fixed, .settings = settings_of(begin)};
         view.budget.target_ms = target;
         view.run(600);
         const double reached = view.exact_ms(view.settings);
@@ -142,7 +142,7 @@ TEST(FitBudget, NumbersThatAreNoTimesDoNotCount) {
                                  -0.0,
                                  std::numeric_limits<double>::infinity(),
                                  -std::numeric_limits<double>::infinity()};
-  const AlcoveSettings settings = low_settings();
+  const AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
   std::vector<double> times;
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(fitted(kBudget, times, settings), samples_of(settings));
@@ -160,7 +160,7 @@ TEST(FitBudget, NumbersThatAreNoTimesDoNotCount) {
 TEST(FitBudget, SlicesAndStepsStayWithinTheLimits) {
   for (std::uint32_t most_slices = 1; most_slices <= 3; ++most_slices) {
     for (std::uint32_t steps = 2; steps <= 64; ++steps) {
-      AlcoveSettings settings = low_settings();
+      AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
       settings.steps = steps;
       for (const double time : {1e-3, 1.0, 1.9, 2.1, 5.0, 1e6}) {
         const AlcoveBudget budget{sizeof budget, 2.0, 1, most_slices, 5, 20};
@@ -175,7 +175,7 @@ TEST(FitBudget, SlicesAndStepsStayWithinTheLimits) {
 
 TEST(FitBudget, ArgumentsThatCannotBeUsedAreErrors) {
   const auto fit = [](const AlcoveBudget& budget) {
-    AlcoveSettings settings = low_settings();
+    AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
     std::uint32_t changed = 0;
     return alcoveFitBudget(&budget, nullptr, 0, &settings, &changed);
   };
@@ -189,7 +189,7 @@ TEST(FitBudget, ArgumentsThatCannotBeUsedAreErrors) {
         AlcoveBudget{kSize, 1.0, 1, 2, 1, 12}, AlcoveBudget{kSize, 1.0, 1, 2, 13, 12},
         AlcoveBudget{kSize, 1.0, 1, 2, 6, 65}})
     EXPECT_EQ(fit(budget), ALCOVE_ERROR_INVALID_INPUT);
-  AlcoveSettings settings = low_settings();
+  AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
   std::uint32_t changed = 0;
   const AlcoveResult error = ALCOVE_ERROR_INVALID_INPUT;
   EXPECT_EQ(alcoveFitBudget(nullptr, nullptr, 0, &settings, &changed), error);

@@ -19,7 +19,7 @@ namespace {
 constexpr float kRounding = 1e-3f;
 
 OcclusionSettings half_resolution(std::uint32_t history_frames) {
-  OcclusionSettings settings = precise(2, history_frames);
+  OcclusionSettings settings = precise(history_frames);
   settings.half_resolution = 1;
   return settings;
 }

@@ -69,7 +69,8 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                               .largest_height = input.largest_size.height,
                               .previous_width = input.previous_size.width,
                               .previous_height = input.previous_size.height,
-                              .depth_format = input.coarse_depth ? VK_FORMAT_D16_UNORM : 0u,
+                              .depth_format = static_cast<std::uint32_t>(
+                                  input.coarse_depth ? VK_FORMAT_D16_UNORM : VK_FORMAT_UNDEFINED),
                               .normals_in_view_space = 1};
     ViewTextures textures{};
     textures[ALCOVE_IMAGE_DEPTH] = upload(
@@ -109,9 +110,8 @@ HostImage Reconstruct::no_motion() {
   return {kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
 }
 
-OcclusionSettings precise(std::uint32_t filter_radius, std::uint32_t history_frames) {
+OcclusionSettings precise(std::uint32_t history_frames) {
   OcclusionSettings settings;
-  settings.filter_radius = filter_radius;
   settings.history_frames = history_frames;
   settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
