@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
+#include "alcove/alcove_work.h"
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/print.h"
-#include "alcove/alcove_work.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "render/surfaces.h"
@@ -45,9 +45,8 @@ Result<void> declare(framegraph::Graph& graph, const Session& session, const Opt
     surfaces.gbuffer.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
   if (hidden.second_layer)
     surfaces.gbuffer.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
-  ALCOVE_TRY(const auto outputs,
-             add_occlusion(graph, *session.gpu, view_of(session, options), 0, surfaces,
-                           session.settings));
+  ALCOVE_TRY(const auto outputs, add_occlusion(graph, *session.gpu, view_of(session, options), 0,
+                                               surfaces, session.settings));
   for (const framegraph::Texture output :
        {outputs.visibility, outputs.bent_normal, outputs.specular})
     if (output) graph.output(output);

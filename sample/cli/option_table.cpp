@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/settings.h"
 
 namespace alcove::sample {
@@ -268,8 +268,7 @@ std::span<const OptionRow> option_rows() {
       {kAll, kOcclusion, "--quality", "NAME",
        "preset: console, low, medium, high, ultra or reference. Default: medium",
        [](O& o, const V& v) {
-         o.occlusion.quality =
-             static_cast<AlcoveQuality>(v.one_of(passes::kQualityNames));
+         o.occlusion.quality = static_cast<AlcoveQuality>(v.one_of(passes::kQualityNames));
          o.occlusion.quality_given = true;
        }},
       {kAll, kOcclusion, "--radius", "LENGTH",

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/situations.h"
+#include "gpu/occlusion.h"
 #include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"

@@ -12,7 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-
 std::string vector_text(const glm::vec3& v) {
   return fmt::format("{},{},{}", number_text(v.x), number_text(v.y), number_text(v.z));
 }

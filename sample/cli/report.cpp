@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <limits>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/process_memory.h"
@@ -59,7 +59,7 @@ Json rendering_report(const Rendering& rendering, const Options& options) {
   report["settings"] = to_json(rendering.settings);
   report.update(costs_json(rendering.costs));
   report["with_specular"] = costs_json(rendering.costs_with_specular);
-  report["with_specular"]["model"] = 
+  report["with_specular"]["model"] =
       specular_model(rendering.settings) == ALCOVE_SPECULAR_TABLE ? "table" : "slices";
   report["memory"] = {{"transient_bytes", rendering.memory.aliased},
                       {"transient_bytes_without_aliasing", rendering.memory.unaliased},

@@ -15,7 +15,7 @@ namespace alcove::sample {
 // Returns the occlusion settings of the options: a quality, a radius in scene units (by default
 // `default_radius`), and the changes by --set. Errors name the setting and its allowed values.
 [[nodiscard]] Result<OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
-                                                                   float default_radius);
+                                                           float default_radius);
 
 // Checks NAME and VALUE of an option --set. Returns the allowed names if the name is unknown, the
 // allowed values if the value is out of range, and nothing if both are valid. Settings that depend

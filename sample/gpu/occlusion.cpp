@@ -4,10 +4,10 @@
 
 namespace alcove::sample {
 
-OcclusionSettings::OcclusionSettings(AlcoveQuality quality, float radius_ws)
-    : AlcoveSettings{} {
+OcclusionSettings::OcclusionSettings(AlcoveQuality quality, float radius_ws) : AlcoveSettings{} {
   struct_size = sizeof(AlcoveSettings);
-  if (alcoveGetSettings(quality, radius_ws, this) == ALCOVE_SUCCESS) specular = ALCOVE_SPECULAR_NONE;
+  if (alcoveGetSettings(quality, radius_ws, this) == ALCOVE_SUCCESS)
+    specular = ALCOVE_SPECULAR_NONE;
 }
 
 tl::expected<void, passes::Error> add_occlusion(framegraph::Graph& graph, passes::Kernels& kernels,

@@ -162,9 +162,9 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
   auto draw = graph.add_pass("depth");  // An engine draws its depth here.
   draw.read(from, framegraph::buffer_access::transfer_source);
   const auto size = framegraph::Extent::absolute(kWidth, kHeight);
-  const auto depth = draw.write(graph.create_texture("depth", {VK_FORMAT_R32_SFLOAT, size}),
-                                framegraph::access::transfer_destination, {},
-                                framegraph::Contents::discard);
+  const auto depth =
+      draw.write(graph.create_texture("depth", {VK_FORMAT_R32_SFLOAT, size}),
+                 framegraph::access::transfer_destination, {}, framegraph::Contents::discard);
   draw.record([=](RecordContext& context) {
     vkCmdCopyBufferToImage(context.commands, context.buffer(from), context.image(depth),
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &kWholeImage);
@@ -172,23 +172,22 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
 
   AlcoveSettings settings{.struct_size = sizeof settings};
   alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings);
-  AlcoveViewInfo view{.static_frames = index, .settings = &settings};
-  view.camera = {  // The eye is the origin, and looks along -Z.
+  const AlcoveCamera camera{
+      // The eye is the origin, and looks along -Z.
       {kFocal * kHeight / kWidth, 0, 0, 0, 0, -kFocal, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0},
       {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-  view.previous_camera = view.camera;
-  passes::ViewTextures textures{};
-  textures[ALCOVE_IMAGE_DEPTH] = depth;
-  textures[ALCOVE_IMAGE_VISIBILITY] =
-      graph.create_texture("visibility", {VK_FORMAT_R8_UNORM, size});
-  value_of(passes::add_view(graph, kernels, view, index, textures));
-  const auto visibility = textures[ALCOVE_IMAGE_VISIBILITY];
+  const AlcoveViewInfo view{
+      .static_frames = index, .settings = &settings, .camera = camera, .previous_camera = camera};
+  passes::ViewTextures images{};
+  images[ALCOVE_IMAGE_DEPTH] = depth;
+  images[ALCOVE_IMAGE_VISIBILITY] = graph.create_texture("visibility", {VK_FORMAT_R8_UNORM, size});
+  value_of(passes::add_view(graph, kernels, view, index, images));
 
   const auto target = graph.import_buffer("result", result.import);
   auto copy = graph.add_pass("read back");
-  copy.read(visibility, framegraph::access::transfer_source);
+  copy.read(images[ALCOVE_IMAGE_VISIBILITY], framegraph::access::transfer_source);
   const auto filled = copy.write(target, framegraph::buffer_access::transfer_destination);
-  copy.record([visibility, filled](RecordContext& context) {
+  copy.record([visibility = images[ALCOVE_IMAGE_VISIBILITY], filled](RecordContext& context) {
     vkCmdCopyImageToBuffer(context.commands, context.image(visibility),
                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1,
                            &kWholeImage);

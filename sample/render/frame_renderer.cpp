@@ -119,16 +119,18 @@ void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, 
     read(specular, [&](const Texels& t) { images.specular_occlusion.push_back(channel(t, 0)); });
 }
 
-// Adds the lighting of the surfaces. Emission is left out, because the ray-traced reference does not
-// have it.
+// Adds the lighting of the surfaces. Emission is left out, because the ray-traced reference does
+// not have it.
 void FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
                                   const DeclaredFrame& declared, const Light& light,
                                   ReadBack& read_back, FrameImages& images) {
   const Occlusion& outputs = declared.outputs;
   const Texture environment = light.import(graph);
   const auto add = [&](const LightOcclusion& occlusion, Image<glm::vec3> LitImages::*image) {
-    const Lit lit = light.add(graph, environment, request.view, declared.surfaces, outputs.normals, occlusion);
-    read_back.add(graph, lit.all, [&images, image](const Texels& t) { images.lit.*image = rgb(t); });
+    const Lit lit =
+        light.add(graph, environment, request.view, declared.surfaces, outputs.normals, occlusion);
+    read_back.add(graph, lit.all,
+                  [&images, image](const Texels& t) { images.lit.*image = rgb(t); });
     return lit;
   };
   const LightOcclusion all{outputs.visibility, outputs.bent_normal,

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/result.h"

@@ -29,11 +29,11 @@ HiddenDepths hidden_depths_of(const AlcoveSettings& settings) {
 }
 
 AlcoveViewInfo view_info(const GbufferView& view, std::uint32_t id, std::uint32_t static_frames) {
-  return {.id = id,
-          .static_frames = static_frames,
-          .camera = to_camera(view.clip_from_view, view.view_from_world),
-          .previous_camera =
-              to_camera(view.previous_clip_from_view, view.previous_view_from_world)};
+  return {
+      .id = id,
+      .static_frames = static_frames,
+      .camera = to_camera(view.clip_from_view, view.view_from_world),
+      .previous_camera = to_camera(view.previous_clip_from_view, view.previous_view_from_world)};
 }
 
 Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& view,
@@ -59,18 +59,19 @@ Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& vi
                             : settings.precision == ALCOVE_PRECISION_FLOAT16
                                 ? VK_FORMAT_R16G16B16A16_SFLOAT
                                 : VK_FORMAT_R32G32B32A32_SFLOAT;
-    textures[ALCOVE_IMAGE_MULTI_BOUNCE] = graph.create_texture(
-        "multi-bounce", {format, framegraph::Extent::relative(gbuffer.depth)});
+    textures[ALCOVE_IMAGE_MULTI_BOUNCE] =
+        graph.create_texture("multi-bounce", {format, framegraph::Extent::relative(gbuffer.depth)});
   }
   const auto message = [](const passes::Error& error) { return error.message; };
-  ALCOVE_TRY_VOID(add_occlusion(graph, gpu.kernels(), view, index, settings, textures)
-                      .map_error(message));
+  ALCOVE_TRY_VOID(
+      add_occlusion(graph, gpu.kernels(), view, index, settings, textures).map_error(message));
   Occlusion result{textures[ALCOVE_IMAGE_VISIBILITY], textures[ALCOVE_IMAGE_BENT_NORMAL],
                    textures[ALCOVE_IMAGE_SPECULAR], textures[ALCOVE_IMAGE_MULTI_BOUNCE],
                    gbuffer.normal};
   if (!has_normals) {
-    ALCOVE_TRY(const auto made, passes::add_surface(graph, gpu.kernels(), view.camera,
-                                                    gbuffer.depth).map_error(message));
+    ALCOVE_TRY(
+        const auto made,
+        passes::add_surface(graph, gpu.kernels(), view.camera, gbuffer.depth).map_error(message));
     result.normals = made.normals;
   }
   return result;

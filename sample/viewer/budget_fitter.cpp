@@ -26,9 +26,8 @@ double occlusion_ms(const std::vector<PassTime>& times) {
 
 }  // namespace
 
-OcclusionSettings BudgetFitter::fit(const AlcoveBudget& budget,
-                                            const std::vector<PassTime>& times,
-                                            const OcclusionSettings& settings) {
+OcclusionSettings BudgetFitter::fit(const AlcoveBudget& budget, const std::vector<PassTime>& times,
+                                    const OcclusionSettings& settings) {
   if (!(settings == settings_)) {
     settings_ = settings;
     milliseconds_.clear();

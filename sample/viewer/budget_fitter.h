@@ -16,8 +16,8 @@ class BudgetFitter {
   // the next frame. `settings` are those of the last frame; they may differ from the settings that
   // the last call returned. Settings that alcoveFitBudget refuses are returned unchanged.
   [[nodiscard]] OcclusionSettings fit(const AlcoveBudget& budget,
-                                              const std::vector<PassTime>& times,
-                                              const OcclusionSettings& settings);
+                                      const std::vector<PassTime>& times,
+                                      const OcclusionSettings& settings);
 
  private:
   std::vector<double> milliseconds_;  // the newest last

@@ -105,8 +105,7 @@ void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
     const float width = ImGui::CalcTextSize(name).x + 2.0f * style.FramePadding.x;
     const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) ImGui::SameLine();
-    if (ImGui::Button(name))
-      state.settings = OcclusionSettings(quality, state.settings.radius);
+    if (ImGui::Button(name)) state.settings = OcclusionSettings(quality, state.settings.radius);
   }
   if (ImGui::Button("reset settings (R)")) state.settings = facts.first_settings;
 }

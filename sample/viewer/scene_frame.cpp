@@ -18,8 +18,7 @@ constexpr float kFullMotion = 0.02f;
 OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
   const bool lit = picture == Picture::lit;
   settings.bent_normal = settings.bent_normal || lit || picture == Picture::bent_normal;
-  if ((lit || picture == Picture::specular_occlusion) &&
-      settings.specular == ALCOVE_SPECULAR_NONE)
+  if ((lit || picture == Picture::specular_occlusion) && settings.specular == ALCOVE_SPECULAR_NONE)
     settings.specular = ALCOVE_SPECULAR_SLICES;
   return settings;
 }
@@ -39,9 +38,10 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
              GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric))
           .and_then([&] { return assign(made->light_, Light::create(gpu, environment)); })
           .and_then([&] {
-            return assign(made->picture_,
-                          FullScreenPass::create(gpu, {"picture", kPicture, 2,
-                                                       sizeof(maths::PictureParameters), {format}}));
+            return assign(
+                made->picture_,
+                FullScreenPass::create(
+                    gpu, {"picture", kPicture, 2, sizeof(maths::PictureParameters), {format}}));
           });
   if (!done) return Failure(std::move(done.error()));
   made->exposure_ = exposure_of(environment);
@@ -120,7 +120,7 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
 
 maths::PictureParameters SceneFrame::picture_parameters(const ViewState& state) const {
   maths::PictureParameters parameters{glm::mat4(1.0f), maths::kShowGrey,
-                                  std::numeric_limits<float>::max(), 1.0f};
+                                      std::numeric_limits<float>::max(), 1.0f};
   switch (state.picture) {
     case Picture::lit:
       parameters.show = maths::kShowRadiance;

@@ -9,10 +9,9 @@
 #include "render/gbuffer.h"
 #include "render/light.h"
 #include "render/normal_source.h"
-#include "render/light.h"
+#include "render/shaders/picture.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"
-#include "render/shaders/picture.h"
 #include "viewer/view_state.h"
 
 namespace alcove::sample {
@@ -54,9 +53,11 @@ class SceneFrame {
 
   SceneFrame(Gpu& gpu, NormalSource normals) : gpu_(gpu), normals_(normals) {}
   void begin(framegraph::Graph& graph, const ViewState& state, VkExtent3D size);
-  tl::expected<framegraph::Texture, std::string> add_picture(
-      framegraph::Graph& graph, const ViewState& state, const Surfaces& surfaces,
-      const OcclusionSettings& settings, std::uint32_t view_id);
+  tl::expected<framegraph::Texture, std::string> add_picture(framegraph::Graph& graph,
+                                                             const ViewState& state,
+                                                             const Surfaces& surfaces,
+                                                             const OcclusionSettings& settings,
+                                                             std::uint32_t view_id);
   maths::PictureParameters picture_parameters(const ViewState& state) const;
 
   Gpu& gpu_;

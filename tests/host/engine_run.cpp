@@ -174,15 +174,16 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
     VkExtent2D size;
     VkImageUsageFlags usage;
   };
-  for (const Target& target : {Target{view.images[ALCOVE_IMAGE_DEPTH], kDepthFormat, size, kDepthUsage},
-                               Target{view.images[ALCOVE_IMAGE_NORMALS], kNormalFormat, size, kColourUsage},
-                               Target{view.images[ALCOVE_IMAGE_MOTION], kMotionFormat, size, kColourUsage},
-                               Target{view.images[ALCOVE_IMAGE_VISIBILITY], kVisibilityFormat, size, kVisibilityUsage},
-                               Target{drawn.other.albedo, kAlbedoFormat, size, kColourUsage},
-                               Target{drawn.other.half_depth,
-                                      kDepthFormat,
-                                      {size.width / 2, size.height / 2},
-                                      kDepthUsage}}) {
+  for (const Target& target :
+       {Target{view.images[ALCOVE_IMAGE_DEPTH], kDepthFormat, size, kDepthUsage},
+        Target{view.images[ALCOVE_IMAGE_NORMALS], kNormalFormat, size, kColourUsage},
+        Target{view.images[ALCOVE_IMAGE_MOTION], kMotionFormat, size, kColourUsage},
+        Target{view.images[ALCOVE_IMAGE_VISIBILITY], kVisibilityFormat, size, kVisibilityUsage},
+        Target{drawn.other.albedo, kAlbedoFormat, size, kColourUsage},
+        Target{drawn.other.half_depth,
+               kDepthFormat,
+               {size.width / 2, size.height / 2},
+               kDepthUsage}}) {
     ALCOVE_TRY(auto texture, create_image(target.format, target.size, target.usage));
     target.image = texture;
   }

@@ -89,7 +89,9 @@ void multiply_by_view(AlcoveCamera& camera) {
 
 // Says that all images have another size than they have.
 void set_size(F& frame, std::uint32_t width, std::uint32_t height) {
-  for (AlcoveImage* image : {&frame.view.images[ALCOVE_IMAGE_DEPTH], &frame.view.images[ALCOVE_IMAGE_NORMALS], &frame.view.images[ALCOVE_IMAGE_VISIBILITY]}) {
+  for (AlcoveImage* image :
+       {&frame.view.images[ALCOVE_IMAGE_DEPTH], &frame.view.images[ALCOVE_IMAGE_NORMALS],
+        &frame.view.images[ALCOVE_IMAGE_VISIBILITY]}) {
     image->width = width;
     image->height = height;
   }
@@ -115,7 +117,8 @@ void change_size(F& frame) {
   }
   frame.view.info.largest_width = whole;
   frame.view.info.largest_height = frame.view.images[ALCOVE_IMAGE_DEPTH].height;
-  set_size(frame, crop(frame.view.info.camera, index), frame.view.images[ALCOVE_IMAGE_DEPTH].height);
+  set_size(frame, crop(frame.view.info.camera, index),
+           frame.view.images[ALCOVE_IMAGE_DEPTH].height);
 }
 
 void set_normals(F& frame, const AlcoveImage& image, AlcoveNormalEncoding encoding,
@@ -131,7 +134,9 @@ void set_motion(F& frame, const AlcoveImage& image, float x, float y) {
   frame.view.info.motion_scale[0] = x;
   frame.view.info.motion_scale[1] = y;
 }
-void scale_motion(F& frame, float x, float y) { set_motion(frame, frame.right.images[ALCOVE_IMAGE_MOTION], x, y); }
+void scale_motion(F& frame, float x, float y) {
+  set_motion(frame, frame.right.images[ALCOVE_IMAGE_MOTION], x, y);
+}
 
 }  // namespace
 
@@ -172,7 +177,8 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        }},
       {"projection with NaN", "not finite",
        [](F& f) { f.view.info.camera.clip_from_view[0] = std::nanf(""); }},
-      {"linear depth", "not a linear depth", [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.linear_depth; }},
+      {"linear depth", "not a linear depth",
+       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.linear_depth; }},
       {"16-bit depth copied to 32 bits", "the steps of another format",
        [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.coarse_depth; }},
       // The view matrix.
@@ -246,7 +252,10 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"depth image of half the size that is said", "is smaller than",
        [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.half_depth; }, "half_size"},
       {"a size from before a resize", "only if the whole image is in use",
-       [](F& f) { set_size(f, f.view.images[ALCOVE_IMAGE_DEPTH].width * 3 / 4, f.view.images[ALCOVE_IMAGE_DEPTH].height * 3 / 4); }},
+       [](F& f) {
+         set_size(f, f.view.images[ALCOVE_IMAGE_DEPTH].width * 3 / 4,
+                  f.view.images[ALCOVE_IMAGE_DEPTH].height * 3 / 4);
+       }},
       {"a size that changes, without largest_width", "each change begins a new history",
        [](F& f) {
          change_size(f);
@@ -304,8 +313,9 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) {
          scale_motion(f, 1.0f, 1.0f);
          for (std::size_t i = 0; i < 2; ++i)
-           f.view.info.motion_offset[i] = 0.5f * (f.view.info.previous_camera.clip_from_view[8 + i] -
-                                             f.view.info.camera.clip_from_view[8 + i]);
+           f.view.info.motion_offset[i] =
+               0.5f * (f.view.info.previous_camera.clip_from_view[8 + i] -
+                       f.view.info.camera.clip_from_view[8 + i]);
        }},
       {"motion vectors without the camera's motion", "motion vectors are 0",
        [](F& f) { scale_motion(f, 1e-6f, 1e-6f); }},
@@ -319,7 +329,9 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"normals of another size than depth", "make them equal",
        [](F& f) { f.view.images[ALCOVE_IMAGE_NORMALS].width -= 1; }},
       {"depth without a layout", "without contents",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+       [](F& f) {
+         f.view.images[ALCOVE_IMAGE_DEPTH].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+       }},
       {"output without STORAGE", "VK_IMAGE_USAGE_STORAGE_BIT",
        [](F& f) { f.view.images[ALCOVE_IMAGE_VISIBILITY].usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
       {"normals with four samples per pixel", "resolve it first",

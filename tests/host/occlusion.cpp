@@ -54,10 +54,11 @@ void Renderer::record_occlusion(VkCommandBuffer commands, const CameraMatrices& 
   alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, kRadius, &settings);
   AlcoveView view{.struct_size = sizeof view, .info = {.settings = &settings}};
   view.info.normal_encoding = options_.float_normals ? ALCOVE_NORMAL_ENCODING_SIGNED_XYZ
-                                                : ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ;
+                                                     : ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ;
   view.info.static_frames = still_frames_;
   alcoveConvertCamera(&camera.projection[0][0], &camera.view[0][0], 0, &view.info.camera);
-  alcoveConvertCamera(&previous_.projection[0][0], &previous_.view[0][0], 0, &view.info.previous_camera);
+  alcoveConvertCamera(&previous_.projection[0][0], &previous_.view[0][0], 0,
+                      &view.info.previous_camera);
   view.images[ALCOVE_IMAGE_DEPTH] = describe(depth_, size_, depth, depth);
   view.images[ALCOVE_IMAGE_NORMALS] = describe(normals_, size_, read, read);
   view.images[ALCOVE_IMAGE_VISIBILITY] = describe(visibility_, size_, written, read);

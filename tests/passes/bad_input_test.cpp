@@ -23,7 +23,8 @@ class BadInput : public PassTest {
 
   void expect_a_good_frame() {
     const Drawing plane = draw(test_views()[2], 16, 12, {tilted_plane(10.0, 4.0)});
-    EXPECT_THAT(render(plane, OcclusionSettings()).visibility.texels, testing::Each(testing::Ge(0.95f)));
+    EXPECT_THAT(render(plane, OcclusionSettings()).visibility.texels,
+                testing::Each(testing::Ge(0.95f)));
   }
 
   const Drawing drawing_ = draw(test_views()[2], 16, 12, groove(0.8));

@@ -83,7 +83,9 @@ void CAreas::run_sheet(bool band) {
       if (index == 1 || index == 2) from[i].view.view_from_world[12] += 0.03f;
       from[i].static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
       own[i] = create_view(from[i]);
-      if (band) own[i].info.read_area = {0, 0, own[i].images[ALCOVE_IMAGE_DEPTH].width, own[i].images[ALCOVE_IMAGE_DEPTH].height};
+      if (band)
+        own[i].info.read_area = {0, 0, own[i].images[ALCOVE_IMAGE_DEPTH].width,
+                                 own[i].images[ALCOVE_IMAGE_DEPTH].height};
       if (band) own[i].info.written_area = without_band(own[i].info.read_area);
     }
     run_frame(context(), own, index);
@@ -92,7 +94,8 @@ void CAreas::run_sheet(bool band) {
       const Placement& place = kPlacements.at(i);
       shared[i] = own[i];
       shared[i].info.id += 1000;
-      shared[i].info.read_area = {place.x, place.y, own[i].images[ALCOVE_IMAGE_DEPTH].width, own[i].images[ALCOVE_IMAGE_DEPTH].height};
+      shared[i].info.read_area = {place.x, place.y, own[i].images[ALCOVE_IMAGE_DEPTH].width,
+                                  own[i].images[ALCOVE_IMAGE_DEPTH].height};
       if (band) shared[i].info.written_area = without_band(shared[i].info.read_area);
       shared[i].info.output_x = place.output_x;
       shared[i].info.output_y = place.output_y;
@@ -116,7 +119,8 @@ void CAreas::run_sheet(bool band) {
       EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.95f);
       const AlcoveArea written = band ? own[i].info.written_area : shared[i].info.read_area;
       const AlcoveArea size{0, 0, written.width, written.height};
-      const AlcoveArea area{shared[i].info.output_x, shared[i].info.output_y, size.width, size.height};
+      const AlcoveArea area{shared[i].info.output_x, shared[i].info.output_y, size.width,
+                            size.height};
       for (const Output& each : kOutputs) {
         if ((expected.*each.texels).texels.empty()) continue;
         HostImage part = part_of(expected.*each.texels, size);
@@ -165,7 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
                     Case{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
                     Case{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
-                    Case{"WithoutNormals", ALCOVE_QUALITY_LOW, [](HostView& view) { view.normals = {}; }},
+                    Case{"WithoutNormals", ALCOVE_QUALITY_LOW,
+                         [](HostView& view) { view.normals = {}; }},
                     Case{"SpecularByTableWithoutNormals", ALCOVE_QUALITY_MEDIUM,
                          [](HostView& view) {
                            view.settings.specular = ALCOVE_SPECULAR_TABLE;

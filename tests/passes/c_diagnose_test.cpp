@@ -140,7 +140,7 @@ TEST_F(CDiagnoseFrames, CorrectPixelsAreNotReportedAsMistakes) {
       HostView from = draw_view(96, 64, scene.scene, view);
       // A rotation that maps no axis of world space to an axis of view space.
       constexpr float kTurned[16] = {0.36f, 0.48f, -0.8f, 0.0f, -0.8f, 0.6f,  0.0f, 0.0f,
-                                   0.48f, 0.64f, 0.6f,  0.0f, 0.3f,  -1.0f, 2.0f, 1.0f};
+                                     0.48f, 0.64f, 0.6f,  0.0f, 0.3f,  -1.0f, 2.0f, 1.0f};
       std::ranges::copy(kTurned, from.view.view_from_world);
       from.settings.steps = 2;
       from.motion = from.back_depth_ndc = from.second_depth_ndc = {};

@@ -95,8 +95,8 @@ TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
     SCOPED_TRACE(static_cast<int>(encoding));
     view.normals = normals;
     const AlcoveNormalEncoding wanted = encoding;
-    expect_near(run_frames(view, 2, [&](AlcoveView& v) { v.info.normal_encoding = wanted; }), expected,
-                2e-3);
+    expect_near(run_frames(view, 2, [&](AlcoveView& v) { v.info.normal_encoding = wanted; }),
+                expected, 2e-3);
   }
 }
 
@@ -141,8 +141,8 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
                            }),
                 expected, 1e-5);
   }
-  const Results wrong =
-      run_frames(moving, 3, [](AlcoveView& v) { v.info.motion_scale[0] = v.info.motion_scale[1] = -1.0f; });
+  const Results wrong = run_frames(
+      moving, 3, [](AlcoveView& v) { v.info.motion_scale[0] = v.info.motion_scale[1] = -1.0f; });
   EXPECT_GT(rms(wrong.visibility, expected.visibility), 1e-3) << "the sign makes no difference";
 }
 
@@ -210,8 +210,8 @@ TEST_F(CInputs, DepthImageInDepthFormatAndAttachmentLayoutIsAccepted) {
   fill_image(view.images[ALCOVE_IMAGE_DEPTH], from.depth_ndc, attached);
   view.images[ALCOVE_IMAGE_DEPTH].initial_state = attached;
   view.images[ALCOVE_IMAGE_DEPTH].final_state = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
-                            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
-                            VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
+                                                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                                                 VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
   view.images[ALCOVE_IMAGE_VISIBILITY].final_state.layout = VK_IMAGE_LAYOUT_GENERAL;
   expect_equal(run_view(view, 0), run_plainly(from, 0));
 }
@@ -233,9 +233,11 @@ TEST_F(CInputs, ImageMayBeDestroyedAfterTheEngineCalledForgetImage) {
   const Results expected = run_plainly(from, 0);
   for (std::uint32_t round = 0; round < 4; ++round) {
     expect_equal(run_view(view, 0), expected);
-    EXPECT_EQ(alcoveForgetImage(&context(), view.images[ALCOVE_IMAGE_VISIBILITY].image), ALCOVE_SUCCESS);
+    EXPECT_EQ(alcoveForgetImage(&context(), view.images[ALCOVE_IMAGE_VISIBILITY].image),
+              ALCOVE_SUCCESS);
     engine().destroy_image(view.images[ALCOVE_IMAGE_VISIBILITY]);
-    view.images[ALCOVE_IMAGE_VISIBILITY] = output(view.images[ALCOVE_IMAGE_VISIBILITY].format, 16, 12);
+    view.images[ALCOVE_IMAGE_VISIBILITY] =
+        output(view.images[ALCOVE_IMAGE_VISIBILITY].format, 16, 12);
   }
 }
 

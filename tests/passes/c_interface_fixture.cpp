@@ -253,7 +253,8 @@ AlcoveResult CInterface::record(AlcoveContext& context, const AlcoveFrame& frame
     if (discards || result != ALCOVE_SUCCESS) throw_away(commands);
   });
   if (result == ALCOVE_SUCCESS)
-    for (const AlcoveView& view : std::span(frame.views, frame.view_count)) ids_.insert(view.info.id);
+    for (const AlcoveView& view : std::span(frame.views, frame.view_count))
+      ids_.insert(view.info.id);
   return result;
 }
 

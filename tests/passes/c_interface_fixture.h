@@ -142,7 +142,7 @@ class CInterface : public PassTest {
  private:
   static Context shared_context;
   std::unique_ptr<Engine> engine_;
-  Context plain_context_;               // of run_plainly()
+  Context plain_context_;                // of run_plainly()
   std::deque<AlcoveSettings> settings_;  // of the views
   std::vector<std::pair<HostImage, AlcoveImage>> inputs_;
   std::set<std::uint32_t> ids_;  // of the recorded views

@@ -81,8 +81,8 @@ TEST_F(CInterface, EightViewsWithAllInputsAndOutputsCanBeRecordedInOneFrame) {
 }
 
 // In the middle of a sequence, frames with other settings, outputs or sizes are discarded, because
-// an engine does not submit them, or refused as invalid. The next frame must equal that of a context
-// that was never given the frames in between.
+// an engine does not submit them, or refused as invalid. The next frame must equal that of a
+// context that was never given the frames in between.
 TEST_F(CInterface, DiscardedOrRefusedFrameWithOtherSettingsDoesNotChangeTheHistory) {
   struct Case {
     const char* name;
@@ -148,10 +148,10 @@ TEST_F(CInterface, ProgramCompiledAsCRecordsTheSameFrame) {
   AlcoveContext* handle = nullptr;
   char text[ALCOVE_MAX_MESSAGE] = "";
   engine().submit(0, [&](VkCommandBuffer commands) {
-    EXPECT_EQ(run_c_program(&info, &view.info.camera, &view.images[ALCOVE_IMAGE_DEPTH],
-                            &view.images[ALCOVE_IMAGE_VISIBILITY], commands, &handle,
-                            text, sizeof text),
-              ALCOVE_SUCCESS)
+    EXPECT_EQ(
+        run_c_program(&info, &view.info.camera, &view.images[ALCOVE_IMAGE_DEPTH],
+                      &view.images[ALCOVE_IMAGE_VISIBILITY], commands, &handle, text, sizeof text),
+        ALCOVE_SUCCESS)
         << text;
   });
   const Context context(handle);

@@ -81,7 +81,8 @@ class CPipelines : public CInterface {
     };
     run_at(0.0f);
     run_at(0.1f);
-    for (view.info.static_frames = 1; view.info.static_frames <= 20; ++view.info.static_frames) run_at(0.1f);
+    for (view.info.static_frames = 1; view.info.static_frames <= 20; ++view.info.static_frames)
+      run_at(0.1f);
     view.info.static_frames = 0;
     view.info.reset_history = VK_TRUE;
     run_at(0.5f);

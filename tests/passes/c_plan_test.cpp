@@ -211,9 +211,7 @@ TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesN
   for (std::uint32_t i = 0; i < views.size(); ++i) {
     AlcoveView& view = views.at(i);
     view = {.struct_size = sizeof view,
-            .info = {.id = 4000000000u + i,
-                     .settings = &settings,
-                     .camera = test_views()[2].view}};
+            .info = {.id = 4000000000u + i, .settings = &settings, .camera = test_views()[2].view}};
     view.images[ALCOVE_IMAGE_DEPTH] = make(VK_FORMAT_R32_SFLOAT);
     view.images[ALCOVE_IMAGE_NORMALS] = make(VK_FORMAT_R16G16B16A16_SFLOAT);
     view.images[ALCOVE_IMAGE_ROUGHNESS] = make(VK_FORMAT_R8_UNORM);

@@ -56,8 +56,8 @@ class CRefusals : public CInterface {
     from_ = draw_view(16, 12, groove(0.8));
     request_all_outputs(from_);
     view_ = create_view(from_);
-    view_.images[ALCOVE_IMAGE_MASK] = engine().make_image(VK_FORMAT_R8_UINT, 16, 12,
-                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    view_.images[ALCOVE_IMAGE_MASK] = engine().make_image(
+        VK_FORMAT_R8_UINT, 16, 12, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     write_bytes(view_.images[ALCOVE_IMAGE_MASK], Bytes(16UL * 12));  // without effect
     view_.info.not_receiving = 1;
   }
@@ -157,7 +157,8 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       {"depth is 0x12", [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].width = 0; }},
       {"depth", [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].format = VK_FORMAT_R8G8B8A8_UNORM; }},
       {"depth", [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].format = VK_FORMAT_UNDEFINED; }},
-      {"without contents", [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"without contents",
+       [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
       {"normals is 16x0", [](V& v) { v.images[ALCOVE_IMAGE_NORMALS].height = 0; }},
       {"normals has 15x12", [](V& v) { v.images[ALCOVE_IMAGE_NORMALS].width = 15; }},
       {"normals has the format VK_FORMAT_R8G8B8A8_UNORM",
@@ -168,7 +169,8 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       {"motion vectors has the format VK_FORMAT",
        [](V& v) { v.images[ALCOVE_IMAGE_MOTION].format = VK_FORMAT_R32G32_UINT; }},
       {"scale of motion vectors is 0", [](V& v) { v.info.motion_scale[0] = 1.0f; }},
-      {"roughness has the format VK_FORMAT", [](V& v) { v.images[ALCOVE_IMAGE_ROUGHNESS].format = VK_FORMAT_R8_UNORM; }},
+      {"roughness has the format VK_FORMAT",
+       [](V& v) { v.images[ALCOVE_IMAGE_ROUGHNESS].format = VK_FORMAT_R8_UNORM; }},
       {"back-face depth has 16x13",
        [](D& d) {
          d.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
@@ -191,7 +193,8 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
          d.settings.depth_layers = 2;
          d.views[0].images[ALCOVE_IMAGE_SECOND_DEPTH] = {};
        }},
-      {"albedo has the format VK_FORMAT", [](V& v) { v.images[ALCOVE_IMAGE_ALBEDO].format = VK_FORMAT_BC7_SRGB_BLOCK; }},
+      {"albedo has the format VK_FORMAT",
+       [](V& v) { v.images[ALCOVE_IMAGE_ALBEDO].format = VK_FORMAT_BC7_SRGB_BLOCK; }},
       {"no image of albedo", [](V& v) { v.images[ALCOVE_IMAGE_ALBEDO] = {}; }},
       {"without VK_IMAGE_USAGE_SAMPLED_BIT", [](V& v) { v.images[ALCOVE_IMAGE_ALBEDO].usage = 0; }},
       {"visibility has the format VK_FORMAT",
@@ -203,19 +206,28 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
        [](V& v) { v.images[ALCOVE_IMAGE_BENT_NORMAL].format = VK_FORMAT_R8G8B8A8_UNORM; }},
       {"without VK_IMAGE_USAGE_STORAGE_BIT",
        [](V& v) { v.images[ALCOVE_IMAGE_BENT_NORMAL].usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
-      {"specular occlusion is 1x1", [](V& v) { v.images[ALCOVE_IMAGE_SPECULAR].width = v.images[ALCOVE_IMAGE_SPECULAR].height = 1; }},
+      {"specular occlusion is 1x1",
+       [](V& v) {
+         v.images[ALCOVE_IMAGE_SPECULAR].width = v.images[ALCOVE_IMAGE_SPECULAR].height = 1;
+       }},
       {"no layout to be left in",
-       [](V& v) { v.images[ALCOVE_IMAGE_SPECULAR].final_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+       [](V& v) {
+         v.images[ALCOVE_IMAGE_SPECULAR].final_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+       }},
       {"multi-bounce has the format VK_FORMAT",
        [](V& v) { v.images[ALCOVE_IMAGE_MULTI_BOUNCE].format = VK_FORMAT_R32_SFLOAT; }},
-      {"given twice", [](V& v) { v.images[ALCOVE_IMAGE_SPECULAR] = v.images[ALCOVE_IMAGE_VISIBILITY]; }},
+      {"given twice",
+       [](V& v) { v.images[ALCOVE_IMAGE_SPECULAR] = v.images[ALCOVE_IMAGE_VISIBILITY]; }},
       {"given twice",
        [](V& v) {
          v.images[ALCOVE_IMAGE_MOTION] = v.images[ALCOVE_IMAGE_ROUGHNESS];
          v.images[ALCOVE_IMAGE_MOTION].final_state.stages = VK_PIPELINE_STAGE_2_COPY_BIT;
        }},
       {"no image to write to",
-       [](V& v) { v.images[ALCOVE_IMAGE_VISIBILITY] = v.images[ALCOVE_IMAGE_BENT_NORMAL] = v.images[ALCOVE_IMAGE_SPECULAR] = v.images[ALCOVE_IMAGE_MULTI_BOUNCE] = {}; }},
+       [](V& v) {
+         v.images[ALCOVE_IMAGE_VISIBILITY] = v.images[ALCOVE_IMAGE_BENT_NORMAL] =
+             v.images[ALCOVE_IMAGE_SPECULAR] = v.images[ALCOVE_IMAGE_MULTI_BOUNCE] = {};
+       }},
 
       // Samples.
       {"View 0: The image of normals has 4 samples a pixel; resolve it first, depths and normals "
@@ -225,7 +237,8 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
        [](V& v) { v.images[ALCOVE_IMAGE_MASK].samples = 4; }},
       {"The image of depth has 3 samples a pixel; it must be a power of two",
        [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].samples = 3; }},
-      {"The image of depth has 128 samples a pixel", [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].samples = 128; }},
+      {"The image of depth has 128 samples a pixel",
+       [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].samples = 128; }},
       {"64", [](V& v) { v.images[ALCOVE_IMAGE_DEPTH].samples = 64; }},  // more than any device has
 
       // Masks.

@@ -47,7 +47,7 @@ struct ViewState {
   Scene scene;
   AlcoveView view{};  // with every image
   AlcoveSettings settings{};
-  VkExtent2D largest{};               // of the images
+  VkExtent2D largest{};  // of the images
   Kind kind;
 };
 
@@ -200,7 +200,8 @@ void CResize::show(ViewState& state) {
 void CResize::drop(ViewState& state) {
   state.is_shown = false;
   EXPECT_EQ(alcoveDropView(context_.get(), state.id), ALCOVE_SUCCESS);
-  state.view.info.previous_width = state.view.info.previous_height = state.view.info.static_frames = 0;
+  state.view.info.previous_width = state.view.info.previous_height = state.view.info.static_frames =
+      0;
 }
 
 // Changes a view at random in five of twelve cases. A view that changes has static_frames 0.

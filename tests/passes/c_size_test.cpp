@@ -32,7 +32,8 @@ TEST_F(CDynamicResolution, RenderingToAPartOfAnImageGivesTheSameResultAsAnImageO
   view.info.largest_height = kLarger.height;
   for (std::uint32_t i = 0; i < 3; ++i) {
     view.info.previous_camera = view.info.camera;
-    view.info.camera.view_from_world[12] = from.view.view_from_world[12] = 0.02f * static_cast<float>(i);
+    view.info.camera.view_from_world[12] = from.view.view_from_world[12] =
+        0.02f * static_cast<float>(i);
     const Results found = run_view(view, i);
     EXPECT_LT(std::ranges::min(found.visibility.texels), 0.9f);
     expect_equal(found, run_plainly(from, i));

@@ -40,7 +40,8 @@ class DepthPrecision : public PassTest {
 
   void expect_open(const Drawing& drawing, VkFormat format, float radius) {
     for (const AlcoveQuality quality : {ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH}) {
-      for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_CONNECTED, ALCOVE_ESTIMATOR_HORIZONS}) {
+      for (const AlcoveEstimator estimator :
+           {ALCOVE_ESTIMATOR_CONNECTED, ALCOVE_ESTIMATOR_HORIZONS}) {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", quality " << int(quality)
                                         << ", estimator " << int(estimator));
         OcclusionSettings settings(quality, radius);

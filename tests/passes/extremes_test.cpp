@@ -73,15 +73,15 @@ class Extremes : public PassTest {
 
 TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
   constexpr std::array<std::pair<AlcoveQuality, bool>, 4> kCases{{{ALCOVE_QUALITY_MEDIUM, false},
-                                                            {ALCOVE_QUALITY_MEDIUM, true},
-                                                            {ALCOVE_QUALITY_CONSOLE, false},
-                                                            {ALCOVE_QUALITY_CONSOLE, true}}};
+                                                                  {ALCOVE_QUALITY_MEDIUM, true},
+                                                                  {ALCOVE_QUALITY_CONSOLE, false},
+                                                                  {ALCOVE_QUALITY_CONSOLE, true}}};
   for (const auto& [quality, orthographic] : kCases) {
     std::vector<Images> expected;
     for (const int exponent : {0, -30, 17, 30}) {
-      SCOPED_TRACE(testing::Message()
-                   << kQualityNames.at(quality) << (orthographic ? ", orthographic, " : ", perspective, ")
-                   << "in units of 2^" << -exponent);
+      SCOPED_TRACE(testing::Message() << kQualityNames.at(quality)
+                                      << (orthographic ? ", orthographic, " : ", perspective, ")
+                                      << "in units of 2^" << -exponent);
       const double unit = std::ldexp(1.0, exponent);
       const TestView view =
           orthographic ? orthographic_view("", 3.0 * unit, 2.0 * unit, 0.125 * unit, 16.125 * unit)
@@ -140,9 +140,7 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
     glm::dmat4 rotated = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
     rotated = glm::translate(rotated, distance * glm::dvec3(-1.0, -0.3, 0.8));
     AlcoveCamera far = view.view;
-    for (int i = 0; i < 16; ++i)
-      far.view_from_world[i] =
-          static_cast<float>(rotated[i / 4][i % 4]);
+    for (int i = 0; i < 16; ++i) far.view_from_world[i] = static_cast<float>(rotated[i / 4][i % 4]);
     HostImage visibility;
     for (std::uint32_t i = 0; i < 8; ++i)
       visibility = run_occlusion({.view = far,

@@ -12,8 +12,12 @@
 namespace alcove::passes {
 namespace {
 
-constexpr AlcoveBudget kBudget{
-    .struct_size = sizeof(AlcoveBudget), .target_ms = 2.0, .least_slices = 1, .most_slices = 2, .least_steps = 4, .most_steps = 16};
+constexpr AlcoveBudget kBudget{.struct_size = sizeof(AlcoveBudget),
+                               .target_ms = 2.0,
+                               .least_slices = 1,
+                               .most_slices = 2,
+                               .least_steps = 4,
+                               .most_steps = 16};
 
 AlcoveSettings settings_of(AlcoveQuality quality) {
   AlcoveSettings settings{.struct_size = sizeof settings};
@@ -75,7 +79,8 @@ bool is_least(const AlcoveSettings& settings) {
 TEST(FitBudget, TargetIsApproachedFromBelowWhateverTheFixedShareOfTheTime) {
   for (const double fixed : {0.0, 0.2, 0.5, 0.8, 1.2}) {
     for (const double target : {1.0, 1.5, 2.0, 2.6}) {
-      for (const AlcoveQuality begin : {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
+      for (const AlcoveQuality begin :
+           {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
         SCOPED_TRACE(testing::Message() << fixed << " ms fixed, target " << target);
         Simulation view{.fixed_ms = fixed, .settings = settings_of(begin)};
         view.budget.target_ms = target;
@@ -164,8 +169,7 @@ TEST(FitBudget, SlicesAndStepsStayWithinTheLimits) {
       settings.steps = steps;
       for (const double time : {1e-3, 1.0, 1.9, 2.1, 5.0, 1e6}) {
         const AlcoveBudget budget{sizeof budget, 2.0, 1, most_slices, 5, 20};
-        const auto [slices, fitted_steps] =
-            fitted(budget, std::vector<double>(10, time), settings);
+        const auto [slices, fitted_steps] = fitted(budget, std::vector<double>(10, time), settings);
         EXPECT_TRUE(slices >= 1 && slices <= most_slices) << slices;
         EXPECT_TRUE(fitted_steps >= 5 && fitted_steps <= 20) << fitted_steps;
       }

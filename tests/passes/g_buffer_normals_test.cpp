@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 48;
 
-OcclusionSettings all_outputs(AlcoveQuality quality, AlcoveSpecular specular = ALCOVE_SPECULAR_SLICES) {
+OcclusionSettings all_outputs(AlcoveQuality quality,
+                              AlcoveSpecular specular = ALCOVE_SPECULAR_SLICES) {
   OcclusionSettings settings(quality, 0.5f);
   settings.bent_normal = true;
   settings.specular = specular;

@@ -207,7 +207,8 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
         settings.bent_normal = true;
         settings.slices = 4;  // with a filter
         settings.history_frames = 8;
-        settings.thickness_unit = all_inputs ? ALCOVE_THICKNESS_UNIT_BACK_FACES : ALCOVE_THICKNESS_UNIT_RADIUS;
+        settings.thickness_unit =
+            all_inputs ? ALCOVE_THICKNESS_UNIT_BACK_FACES : ALCOVE_THICKNESS_UNIT_RADIUS;
         settings.depth_layers = all_inputs ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
           const OcclusionImages images =
@@ -257,8 +258,9 @@ TEST_F(GtaoInvariance, SkyIsUnoccludedAndDoesNotOcclude) {
     Surface post = plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0});
     post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
     for (const AlcoveEstimator estimator : kEstimators) {
-      EXPECT_THAT(visibility(view, {post}, unfiltered(estimator, 1.0f)).texels,
-                  testing::Each(testing::Ge(estimator == ALCOVE_ESTIMATOR_CONNECTED ? 0.97f : 0.996f)));
+      EXPECT_THAT(
+          visibility(view, {post}, unfiltered(estimator, 1.0f)).texels,
+          testing::Each(testing::Ge(estimator == ALCOVE_ESTIMATOR_CONNECTED ? 0.97f : 0.996f)));
     }
   }
 }

@@ -29,9 +29,10 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
     for (const double degrees : {0.0, 30.0, 60.0, 75.0, 85.0}) {
       const Drawing drawing = draw(view, 96, 64, {tilted_plane(degrees, 4.0)});
       for (const AlcoveQuality quality :
-           {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH, ALCOVE_QUALITY_REFERENCE}) {
-        SCOPED_TRACE(testing::Message()
-                     << view.name << " tilted " << degrees << " degrees, " << kQualityNames.at(quality));
+           {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH,
+            ALCOVE_QUALITY_REFERENCE}) {
+        SCOPED_TRACE(testing::Message() << view.name << " tilted " << degrees << " degrees, "
+                                        << kQualityNames.at(quality));
         const std::uint32_t frames = quality == ALCOVE_QUALITY_REFERENCE ? 1 : 4;
         for (std::uint32_t index = 0; index < frames; ++index)
           EXPECT_GE(lowest(drawing, precise(quality), index), kLeast) << "in frame " << index;

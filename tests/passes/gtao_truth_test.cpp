@@ -142,8 +142,10 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
   for (const double half_angle : {0.5, std::numbers::pi / 4.0, 1.2}) {
     const Drawing drawing = draw(view, 128, 128, groove(half_angle, 9.0));
     const double expected = (1.0 - std::cos(2.0 * half_angle)) / 2.0;
-    for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
-      SCOPED_TRACE(testing::Message() << "estimator " << estimator << ", half angle " << half_angle);
+    for (const AlcoveEstimator estimator :
+         {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+      SCOPED_TRACE(testing::Message()
+                   << "estimator " << estimator << ", half angle " << half_angle);
       const auto images = render(drawing, exact(estimator, 8.0f));
       for (const std::uint32_t x : {61u, 62u, 65u, 66u})
         EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.03);
@@ -263,9 +265,10 @@ TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForceInEveryScene) {
   const float radius = 1.2f;
   for (const TestView& view : {test_views()[2], test_views()[5]}) {
     for (const NamedScene& scene : gtao_scenes()) {
-      for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
-        SCOPED_TRACE(testing::Message()
-                     << scene.name << ", " << view.name << ", " << "estimator " << estimator);
+      for (const AlcoveEstimator estimator :
+           {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+        SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name << ", "
+                                        << "estimator " << estimator);
         const Drawing drawing = draw(view, 60, 40, scene.scene);
         OcclusionSettings settings = exact(estimator, radius);
         settings.bent_normal = true;

@@ -76,17 +76,16 @@ class GtsoPass : public PassTest {
     textures[ALCOVE_IMAGE_SPECULAR] = graph.create_texture(
         "specular",
         {VK_FORMAT_R32_SFLOAT, framegraph::Extent::relative(textures[ALCOVE_IMAGE_DEPTH])});
-    add_passes(graph, gpu().kernels(),
-               {.settings = &settings,
-                .camera = camera,
-                .normals_in_view_space = normals_in_view_space ? 1u : 0u},
-               0, textures, [](GraphWork&, const ViewWork& view) {
-                 describe_gtso(view,
-                               {view.image(ALCOVE_IMAGE_VISIBILITY),
-                                view.image(ALCOVE_IMAGE_BENT_NORMAL),
-                                {}},
-                               view.image(ALCOVE_IMAGE_DEPTH), view.image(ALCOVE_IMAGE_NORMALS));
-               });
+    add_passes(
+        graph, gpu().kernels(),
+        {.settings = &settings,
+         .camera = camera,
+         .normals_in_view_space = normals_in_view_space ? 1u : 0u},
+        0, textures, [](GraphWork&, const ViewWork& view) {
+          describe_gtso(
+              view, {view.image(ALCOVE_IMAGE_VISIBILITY), view.image(ALCOVE_IMAGE_BENT_NORMAL), {}},
+              view.image(ALCOVE_IMAGE_DEPTH), view.image(ALCOVE_IMAGE_NORMALS));
+        });
     return textures[ALCOVE_IMAGE_SPECULAR];
   }
   ViewTextures textures_of(Graph& graph, const Inputs& inputs) {

@@ -17,11 +17,9 @@ class MultiBouncePass : public PassTest {
     textures[ALCOVE_IMAGE_ALBEDO] = upload(graph, albedo);
     textures[ALCOVE_IMAGE_VISIBILITY] = visibility;
     textures[ALCOVE_IMAGE_MULTI_BOUNCE] = graph.create_texture(
-        "multi-bounce",
-        {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::relative(visibility)});
-    add_passes(graph, gpu().kernels(),
-               {.settings = &settings, .camera = test_views().front().view}, 0, textures,
-               [](GraphWork&, const ViewWork& view) {
+        "multi-bounce", {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::relative(visibility)});
+    add_passes(graph, gpu().kernels(), {.settings = &settings, .camera = test_views().front().view},
+               0, textures, [](GraphWork&, const ViewWork& view) {
                  describe_multi_bounce(view, view.image(ALCOVE_IMAGE_VISIBILITY));
                });
     return textures[ALCOVE_IMAGE_MULTI_BOUNCE];

@@ -210,7 +210,8 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& input,
   OcclusionImages images;
   if (!results_.empty()) images.visibility = results_[0];
   if (settings.bent_normal && results_.size() > 1) images.bent_normal = results_[1];
-  if (settings.specular != ALCOVE_SPECULAR_NONE && results_.size() > 1) images.specular = results_.back();
+  if (settings.specular != ALCOVE_SPECULAR_NONE && results_.size() > 1)
+    images.specular = results_.back();
   return images;
 }
 

@@ -57,7 +57,8 @@ class OcclusionPlan : public PassTest {
         textures[ALCOVE_IMAGE_BACK_DEPTH] = upload(graph, drawing.depth_ndc);
         textures[ALCOVE_IMAGE_SECOND_DEPTH] = upload(graph, drawing.depth_ndc);
       }
-      if (images.roughness) textures[ALCOVE_IMAGE_ROUGHNESS] = upload(graph, uniform_image(4, 0.5f));
+      if (images.roughness)
+        textures[ALCOVE_IMAGE_ROUGHNESS] = upload(graph, uniform_image(4, 0.5f));
       add_view_of(graph, view_, 0, settings, textures);
       if (choice.visibility) read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
       if (choice.bent_normal) read_back(graph, textures[ALCOVE_IMAGE_BENT_NORMAL]);
@@ -163,7 +164,8 @@ TEST_F(OcclusionPlan, SpecularOcclusionAddsMemoryAndPassesOnlyWhenItIsOnAndRead)
 }
 
 TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsRead) {
-  for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_NONE, ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
+  for (const AlcoveSpecular specular :
+       {ALCOVE_SPECULAR_NONE, ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
     OcclusionSettings settings = least();
     settings.specular = specular;
     const bool read = specular != ALCOVE_SPECULAR_NONE;

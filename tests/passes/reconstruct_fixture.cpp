@@ -8,9 +8,9 @@
 
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
+#include "single_passes.h"
 #include "work/interleave_offset.h"
 #include "work/view_parameters.h"
-#include "single_passes.h"
 
 namespace alcove::passes {
 namespace {
@@ -73,17 +73,18 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                                   input.coarse_depth ? VK_FORMAT_D16_UNORM : VK_FORMAT_UNDEFINED),
                               .normals_in_view_space = 1};
     ViewTextures textures{};
-    textures[ALCOVE_IMAGE_DEPTH] = upload(
-        graph, input.coarse_depth ? with_16_bits(input.drawing.depth_ndc) : input.drawing.depth_ndc);
+    textures[ALCOVE_IMAGE_DEPTH] =
+        upload(graph, input.coarse_depth ? with_16_bits(input.drawing.depth_ndc)
+                                         : input.drawing.depth_ndc);
     textures[ALCOVE_IMAGE_NORMALS] = upload(graph, input.drawing.normal_vs);
     if (input.motion != nullptr) textures[ALCOVE_IMAGE_MOTION] = upload(graph, *input.motion);
-    textures[ALCOVE_IMAGE_VISIBILITY] =
-        graph.create_texture("visibility", {VK_FORMAT_R32_SFLOAT, framegraph::Extent::relative(
-                                                                      textures[ALCOVE_IMAGE_DEPTH])});
+    textures[ALCOVE_IMAGE_VISIBILITY] = graph.create_texture(
+        "visibility",
+        {VK_FORMAT_R32_SFLOAT, framegraph::Extent::relative(textures[ALCOVE_IMAGE_DEPTH])});
     const framegraph::Texture raw =
         upload(graph,
-               packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion,
-                                    input.tile_size, input.index),
+               packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion, input.tile_size,
+                                    input.index),
                VK_FORMAT_R32G32_UINT);
     add_passes(graph, gpu().kernels(), info, input.index, textures,
                [&](GraphWork& work, const ViewWork& view) {
@@ -91,8 +92,8 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                      ALCOVE_RESOURCE_KIND_INPUT, "raw occlusion", VK_FORMAT_R32G32_UINT,
                      {input.raw_occlusion.width, input.raw_occlusion.height});
                  work.texture(listed) = raw;
-                 const auto described = describe_reconstruct(
-                     view, view.image(ALCOVE_IMAGE_DEPTH), {.sums = listed, .bent = {}});
+                 const auto described = describe_reconstruct(view, view.image(ALCOVE_IMAGE_DEPTH),
+                                                             {.sums = listed, .bent = {}});
                  ASSERT_TRUE(described) << described.error().message;
                });
     read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);

@@ -25,7 +25,7 @@ class Reconstruct : public PassTest {
     std::uint32_t index = 0;
     bool reset = index == 0;
     std::uint32_t static_frames = 0;
-    bool coarse_depth = false;   // the depth buffer has 16 bits instead of floats
+    bool coarse_depth = false;  // the depth buffer has 16 bits instead of floats
     VkExtent2D previous_size{};
     VkExtent2D largest_size{};
   };

@@ -128,8 +128,7 @@ TEST_F(Reconstruct, AccumulatedBentNormalsRotateWithTheCamera) {
       const glm::dmat4 rotation =
           glm::rotate(glm::dmat4(1.0), 0.05 * frame - 0.2, glm::dvec3(0.0, 1.0, 0.0));
       for (int i = 0; i < 16; ++i) {
-        now.view.view_from_world[i] =
-            static_cast<float>(rotation[i / 4][i % 4]);
+        now.view.view_from_world[i] = static_cast<float>(rotation[i / 4][i % 4]);
       }
       const glm::dmat3 view_from_world(rotation);
       const auto wall = [&](const glm::dvec3& normal_ws) {

@@ -72,7 +72,8 @@ TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTh
   for (const TestView& view : {test_views().front(), test_views().back()}) {
     for (const NamedScene& scene : {gtao_scenes()[0], gtao_scenes()[1]}) {
       const Drawing drawing = draw(view, 60, 40, scene.scene);
-      for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+      for (const AlcoveEstimator estimator :
+           {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
         for (const float roughness : {0.15f, 0.3f, 0.6f, 1.0f}) {
           SCOPED_TRACE(testing::Message()
                        << scene.name << ", " << view.name << ", roughness " << roughness
@@ -114,7 +115,8 @@ TEST_F(SpecularOcclusionFromSlices, ErrorOfNarrowSpecularLobesDecreasesOverAccum
   const Drawing drawing = draw(view, 60, 40, groove(0.8));
   double first = 0.0, last = 0.0;
   for (std::uint32_t index = 0; index < 32; ++index) {
-    const auto images = render(drawing, settings_of(ALCOVE_QUALITY_MEDIUM, radius, roughness), index);
+    const auto images =
+        render(drawing, settings_of(ALCOVE_QUALITY_MEDIUM, radius, roughness), index);
     last = mean_error(images.specular, drawing, radius, roughness);
     first = index == 0 ? last : first;
   }

@@ -18,8 +18,8 @@ class UnobservedDirectionsPass : public PassTest {
   // If the volume behind occluders counts as solid, the estimator `connected` differs from
   // `horizons` by little more than the directions that it excludes.
   HostImage visibility(const TestView& view, const Drawing& drawing,
-                       AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED, float radius = kRadius,
-                       const HostImage* second_layer = nullptr) {
+                       AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED,
+                       float radius = kRadius, const HostImage* second_layer = nullptr) {
     OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
     settings.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
@@ -117,7 +117,8 @@ TEST_F(UnobservedDirectionsPass, FewDirectionsAreExcludedIfTheRadiusIsWiderThanT
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
     const auto left_out = [&](float radius) {
       return mean_difference(visibility(view, drawing, ALCOVE_ESTIMATOR_CONNECTED, radius),
-                             visibility(view, drawing, ALCOVE_ESTIMATOR_HORIZONS, radius), 0, kWidth);
+                             visibility(view, drawing, ALCOVE_ESTIMATOR_HORIZONS, radius), 0,
+                             kWidth);
     };
     EXPECT_GT(left_out(1.5f), 0.002) << "the directions that the ball hides must be excluded";
     EXPECT_LT(left_out(3.0f), 0.02);

@@ -145,7 +145,8 @@ INSTANTIATE_TEST_SUITE_P(
                            view.motion = {};
                          }},
                     Case{"AreaAndMask", ALCOVE_QUALITY_MEDIUM, request_all_outputs, true},
-                    Case{"HalfResolutionAreaAndMask", ALCOVE_QUALITY_CONSOLE, request_all_outputs, true},
+                    Case{"HalfResolutionAreaAndMask", ALCOVE_QUALITY_CONSOLE, request_all_outputs,
+                         true},
                     Case{"HalfResolutionWithoutHistory", ALCOVE_QUALITY_LOW,
                          [](HostView& view) {
                            request_all_outputs(view);
@@ -238,13 +239,12 @@ TEST_F(WorkOfView, EveryPipelineOfEveryFrameIsListed) {
     });
   };
   const auto with_all_images = [&] {
-    for (const auto& [role, format] :
-         {std::pair{ALCOVE_IMAGE_MOTION, VK_FORMAT_R16G16_SFLOAT},
-          {ALCOVE_IMAGE_ALBEDO, VK_FORMAT_R8G8B8A8_UNORM},
-          {ALCOVE_IMAGE_MASK, VK_FORMAT_R8_UINT},
-          {ALCOVE_IMAGE_BENT_NORMAL, VK_FORMAT_R8G8B8A8_SNORM},
-          {ALCOVE_IMAGE_SPECULAR, VK_FORMAT_R8_UNORM},
-          {ALCOVE_IMAGE_MULTI_BOUNCE, VK_FORMAT_R8G8B8A8_UNORM}})
+    for (const auto& [role, format] : {std::pair{ALCOVE_IMAGE_MOTION, VK_FORMAT_R16G16_SFLOAT},
+                                       {ALCOVE_IMAGE_ALBEDO, VK_FORMAT_R8G8B8A8_UNORM},
+                                       {ALCOVE_IMAGE_MASK, VK_FORMAT_R8_UINT},
+                                       {ALCOVE_IMAGE_BENT_NORMAL, VK_FORMAT_R8G8B8A8_SNORM},
+                                       {ALCOVE_IMAGE_SPECULAR, VK_FORMAT_R8_UNORM},
+                                       {ALCOVE_IMAGE_MULTI_BOUNCE, VK_FORMAT_R8G8B8A8_UNORM}})
       image(role) = {static_cast<std::uint32_t>(format), 64, 48};
     image(ALCOVE_IMAGE_DEPTH).samples = 4;
     info_.view.not_receiving = 1;

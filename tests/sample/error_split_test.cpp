@@ -13,7 +13,6 @@
 namespace alcove::sample {
 namespace {
 
-
 class ErrorSplitTest : public GpuTest {
  protected:
   // Splits the error of `settings` in the scene's first camera.

@@ -19,7 +19,6 @@
 namespace alcove::sample {
 namespace {
 
-
 // A floor with three rows of thin pickets and a wall behind them.
 Scene fence_scene() {
   SceneBuilder b;

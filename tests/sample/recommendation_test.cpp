@@ -10,7 +10,6 @@
 namespace alcove::sample {
 namespace {
 
-
 // A world in which errors and times have closed forms: more samples take longer and err less, and a
 // second layer takes 20 % of the error away for 15 % of the time.
 struct World {

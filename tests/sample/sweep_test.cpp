@@ -14,7 +14,6 @@
 namespace alcove::sample {
 namespace {
 
-
 TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
   for (const AlcoveQuality quality : presets()) {
     const OcclusionSettings base = OcclusionSettings(quality, 0.5f);

@@ -124,9 +124,9 @@ typedef struct AlcoveImage {
   // view and keeps it; call alcoveForgetImage before you destroy the image.
   VkImageView view;
   VkFormat format;
-  // The size in pixels. With dynamic resolution (AlcoveViewInfo::largest_width) it may be the size of
-  // the part in use, which then begins at the top left corner. An output keeps its contents outside
-  // of the part that is written, unless its initial layout is VK_IMAGE_LAYOUT_UNDEFINED.
+  // The size in pixels. With dynamic resolution (AlcoveViewInfo::largest_width) it may be the size
+  // of the part in use, which then begins at the top left corner. An output keeps its contents
+  // outside of the part that is written, unless its initial layout is VK_IMAGE_LAYOUT_UNDEFINED.
   uint32_t width;
   uint32_t height;
   uint32_t layer;  // of an array image, such as one layer for each eye
@@ -151,8 +151,8 @@ typedef struct AlcoveImage {
   AlcoveState final_state;
 } AlcoveImage;
 
-// One view of a frame. Each view has images, layers of images, or areas of images (read_area), of its
-// own. Its history is kept until alcoveDropView.
+// One view of a frame. Each view has images, layers of images, or areas of images (read_area), of
+// its own. Its history is kept until alcoveDropView.
 typedef struct AlcoveView {
   uint32_t struct_size;
   AlcoveViewInfo info;

@@ -1,5 +1,5 @@
-// Device memory: the allocator that the engine gives to a context, and the amounts that frames take.
-// Included by alcove.h.
+// Device memory: the allocator that the engine gives to a context, and the amounts that frames
+// take. Included by alcove.h.
 #ifndef ALCOVE_ALCOVE_MEMORY_H_
 #define ALCOVE_ALCOVE_MEMORY_H_
 

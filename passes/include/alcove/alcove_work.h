@@ -38,7 +38,8 @@ extern "C" {
 //    77 R16G16_UNORM                                  109 R32G32B32A32_SFLOAT
 //
 // Depth buffers are D16_UNORM (124), X8_D24_UNORM (125), D32_SFLOAT (126), D24_UNORM_S8_UINT (129)
-// or D32_SFLOAT_S8_UINT (130). Images of the engine may have any format that AlcoveImageRole allows.
+// or D32_SFLOAT_S8_UINT (130). Images of the engine may have any format that AlcoveImageRole
+// allows.
 
 typedef enum AlcoveResourceKind {
   ALCOVE_RESOURCE_KIND_INPUT = 0,      // an image of the engine that is read
@@ -162,7 +163,7 @@ typedef struct AlcoveWorkInfo {
   // in the first frame, and if the histories were dropped. Its camera, its size and its histories
   // are read.
   const AlcoveWork* previous;
-  uint32_t index;  // the number of the frame, as AlcoveFrame::index
+  uint32_t index;                              // the number of the frame, as AlcoveFrame::index
   AlcoveWorkImage images[ALCOVE_IMAGE_COUNT];  // by AlcoveImageRole
 } AlcoveWorkInfo;
 

@@ -14,9 +14,7 @@ tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info) {
 }
 
 HostAdapter::HostAdapter(const AlcoveContextInfo& info)
-    : callbacks_(info.allocation_callbacks),
-      memory_(info.memory_functions),
-      log_(info.log) {}
+    : callbacks_(info.allocation_callbacks), memory_(info.memory_functions), log_(info.log) {}
 
 framegraph::HostServices HostAdapter::services() {
   framegraph::HostServices services;

@@ -113,8 +113,9 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
   if (auto done = add_view(graph, kernels, view.info, frame.index, textures); !done)
     return tl::unexpected(failed(done.error()));
   if (observer == nullptr || view.images[ALCOVE_IMAGE_DEPTH].samples > 1) return {};
-  return observer->add(graph, kernels, view, inputs, frame.slot)
-      .map_error([](const Error& error) { return failure_of(error, "View"); });
+  return observer->add(graph, kernels, view, inputs, frame.slot).map_error([](const Error& error) {
+    return failure_of(error, "View");
+  });
 }
 
 }  // namespace alcove::passes

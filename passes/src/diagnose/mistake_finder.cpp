@@ -96,8 +96,10 @@ constexpr std::array<const char*, kMistakes> kSentences{
 };
 
 VkExtent2D read_size(const AlcoveView& view) {
-  return view.info.read_area.width > 0 ? VkExtent2D{view.info.read_area.width, view.info.read_area.height}
-                                  : VkExtent2D{view.images[ALCOVE_IMAGE_DEPTH].width, view.images[ALCOVE_IMAGE_DEPTH].height};
+  return view.info.read_area.width > 0
+             ? VkExtent2D{view.info.read_area.width, view.info.read_area.height}
+             : VkExtent2D{view.images[ALCOVE_IMAGE_DEPTH].width,
+                          view.images[ALCOVE_IMAGE_DEPTH].height};
 }
 
 bool is_reported(Mistake mistake, std::uint32_t seen) {
@@ -109,7 +111,8 @@ bool is_reported(Mistake mistake, std::uint32_t seen) {
 }  // namespace
 
 const char* const MistakeFinder::kTooManyViews =
-    "More views have a history than an engine could mean; give a view the same AlcoveViewInfo::id in "
+    "More views have a history than an engine could mean; give a view the same AlcoveViewInfo::id "
+    "in "
     "every frame, and call alcoveDropView for one that is no longer drawn.";
 
 MistakeFinder::View* MistakeFinder::find(std::uint32_t id) {
@@ -140,7 +143,8 @@ void MistakeFinder::drop_view(std::uint32_t id) {
 Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::uint32_t index) {
   Findings result;
   const bool reset = given.info.reset_history != VK_FALSE;
-  const bool reads_index = given.info.settings->static_noise == 0 || given.info.settings->history_frames > 0;
+  const bool reads_index =
+      given.info.settings->static_noise == 0 || given.info.settings->history_frames > 0;
   result.set(Mistake::index_repeats, reads_index && index == view.index);
   result.set(Mistake::index_goes_back, reads_index && index < view.index);
   result.set(Mistake::history_reset, reset);

@@ -42,8 +42,8 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Kernels& 
   const Texture motion = info.static_frames == 0 ? inputs[ALCOVE_IMAGE_MOTION] : Texture{};
   const AlcoveImage& image = view.images[ALCOVE_IMAGE_DEPTH];
   const AlcoveArea read = read_area(info, {image.width, image.height});
-  const VkExtent2D size = read.width > 0 ? VkExtent2D{read.width, read.height}
-                                         : VkExtent2D{image.width, image.height};
+  const VkExtent2D size =
+      read.width > 0 ? VkExtent2D{read.width, read.height} : VkExtent2D{image.width, image.height};
   pending.declared = true;
   pending.serial = serial_;
   pending.id = info.id;

@@ -10,8 +10,7 @@ using framegraph::Texture;
 
 tl::expected<void, Error> add_view(Graph& graph, Kernels& kernels, const AlcoveViewInfo& info,
                                    std::uint32_t index, ViewTextures& textures) {
-  if (info.reset_history != 0)
-    graph.reset_history(HistoryName(info.id, HistoryRole::visibility));
+  if (info.reset_history != 0) graph.reset_history(HistoryName(info.id, HistoryRole::visibility));
   GraphWork work(graph, kernels, info.id);
   const AlcoveWorkInfo described = work_info(graph, info, index, textures);
   if (auto done = describe_view(work.list(), described); !done) return done;
@@ -43,8 +42,8 @@ void drop_view(Graph& graph, std::uint32_t id) {
   for (const HistoryRole role : kHistoryRoles) graph.drop_history(HistoryName(id, role));
 }
 
-tl::expected<SurfaceTextures, Error> add_surface(Graph& graph, Kernels& kernels, const AlcoveCamera& camera,
-                                         Texture depth) {
+tl::expected<SurfaceTextures, Error> add_surface(Graph& graph, Kernels& kernels,
+                                                 const AlcoveCamera& camera, Texture depth) {
   GraphWork work(graph, kernels, 0);
   const VkExtent3D size = graph.extent(depth);
   const auto projection = projection_of(camera, {size.width, size.height});

@@ -150,7 +150,7 @@ void GraphWork::declare_accesses(framegraph::PassBuilder& pass,
                                  const AlcoveWorkDispatch& dispatch) {
   const auto bindings = std::span(dispatch.bindings).first(dispatch.binding_count);
   for (auto binding = bindings.begin(); binding != bindings.end(); ++binding) {
-    const auto is_same = [&](const AlcoveWorkBinding& other) { 
+    const auto is_same = [&](const AlcoveWorkBinding& other) {
       return is_image(other) && textures_[other.resource] == textures_[binding->resource];
     };
     if (!is_image(*binding) || std::any_of(bindings.begin(), binding, is_same)) continue;
@@ -167,8 +167,7 @@ void GraphWork::declare_accesses(framegraph::PassBuilder& pass,
       pass.read(texture, access);
       continue;
     }
-    const bool keeps =
-        (ways & ALCOVE_WORK_ACCESS_READ) != 0 || has_other_contents(graph_, texture);
+    const bool keeps = (ways & ALCOVE_WORK_ACCESS_READ) != 0 || has_other_contents(graph_, texture);
     texture = pass.write(texture, access, {}, keeps ? Contents::keep : Contents::discard);
   }
 }

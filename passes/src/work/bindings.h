@@ -37,9 +37,8 @@ namespace alcove::passes {
 
 // Returns the value of the specialisation constant kNormalEncoding.
 [[nodiscard]] inline std::uint32_t encoding_of(const ViewWork& view) {
-  return view.image(ALCOVE_IMAGE_NORMALS)
-             ? static_cast<std::uint32_t>(view.info.normal_encoding)
-             : maths::kNoNormals;
+  return view.image(ALCOVE_IMAGE_NORMALS) ? static_cast<std::uint32_t>(view.info.normal_encoding)
+                                          : maths::kNoNormals;
 }
 
 [[nodiscard]] inline NormalConvention normals_of(const ViewWork& view) {

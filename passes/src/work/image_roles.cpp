@@ -101,8 +101,7 @@ Role role_of(std::uint32_t number, const AlcoveViewInfo& info) {
 bool suits(const Role& role, VkFormat format) {
   if (role.kind == Kind::depth)
     return std::ranges::find(kDepthFormats, format) != kDepthFormats.end();
-  if (role.kind == Kind::mask)
-    return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R8_UINT;
+  if (role.kind == Kind::mask) return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R8_UINT;
   const auto known = std::ranges::find(kColourFormats, format, &KnownFormat::format);
   return known != kColourFormats.end() && known->channels >= role.channels &&
          (known->is_signed || role.kind != Kind::signed_colour);

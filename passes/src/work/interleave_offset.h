@@ -29,8 +29,8 @@ struct InterleaveOffset {
   return offset;
 }
 
-// Returns whether all frames have the same noise. It is that of frame kStaticNoise, which traces the
-// pixel beside the centre of each tile.
+// Returns whether all frames have the same noise. It is that of frame kStaticNoise, which traces
+// the pixel beside the centre of each tile.
 [[nodiscard]] constexpr bool has_static_noise(const AlcoveSettings& settings) {
   return settings.static_noise != 0 && settings.history_frames == 0;
 }

@@ -79,8 +79,8 @@ Textures add_textures(const ViewWork& view) {
   const AlcovePrecision precision = view.settings.precision;
   Textures textures;
   if (view.visibility()) {
-    textures.results.visibility = image_or_transient(view, ALCOVE_IMAGE_VISIBILITY, "visibility",
-                                                     scalar_format(precision));
+    textures.results.visibility =
+        image_or_transient(view, ALCOVE_IMAGE_VISIBILITY, "visibility", scalar_format(precision));
   }
   if (view.bent_normal()) {
     textures.results.bent_normal = image_or_transient(view, ALCOVE_IMAGE_BENT_NORMAL, "bent normal",
@@ -96,10 +96,9 @@ Textures add_textures(const ViewWork& view) {
       textures.valid = textures.valid && added.valid;
       return added;
     }
-    return wanted && half
-               ? WorkList::History{.current = view.list.add_transient(name, format,
-                                                                      texels(view.size, half))}
-               : WorkList::History{};
+    return wanted && half ? WorkList::History{.current = view.list.add_transient(
+                                                  name, format, texels(view.size, half))}
+                          : WorkList::History{};
   };
   textures.texels =
       add(true, HistoryRole::visibility, "half resolution", half ? kHalfFormat : kHistoryFormat);
@@ -189,7 +188,7 @@ tl::expected<Results, Error> describe_reconstruct(const ViewWork& view, Texture 
   const bool moved = textures.valid && !same;
   previous.is_same = !moved && !motion;
   const bool same_size = size.width == view.size.width && size.height == view.size.height;
-  const Past past = !textures.valid                   ? Past::none
+  const Past past = !textures.valid                 ? Past::none
                     : previous.is_same && same_size ? Past::unchanged
                                                     : Past::moving;
   maths::ReconstructParameters parameters = reconstruct_parameters(view, previous);

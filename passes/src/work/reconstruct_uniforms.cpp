@@ -169,8 +169,8 @@ maths::ReconstructParameters reconstruct_parameters(const ViewWork& view,
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // This matrix is computed in double, because the translations nearly cancel if the camera is far
   // from the origin.
-  const maths::dmat4 to_previous = to_rigid(from.camera.view_from_world) *
-                                   maths::inverse(to_rigid(info.camera.view_from_world));
+  const maths::dmat4 to_previous =
+      to_rigid(from.camera.view_from_world) * maths::inverse(to_rigid(info.camera.view_from_world));
   const maths::mat4 to_view = view_from_normal(info.camera, normals_of(view));
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
@@ -232,8 +232,7 @@ maths::ReconstructParameters reconstruct_parameters(const ViewWork& view,
   parameters.roughness = settings.roughness;
   const float window = window_px(settings);
   // With tiles, each pixel averages the traced pixels around it, as kBetween of the shader.
-  const float sharpness =
-      settings.tile_size > 1 ? near_sharpness(view, from.is_same, texel) : 1.0f;
+  const float sharpness = settings.tile_size > 1 ? near_sharpness(view, from.is_same, texel) : 1.0f;
   parameters.wide_sharpness = 1.0f / sharpness;
   parameters.first_sharpness = sharpness * 0.125f / (window * window);
   parameters.smallest_window = smallest_window(settings, texel) / sharpness;
@@ -247,7 +246,8 @@ maths::ReconstructParameters reconstruct_parameters(const ViewWork& view,
   const bool from_zero =
       maths::is_counted_from_zero(is_perspective(projection), is_reversed(projection));
   parameters.half_inverse_depth_per_ndc = from_zero ? 0.5f * scale : -0.5f * scale;
-  parameters.depth_step = std::max(depth_step(projection, view.depth_format).constant, 0.0f) / per_ndc;
+  parameters.depth_step =
+      std::max(depth_step(projection, view.depth_format).constant, 0.0f) / per_ndc;
   parameters.largest_bend = kLargestBend / (per_ndc * parameters.tolerance);
   parameters.power = settings.power;
   parameters.intensity = settings.intensity;

@@ -33,8 +33,9 @@ constexpr SettingInfo kTable[] = {
      .range = {.above_minimum = true},
      .slider = {.minimum = 0.05f, .maximum = 10.0f}},
     {.name = "tile_size",
-     .help = "Width of a tile in pixels. One pixel per tile is traced in each frame, and the filter "
-             "and the history fill the others. 1 traces every pixel.",
+     .help =
+         "Width of a tile in pixels. One pixel per tile is traced in each frame, and the filter "
+         "and the history fill the others. 1 traces every pixel.",
      .offset = offsetof(AlcoveSettings, tile_size),
      .kind = Kind::whole,
      .range = {.minimum = 1, .maximum = 8, .power_of_two = true}},
@@ -98,15 +99,17 @@ constexpr SettingInfo kTable[] = {
      .kind = Kind::whole,
      .range = {.maximum = 127}},
     {.name = "static_noise",
-     .help = "Gives every frame the same noise, for images that no temporal filter follows. Without "
-             "it, noise changes from frame to frame. It has an effect with a history_frames of 0.",
+     .help =
+         "Gives every frame the same noise, for images that no temporal filter follows. Without "
+         "it, noise changes from frame to frame. It has an effect with a history_frames of 0.",
      .offset = offsetof(AlcoveSettings, static_noise),
      .kind = Kind::choice,
      .choices = kSwitch,
      .matters = [](S s) { return s.history_frames == 0; }},
     {.name = "half_resolution",
-     .help = "Filters and accumulates at half of the image's width and height, then upsamples: less "
-             "time, larger error. It needs a tile_size above 1.",
+     .help =
+         "Filters and accumulates at half of the image's width and height, then upsamples: less "
+         "time, larger error. It needs a tile_size above 1.",
      .offset = offsetof(AlcoveSettings, half_resolution),
      .kind = Kind::choice,
      .choices = kSwitch,
@@ -216,8 +219,8 @@ tl::expected<void, Error> parse_setting(AlcoveSettings& settings, std::string_vi
     good = info->kind == Kind::real ? parse(0.0f) : parse(std::uint32_t{0});
   }
   if (!good || !is_allowed(changed, *info)) {
-    return tl::unexpected(Error{"The setting '" + std::string(name) + "' is " +
-                                std::string(value) + "; it must be " + allowed_text(*info) + "."});
+    return tl::unexpected(Error{"The setting '" + std::string(name) + "' is " + std::string(value) +
+                                "; it must be " + allowed_text(*info) + "."});
   }
   settings = changed;
   return {};
@@ -232,10 +235,10 @@ tl::expected<void, Error> validate(const AlcoveSettings& settings) {
   }
   for (const SettingInfo& info : kTable) {
     if (is_allowed(settings, info)) continue;
-    return tl::unexpected(Error{
-        "The setting '" + std::string(info.name) + "' is " + setting_text(settings, info) +
-        "; it must be " + (info.kind == Kind::choice ? allowed_text(info) : info.range.text()) +
-        "."});
+    return tl::unexpected(
+        Error{"The setting '" + std::string(info.name) + "' is " + setting_text(settings, info) +
+              "; it must be " +
+              (info.kind == Kind::choice ? allowed_text(info) : info.range.text()) + "."});
   }
   if (settings.half_resolution != 0 && settings.tile_size < 2) {
     return tl::unexpected(Error{

@@ -53,8 +53,7 @@ void describe_upsample(const ViewWork& view, Texture depth, const HalfTexels& te
                        const Results& results) {
   const Texture written =
       or_else(or_else(results.visibility, results.bent_normal), results.specular);
-  const Texture normals =
-      results.bent_normal ? view.image(ALCOVE_IMAGE_NORMALS) : Texture{};
+  const Texture normals = results.bent_normal ? view.image(ALCOVE_IMAGE_NORMALS) : Texture{};
   const NamedTexture images[] = {{"half_image", texels.half},
                                  {"half_depth_image", texels.depth},
                                  {"depth_image", depth},
@@ -70,14 +69,14 @@ void describe_upsample(const ViewWork& view, Texture depth, const HalfTexels& te
     return (begin + size) / 2 - (begin + 1) / 2 + 1;
   };
   const AlcoveArea& area = view.written;
-  view.list.dispatch({.label = "upsample",
-                      .shader = results.specular ? Shader::upsample_specular : Shader::upsample,
-                      .constants = constants_of(view),
-                      .images = images,
-                      // The textures are of the largest size.
-                      .parameters = bytes_of(parameters_of(view, view.list.size(texels.half))),
-                      .size = {invocations(area.x, area.width), invocations(area.y, area.height),
-                               1}});
+  view.list.dispatch(
+      {.label = "upsample",
+       .shader = results.specular ? Shader::upsample_specular : Shader::upsample,
+       .constants = constants_of(view),
+       .images = images,
+       // The textures are of the largest size.
+       .parameters = bytes_of(parameters_of(view, view.list.size(texels.half))),
+       .size = {invocations(area.x, area.width), invocations(area.y, area.height), 1}});
 }
 
 }  // namespace alcove::passes

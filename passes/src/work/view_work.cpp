@@ -46,8 +46,7 @@ Checked check_given(const AlcoveWorkInfo& info) {
   const auto refuse = [](AlcoveImageRole role, const std::string& what) {
     return refusal(std::string("There is no image of ") + role_name(role) + ", " + what + ".");
   };
-  if (lacks(ALCOVE_IMAGE_DEPTH))
-    return refuse(ALCOVE_IMAGE_DEPTH, "from which everything is made");
+  if (lacks(ALCOVE_IMAGE_DEPTH)) return refuse(ALCOVE_IMAGE_DEPTH, "from which everything is made");
   if (!lacks(ALCOVE_IMAGE_MULTI_BOUNCE) && lacks(ALCOVE_IMAGE_ALBEDO))
     return refuse(ALCOVE_IMAGE_ALBEDO, "from which multi-bounce is made");
   if (lacks(ALCOVE_IMAGE_VISIBILITY) && lacks(ALCOVE_IMAGE_BENT_NORMAL) &&
@@ -166,12 +165,11 @@ void set_areas(ViewWork& view, const AlcoveArea& read, VkExtent2D whole) {
   view.read = view.in_part ? read : AlcoveArea{0, 0, whole.width, whole.height};
   view.size = {view.read.width, view.read.height};
   const AlcoveArea& written = info.written_area;
-  view.written =
-      is_given(written)
-          ? AlcoveArea{written.x - read.x, written.y - read.y, written.width, written.height}
-          : AlcoveArea{0, 0, view.size.width, view.size.height};
-  const bool bounded = view.settings.history_frames > 0 &&
-                       (info.largest_width != 0 || info.largest_height != 0);
+  view.written = is_given(written) ? AlcoveArea{written.x - read.x, written.y - read.y,
+                                                written.width, written.height}
+                                   : AlcoveArea{0, 0, view.size.width, view.size.height};
+  const bool bounded =
+      view.settings.history_frames > 0 && (info.largest_width != 0 || info.largest_height != 0);
   view.largest = bounded ? VkExtent2D{info.largest_width, info.largest_height} : view.size;
 }
 
@@ -197,19 +195,18 @@ tl::expected<ViewWork, Error> begin_view(WorkList& list, const AlcoveWorkInfo& g
   const AlcoveWorkImage& depth = given.images[ALCOVE_IMAGE_DEPTH];
   const AlcoveArea read = read_area(info, size_of(depth));
   ViewWork view{.list = list, .info = info, .settings = *info.settings};
-  const auto checked = validate(view.settings)
-                           .and_then([&] { return check_given(given); })
-                           .and_then([&] { return check_conventions(given); })
-                           .and_then([&] { return check_images(given); })
-                           .and_then([&] {
-                             return check_areas(read, info.written_area, size_of(depth));
-                           })
-                           .and_then([&] {
-                             set_areas(view, read, size_of(depth));
-                             return check_outputs(view, given);
-                           })
-                           .and_then([&] { return check_largest(view); })
-                           .and_then([&] { return projection_of(info.camera, view.size); });
+  const auto checked =
+      validate(view.settings)
+          .and_then([&] { return check_given(given); })
+          .and_then([&] { return check_conventions(given); })
+          .and_then([&] { return check_images(given); })
+          .and_then([&] { return check_areas(read, info.written_area, size_of(depth)); })
+          .and_then([&] {
+            set_areas(view, read, size_of(depth));
+            return check_outputs(view, given);
+          })
+          .and_then([&] { return check_largest(view); })
+          .and_then([&] { return projection_of(info.camera, view.size); });
   if (!checked) return tl::unexpected(checked.error());
   view.projection = *checked;
   view.index = has_static_noise(view.settings) ? kStaticNoise : given.index;
@@ -219,10 +216,9 @@ tl::expected<ViewWork, Error> begin_view(WorkList& list, const AlcoveWorkInfo& g
   for (std::uint32_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
     const AlcoveWorkImage& image = given.images[role];
     if (image.format == 0) continue;
-    view.images[role] =
-        list.add(is_output(role) ? ALCOVE_RESOURCE_KIND_OUTPUT : ALCOVE_RESOURCE_KIND_INPUT,
-                 role_name(role), static_cast<VkFormat>(image.format), size_of(image),
-                 std::max(image.samples, 1u), role);
+    view.images[role] = list.add(
+        is_output(role) ? ALCOVE_RESOURCE_KIND_OUTPUT : ALCOVE_RESOURCE_KIND_INPUT, role_name(role),
+        static_cast<VkFormat>(image.format), size_of(image), std::max(image.samples, 1u), role);
   }
   AlcoveWork& work = list.work();
   work.camera = info.camera;

@@ -17,14 +17,14 @@ struct ViewWork {
   const AlcoveViewInfo& info;
   const AlcoveSettings& settings;
   std::array<framegraph::Texture, ALCOVE_IMAGE_COUNT> images{};
-  std::uint32_t index = 0;          // the number that selects the noise
-  std::uint32_t static_frames = 0;  // 0 with reset_history
+  std::uint32_t index = 0;                      // the number that selects the noise
+  std::uint32_t static_frames = 0;              // 0 with reset_history
   VkFormat depth_format = VK_FORMAT_UNDEFINED;  // in which depths were first stored
-  bool in_part = false;    // images are read or written in part
-  AlcoveArea read{};       // of the inputs
-  AlcoveArea written{};    // relative to `read`
-  VkExtent2D size{};       // of `read`
-  VkExtent2D largest{};    // of the history
+  bool in_part = false;                         // images are read or written in part
+  AlcoveArea read{};                            // of the inputs
+  AlcoveArea written{};                         // relative to `read`
+  VkExtent2D size{};                            // of `read`
+  VkExtent2D largest{};                         // of the history
   maths::Projection projection{};
 
   framegraph::Texture image(AlcoveImageRole role) const { return images[role]; }
@@ -94,8 +94,8 @@ struct Results {
   framegraph::Texture specular;
 };
 // Reconstructs every pixel from the traced pixels: spatial filter, upsampling and temporal
-// accumulation in one pass (Jimenez et al. 2016, sections 4.4 and 4.5, with other weights). Error: a
-// previous camera that cannot be used.
+// accumulation in one pass (Jimenez et al. 2016, sections 4.4 and 4.5, with other weights). Error:
+// a previous camera that cannot be used.
 [[nodiscard]] tl::expected<Results, Error> describe_reconstruct(const ViewWork& view,
                                                                 framegraph::Texture depth,
                                                                 const RawOcclusion& raw);

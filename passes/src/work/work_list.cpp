@@ -60,19 +60,18 @@ WorkList::WorkList(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
 Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format, VkExtent2D size,
                       std::uint32_t samples, std::uint32_t role) {
   if (work_.resource_count == ALCOVE_MAX_WORK_RESOURCES) return {};
-  work_.resources[work_.resource_count] = {
-      .name = name,
-      .kind = kind,
-      .role = role,
-      .format = static_cast<std::uint32_t>(format),
-      .width = size.width,
-      .height = size.height,
-      .samples = samples,
-      .usage = 0,
-      .first_dispatch = ALCOVE_WORK_NONE,
-      .last_dispatch = ALCOVE_WORK_NONE,
-      .size = is_of_host(kind) ? 0 : image_bytes(format, size),
-      .data = nullptr};
+  work_.resources[work_.resource_count] = {.name = name,
+                                           .kind = kind,
+                                           .role = role,
+                                           .format = static_cast<std::uint32_t>(format),
+                                           .width = size.width,
+                                           .height = size.height,
+                                           .samples = samples,
+                                           .usage = 0,
+                                           .first_dispatch = ALCOVE_WORK_NONE,
+                                           .last_dispatch = ALCOVE_WORK_NONE,
+                                           .size = is_of_host(kind) ? 0 : image_bytes(format, size),
+                                           .data = nullptr};
   return {work_.resource_count++};
 }
 
@@ -143,8 +142,8 @@ tl::expected<void, Error> WorkList::add_dispatch(const DispatchInfo& info) {
 
 // Adds a binding to the dispatch that is being added, and the use to its resource: the image that
 // is given, or the table. Returns false if there is no resource.
-bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding,
-                    Texture given, std::span<const std::uint32_t> table) {
+bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding, Texture given,
+                    std::span<const std::uint32_t> table) {
   AlcoveWorkBinding& bound = dispatch.bindings[dispatch.binding_count++];
   bound = {.name = binding.name.empty() ? "" : binding.name.data(),
            .number = binding.number,

@@ -5,7 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/settings.h"
@@ -252,8 +252,9 @@ Result<void> run_measure(const Options& options) {
       one.quality = quality;
       ALCOVE_TRY(const auto settings, occlusion_settings(one, session.settings.radius));
       last = CostInputs{.width = width, .height = height, .settings = settings};
-      ALCOVE_TRY(const auto frame,
-                 measure(session, options, {std::string(passes::kQualityNames.at(quality)), *last}));
+      ALCOVE_TRY(
+          const auto frame,
+          measure(session, options, {std::string(passes::kQualityNames.at(quality)), *last}));
       report["measured"].push_back(print(frame));
     }
   }

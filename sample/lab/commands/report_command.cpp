@@ -79,8 +79,9 @@ class ScenePage {
     const Progress progress = print_progress("settings");
     for (std::size_t i = 0; i < variants.size(); ++i) {
       ALCOVE_TRY(const auto found, world_.measure(variants[i].settings));
-      const bool preset = std::ranges::any_of(
-          presets(), [&](AlcoveQuality quality) { return variants[i].name == passes::kQualityNames.at(quality); });
+      const bool preset = std::ranges::any_of(presets(), [&](AlcoveQuality quality) {
+        return variants[i].name == passes::kQualityNames.at(quality);
+      });
       add_point(variants[i].name, found, preset, false);
       progress(static_cast<double>(i + 1) / static_cast<double>(variants.size()));
     }

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/static_view.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/scene.h"
 #include "support/glm.h"
 #include "support/image.h"

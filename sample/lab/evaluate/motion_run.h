@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/static_view.h"
 #include "evaluate/truths.h"
 #include "evaluate/weave.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/scene.h"
 #include "support/image.h"
 #include "support/result.h"

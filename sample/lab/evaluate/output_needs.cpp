@@ -11,7 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-
 // Materials that cover a smaller part of the surfaces in view do not decide.
 constexpr double kShare = 0.05;
 

@@ -12,7 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-
 struct Feature {
   const char* name;
   void (*use)(OcclusionSettings& settings);

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 #include "support/result.h"
 
 namespace alcove::sample {

@@ -38,8 +38,8 @@ class SituationErrors {
 
   // Renders frames of an orbit that ends at the view, with `orbit` radians per frame, and returns
   // the visibility of the last one.
-  [[nodiscard]] Result<Image<float>> draw(const OcclusionSettings& settings,
-                                          std::uint32_t frames, float orbit);
+  [[nodiscard]] Result<Image<float>> draw(const OcclusionSettings& settings, std::uint32_t frames,
+                                          float orbit);
   const Truths& truths() const { return truths_; }
 
  private:
@@ -69,8 +69,8 @@ inline constexpr std::array<std::string_view, 3> kClockNames{"modelled", "timest
 
 // Returns the times of settings in the order of Situation, in milliseconds, without or with a guard
 // band of kGuardBand of the image's height.
-using SettingTimes = std::function<Result<std::array<double, 3>>(
-    const OcclusionSettings& settings, bool guard_band)>;
+using SettingTimes = std::function<Result<std::array<double, 3>>(const OcclusionSettings& settings,
+                                                                 bool guard_band)>;
 
 // Times that are modelled for a GPU. They are kept in the cache on disk for this build of the
 // program. `inputs` are those of the view; settings are replaced. Error: Mesa's AMD driver is

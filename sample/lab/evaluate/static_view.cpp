@@ -5,7 +5,6 @@
 
 namespace alcove::sample {
 
-
 FrameRequest frame_request(const StaticSetup& setup, const OcclusionSettings& settings,
                            std::uint32_t frame) {
   const auto matrices = [&](std::uint32_t at) {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 #include "render/frame_renderer.h"
 #include "render/normal_source.h"
 #include "scene/camera.h"
@@ -27,8 +27,7 @@ struct StaticSetup {
 // Returns the request for a frame of the view: visibility alone, with motion relative to the frame
 // before.
 [[nodiscard]] FrameRequest frame_request(const StaticSetup& setup,
-                                         const OcclusionSettings& settings,
-                                         std::uint32_t frame);
+                                         const OcclusionSettings& settings, std::uint32_t frame);
 
 // Renders the frames of a view and reads the last one back.
 [[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,

@@ -11,7 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-
 // The settings that differ between the points of a sweep.
 struct SweepPoint {
   std::uint32_t tile_size;
@@ -63,8 +62,9 @@ std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   SweepList list(base);
   for (const AlcoveQuality quality : presets()) {
     const OcclusionSettings preset = OcclusionSettings(quality, base.radius);
-    list.add(std::string(passes::kQualityNames.at(quality)), {preset.tile_size, preset.slices, preset.steps,
-                                                     preset.half_resolution, preset.depth_layers});
+    list.add(std::string(passes::kQualityNames.at(quality)),
+             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution,
+              preset.depth_layers});
   }
   for (const SweepPoint& point : kSweepPoints) list.add(name_of(point), point);
   return list.take();

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 
 namespace alcove::sample {
 

@@ -8,14 +8,12 @@
 namespace alcove::sample {
 namespace {
 
-
 // A camera of 60 degrees, or an orthographic view.
 AlcoveCamera camera_of(ProjectionKind kind) {
   constexpr float kScale = 1.7320508f;  // 1 / tan(30 degrees)
   constexpr float kNear = 0.1f, kFar = 100.0f, kRange = kFar - kNear;
-  AlcoveCamera camera{
-      {kScale * 9 / 16, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0},
-      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+  AlcoveCamera camera{{kScale * 9 / 16, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0},
+                      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
   float* const clip = camera.clip_from_view;
   if (kind == ProjectionKind::finite_far) {
     clip[10] = kNear / kRange;

@@ -20,7 +20,8 @@ int main() {
   const auto plan = framegraph::compile(graph);
 
   const auto kernels = passes::Kernels::create({}, 1);
-  const bool good = filled && settings.radius == 2.0f && plan && plan->passes.size() == 1 && !kernels;
+  const bool good =
+      filled && settings.radius == 2.0f && plan && plan->passes.size() == 1 && !kernels;
   std::printf("%s\n",
               kernels ? "Kernels were made on no device." : kernels.error().message.c_str());
   return good ? 0 : 1;

@@ -46,8 +46,9 @@ struct SurfaceTextures {
   // one of the two neighbours is used whose depth continues the pixel's surface more smoothly.
   framegraph::Texture normals;
 };
-[[nodiscard]] tl::expected<SurfaceTextures, Error> add_surface(framegraph::Graph& graph, Kernels& kernels,
-                                                       const AlcoveCamera& camera,
-                                                       framegraph::Texture depth);
+[[nodiscard]] tl::expected<SurfaceTextures, Error> add_surface(framegraph::Graph& graph,
+                                                               Kernels& kernels,
+                                                               const AlcoveCamera& camera,
+                                                               framegraph::Texture depth);
 
 }  // namespace alcove::passes

@@ -119,8 +119,8 @@ class Kernels {
                 std::span<const VkImageView> views, std::span<const std::byte> parameters,
                 const std::array<std::uint32_t, 3>& groups);
 
-  // Returns a list for the work that is being described, which is too large for a stack. Its contents
-  // are undefined.
+  // Returns a list for the work that is being described, which is too large for a stack. Its
+  // contents are undefined.
   [[nodiscard]] AlcoveWork& scratch();
 
   // Returns how many pipelines have been created. Passes that are not added create none.

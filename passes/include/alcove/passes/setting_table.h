@@ -34,20 +34,20 @@ struct SettingRange {
 struct SettingInfo {
   enum class Kind : std::uint8_t { real, whole, choice };  // float, uint32_t, or an enum or a bool
   const char* name;
-  const char* help;  // one or more sentences
+  const char* help;    // one or more sentences
   std::size_t offset;  // of the field in AlcoveSettings
   Kind kind;
   std::span<const std::string_view> choices = {};  // the names of the values 0, 1, ...
   SettingRange range = {};                         // of a number
-  SettingRange slider = {};  // range of a slider, if `range` has no maximum
+  SettingRange slider = {};                        // range of a slider, if `range` has no maximum
   // Returns whether the setting has an effect with these other settings. Null: it always has one.
   bool (*matters)(const AlcoveSettings& settings) = nullptr;
   bool of_material = false;  // a material parameter that is used if there is no image for it
 };
 
 // Each name is terminated by zero, so that data() is a C string.
-inline constexpr auto kQualityNames = std::to_array<std::string_view>(
-    {"console", "low", "medium", "high", "ultra", "reference"});
+inline constexpr auto kQualityNames =
+    std::to_array<std::string_view>({"console", "low", "medium", "high", "ultra", "reference"});
 
 // Returns the settings, in the order in which they are printed.
 [[nodiscard]] std::span<const SettingInfo> setting_table();
