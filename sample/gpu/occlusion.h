@@ -11,7 +11,8 @@ namespace alcove::sample {
 // The settings of the passes, and the outputs that a frame computes.
 struct OcclusionSettings : AlcoveSettings {
   // The settings of a preset, without specular occlusion.
-  explicit OcclusionSettings(AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM, float radius_ws = 0.5f);
+  explicit OcclusionSettings(AlcoveQuality quality, float radius_ws = 0.5f);
+  OcclusionSettings() : OcclusionSettings(ALCOVE_QUALITY_MEDIUM) {}
 
   bool visibility = true;
   bool bent_normal = false;

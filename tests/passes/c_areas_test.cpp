@@ -146,14 +146,14 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
     SCOPED_TRACE("frame " + std::to_string(index));
     from.static_frames = index;
     std::array<AlcoveView, 2> views{create_view(from), create_view(from)};
-    views[1].id = 1;
-    views[1].read_area = {0, 0, views[1].depth.width, views[1].depth.height};
-    views[1].written_area = without_band(views[1].read_area);
+    views[1].info.id = 1;
+    views[1].info.read_area = {0, 0, 37, 45};
+    views[1].info.written_area = without_band(views[1].info.read_area);
     run_frame(context(), views, index);
     engine().wait();
     const Results expected = read_results(views[0]);
     const Results found = read_results(views[1]);
-    const AlcoveArea& written = views[1].written_area;
+    const AlcoveArea& written = views[1].info.written_area;
     const AlcoveArea corner{0, 0, written.width, written.height};
     EXPECT_EQ(part_of(found.visibility, corner).texels,
               part_of(expected.visibility, written).texels);

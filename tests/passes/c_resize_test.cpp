@@ -9,7 +9,6 @@
 #include <iostream>
 #include <vector>
 
-#include "c/settings.h"
 #include "c_interface_fixture.h"
 #include "framegraph/failing_device.h"
 #include "gtao_scenes.h"
