@@ -20,13 +20,14 @@ using Failure = tl::unexpected<std::string>;
 
 namespace {
 
+void print_note(const std::string& note) { std::cerr << "note: " << note << "\n"; }
+
 // Prints the notes about a scene, at most the first twenty, because a file may cause any number.
 void print_notes(const std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 20;
-  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i)
-    std::cerr << "note: " << notes[i] << "\n";
+  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) print_note(notes[i]);
   if (notes.size() > kMost)
-    std::cerr << "note: There are " << notes.size() - kMost << " more notes on this scene.\n";
+    print_note(fmt::format("There are {} more notes on this scene.", notes.size() - kMost));
 }
 
 }  // namespace
@@ -39,15 +40,14 @@ Result<Session> load_session(const Options& options) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!scene) return Failure(std::move(scene.error()));
   session.scene = std::move(*scene);
+  const ViewFinder finder(session.scene);
+  ALCOVE_TRY(session.camera, choose_camera(options.view, finder));
+  const double aspect = static_cast<double>(options.view.width) / options.view.height;
+  const RadiusChoice radius = finder.radius(session.camera, aspect);
+  session.radius_reason = options.occlusion.radius ? "--radius" : radius.reason;
+  for (const std::string& note : {finder.left_out(), radius.advice})
+    if (!note.empty()) session.scene.warnings.insert(session.scene.warnings.begin(), note);
   print_notes(session.scene.warnings);
-  ALCOVE_TRY(const auto camera, choose_camera(options.view, session.scene));
-  session.camera = camera;
-  RadiusChoice radius{0.0f, "--radius"};
-  if (!options.occlusion.radius) {
-    const double aspect = static_cast<double>(options.view.width) / options.view.height;
-    radius = radius_for_view(session.scene, session.camera, aspect);
-  }
-  session.radius_reason = radius.reason;
   ALCOVE_TRY(const auto settings, occlusion_settings(options.occlusion, radius.radius));
   session.settings = settings;
   return session;
@@ -65,7 +65,7 @@ Result<Session> open_session(const Options& options,
 
 Result<Rendering> render(const Options& options) {
   ALCOVE_TRY(auto session, open_session(options));
-  ALCOVE_TRY(auto environment, load_environment(options.environment));
+  ALCOVE_TRY(auto environment, load_environment(options.environment, print_note));
   const std::string radius =
       "Radius " + number_text(session.settings.radius) + ": " + session.radius_reason + "\n";
   auto rendering = render(std::move(session),

@@ -61,7 +61,7 @@ struct ViewOptions {
 struct OcclusionOptions {
   AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM;
   bool quality_given = false;   // --quality was given
-  std::optional<float> radius;  // scene units; none: radius_for_view()
+  std::optional<float> radius;  // scene units; none: ViewFinder::radius()
   NormalSource normals = NormalSource::shading;
   std::vector<std::pair<std::string, std::string>> file;  // settings of --settings
   std::vector<std::pair<std::string, std::string>> set;   // --set name=value, in order

@@ -16,7 +16,6 @@ Result<void> run_render(const Options& options) {
                           rendering_report(rendering, options).dump(2) + "\n");
       })
       .map([&] {
-        if (!shows_surfaces(rendering)) std::cerr << "note: The view shows nothing but sky.\n";
         std::cout << time_table(rendering) << "Images and report.json are in "
                   << options.out.string() << "\n";
       });

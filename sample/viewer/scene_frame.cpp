@@ -78,7 +78,8 @@ void SceneFrame::advance() {
 
 tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,
                                                        const ViewState& state) {
-  begin(graph, state, graph.extent(target));
+  const VkExtent3D size = graph.extent(target);
+  begin(graph, state, size);
   const OcclusionSettings settings = with_outputs(state.settings, state.picture);
   const std::optional<OcclusionSettings> compared = compared_settings(state);
   const bool specular = settings.specular != ALCOVE_SPECULAR_NONE ||
@@ -97,8 +98,7 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
   for (std::size_t i = 0; i < kGbufferTargets.size(); ++i) {
     const auto& [member, format, name] = kGbufferTargets[i];
     if (wanted[i]) {
-      surfaces.gbuffer.*member =
-          graph.create_texture(name, {format, framegraph::Extent::relative(target)});
+      surfaces.gbuffer.*member = graph.create_texture(name, {format, {size.width, size.height}});
     }
   }
   surfaces.gbuffer = gbuffer_->add(graph, view_, surfaces.gbuffer);

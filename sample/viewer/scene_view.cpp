@@ -74,11 +74,13 @@ SceneView::~SceneView() {
 }
 
 tl::expected<void, std::string> SceneView::create_frame(const Scene& scene) {
-  return load_environment(request_.environment).and_then([&](const EnvironmentImage& environment) {
-    presenter_->wait();
-    return assign(frame_, SceneFrame::create(*session_.gpu, scene, environment, request_.normals,
-                                             presenter_->format()));
-  });
+  const auto print = [](const std::string& note) { std::cerr << "note: " << note << "\n"; };
+  return load_environment(request_.environment, print)
+      .and_then([&](const EnvironmentImage& environment) {
+        presenter_->wait();
+        return assign(frame_, SceneFrame::create(*session_.gpu, scene, environment,
+                                                 request_.normals, presenter_->format()));
+      });
 }
 
 tl::expected<void, std::string> SceneView::replace_scene(const std::string& file) {
@@ -120,7 +122,7 @@ Camera SceneView::camera_around_scene() const {
 void SceneView::fit_radius() {
   const VkExtent2D size = presenter_->size();
   const double aspect = static_cast<double>(size.width) / std::max(size.height, 1u);
-  const RadiusChoice choice = radius_for_view(session_.scene, state_.camera, aspect);
+  const RadiusChoice choice = ViewFinder(session_.scene).radius(state_.camera, aspect);
   state_.settings.radius = choice.radius;
   facts_.message = fmt::format("Radius {:.3g}: {}.", choice.radius, choice.reason);
 }

@@ -56,8 +56,8 @@ Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& optio
     truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
   if (std::ranges::find(truths.surfaces.pixels, 1) == truths.surfaces.pixels.end()) {
     return tl::unexpected<std::string>(
-        "the view shows nothing but sky: turn it with --eye and --target, or widen --near and "
-        "--far");
+        "the view shows nothing but sky: turn it with --eye and --target, widen --near and --far, "
+        "or draw back faces by --both-sides");
   }
   const TruthCache cache(options.use_cache ? TruthCache::default_folder()
                                            : std::filesystem::path());

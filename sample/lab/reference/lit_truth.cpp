@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "reference/ray_scene.h"
 #include "reference/sampling.h"
 #include "support/parallel.h"
 
@@ -114,7 +113,7 @@ float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 class Tracer {
  public:
-  Tracer(const RayScene::Impl& scene, const EnvironmentImage& environment, float radius)
+  Tracer(const RayScene& scene, const EnvironmentImage& environment, float radius)
       : scene_(scene), environment_(environment), radius_(radius) {}
 
   const Reflectance& reflectance() const { return reflectance_; }
@@ -143,7 +142,7 @@ class Tracer {
 
  private:
   ShadingPoint surface_at(const Hit& hit, const glm::vec3& direction) const {
-    const Scene& scene = *scene_.scene;
+    const Scene& scene = scene_.scene();
     const Material& material = scene.materials[hit.material];
     const glm::vec4 texel = sample_texture(scene, material.metal_roughness_texture, hit.uvs);
     return make_surface(reflectance_, hit.geometric_normal_ws, -direction, albedo_at(scene, hit),
@@ -165,7 +164,7 @@ class Tracer {
     return out;
   }
 
-  const RayScene::Impl& scene_;
+  const RayScene& scene_;
   const EnvironmentImage& environment_;
   float radius_;
   Reflectance reflectance_;
@@ -186,15 +185,14 @@ LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
                    const Progress& progress) {
   const uint32_t width = points.normal_ws.width, height = points.normal_ws.height;
   LitTruth out{{width, height}, {width, height}, {width, height}, {width, height}};
-  const Tracer tracer(scene.impl(), environment, settings.radius);
+  const Tracer tracer(scene, environment, settings.radius);
   const auto shade = [&](size_t pixel) {
     const glm::vec3& position = points.position_ws.pixels[pixel];
     const glm::vec3 view = view_from(viewer, position);
     const ShadingPoint surface = make_surface(
         tracer.reflectance(), points.normal_ws.pixels[pixel], view, materials.albedo.pixels[pixel],
         materials.roughness.pixels[pixel], materials.metallic.pixels[pixel]);
-    const glm::vec3 origin =
-        scene.impl().off_surface(position, points.geometric_normal_ws.pixels[pixel]);
+    const glm::vec3 origin = scene.off_surface(position, points.geometric_normal_ws.pixels[pixel]);
     HalfMeans diffuse, specular;
     const uint32_t samples = std::max(settings.spp / 2, 1u);
     for (uint32_t half = 0; half < 2; ++half) {
