@@ -16,10 +16,8 @@ namespace alcove::sample {
 namespace {
 
 AlcoveViewInfo view_of(const Session& session, const Options& options) {
-  const CameraMatrices matrices =
-      camera_matrices(session.camera, options.view.width, options.view.height);
-  return view_info({matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-                    matrices.clip_from_view});
+  return view_info(
+      gbuffer_view(session.camera, session.camera, {options.view.width, options.view.height}));
 }
 
 // Declares the frame of the occlusion, with placeholders for the images of the g-buffer.

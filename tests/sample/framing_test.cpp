@@ -133,7 +133,7 @@ std::vector<File> files() {
        scene_of({joined(house(), sliver({0, 3, 200})), flat(900), ball(500, true)}),
        "sky, ground, stray triangles (1)", 500},
       {"HouseAmongStrays", house(), scene_of({joined(house(), strays())}), "stray triangles (500)"},
-      {"HouseWithALampInside", hull, scene_of({hull, moved(ball(0.2f, false), {1, 1, 0})})},
+      {"HouseWithALampInside", hull, scene_of({}, {hull, moved(ball(0.2f, false), {1, 1, 0})})},
       {"HouseWithADoor", hull,
        scene_of({}, {hull, quad({0, 0, 3}, {1, 0, 3}, {1, 2, 3}, {0, 2, 3})})},
       {"BannerWithARod", banner,

@@ -25,6 +25,19 @@ namespace alcove::passes {
   return texture.index != framegraph::kNone ? texture : instead;
 }
 
+// Returns `texture`, or a new one of one texel that the shader does not write. What a shader can
+// write must not be bound twice.
+[[nodiscard]] inline framegraph::Texture or_unused(const ViewWork& view,
+                                                   framegraph::Texture texture, VkFormat format) {
+  return texture ? texture : view.list.add_transient("unused output", format, {1, 1});
+}
+
+// Returns the variant of a shader with bent normals and with a GGX lobe. In the enum the shader is
+// followed by those with BENT, with SPECULAR and with both.
+[[nodiscard]] constexpr Shader variant(Shader shader, bool bent, bool specular) {
+  return static_cast<Shader>(static_cast<int>(shader) + (bent ? 1 : 0) + (specular ? 2 : 0));
+}
+
 // Returns the image of a role, or a new transient if there is none.
 [[nodiscard]] inline framegraph::Texture image_or_transient(const ViewWork& view,
                                                             AlcoveImageRole role, const char* name,

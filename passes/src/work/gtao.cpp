@@ -24,13 +24,12 @@ Texture roughness_of(const ViewWork& view) {
   return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : Texture{};
 }
 
-std::array<NamedConstant, 16> constants_of(const ViewWork& view) {
+std::array<NamedConstant, 15> constants_of(const ViewWork& view) {
   const AlcoveSettings& settings = view.settings;
   const bool horizons = settings.estimator == ALCOVE_ESTIMATOR_HORIZONS;
   const bool rough = bool(roughness_of(view));
   return {{{"kSliceCount", settings.slices},
            {"kStepCount", settings.steps},
-           {"kBentNormal", flag(view.bent_normal())},
            {"kHorizons", flag(horizons)},
            {"kTileSize", settings.tile_size},
            {"kPerspective", flag(is_perspective(view.projection))},
@@ -49,8 +48,8 @@ std::array<NamedConstant, 16> constants_of(const ViewWork& view) {
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
 // groups, and groups are numbered column by column in each strip (invocation_tile() in
 // gtao.comp).
+constexpr std::uint32_t kGroup = 8;
 VkExtent3D in_strips(VkExtent2D tiles) {
-  constexpr std::uint32_t kGroup = 8;
   const std::uint32_t rows = (tiles.height + kGroup - 1) / kGroup;
   const std::uint32_t strips = std::max(rows / 16, 1u);
   return {(rows + strips - 1) / strips * kGroup, tiles.width, strips};
@@ -94,6 +93,7 @@ maths::GtaoParameters parameters_of(const ViewWork& view, const AlcoveArea& tile
           maths::vec2(static_cast<float>(offset.x), static_cast<float>(offset.y)),
           std::min(settings.radius, kLargestRadius),
           view.index,
+          in_strips({tiles.width, tiles.height}).width / kGroup,
           settings.thickness,
           maths::hidden_exponent(settings.hidden_occlusion),
           settings.roughness,
@@ -116,14 +116,14 @@ RawOcclusion describe_gtao(const ViewWork& view, const Depths& depths) {
       {"depth_image", depths.occluders},
       {"normal_image", or_else(view.image(ALCOVE_IMAGE_NORMALS), depths.occluders)},
       {"raw_image", raw.sums},
-      {"bent_image", or_else(raw.bent, raw.sums)},
+      {"bent_image", raw.bent},
       {"back_image", or_depth(needs_back_depth(view.settings), ALCOVE_IMAGE_BACK_DEPTH)},
       {"second_image", or_depth(needs_second_depth(view.settings), ALCOVE_IMAGE_SECOND_DEPTH)},
       {"receiver_image", depths.receivers},
       {"roughness_image", or_else(roughness_of(view), depths.occluders)}};
   const AlcoveArea traced = traced_tiles(view);
   view.list.dispatch({.label = "gtao",
-                      .shader = view.lobe() ? Shader::gtao_specular : Shader::gtao,
+                      .shader = variant(Shader::gtao, view.bent_normal(), view.lobe()),
                       .constants = constants_of(view),
                       .images = images,
                       .parameters = bytes_of(parameters_of(view, traced)),

@@ -24,14 +24,6 @@ enum class Past : std::uint8_t {
   unchanged,  // the previous frame shows the same
 };
 
-Shader shader_of(bool history, bool lobe, bool half) {
-  if (half && lobe)
-    return history ? Shader::reconstruct_half_specular_history : Shader::reconstruct_half_specular;
-  if (half) return history ? Shader::reconstruct_half_history : Shader::reconstruct_half;
-  if (lobe) return history ? Shader::reconstruct_specular_history : Shader::reconstruct_specular;
-  return history ? Shader::reconstruct_history : Shader::reconstruct;
-}
-
 bool has_history(const ViewWork& view) { return view.settings.history_frames > 0; }
 bool is_half(const ViewWork& view) { return view.settings.half_resolution != 0; }
 
@@ -46,7 +38,7 @@ std::array<NamedConstant, 14> constants_of(const ViewWork& view, Past past, bool
   const bool rough = bool(roughness_of(view));
   return {{{"kTileSize", settings.tile_size},
            {"kFilterRadius", filter_radius(settings)},
-           {"kBentNormal", flag(view.bent_normal())},
+           {"kHistory", flag(has_history(view))},
            {"kMotion", flag(motion && past == Past::moving)},
            {"kPerspective", flag(is_perspective(view.projection))},
            {"kStatic", flag(past == Past::unchanged)},
@@ -109,35 +101,39 @@ Textures add_textures(const ViewWork& view) {
   return textures;
 }
 
-// Returns the image of each binding that a variant of the shader can have. An image that the
-// variant does not use is replaced by another image of the same type. The image may be null if the
-// variant does not have the binding.
+// Returns the image of each binding that a variant of the shader can have. An image that is not
+// read is replaced by another one, and one that is not written by one of its own. The image is null
+// if the variant does not have the binding.
 std::array<NamedTexture, 18> images_of(const ViewWork& view, Texture depth, const RawOcclusion& raw,
                                        const Textures& textures, Texture motion) {
-  // At half resolution the upsampling pass writes the results, and only the weights of GGX lobes
-  // need normals.
   const bool half = is_half(view);
-  const Results out = half ? Results{} : textures.results;
-  const Texture written = or_else(or_else(out.visibility, out.bent_normal), out.specular);
+  const Results& out = textures.results;  // at half resolution the upsampling pass writes it
+  // At half resolution only the weights of GGX lobes need normals.
   const Texture normals = half && !view.lobe() ? Texture{} : view.image(ALCOVE_IMAGE_NORMALS);
-  return {{{"raw_image", raw.sums},
-           {"bent_image", or_else(raw.bent, raw.sums)},
-           {"depth_image", depth},
-           {"normal_image", or_else(normals, depth)},
-           {"half_image", textures.texels.current},
-           {"half_depth_image", textures.depth.current},
-           {"visibility_image", or_else(out.visibility, written)},
-           {"bent_normal_image", or_else(out.bent_normal, written)},
-           {"history_image", textures.texels.previous},
-           {"history_depth_image", textures.depth.previous},
-           {"next_history_image", textures.texels.current},
-           {"motion_image", or_else(motion, depth)},
-           {"bent_history_image", or_else(textures.bent.previous, textures.texels.previous)},
-           {"next_bent_history_image", or_else(textures.bent.current, textures.texels.current)},
-           {"roughness_image", or_else(roughness_of(view), depth)},
-           {"specular_image", out.specular},
-           {"lobe_history_image", textures.lobe.previous},
-           {"next_lobe_history_image", textures.lobe.current}}};
+  const auto unused = [&](bool bound, Texture texture, VkFormat format) {
+    return bound ? or_unused(view, texture, format) : texture;
+  };
+  return {
+      {{"raw_image", raw.sums},
+       {"bent_image", raw.bent},
+       {"depth_image", depth},
+       {"normal_image", or_else(normals, depth)},
+       {"half_image", textures.texels.current},
+       {"half_depth_image", textures.depth.current},
+       {"visibility_image", unused(!half, out.visibility, scalar_format(view.settings.precision))},
+       {"bent_normal_image", out.bent_normal},
+       {"history_image", or_else(textures.texels.previous, depth)},
+       {"history_depth_image", or_else(textures.depth.previous, depth)},
+       {"next_history_image", unused(!half, textures.texels.current, kHistoryFormat)},
+       {"motion_image", or_else(motion, depth)},
+       {"bent_history_image", or_else(textures.bent.previous, depth)},
+       {"next_bent_history_image",
+        unused(view.bent_normal(), textures.bent.current, kBentHistoryFormat)},
+       {"roughness_image", or_else(roughness_of(view), depth)},
+       {"specular_image", out.specular},
+       {"lobe_history_image", or_else(textures.lobe.previous, raw.sums)},
+       {"next_lobe_history_image",
+        unused(view.lobe(), textures.lobe.current, kLobeHistoryFormat)}}};
 }
 
 // Returns the invocations of the shader.
@@ -200,7 +196,8 @@ tl::expected<Results, Error> describe_reconstruct(const ViewWork& view, Texture 
   parameters.history_texel = 1.0f / maths::vec2(stored.width, stored.height);
   const bool half = is_half(view);
   view.list.dispatch({.label = "reconstruct",
-                      .shader = shader_of(has_history(view), view.lobe(), half),
+                      .shader = variant(half ? Shader::reconstruct_half : Shader::reconstruct,
+                                        view.bent_normal(), view.lobe()),
                       .constants = constants_of(view, past, bool(motion)),
                       .images = images_of(view, depth, raw, textures, motion),
                       .parameters = bytes_of(parameters),

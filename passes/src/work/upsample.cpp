@@ -4,6 +4,7 @@
 #include "maths/half_texel.h"
 #include "upsample_parameters.h"
 #include "work/bindings.h"
+#include "work/output_format.h"
 
 namespace alcove::passes {
 
@@ -15,12 +16,11 @@ namespace {
 // Fitted to the error over the development views (`alcove compare --set half_resolution=true`).
 constexpr float kTolerancePx = 1.0f;
 
-std::array<NamedConstant, 7> constants_of(const ViewWork& view) {
+std::array<NamedConstant, 6> constants_of(const ViewWork& view) {
   const AlcoveSettings& settings = view.settings;
   return {{{"kPerspective", flag(is_perspective(view.projection))},
            {"kVisibility", flag(view.visibility())},
            {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
-           {"kBentNormal", flag(view.bent_normal())},
            {"kNormalEncoding", view.bent_normal() ? encoding_of(view) : 0u},
            {"kReversed", flag(is_reversed(view.projection))},
            {"kAreas", flag(view.in_part)}}};
@@ -51,18 +51,18 @@ maths::UpsampleParameters parameters_of(const ViewWork& view, VkExtent2D stored)
 
 void describe_upsample(const ViewWork& view, Texture depth, const HalfTexels& texels,
                        const Results& results) {
-  const Texture written =
-      or_else(or_else(results.visibility, results.bent_normal), results.specular);
   const Texture normals = results.bent_normal ? view.image(ALCOVE_IMAGE_NORMALS) : Texture{};
-  const NamedTexture images[] = {{"half_image", texels.half},
-                                 {"half_depth_image", texels.depth},
-                                 {"depth_image", depth},
-                                 {"normal_image", or_else(normals, depth)},
-                                 {"residual_image", or_else(texels.residuals, texels.half)},
-                                 {"visibility_image", or_else(results.visibility, written)},
-                                 {"bent_normal_image", or_else(results.bent_normal, written)},
-                                 {"lobe_image", or_else(texels.lobes, texels.half)},
-                                 {"specular_image", or_else(results.specular, written)}};
+  const NamedTexture images[] = {
+      {"half_image", texels.half},
+      {"half_depth_image", texels.depth},
+      {"depth_image", depth},
+      {"normal_image", or_else(normals, depth)},
+      {"residual_image", texels.residuals},
+      {"visibility_image",
+       or_unused(view, results.visibility, scalar_format(view.settings.precision))},
+      {"bent_normal_image", results.bent_normal},
+      {"lobe_image", texels.lobes},
+      {"specular_image", results.specular}};
   // An invocation of the upsampling computes the pixels between the centres of four texels, of
   // which the first lies one pixel before the image.
   const auto invocations = [&](std::uint32_t begin, std::uint32_t size) {
@@ -71,7 +71,7 @@ void describe_upsample(const ViewWork& view, Texture depth, const HalfTexels& te
   const AlcoveArea& area = view.written;
   view.list.dispatch(
       {.label = "upsample",
-       .shader = results.specular ? Shader::upsample_specular : Shader::upsample,
+       .shader = variant(Shader::upsample, view.bent_normal(), view.lobe()),
        .constants = constants_of(view),
        .images = images,
        // The textures are of the largest size.

@@ -22,8 +22,8 @@ AlcoveBindingType binding_type(VkDescriptorType type) {
       return ALCOVE_BINDING_TYPE_PARAMETERS;
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
       return ALCOVE_BINDING_TYPE_TABLE;
-    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
-      return ALCOVE_BINDING_TYPE_SAMPLED_IMAGE;
+    case VK_DESCRIPTOR_TYPE_SAMPLER:
+      return ALCOVE_BINDING_TYPE_SAMPLER;
     case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
       return ALCOVE_BINDING_TYPE_FETCHED_IMAGE;
     default:
@@ -150,7 +150,8 @@ bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding, 
            .type = binding_type(binding.type),
            .access = binding.access,
            .resource = ALCOVE_WORK_NONE};
-  if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS) return true;
+  if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS || bound.type == ALCOVE_BINDING_TYPE_SAMPLER)
+    return true;
   const Texture used =
       bound.type == ALCOVE_BINDING_TYPE_TABLE ? Texture{add_table("table", table)} : given;
   if (find(used) == nullptr) return false;
