@@ -24,8 +24,8 @@ tl::expected<void, passes::Error> add_occlusion(framegraph::Graph& graph, passes
                                       : VK_FORMAT_R32G32B32A32_SFLOAT;
   const auto request = [&](bool wanted, AlcoveImageRole role, const char* name, VkFormat format) {
     if (wanted && !textures[role] && textures[ALCOVE_IMAGE_DEPTH]) {
-      textures[role] = graph.create_texture(
-          name, {format, framegraph::Extent::relative(textures[ALCOVE_IMAGE_DEPTH])});
+      textures[role] =
+          graph.create_texture(name, {format, extent_of(graph, textures[ALCOVE_IMAGE_DEPTH])});
     }
   };
   request(settings.visibility, ALCOVE_IMAGE_VISIBILITY, "visibility", scalar);

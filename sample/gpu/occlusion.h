@@ -24,6 +24,13 @@ struct OcclusionSettings : AlcoveSettings {
   }
 };
 
+// The extent of a texture, for another of the same size.
+[[nodiscard]] inline framegraph::Extent extent_of(const framegraph::Graph& graph,
+                                                  framegraph::Texture texture) {
+  const VkExtent3D size = graph.extent(texture);
+  return framegraph::Extent::absolute(size.width, size.height);
+}
+
 // Adds the passes of a view. Creates textures for the outputs that the settings enable and that
 // `textures` lacks, in the precision of the settings.
 [[nodiscard]] tl::expected<void, passes::Error> add_occlusion(

@@ -60,7 +60,7 @@ Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& vi
                                 ? VK_FORMAT_R16G16B16A16_SFLOAT
                                 : VK_FORMAT_R32G32B32A32_SFLOAT;
     textures[ALCOVE_IMAGE_MULTI_BOUNCE] =
-        graph.create_texture("multi-bounce", {format, framegraph::Extent::relative(gbuffer.depth)});
+        graph.create_texture("multi-bounce", {format, extent_of(graph, gbuffer.depth)});
   }
   const auto message = [](const passes::Error& error) { return error.message; };
   ALCOVE_TRY_VOID(

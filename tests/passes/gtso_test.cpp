@@ -74,8 +74,7 @@ class GtsoPass : public PassTest {
   Texture add(Graph& graph, const AlcoveCamera& camera, ViewTextures textures,
               const OcclusionSettings& settings, bool normals_in_view_space = true) {
     textures[ALCOVE_IMAGE_SPECULAR] = graph.create_texture(
-        "specular",
-        {VK_FORMAT_R32_SFLOAT, framegraph::Extent::relative(textures[ALCOVE_IMAGE_DEPTH])});
+        "specular", {VK_FORMAT_R32_SFLOAT, sample::extent_of(graph, textures[ALCOVE_IMAGE_DEPTH])});
     add_passes(
         graph, gpu().kernels(),
         {.settings = &settings,

@@ -17,7 +17,7 @@ class MultiBouncePass : public PassTest {
     textures[ALCOVE_IMAGE_ALBEDO] = upload(graph, albedo);
     textures[ALCOVE_IMAGE_VISIBILITY] = visibility;
     textures[ALCOVE_IMAGE_MULTI_BOUNCE] = graph.create_texture(
-        "multi-bounce", {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::relative(visibility)});
+        "multi-bounce", {VK_FORMAT_R32G32B32A32_SFLOAT, sample::extent_of(graph, visibility)});
     add_passes(graph, gpu().kernels(), {.settings = &settings, .camera = test_views().front().view},
                0, textures, [](GraphWork&, const ViewWork& view) {
                  describe_multi_bounce(view, view.image(ALCOVE_IMAGE_VISIBILITY));

@@ -80,7 +80,7 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
     if (input.motion != nullptr) textures[ALCOVE_IMAGE_MOTION] = upload(graph, *input.motion);
     textures[ALCOVE_IMAGE_VISIBILITY] = graph.create_texture(
         "visibility",
-        {VK_FORMAT_R32_SFLOAT, framegraph::Extent::relative(textures[ALCOVE_IMAGE_DEPTH])});
+        {VK_FORMAT_R32_SFLOAT, sample::extent_of(graph, textures[ALCOVE_IMAGE_DEPTH])});
     const framegraph::Texture raw =
         upload(graph,
                packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion, input.tile_size,

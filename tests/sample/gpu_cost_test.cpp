@@ -357,7 +357,6 @@ TEST_P(CompiledPresets, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
 
 // Bent normals need the normals once more. They are on for the GPU for which that costs most.
 TEST_P(CompiledPresets, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPixel) {
-  using passes::NormalEncoding;
   struct PackedEncoding {
     const char* name;
     AlcoveNormalEncoding encoding;

@@ -210,8 +210,9 @@ Result<void> run_measure(const Options& options) {
       one.quality = quality;
       ALCOVE_TRY(const auto settings, occlusion_settings(one, session.settings.radius));
       const CostInputs inputs{.width = width, .height = height, .settings = settings};
-      ALCOVE_TRY(const auto frame,
-                 measure(session, options, {std::string(passes::kQualityNames.at(quality)), inputs}));
+      ALCOVE_TRY(
+          const auto frame,
+          measure(session, options, {std::string(passes::kQualityNames.at(quality)), inputs}));
       report["measured"].push_back(print(frame));
     }
   }

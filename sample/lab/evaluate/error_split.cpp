@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "alcove/passes/setting_table.h"
 #include "evaluate/errors.h"
 #include "support/image_io.h"
 #include "support/progress.h"

@@ -7,12 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "alcove/passes/setting_table.h"
 #include "evaluate/sweep.h"
 
 namespace alcove::sample {
 namespace {
 
-using OcclusionSettings;
 using Values = std::array<double, 3>;  // by Situation
 
 struct Feature {

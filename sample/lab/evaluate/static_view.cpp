@@ -5,8 +5,6 @@
 
 namespace alcove::sample {
 
-using OcclusionSettings;
-
 FrameRequest frame_request(const StaticSetup& setup, const OcclusionSettings& settings,
                            std::uint32_t frame) {
   const auto camera = [&](std::uint32_t at) {
