@@ -220,7 +220,7 @@ class Search {
       // A tenth of a frame at least is the search, whose time is proportional to the samples. More
       // samples that exceed the limit even so are left out without modelling their time.
       const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(before);
-      const auto change = [&](auto OcclusionSettings::*field, auto value) {
+      const auto change = [&](auto AlcoveSettings::*field, auto value) {
         Choice changed = before.choice;
         changed.settings.*field = value;
         const double more = samples_per_pixel(changed.settings) / samples_per_pixel(from) - 1.0;

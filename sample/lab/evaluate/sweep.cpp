@@ -63,7 +63,7 @@ std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   for (const AlcoveQuality quality : presets()) {
     const OcclusionSettings preset = OcclusionSettings(quality, base.radius);
     list.add(std::string(passes::kQualityNames.at(quality)),
-             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution,
+             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution != 0,
               preset.depth_layers});
   }
   for (const SweepPoint& point : kSweepPoints) list.add(name_of(point), point);
