@@ -305,12 +305,14 @@ TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime)
 TEST_F(WorkOfView, ImageThatADispatchWritesIsBoundOnceAndVisibilityNeedsAtMostFourStorageImages) {
   for (std::uint32_t choice = 0; choice < 32; ++choice) {
     const auto chosen = [&](std::uint32_t bit, VkFormat format) {
-      return (choice & bit) != 0 ? AlcoveWorkImage{format, 64, 48} : AlcoveWorkImage{};
+      return (choice & bit) != 0 ? AlcoveWorkImage{static_cast<std::uint32_t>(format), 64, 48}
+                                 : AlcoveWorkImage{};
     };
-    info_.visibility = chosen(1, VK_FORMAT_R8_UNORM);
-    info_.bent_normal = chosen(2, VK_FORMAT_R8G8B8A8_SNORM);
-    info_.specular = chosen(4, VK_FORMAT_R8_UNORM);
-    settings_.half_resolution = choice & 8;
+    image(ALCOVE_IMAGE_VISIBILITY) = chosen(1, VK_FORMAT_R8_UNORM);
+    image(ALCOVE_IMAGE_BENT_NORMAL) = chosen(2, VK_FORMAT_R8G8B8A8_SNORM);
+    image(ALCOVE_IMAGE_SPECULAR) = chosen(4, VK_FORMAT_R8_UNORM);
+    settings_.specular = ALCOVE_SPECULAR_SLICES;
+    settings_.half_resolution = (choice & 8) != 0 ? 1 : 0;
     settings_.history_frames = (choice & 16) != 0 ? 32 : 0;
     const Description made = describe();
     if ((choice & 7) == 0) continue;  // a view without an output is an error
@@ -327,7 +329,9 @@ TEST_F(WorkOfView, ImageThatADispatchWritesIsBoundOnceAndVisibilityNeedsAtMostFo
         EXPECT_EQ(bindings[binding.resource], 1u) << binding.name;
         ++written;
       }
-      if ((choice & 7) == 1) EXPECT_LE(written, 4u);
+      if ((choice & 7) == 1) {
+        EXPECT_LE(written, 4u);
+      }
     }
   }
 }
