@@ -8,9 +8,9 @@ namespace alcove::sample {
 Result<ImageHeader> read_image_header(std::span<const uint8_t> bytes) {
   if (is_png(bytes)) return read_png_header(bytes);
   if (is_jpeg(bytes)) return read_jpeg_header(bytes);
-  if (const auto kind = foreign_kind(bytes, "glTF has only PNG and JPEG"); !kind.empty())
-    return Failure(kind);
-  return Failure("is not a PNG or JPEG (glTF has no other image formats)");
+  const std::string kind = foreign_kind(bytes, "glTF has no other image formats");
+  return Failure(kind.empty() ? "is not a PNG or JPEG (glTF has no other image formats)"
+                              : "is not a PNG or JPEG: it " + kind);
 }
 
 Result<DecodedImage> decode_image(std::span<const uint8_t> bytes, const ImageHeader& header,
