@@ -17,7 +17,6 @@
 namespace alcove::sample {
 namespace {
 
-
 class FeaturesTest : public GpuTest {
  protected:
   static FrameImages draw(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
