@@ -28,13 +28,13 @@ enum class Command {
   view,
   compare,
   recommend,
+  report,
   graph,
   doctor,
   // The laboratory.
   motion,
   cost,
-  measure,
-  report
+  measure
 };
 // Names are in the order of the enumerators.
 enum class GraphFormat { text, dot, work };
