@@ -1,3 +1,4 @@
+#include "alcove/passes/setting_table.h"
 #include "evaluate/recommendation.h"
 
 #include <gmock/gmock.h>
