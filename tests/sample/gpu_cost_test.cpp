@@ -17,6 +17,7 @@
 #include "alcove/passes/setting_names.h"
 #include "gpu_cost/budget.h"
 #include "gpu_cost/cache_traffic.h"
+#include "gpu_cost/presets.h"
 #include "gpu_cost/xegtao.h"
 
 namespace alcove::sample {
@@ -352,6 +353,31 @@ TEST_P(CompiledPresets, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
     const double tile = inputs.settings.tile_size;
     EXPECT_GE(search.fetches_per_pixel,
               2.0 * inputs.settings.slices * inputs.settings.steps / (tile * tile));
+  }
+}
+
+// A texel that a shader loads and accesses.cpp does not know would cost no byte.
+TEST_P(CompiledPresets, DeclaredAccessesAreTheLoadsOfTheCompiledShaders) {
+  CostInputs inputs;
+  inputs.width = 384;
+  inputs.height = 216;
+  std::vector<passes::OcclusionSettings> all;
+  for (const passes::Quality quality : presets())
+    all.push_back(passes::quality_settings(quality, 0.5f));
+  all.push_back(passes::quality_settings(passes::Quality::medium, 0.5f));
+  all.back().bent_normal = true;
+  for (const passes::OcclusionSettings& settings : all) {
+    inputs.settings = settings;
+    const auto frames = modelled_frames(part_, device_, inputs);
+    ASSERT_TRUE(frames) << frames.error();
+    for (const ModelledFrame& frame : *frames) {
+      for (const ModelledPass& pass : frame.passes) {
+        // Loads of rare branches, such as those of a missing normal, add up to less than one.
+        EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
+            << pass.pass << ", " << name_of(frame.state) << " frame, " << settings.tile_size << "x"
+            << settings.tile_size << ", " << settings.slices << " of " << settings.steps;
+      }
+    }
   }
 }
 
