@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobe_samples.h"
+#include "gtso_table.h"
+#include "maths/ggx.h"
 #include "maths/gtso_table.h"
 #include "maths/packing.h"
-#include "tables.h"
 
 namespace alcove::passes {
 
@@ -16,13 +16,21 @@ GtsoLobe::GtsoLobe(float mirror_from_normal, float roughness, int samples)
   const float z = std::max(std::cos(mirror_from_normal), 1e-3f);
   const vec3 view(-std::sqrt(1.0f - z * z), 0.0f, z);
   double sum = 0.0;
-  for_each_lobe_sample(view, alpha, samples, [&](const vec3& light, const vec3&, float share) {
+  // Microfacet normals are sampled in proportion to the area of them that the view sees. The weight
+  // is the fraction of the reflected light that other microfacets do not shadow.
+  for (int i = 0; i < samples; ++i) {
+    const double fraction = 0.5 + i * 0.6180339887498949;
+    const vec3 half = maths::sample_ggx_normal(view, alpha, float(fraction - std::floor(fraction)),
+                                               (float(i) + 0.5f) / float(samples));
+    const vec3 light = 2.0f * glm::dot(view, half) * half - view;
+    if (light.z <= 0.0f) continue;
     x_.push_back(light.x);
     y_.push_back(light.y);
     z_.push_back(light.z);
-    weights_.push_back(share);
-    sum += share;
-  });
+    weights_.push_back(maths::ggx_shadowing(view.z, light.z, alpha) /
+                       maths::ggx_masking(view.z, alpha));
+    sum += weights_.back();
+  }
   for (float& weight : weights_) weight = static_cast<float>(weight / sum);
 }
 

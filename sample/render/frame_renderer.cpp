@@ -124,10 +124,10 @@ void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, 
 }
 
 // Adds the passes that use visibility and bent normals: multi-bounce, and the lighting of the
-// surfaces with the environment, if `probe` is not null. Adds nothing if no bent normals are
+// surfaces with the environment, if `light` is not null. Adds nothing if no bent normals are
 // computed. Emission is left out, because the ray-traced reference does not have it.
 Result<void> FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
-                                          const DeclaredFrame& declared, const Probe* probe,
+                                          const DeclaredFrame& declared, const Light* light,
                                           ReadBack& read_back, FrameImages& images) {
   const passes::OcclusionOutputs& outputs = declared.outputs;
   if (!outputs.bent_normal || request.light == nullptr) return {};
@@ -136,34 +136,26 @@ Result<void> FrameRenderer::declare_light(Graph& graph, const FrameRequest& requ
       request.occlusion.precision);
   if (!bounced) return Failure(bounced.error().message);
   read_back.add(graph, *bounced, [&](const Texels& t) { images.multi_bounce = rgb(t); });
-  if (probe == nullptr) return {};
-  const passes::Environment environment = probe->import(graph);
-  const auto light = [&](const passes::ApplyInputs& occlusion, bool multi_bounce,
-                         Image<glm::vec3> LitImages::*image, bool parts = false) {
-    const auto read = [&](Texture texture, Image<glm::vec3> LitImages::*part) {
-      read_back.add(graph, texture,
-                    [&images, part](const Texels& t) { images.lit.*part = rgb(t); });
-    };
-    return add_light(declared.frame, declared.surfaces, outputs, environment, occlusion,
-                     {.multi_bounce = multi_bounce, .parts = parts})
-        .map([&](const passes::AppliedLight& lit) {
-          read(lit.lit, image);
-          read(lit.diffuse, &LitImages::diffuse);
-          read(lit.specular, &LitImages::specular);
-        });
+  if (light == nullptr) return {};
+  const Texture environment = light->import(graph);
+  const auto add = [&](const LightOcclusion& occlusion, Image<glm::vec3> LitImages::*image) {
+    const Lit lit =
+        light->add(graph, environment, request.view, declared.surfaces, outputs.normals, occlusion);
+    read_back.add(graph, lit.all,
+                  [&images, image](const Texels& t) { images.lit.*image = rgb(t); });
+    return lit;
   };
-  const passes::ApplyInputs unbent{.visibility = outputs.visibility};
-  const passes::ApplyInputs bent{.visibility = outputs.visibility,
-                                 .bent_normal = outputs.bent_normal};
-  passes::ApplyInputs bounced_light = bent, all = bent;
-  bounced_light.specular_occlusion = outputs.visibility;
-  all.specular_occlusion = declared.specular_occlusion.front();
-  ALCOVE_TRY_VOID(light(all, true, &LitImages::all, true));
+  const LightOcclusion all{outputs.visibility, outputs.bent_normal,
+                           declared.specular_occlusion.front(), true};
+  const Lit lit = add(all, &LitImages::all);
+  read_back.add(graph, lit.diffuse, [&](const Texels& t) { images.lit.diffuse = rgb(t); });
+  read_back.add(graph, lit.specular, [&](const Texels& t) { images.lit.specular = rgb(t); });
   if (!request.light->lit_steps) return {};
-  ALCOVE_TRY_VOID(light({}, false, &LitImages::unoccluded));
-  ALCOVE_TRY_VOID(light(unbent, false, &LitImages::unbent));
-  ALCOVE_TRY_VOID(light(bent, false, &LitImages::occluded));
-  return light(bounced_light, true, &LitImages::bounced);
+  add({}, &LitImages::unoccluded);
+  add({outputs.visibility}, &LitImages::unbent);
+  add({outputs.visibility, outputs.bent_normal}, &LitImages::occluded);
+  add({outputs.visibility, outputs.bent_normal, outputs.visibility, true}, &LitImages::bounced);
+  return {};
 }
 
 Result<std::unique_ptr<FrameRenderer>> FrameRenderer::create(Gpu& gpu, const Scene& scene,
@@ -198,16 +190,16 @@ Result<FrameCost> FrameRenderer::draw(const FrameRequest& request) {
 Result<FrameImages> FrameRenderer::draw_and_read(const FrameRequest& request) {
   FrameCost ignored;
   ALCOVE_TRY_VOID(draw_gbuffer(request, ignored));
-  std::unique_ptr<Probe> probe;
+  std::unique_ptr<Light> light;
   if (request.light != nullptr && !request.light->environment.empty()) {
-    ALCOVE_TRY(probe, Probe::create(gpu_, request.light->environment));
+    ALCOVE_TRY(light, Light::create(gpu_, request.light->environment));
   }
   FrameImages images;
   ReadBack read_back(gpu_.device());
   const auto declare = [&](Graph& graph) -> Result<void> {
     ALCOVE_TRY(const auto declared, declare_occlusion(graph, request));
     read_occlusion(graph, declared, read_back, images);
-    ALCOVE_TRY_VOID(declare_light(graph, request, declared, probe.get(), read_back, images));
+    ALCOVE_TRY_VOID(declare_light(graph, request, declared, light.get(), read_back, images));
     return read_back.added();
   };
   ALCOVE_TRY_VOID(gpu_.run(declare));

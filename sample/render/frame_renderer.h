@@ -12,7 +12,7 @@
 #include "gpu/gpu.h"
 #include "gpu/gpu_image.h"
 #include "render/gbuffer.h"
-#include "render/probe.h"
+#include "render/light.h"
 #include "render/read_back.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"
@@ -51,7 +51,8 @@ struct FrameCost {
   double cpu_ms = 0;          // processor time of all threads for the occlusion passes
 };
 
-// Radiance towards the eye with the environment as the only light, zero at pixels of the sky.
+// Radiance towards the eye with the environment as the only light. Pixels of the sky show the
+// environment, and are black in `diffuse` and `specular`.
 struct LitImages {
   Image<glm::vec3> all;  // with all effects of the occlusion
   Image<glm::vec3> diffuse;
@@ -116,7 +117,7 @@ class FrameRenderer {
   static void read_occlusion(framegraph::Graph& graph, const DeclaredFrame& declared,
                              ReadBack& read_back, FrameImages& images);
   Result<void> declare_light(framegraph::Graph& graph, const FrameRequest& request,
-                             const DeclaredFrame& declared, const Probe* probe, ReadBack& read_back,
+                             const DeclaredFrame& declared, const Light* light, ReadBack& read_back,
                              FrameImages& images);
   void append_times(FrameCost& cost, bool occlusion);
 

@@ -248,7 +248,7 @@ Result<void> write_images(const Rendering& rendering, const std::filesystem::pat
   for (std::size_t i = 0; i < images.specular_occlusion.size(); ++i)
     writer.both(specular_name(rendering.light, i), images.specular_occlusion[i]);
   writer.exr("lit", lit.all);
-  writer.png("lit", display_colours(with_sky(rendering, lit.all), exposure));
+  writer.png("lit", display_colours(lit.all, exposure));
   writer.png("lit_diffuse", display_colours(lit.diffuse, exposure));
   writer.png("lit_specular", display_colours(lit.specular, exposure));
   writer.exr("depth", linear_depth(rendering));

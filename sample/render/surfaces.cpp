@@ -5,10 +5,6 @@
 namespace alcove::sample {
 namespace {
 
-// The channel of the g-buffer textures that holds roughness (with the albedo) and metallic (with
-// the emission).
-constexpr std::uint32_t kAlpha = 3;
-
 passes::Matrix to_matrix(const glm::mat4& matrix) {
   passes::Matrix result;
   std::memcpy(result.data(), &matrix, sizeof(result));
@@ -54,29 +50,9 @@ Result<passes::OcclusionOutputs> add_occlusion(const passes::Frame& frame, const
     settings.roughness = *surfaces.roughness;
   } else {
     inputs.roughness = gbuffer.albedo;
-    settings.roughness_channel = kAlpha;
+    settings.roughness_channel = 3;
   }
   return passes::add_occlusion(frame, inputs, settings, history_name).map_error(message);
-}
-
-Result<passes::AppliedLight> add_light(const passes::Frame& frame, const Surfaces& surfaces,
-                                       const passes::OcclusionOutputs& outputs,
-                                       const passes::Environment& probe,
-                                       passes::ApplyInputs occlusion,
-                                       passes::ApplySettings settings) {
-  passes::ApplyInputs& inputs = occlusion;
-  inputs.depth = outputs.linear_depth;
-  inputs.normals = outputs.normals;
-  inputs.albedo = surfaces.gbuffer.albedo;
-  if (!surfaces.roughness) inputs.roughness = surfaces.gbuffer.albedo;
-  inputs.metallic = surfaces.gbuffer.emissive;
-  inputs.normals_in_view_space = surfaces.normals == NormalSource::depth;
-  inputs.harmonics = probe.harmonics;
-  inputs.map = probe.map;
-  settings.roughness = surfaces.roughness.value_or(0.0f);
-  settings.roughness_channel = kAlpha;
-  settings.metallic_channel = kAlpha;
-  return passes::add_apply(frame, inputs, settings).map_error(message);
 }
 
 }  // namespace alcove::sample

@@ -4,8 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "alcove/passes/apply.h"
-#include "alcove/passes/environment.h"
 #include "alcove/passes/occlusion.h"
 #include "render/gbuffer.h"
 #include "render/normal_source.h"
@@ -41,14 +39,5 @@ struct HiddenDepths {
 [[nodiscard]] Result<passes::OcclusionOutputs> add_occlusion(
     const passes::Frame& frame, const Surfaces& surfaces, passes::OcclusionSettings settings,
     std::string_view history_name = "occlusion");
-
-// Adds the pass that lights the surfaces with a probe. `occlusion` has the textures of the
-// occlusion that is applied, and nothing else.
-[[nodiscard]] Result<passes::AppliedLight> add_light(const passes::Frame& frame,
-                                                     const Surfaces& surfaces,
-                                                     const passes::OcclusionOutputs& outputs,
-                                                     const passes::Environment& probe,
-                                                     passes::ApplyInputs occlusion,
-                                                     passes::ApplySettings settings = {});
 
 }  // namespace alcove::sample

@@ -1,9 +1,11 @@
 #include "viewer/scene_frame.h"
 
+#include <limits>
 #include <utility>
 
 #include "alcove/passes/multi_bounce.h"
 #include "render/display.h"
+#include "spirv/picture.h"
 
 namespace alcove::sample {
 namespace {
@@ -28,15 +30,6 @@ bool reads_albedo(Picture picture) {
   return picture == Picture::lit || picture == Picture::multi_bounce || picture == Picture::albedo;
 }
 
-glm::mat3 ray_from_ndc(const Camera& camera, const CameraMatrices& matrices) {
-  const glm::mat3 rotation(matrices.world_from_view);
-  if (camera.orthographic) return {glm::vec3(0.0f), glm::vec3(0.0f), -rotation[2]};
-  const glm::mat4& p = matrices.clip_from_view;
-  return rotation * glm::mat3(1.0f / p[0][0], 0.0f, 0.0f,  //
-                              0.0f, 1.0f / p[1][1], 0.0f,  //
-                              p[2][0] / p[0][0], p[2][1] / p[1][1], -1.0f);
-}
-
 }  // namespace
 
 tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
@@ -46,19 +39,22 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
   auto done =
       assign(made->gbuffer_,
              GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric))
-          .and_then([&] { return assign(made->probe_, Probe::create(gpu, environment)); })
-          .and_then([&] { return assign(made->picture_, PicturePass::create(gpu, format)); });
+          .and_then([&] { return assign(made->light_, Light::create(gpu, environment)); })
+          .and_then([&] {
+            return assign(
+                made->picture_,
+                FullScreenPass::create(
+                    gpu, {"picture", kPicture, 2, sizeof(maths::PictureParameters), {format}}));
+          });
   if (!done) return Failure(std::move(done.error()));
   made->exposure_ = exposure_of(environment);
   return made;
 }
 
 void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
-  light_ = {};
   const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
   view_ = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
            matrices.clip_from_view, state.camera.reversed_z};
-  ray_from_ndc_ = ray_from_ndc(state.camera, matrices);
   choices_ = {state.settings, compared_settings(state), state.roughness};
   if (state.fits_budget)  // the history goes on when the number of samples changes
     choices_.settings.slices = choices_.settings.steps = 0;
@@ -113,60 +109,61 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
     }
   }
   surfaces.gbuffer = gbuffer_->add(graph, view_, surfaces.gbuffer);
+  environment_ = state.picture == Picture::lit ? light_->import(graph) : Texture();
 
-  PictureInputs inputs = picture_inputs(state);
-  auto picture = add_picture(graph, state, surfaces, settings, "occlusion", inputs);
+  maths::PictureParameters parameters = picture_parameters(state);
+  auto picture = add_picture(graph, state, surfaces, settings, "occlusion");
   if (!picture) return picture;
-  inputs.texture = *picture;
+  Texture shown[2] = {*picture};
   if (compared) {
-    auto other = add_picture(graph, state, surfaces, with_outputs(*compared, state.picture),
-                             "compared", inputs);
+    auto other =
+        add_picture(graph, state, surfaces, with_outputs(*compared, state.picture), "compared");
     if (!other) return other;
-    inputs.other = *other;
-    inputs.split = state.split * static_cast<float>(graph.extent(target).width);
+    shown[1] = *other;
+    parameters.split = state.split * static_cast<float>(graph.extent(target).width);
   }
-  return picture_->add(graph, target, inputs);
+  picture_->add(graph, shown, {&target, 1}, parameters);
+  return target;
 }
 
-PictureInputs SceneFrame::picture_inputs(const ViewState& state) const {
-  PictureInputs inputs;
+maths::PictureParameters SceneFrame::picture_parameters(const ViewState& state) const {
+  maths::PictureParameters parameters{glm::mat4(1.0f), maths::kShowGrey,
+                                      std::numeric_limits<float>::max(), 1.0f};
   switch (state.picture) {
     case Picture::lit:
-      inputs.show = maths::kShowRadiance;
-      inputs.world_from_shown = ray_from_ndc_;
-      inputs.scale = exposure_;
+      parameters.show = maths::kShowRadiance;
+      parameters.scale = exposure_;
       break;
     case Picture::multi_bounce:
     case Picture::albedo:
-      inputs.show = maths::kShowColour;
+      parameters.show = maths::kShowColour;
       break;
     case Picture::bent_normal:
     case Picture::normals:
-      inputs.show = maths::kShowDirection;
+      parameters.show = maths::kShowDirection;
       if (normals_ == NormalSource::depth)
-        inputs.world_from_shown = glm::transpose(glm::mat3(view_.view_from_world));
+        parameters.world_from_shown = glm::mat4(glm::transpose(glm::mat3(view_.view_from_world)));
       break;
     case Picture::depth:
-      inputs.show = maths::kShowDepth;
-      inputs.scale = glm::distance(state.camera.eye_ws, state.camera.target_ws);
+      parameters.show = maths::kShowDepth;
+      parameters.scale = glm::distance(state.camera.eye_ws, state.camera.target_ws);
       break;
     case Picture::motion:
-      inputs.show = maths::kShowMotion;
-      inputs.scale = 1.0f / kFullMotion;
+      parameters.show = maths::kShowMotion;
+      parameters.scale = 1.0f / kFullMotion;
       break;
     default:
-      inputs.show = maths::kShowGrey;
+      parameters.show = maths::kShowGrey;
   }
-  return inputs;
+  return parameters;
 }
 
-// Adds the passes of the picture with `settings`, and returns the texture that is inputs.
+// Adds the passes of the picture with `settings`, and returns the texture that is shown.
 tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const ViewState& state,
                                                            const Surfaces& surfaces,
                                                            OcclusionSettings settings,
-                                                           std::string_view history_name,
-                                                           PictureInputs& inputs) {
-  settings.linear_depth = true;  // which lighting and a picture of it read
+                                                           std::string_view history_name) {
+  settings.linear_depth = true;  // which a picture of it reads
   const auto outputs = add_occlusion(frame_of(graph), surfaces, settings, history_name);
   if (!outputs) return Failure(outputs.error());
   // All outputs of the settings are computed, and timed, whether they are shown or not.
@@ -174,7 +171,10 @@ tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const V
     if (output) graph.output(output);
   switch (state.picture) {
     case Picture::lit:
-      return add_lit(graph, surfaces, *outputs, inputs);
+      return light_
+          ->add(graph, environment_, view_, surfaces, outputs->normals,
+                {outputs->visibility, outputs->bent_normal, outputs->specular, true})
+          .all;
     case Picture::multi_bounce:
       return passes::add_multi_bounce(frame_of(graph),
                                       {outputs->visibility, surfaces.gbuffer.albedo},
@@ -195,19 +195,6 @@ tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const V
     default:
       return outputs->visibility;
   }
-}
-
-tl::expected<Texture, std::string> SceneFrame::add_lit(Graph& graph, const Surfaces& surfaces,
-                                                       const passes::OcclusionOutputs& outputs,
-                                                       PictureInputs& inputs) {
-  if (!light_.map) light_ = probe_->import(graph);
-  inputs.linear_depth = outputs.linear_depth;
-  inputs.environment = light_.map;
-  return add_light(frame_of(graph), surfaces, outputs, light_,
-                   {.visibility = outputs.visibility,
-                    .bent_normal = outputs.bent_normal,
-                    .specular_occlusion = outputs.specular})
-      .map([](const passes::AppliedLight& lit) { return lit.lit; });
 }
 
 }  // namespace alcove::sample

@@ -7,18 +7,18 @@
 
 #include "gpu/gpu.h"
 #include "render/gbuffer.h"
+#include "render/light.h"
 #include "render/normal_source.h"
-#include "render/probe.h"
+#include "render/shaders/picture.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"
-#include "viewer/picture_pass.h"
 #include "viewer/view_state.h"
 
 namespace alcove::sample {
 
 // Declares the frames of the window: g-buffer, occlusion and the picture. Passes that the picture
 // does not need are culled. Each frame is one graph. Only the scene's meshes and textures and the
-// probe are resources outside of it.
+// environment are resources outside of it.
 class SceneFrame {
  public:
   // `format` is the format of the window's images. Both references must outlive the object.
@@ -54,26 +54,23 @@ class SceneFrame {
   SceneFrame(Gpu& gpu, NormalSource normals) : gpu_(gpu), normals_(normals) {}
   void begin(framegraph::Graph& graph, const ViewState& state, VkExtent3D size);
   passes::Frame frame_of(framegraph::Graph& graph) const;
-  tl::expected<framegraph::Texture, std::string> add_picture(
-      framegraph::Graph& graph, const ViewState& state, const Surfaces& surfaces,
-      passes::OcclusionSettings settings, std::string_view history_name, PictureInputs& shown);
-  tl::expected<framegraph::Texture, std::string> add_lit(framegraph::Graph& graph,
-                                                         const Surfaces& surfaces,
-                                                         const passes::OcclusionOutputs& outputs,
-                                                         PictureInputs& shown);
-  PictureInputs picture_inputs(const ViewState& state) const;
+  tl::expected<framegraph::Texture, std::string> add_picture(framegraph::Graph& graph,
+                                                             const ViewState& state,
+                                                             const Surfaces& surfaces,
+                                                             passes::OcclusionSettings settings,
+                                                             std::string_view history_name);
+  maths::PictureParameters picture_parameters(const ViewState& state) const;
 
   Gpu& gpu_;
   NormalSource normals_;
   std::unique_ptr<GbufferRenderer> gbuffer_;
-  std::unique_ptr<Probe> probe_;
-  passes::Environment light_;  // the probe in the declared frame; null until a picture reads it
-  std::unique_ptr<PicturePass> picture_;
+  std::unique_ptr<Light> light_;
+  framegraph::Texture environment_;  // in the declared frame, if it is lit
+  std::unique_ptr<FullScreenPass> picture_;
   float exposure_ = 1.0f;
   std::uint32_t index_ = 0;
   std::uint32_t static_frames_ = 0;  // see passes::Frame
   GbufferView view_;                 // of the declared frame
-  glm::mat3 ray_from_ndc_{1.0f};     // of the declared frame: the ray of (ndc x, ndc y, 1)
   Choices choices_;
   std::optional<GbufferView> previous_view_;
   std::optional<Choices> previous_choices_;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <iostream>
 
+#include "gtso_table.h"
 #include "maths/gtso.h"
 #include "random_input.h"
-#include "tables.h"
 
 namespace alcove::maths_test {
 namespace {

@@ -6,9 +6,7 @@
 #include <map>
 #include <string>
 
-#include "apply_parameters.h"
 #include "depth_copy_parameters.h"
-#include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
 #include "inspect_parameters.h"
@@ -49,15 +47,6 @@ const std::map<std::string, Offsets> kExpected = {
      {ALCOVE_OFFSET(GtsoParameters, origins), ALCOVE_OFFSET(GtsoParameters, written),
       ALCOVE_OFFSET(GtsoParameters, size_px), ALCOVE_OFFSET(GtsoParameters, projection),
       ALCOVE_OFFSET(GtsoParameters, view_from_normal), ALCOVE_OFFSET(GtsoParameters, roughness)}},
-    {"ApplyParameters",
-     {ALCOVE_OFFSET(ApplyParameters, projection), ALCOVE_OFFSET(ApplyParameters, world_from_view),
-      ALCOVE_OFFSET(ApplyParameters, world_from_normal), ALCOVE_OFFSET(ApplyParameters, map),
-      ALCOVE_OFFSET(ApplyParameters, roughness), ALCOVE_OFFSET(ApplyParameters, metallic)}},
-    {"EnvironmentParameters",
-     {ALCOVE_OFFSET(EnvironmentParameters, source_px), ALCOVE_OFFSET(EnvironmentParameters, size),
-      ALCOVE_OFFSET(EnvironmentParameters, samples),
-      ALCOVE_OFFSET(EnvironmentParameters, roughness),
-      ALCOVE_OFFSET(EnvironmentParameters, levels)}},
     {"DepthCopyParameters",
      {ALCOVE_OFFSET(DepthCopyParameters, first), ALCOVE_OFFSET(DepthCopyParameters, size),
       ALCOVE_OFFSET(DepthCopyParameters, not_receiving),

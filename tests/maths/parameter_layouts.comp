@@ -3,9 +3,7 @@
 
 // Declares every parameter struct in the uniform block that its shader declares it in.
 
-#include "apply_parameters.h"
 #include "depth_copy_parameters.h"
-#include "environment_parameters.h"
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
 #include "inspect_parameters.h"
@@ -22,8 +20,6 @@ layout(set = 0, binding = 3) uniform D { NormalsParameters normals; };
 layout(set = 0, binding = 4) uniform E { ReconstructParameters reconstruct; };
 layout(set = 0, binding = 5) uniform F { GtsoParameters gtso; };
 layout(set = 0, binding = 6) uniform G { MultiBounceParameters multi_bounce; };
-layout(set = 0, binding = 7) uniform H { ApplyParameters apply; };
-layout(set = 0, binding = 8) uniform I { EnvironmentParameters environment; };
 layout(set = 0, binding = 11) uniform K { UpsampleParameters upsample; };
 layout(set = 0, binding = 12) uniform L { DepthCopyParameters depth_copy; };
 layout(set = 0, binding = 13) uniform M { LinearDepthParameters linear_depth; };
@@ -32,7 +28,6 @@ layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
   sum = projection.size_px.x + gtao.radius + normals.slope.x + reconstruct.largest_weight +
-        gtso.roughness + multi_bounce.size_px.x + apply.roughness + environment.size +
-        gtao.depth_step + upsample.tolerance + depth_copy.sky + float(linear_depth.origin.x) +
+        gtso.roughness + multi_bounce.size_px.x + gtao.depth_step + upsample.tolerance + depth_copy.sky + float(linear_depth.origin.x) +
         float(inspect.has_motion);
 }

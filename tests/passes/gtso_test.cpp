@@ -9,12 +9,12 @@
 #include <limits>
 
 #include "drawing.h"
+#include "gtso_table.h"
 #include "maths/gtso.h"
 #include "maths/gtso_table.h"
 #include "maths/make_projection.h"
 #include "maths/slice.h"
 #include "random_input.h"
-#include "tables.h"
 #include "views.h"
 
 namespace alcove::passes {

@@ -64,23 +64,6 @@ void for_each_texture(OcclusionOutputs& of, const Visit& visit) {
        {&of.visibility, &of.bent_normal, &of.specular, &of.linear_depth, &of.normals})
     visit(*texture);
 }
-template <typename Visit>
-void for_each_texture(ApplyInputs& of, const Visit& visit) {
-  for (Texture* texture :
-       {&of.depth, &of.normals, &of.albedo, &of.roughness, &of.metallic, &of.visibility,
-        &of.bent_normal, &of.specular_occlusion, &of.light, &of.harmonics, &of.map})
-    visit(*texture);
-}
-template <typename Visit>
-void for_each_texture(AppliedLight& of, const Visit& visit) {
-  for (Texture* texture : {&of.lit, &of.diffuse, &of.specular}) visit(*texture);
-}
-template <typename Visit>
-void for_each_texture(Environment& of, const Visit& visit) {
-  visit(of.harmonics);
-  visit(of.map);
-}
-
 // Describes passes with `describe(list, frame, inputs)`, where the textures of `inputs` and of the
 // result are handles of the list, and adds them to the graph. Returns the result with textures of
 // the graph.
@@ -183,21 +166,6 @@ tl::expected<OcclusionOutputs, Error> add_view(const Frame& frame, const ViewInp
                           [&](WorkList& list, const WorkFrame& of, const auto& listed) {
                             return describe_view(list, of, listed, settings);
                           });
-}
-
-tl::expected<AppliedLight, Error> add_apply(const Frame& frame, const ApplyInputs& inputs,
-                                            const ApplySettings& settings) {
-  return add_described(frame, inputs, [&](WorkList& list, const WorkFrame& of, const auto& listed) {
-    return describe_apply(list, of, listed, settings);
-  });
-}
-
-tl::expected<Environment, Error> add_environment(const Frame& frame, Texture equirectangular,
-                                                 const EnvironmentSettings& settings) {
-  return add_described(frame, equirectangular,
-                       [&](WorkList& list, const WorkFrame&, const auto& listed) {
-                         return describe_environment(list, listed, settings);
-                       });
 }
 
 void drop_reconstruct_history(framegraph::Graph& graph, std::string_view history_name) {

@@ -5,12 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "spirv/apply.h"
-#include "spirv/apply_specular.h"
-#include "spirv/environment_half.h"
-#include "spirv/environment_harmonics.h"
-#include "spirv/environment_map.h"
-#include "spirv/environment_prefilter.h"
 #include "spirv/gtao.h"
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
@@ -32,7 +26,6 @@
 #include "spirv/upsample.h"
 #include "spirv/upsample_specular.h"
 #include "tables/gtso.h"
-#include "tables/reflectance.h"
 
 namespace alcove::passes {
 
@@ -61,12 +54,6 @@ constexpr ShaderSource kSources[] = {
     {"mask_depth_integer", kMaskDepthInteger},
     {"multi_bounce", kMultiBounce},
     {"gtso", kGtso, kGtsoTable},
-    {"apply", kApply},
-    {"apply_specular", kApplySpecular, kReflectanceTable},
-    {"environment_map", kEnvironmentMap},
-    {"environment_half", kEnvironmentHalf},
-    {"environment_prefilter", kEnvironmentPrefilter},
-    {"environment_harmonics", kEnvironmentHarmonics},
     {"inspect", kInspect},
 };
 static_assert(std::size(kSources) == kShaderCount);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "gtso_table.h"
 #include "maths/gtso.h"
 #include "maths/multi_bounce.h"
-#include "tables.h"
 #include "tables/gtso.h"
 
 namespace alcove::sample {

@@ -13,16 +13,12 @@ const uint kShowColour = 1u;     // three channels, unchanged
 const uint kShowDirection = 2u;  // a unit vector: each component from -1..1 to 0..1
 const uint kShowDepth = 3u;      // a distance: 0 at the eye, 0.5 at `scale`
 const uint kShowMotion = 4u;     // in uv: red to the right, green downwards, 0.5 without motion
-// Shows radiance as in the lit.png that `alcove render` writes, with the environment as background.
-const uint kShowRadiance = 5u;
+const uint kShowRadiance = 5u;   // as in the lit.png that `alcove render` writes
 
 struct PictureParameters {
-  // A matrix whose meaning depends on `show`. If directions are shown, it converts them from their
-  // space to world space. If radiance is shown, it converts (ndc x, ndc y, 1) to the direction of
-  // that pixel's view ray.
-  mat4 world_from_shown;
-  uint show;    // one of the constants above
-  float split;  // x coordinate in pixels from which `other` is shown
+  mat4 world_from_shown;  // of directions: from their space to world space
+  uint show;              // one of the constants above
+  float split;            // x coordinate in pixels from which the second texture is shown
   float scale;  // of depth, scene units; of motion, 1 / the uv that is fully coloured; of radiance,
                 // the exposure
   float unused;

@@ -78,7 +78,7 @@ struct Frame {
   // texture, or of ImageAreas::read, changes. Zero means the current size.
   VkExtent2D largest_size{};   // size of the history textures; a change discards the history
   VkExtent2D previous_size{};  // of the depth in the previous frame; at most largest_size
-  ImageAreas areas;            // add_apply() reads and writes whole images only
+  ImageAreas areas;
   // Whether adding the passes creates all pipelines that frames of this view can need: for a first
   // frame, after a camera cut, in motion and while static. Declare such a frame in a separate graph
   // that is never recorded, while loading or before settings change. No frame then has to wait for

@@ -46,12 +46,6 @@ enum class Shader : std::uint8_t {
   mask_depth_integer,
   multi_bounce,
   gtso,
-  apply,
-  apply_specular,
-  environment_map,
-  environment_half,
-  environment_prefilter,
-  environment_harmonics,
   inspect,
   count,
 };

@@ -25,8 +25,6 @@
 #include <string_view>
 
 #include "alcove/alcove_work.h"
-#include "alcove/passes/apply.h"
-#include "alcove/passes/environment.h"
 #include "alcove/passes/multi_bounce.h"
 #include "alcove/passes/occlusion.h"
 
@@ -138,12 +136,6 @@ struct WorkFrame {
 [[nodiscard]] tl::expected<OcclusionOutputs, Error> describe_occlusion(
     WorkList& list, const WorkFrame& frame, const OcclusionInputs& inputs,
     const OcclusionSettings& settings);
-[[nodiscard]] tl::expected<AppliedLight, Error> describe_apply(WorkList& list,
-                                                               const WorkFrame& frame,
-                                                               const ApplyInputs& inputs,
-                                                               const ApplySettings& settings);
-[[nodiscard]] tl::expected<Environment, Error> describe_environment(
-    WorkList& list, framegraph::Texture equirectangular, const EnvironmentSettings& settings = {});
 
 // Returns the list as text: its resources, and its dispatches with all that they bind.
 [[nodiscard]] std::string print_work(const AlcoveWork& work);

@@ -1,5 +1,4 @@
-// Computes the lookup tables of the passes by numerical integration. The build and the tests use
-// it.
+// Computes the table of specular occlusion by numerical integration, for the build and the tests.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +8,6 @@
 #include "maths/language.h"
 
 namespace alcove::passes {
-
-// Returns the table of maths/split_sum.h. The view angle varies fastest, then the roughness. Each
-// word holds two 16-bit unorms: the factor of f0 in the lower half and the offset in the upper
-// half.
-[[nodiscard]] std::vector<std::uint32_t> reflectance_table();
 
 // A GGX lobe above its surface, represented by samples of the microfacets that its view sees.
 class GtsoLobe {
