@@ -134,7 +134,7 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
           std::ceil(per_simd / std::max(cost.waves_per_simd, 1.0)) *
           wave_latency(statistics, cost.wave, cost.waves_per_simd, shader.wave, !loops.empty()))};
   cost.dispatch_ms = 1e3 * part.dispatch_seconds;
-  if (assumptions != nullptr) ALCOVE_TRY_VOID(add_caches(part, work, *assumptions, pixels, cost));
+  if (assumptions != nullptr) add_caches(part, work, *assumptions, pixels, cost);
   return cost;
 }
 
