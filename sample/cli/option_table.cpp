@@ -197,9 +197,8 @@ std::span<const OptionRow> option_rows() {
        [](O& o, const V&) { o.validation = true; }},
 
       {kMotion, "Motion", "--path", "NAME",
-       "orbit (around the middle of the view), dolly (towards it), strafe (past a column that is "
-       "added near the eye), object (static camera, a block slides over the ground), cut (the "
-       "camera jumps to another place) or all. Default: all",
+       "orbit (around the middle of the view), dolly (towards it), object (static camera, a block "
+       "slides over the ground), cut (the camera jumps to another place) or all. Default: all",
        [](O& o, const V& v) { o.path = v.one_of_or<MotionKind>(kMotionKindNames, "all"); }},
       {kMotion, "Motion", "--frames", "N",
        "number of frames of each path, which begins at the given view. Three of them are compared "

@@ -28,13 +28,13 @@ enum class Command {
   view,
   compare,
   recommend,
+  report,
   graph,
   doctor,
   // The laboratory.
   motion,
   cost,
-  measure,
-  report
+  measure
 };
 // Names are in the order of the enumerators.
 enum class GraphFormat { text, dot, work };
@@ -61,7 +61,7 @@ struct ViewOptions {
 struct OcclusionOptions {
   passes::Quality quality = passes::Quality::medium;
   bool quality_given = false;   // --quality was given
-  std::optional<float> radius;  // scene units; none: radius_for_view()
+  std::optional<float> radius;  // scene units; none: ViewFinder::radius()
   NormalSource normals = NormalSource::shading;
   std::vector<std::pair<std::string, std::string>> file;  // settings of --settings
   std::vector<std::pair<std::string, std::string>> set;   // --set name=value, in order

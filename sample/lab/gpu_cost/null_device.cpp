@@ -129,8 +129,8 @@ VkDescriptorType descriptor_type(AlcoveBindingType type) {
       return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     case ALCOVE_BINDING_TYPE_TABLE:
       return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case ALCOVE_BINDING_TYPE_SAMPLED_IMAGE:
-      return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case ALCOVE_BINDING_TYPE_SAMPLER:
+      return VK_DESCRIPTOR_TYPE_SAMPLER;
     case ALCOVE_BINDING_TYPE_FETCHED_IMAGE:
       return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     default:
@@ -154,9 +154,9 @@ bool create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch, VkPipe
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const AlcoveWorkBinding& binding :
        std::span(dispatch.bindings).first(dispatch.binding_count)) {
-    const bool sampled = binding.type == ALCOVE_BINDING_TYPE_SAMPLED_IMAGE;
+    const bool samples = binding.type == ALCOVE_BINDING_TYPE_SAMPLER;
     bindings.push_back({binding.number, descriptor_type(binding.type), 1,
-                        VK_SHADER_STAGE_COMPUTE_BIT, sampled ? &sampler : nullptr});
+                        VK_SHADER_STAGE_COMPUTE_BIT, samples ? &sampler : nullptr});
   }
   const VkDescriptorSetLayoutCreateInfo set_info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
