@@ -361,22 +361,14 @@ TEST_P(CompiledPresets, DeclaredAccessesAreTheLoadsOfTheCompiledShaders) {
   CostInputs inputs;
   inputs.width = 384;
   inputs.height = 216;
-  std::vector<passes::OcclusionSettings> all;
-  for (const passes::Quality quality : presets())
-    all.push_back(passes::quality_settings(quality, 0.5f));
-  all.push_back(passes::quality_settings(passes::Quality::medium, 0.5f));
-  all.back().bent_normal = true;
-  for (const passes::OcclusionSettings& settings : all) {
-    inputs.settings = settings;
-    const auto frames = modelled_frames(part_, device_, inputs);
-    ASSERT_TRUE(frames) << frames.error();
-    for (const ModelledFrame& frame : *frames) {
-      for (const ModelledPass& pass : frame.passes) {
-        // Loads of rare branches, such as those of a missing normal, add up to less than one.
-        EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
-            << pass.pass << ", " << name_of(frame.state) << " frame, " << settings.tile_size << "x"
-            << settings.tile_size << ", " << settings.slices << " of " << settings.steps;
-      }
+  for (const passes::Quality quality : presets()) {
+    inputs.settings = passes::quality_settings(quality, 0.5f);
+    const auto frame = modelled_frame(part_, device_, inputs, FrameState::moving);
+    ASSERT_TRUE(frame) << frame.error();
+    for (const ModelledPass& pass : frame->passes) {
+      // The loads of rare branches, such as those of a missing normal, are less than half a load.
+      EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
+          << passes::name_of(quality) << ", " << pass.pass;
     }
   }
 }
