@@ -47,6 +47,7 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
   pending.id = view.id;
   pending.frame = {
       .view = frame.view,
+      .previous_view = frame.previous_view,
       .size = size,
       .depth_format = view.depth.format,
       .has_normals = bool(normals),
