@@ -61,7 +61,7 @@ struct ViewOptions {
 struct OcclusionOptions {
   passes::Quality quality = passes::Quality::medium;
   bool quality_given = false;   // --quality was given
-  std::optional<float> radius;  // scene units; none: radius_for_view()
+  std::optional<float> radius;  // scene units; none: ViewFinder::radius()
   NormalSource normals = NormalSource::shading;
   std::vector<std::pair<std::string, std::string>> file;  // settings of --settings
   std::vector<std::pair<std::string, std::string>> set;   // --set name=value, in order
@@ -71,7 +71,7 @@ struct OcclusionOptions {
 
 struct CostOptions {
   CostInputs inputs;             // without the settings
-  bool loops = false;            // also prints the loops of the shaders
+  bool range = false;            // also models a moving frame under other assumptions
   std::filesystem::path json;    // empty for none
   std::filesystem::path budget;  // file for the budget of the presets; empty for none
 };

@@ -52,9 +52,7 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
 }
 
 void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
-  const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
-  view_ = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-           matrices.clip_from_view, state.camera.reversed_z};
+  view_ = gbuffer_view(state.camera, state.camera, {size.width, size.height});
   choices_ = {state.settings, compared_settings(state), state.roughness};
   if (state.fits_budget)  // the history goes on when the number of samples changes
     choices_.settings.slices = choices_.settings.steps = 0;
@@ -85,7 +83,8 @@ passes::Frame SceneFrame::frame_of(Graph& graph) const {
 
 tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,
                                                        const ViewState& state) {
-  begin(graph, state, graph.extent(target));
+  const VkExtent3D size = graph.extent(target);
+  begin(graph, state, size);
   const OcclusionSettings settings = with_outputs(state.settings, state.picture);
   const std::optional<OcclusionSettings> compared = compared_settings(state);
   const bool specular = settings.specular != passes::Specular::none ||
@@ -104,8 +103,7 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
   for (std::size_t i = 0; i < kGbufferTargets.size(); ++i) {
     const auto& [member, format, name] = kGbufferTargets[i];
     if (wanted[i]) {
-      surfaces.gbuffer.*member =
-          graph.create_texture(name, {format, framegraph::Extent::relative(target)});
+      surfaces.gbuffer.*member = graph.create_texture(name, {format, {size.width, size.height}});
     }
   }
   surfaces.gbuffer = gbuffer_->add(graph, view_, surfaces.gbuffer);

@@ -41,7 +41,7 @@ TEST(OcclusionFrame, PlanHasTheFewestBarrierCommandsAndTheLeastPeakMemory) {
   for (const auto quality : {passes::Quality::medium, passes::Quality::high}) {
     Graph graph;
     declare(graph, *kernels, image, quality);
-    const auto plan = compile(graph);
+    const auto plan = compile(graph.description());
     ASSERT_TRUE(plan) << to_string(plan.error());
     expect_no_command_too_many("own frame", graph.description(), {}, *plan);
     for (const Heap& heap : plan->heaps) EXPECT_EQ(heap.size, heap.lower_bound);

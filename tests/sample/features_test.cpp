@@ -152,9 +152,8 @@ TEST_F(FeaturesTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThe
   const auto renderer =
       FrameRenderer::create(gpu(), scene_, {setup_.width, setup_.height}, setup_.normals);
   ASSERT_TRUE(renderer) << renderer.error();
-  const CameraMatrices m = camera_matrices(setup_.camera, setup_.width, setup_.height);
   FrameRequest request;
-  request.view = {m.view_from_world, m.clip_from_view, m.view_from_world, m.clip_from_view};
+  request.view = gbuffer_view(setup_.camera, setup_.camera, {setup_.width, setup_.height});
   const std::vector<OcclusionSettings> asked{base_, backs, layers};
   std::vector<Image<float>> images;
   for (const std::size_t i : {0, 1, 0, 2, 1, 2}) {

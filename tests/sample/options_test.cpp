@@ -99,9 +99,9 @@ TEST(Options, MotionCommandAcceptsACameraPathAndRefusesTooFewFrames) {
   EXPECT_EQ(all->command, Command::motion);
   EXPECT_FALSE(all->path);
   EXPECT_EQ(all->view.frames, 48u);
-  const auto one = parse({"motion", "--path", "strafe", "--frames", "24"});
+  const auto one = parse({"motion", "--path", "dolly", "--frames", "24"});
   ASSERT_TRUE(one) << one.error().text;
-  EXPECT_EQ(one->path, MotionKind::strafe);
+  EXPECT_EQ(one->path, MotionKind::dolly);
   EXPECT_EQ(one->view.frames, 24u);
   EXPECT_EQ(parse({"render"})->view.frames, 1u);
   for (const auto& wrong : std::vector<std::vector<const char*>>{{"motion", "--path", "spiral"},

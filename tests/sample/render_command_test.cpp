@@ -53,7 +53,7 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   const auto settings = occlusion_settings(read->occlusion, 1.0f);
   ASSERT_TRUE(settings) << settings.error();
   EXPECT_EQ(*settings, shot.settings);
-  const auto camera = choose_camera(read->view, scene);
+  const auto camera = choose_camera(read->view, ViewFinder(scene));
   ASSERT_TRUE(camera) << camera.error();
   EXPECT_EQ(camera->eye_ws, shot.camera.eye_ws);
   EXPECT_EQ(camera->target_ws, shot.camera.target_ws);
