@@ -346,8 +346,6 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     device = vkBeginCommandBuffer(commands, &info);
     for (std::uint32_t record = 0; device == VK_SUCCESS && record < described.records; ++record) {
-      // A second record of the slot would write its samples twice, which the layers report.
-      if (record > 0) described.frame.diagnose_pixels = VK_FALSE;
       if (alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
         result.said = std::string(alcoveGetMessage(context)) + "\n";
     }

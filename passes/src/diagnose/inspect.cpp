@@ -203,10 +203,11 @@ class Inspector {
     for (const std::vector<double>& place : places)
       extent = std::max(extent, quantile(place, 0.95) - quantile(place, 0.05));
     // The radius is too small if it spans less than a pixel at 90 % of the samples. It is too large
-    // if it spans more than two image heights at 90 %, or half of one and half of what is seen.
+    // if it spans more than two image heights at 90 %, or half of one and three quarters of what is
+    // seen.
     const double small = quantile(pixels, 0.1) / frame_.size.height;
     lacks(Mistake::radius_too_small, quantile(pixels, 0.9) < 1.0);
-    lacks(Mistake::radius_too_large, small > 2.0 || (small > 0.5 && frame_.radius > 0.5 * extent));
+    lacks(Mistake::radius_too_large, small > 2.0 || (small > 0.5 && frame_.radius > 0.75 * extent));
     return true;
   }
 
