@@ -38,6 +38,9 @@ constexpr std::array<CommandRow, 10> kCommands{{
     {Command::recommend, kUse, "recommend",
      "find the most accurate setting within a time, or the fastest within an error", Scenes::one,
      480, 270, kHistory, 64},
+    {Command::report, kUse, "report",
+     "write a web page: error against time, pictures beside the truth, and what a scene requires",
+     Scenes::many, 480, 270, kHistory},
     {Command::graph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory"},
     {Command::doctor, kUse, "doctor", "list the Vulkan devices and the features that they lack",
      Scenes::none},
@@ -49,9 +52,6 @@ constexpr std::array<CommandRow, 10> kCommands{{
     {Command::measure, kLaboratory, "measure",
      "time each pass on the device, beside the times that the model of `cost` predicts",
      Scenes::one, 960, 540, 200},
-    {Command::report, kLaboratory, "report",
-     "write a web page: error against time, pictures beside the truth, and what a scene requires",
-     Scenes::many, 480, 270, kHistory},
 }};
 
 void add_option(CLI::App& app, const OptionRow& row, Options& options) {

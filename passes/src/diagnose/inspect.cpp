@@ -65,7 +65,7 @@ class Inspector {
     given_.normals = frame_.normals;
     // Cameras may be relative to an origin that moves. previous_camera then differs from the camera
     // that the last frame was recorded with in its translation alone.
-    const dmat4 previous = to_rigid(frame_.previous_view.view_from_world);
+    const dmat4 previous = to_rigid(frame_.previous_camera.view_from_world);
     if (pictures_.size() > 1 && previous != now_.view_from_world &&
         same_rotation(previous, pictures_[1].view_from_world))
       pictures_[1].view_from_world = previous;
@@ -324,9 +324,9 @@ class Inspector {
     consider(Mistake::normal_space, reading);
     for (const bool other_space : {false, true}) {
       reading.normals.in_view_space = given_.normals.in_view_space != other_space;
-      for (const NormalEncoding encoding :
-           {NormalEncoding::signed_xyz, NormalEncoding::unsigned_xyz, NormalEncoding::octahedral,
-            NormalEncoding::unsigned_octahedral}) {
+      for (const AlcoveNormalEncoding encoding :
+           {ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ,
+            ALCOVE_NORMAL_ENCODING_OCTAHEDRAL, ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL}) {
         reading.normals.encoding = encoding;
         if (encoding != given_.normals.encoding) consider(Mistake::normal_encoding, reading);
       }

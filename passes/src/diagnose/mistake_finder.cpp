@@ -35,8 +35,10 @@ constexpr std::array<const char*, kMistakes> kSentences{
 };
 
 VkExtent2D read_size(const AlcoveView& view) {
-  return view.read_area.width > 0 ? VkExtent2D{view.read_area.width, view.read_area.height}
-                                  : VkExtent2D{view.depth.width, view.depth.height};
+  return view.info.read_area.width > 0
+             ? VkExtent2D{view.info.read_area.width, view.info.read_area.height}
+             : VkExtent2D{view.images[ALCOVE_IMAGE_DEPTH].width,
+                          view.images[ALCOVE_IMAGE_DEPTH].height};
 }
 
 // `seen` has a bit for each frame that could show the mistake.
@@ -66,7 +68,8 @@ std::array<float, 3> eye_of(const AlcoveCamera& camera) {
 }  // namespace
 
 const char* const MistakeFinder::kTooManyViews =
-    "More views have a history than an engine could mean; give a view the same AlcoveView::id in "
+    "More views have a history than an engine could mean; give a view the same AlcoveViewInfo::id "
+    "in "
     "every frame, and call alcoveDropView for one that is no longer drawn.";
 
 MistakeFinder::View* MistakeFinder::find(std::uint32_t id) {
@@ -80,9 +83,9 @@ MistakeFinder::View& MistakeFinder::create(const AlcoveView& given) {
   View& place = *std::ranges::min_element(views_, {}, [](const View& view) {
     return view.used ? std::uint64_t{view.last_frame} + 1 : 0;
   });
-  is_new_ |= given.settings->history_frames > 0;
+  is_new_ |= given.info.settings->history_frames > 0;
   too_many_views_ |= is_new_ && place.used && place.has_history;
-  place = {.used = true, .id = given.id};
+  place = {.used = true, .id = given.info.id};
   return place;
 }
 
@@ -96,40 +99,41 @@ void MistakeFinder::drop_view(std::uint32_t id) {
 
 Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::uint32_t index) {
   Findings result;
-  const bool reset = given.reset_history != VK_FALSE;
-  const bool reads_index = given.settings->static_noise == 0 || given.settings->history_frames > 0;
+  const bool reset = given.info.reset_history != VK_FALSE;
+  const bool reads_index =
+      given.info.settings->static_noise == 0 || given.info.settings->history_frames > 0;
   result.set(Mistake::index_repeats, reads_index && index == view.index);
   result.set(Mistake::index_goes_back, reads_index && index < view.index);
   result.set(Mistake::history_reset, reset);
-  if (reset || given.settings->history_frames == 0) return result;
+  if (reset || given.info.settings->history_frames == 0) return result;
   // Two steps in opposite directions.
   float both = 0.0f, step = 0.0f, last_step = 0.0f;
   for (std::size_t i = 0; i < 3; ++i) {
-    const float now = eye_of(given.camera).at(i) - view.eyes[0].at(i);
+    const float now = eye_of(given.info.camera).at(i) - view.eyes[0].at(i);
     const float last = view.eyes[0].at(i) - view.eyes[1].at(i);
     both += now * last;
     step += now * now;
     last_step += last * last;
   }
-  const float least = 1e-3f * given.settings->radius;
+  const float least = 1e-3f * given.info.settings->radius;
   result.set(Mistake::eyes_alternate, std::min(step, last_step) > least * least &&
                                           both < -0.7f * std::sqrt(step * last_step));
-  if (!same(given.camera, view.camera)) {
-    const bool is_this = same(given.previous_camera, given.camera);
-    const bool other_projection = same_rotation(given.previous_camera, view.camera);
+  if (!same(given.info.camera, view.camera)) {
+    const bool is_this = same(given.info.previous_camera, given.info.camera);
+    const bool other_projection = same_rotation(given.info.previous_camera, view.camera);
     // The translation may differ: cameras may be relative to an origin that moves.
-    const bool is_last =
-        other_projection && same(given.previous_camera.clip_from_view, view.camera.clip_from_view);
+    const bool is_last = other_projection && same(given.info.previous_camera.clip_from_view,
+                                                  view.camera.clip_from_view);
     result.set(Mistake::previous_is_this, is_this);
     result.set(Mistake::projection_is_another, !is_last && !is_this && other_projection);
     result.set(Mistake::previous_is_another, !is_last && !is_this && !other_projection);
-    result.set(Mistake::static_in_motion, given.static_frames > 0);
+    result.set(Mistake::static_in_motion, given.info.static_frames > 0);
   }
   const VkExtent2D size = read_size(given);
   const bool resized = size.width != view.size.width || size.height != view.size.height;
-  if (resized && given.largest_width > 0) {
-    result.set(Mistake::previous_size_is_wrong, given.previous_width != view.size.width ||
-                                                    given.previous_height != view.size.height);
+  if (resized && given.info.largest_width > 0) {
+    result.set(Mistake::previous_size_is_wrong, given.info.previous_width != view.size.width ||
+                                                    given.info.previous_height != view.size.height);
   }
   return result;
 }
@@ -138,16 +142,16 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
   ++frames_;
   is_new_ = false;
   for (const AlcoveView& given : std::span(frame.views, frame.view_count)) {
-    View* view = find(given.id);
+    View* view = find(given.info.id);
     if (view == nullptr)
       view = &create(given);
     else
-      observe(given.id, judge(*view, given, frame.index));
+      observe(given.info.id, judge(*view, given, frame.index));
     view->last_frame = frames_;
-    view->has_history = given.settings->history_frames > 0;
+    view->has_history = given.info.settings->history_frames > 0;
     view->index = frame.index;
-    view->camera = given.camera;
-    view->eyes = {eye_of(given.camera), view->eyes[0]};
+    view->camera = given.info.camera;
+    view->eyes = {eye_of(given.info.camera), view->eyes[0]};
     view->size = read_size(given);
   }
   new_views_ = static_cast<std::uint8_t>(new_views_ << 1 | (is_new_ ? 1 : 0));
