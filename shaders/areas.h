@@ -31,7 +31,7 @@ bool is_written(ivec2 pixel) {
 // textureGather. Beyond the area that is read, its border pixels are repeated. `uv` is the corner's
 // position if the area is the whole image, whose sampler repeats the border.
 vec4 gather_depth(ivec2 corner, vec2 uv) {
-  if (!kAreas) return textureGather(depth_image, uv);
+  if (!kAreas) return textureGather(sampler2D(depth_image, nearest_sampler), uv);
   ivec2 last = size_px() - 1;
   ivec2 low = clamp(corner - 1, ivec2(0), last);
   ivec2 high = clamp(corner, ivec2(0), last);

@@ -31,18 +31,6 @@ DepthCross fetch_depth_cross(texture2D image, ivec2 pixel, ivec2 origin, ivec2 s
   return found;
 }
 
-DepthCross fetch_depth_cross(sampler2D image, ivec2 pixel, ivec2 origin, ivec2 size) {
-  DepthCross found;
-  found.here = texelFetch(image, origin + pixel, 0).r;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 in_row = ivec2(neighbour_place(pixel.x, i, size.x), pixel.y);
-    ivec2 in_column = ivec2(pixel.x, neighbour_place(pixel.y, i, size.y));
-    found.row[i] = texelFetch(image, origin + in_row, 0).r;
-    found.column[i] = texelFetch(image, origin + in_column, 0).r;
-  }
-  return found;
-}
-
 // Returns how badly the inverse depths of the first and second neighbour on one side continue that
 // of the pixel: how far a line through them misses it. A quarter of the step to the first neighbour
 // is added. It is needed on a strip that is two pixels wide: there, the lines on both sides miss,

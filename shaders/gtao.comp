@@ -20,8 +20,8 @@
 //
 // Each traced pixel writes two sums over its slices: the visible part, and the same integral
 // without occluders. Filters and history sum both and divide at the end, because the mean of ratios
-// would be biased. The bent-normal residual is also a sum over slices, in view space. With
-// SPECULAR, the two sums of the surface's GGX lobe are also written.
+// would be biased. With BENT, the bent-normal residual is also a sum over slices, in view space.
+// With SPECULAR, the two sums of the surface's GGX lobe are also written.
 
 #include "gtao_connected.h"
 #include "gtao_horizons.h"
@@ -195,10 +195,10 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
 }
 
 // Groups run in the order of their numbers, x first. They advance by columns through strips of the
-// image that are gl_NumWorkGroups.x groups high, so that groups that run at the same time lie close
-// together and share what caches hold.
+// image that are strip_groups high, so that groups that run at the same time lie close together and
+// share what caches hold.
 ivec2 invocation_tile() {
-  uint row = gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  uint row = gl_WorkGroupID.z * parameters.strip_groups + gl_WorkGroupID.x;
   ivec2 tile = ivec2(uvec2(gl_WorkGroupID.y, row) * 8u + gl_LocalInvocationID.xy);
   return kAreas ? tile + parameters.written.xy : tile;
 }
@@ -218,5 +218,7 @@ void main() {
   // The tile is computed anew, because it would hold registers during the search.
   ivec2 written = ivec2(uvec2(pixel) / uint(kTileSize));
   imageStore(raw_image, written, result.raw_occlusion);
-  if (kBentNormal) imageStore(bent_image, written, uvec4(result.bent, 0u, 0u));
+#ifdef BENT
+  imageStore(bent_image, written, uvec4(result.bent, 0u, 0u));
+#endif
 }

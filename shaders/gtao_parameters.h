@@ -15,6 +15,7 @@ struct GtaoParameters {
   vec2 interleave_offset;       // the pixel of each tile that is traced in this frame
   float radius;                 // scene units
   uint frame;                   // number of the frame, which rotates the directions of the slices
+  uint strip_groups;            // height of a strip of the image, in groups
   float thickness;              // of occluders, a fraction of the radius
   float hidden_exponent;        // of hidden_occlusion_behind()
   float roughness;  // perceptual, [0,1], of every surface if there is no roughness texture

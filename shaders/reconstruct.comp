@@ -16,11 +16,9 @@
 // visibility is exactly 1 after any number of frames.
 
 #include "reconstruct_filter.h"
+#include "reconstruct_history.h"
 #include "reconstruct_store.h"
 #include "reconstruct_tiles.h"
-#ifdef HISTORY
-#include "reconstruct_history.h"
-#endif
 #ifdef HALF
 #include "reconstruct_half_surface.h"
 #else
@@ -29,14 +27,12 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#ifndef HISTORY
-
 void reconstruct(Surface surface) {
-  Sums sums = sum_wide(surface, Window(parameters.first_sharpness, 1.0));
-  store_alone(surface, result_of(sums));
+  if (kHistory)
+    accumulate(surface);
+  else
+    store_alone(surface, result_of(sum_wide(surface, Window(parameters.first_sharpness, 1.0))));
 }
-
-#endif
 
 void main() {
   load_tiles();

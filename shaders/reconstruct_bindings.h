@@ -1,7 +1,7 @@
 // The constants, parameters and images of reconstruct.comp. The variants of the shader are compiled
 // with these macros defined:
+//   BENT      there are bent normals
 //   HALF      texels of 2x2 pixels are reconstructed, and upsample.comp computes the pixels
-//   HISTORY   there is a history
 //   SPECULAR  there is a GGX lobe for specular occlusion
 // The passes find bindings by name, so that binding numbers have no meaning outside this file.
 #ifndef ALCOVE_RECONSTRUCT_BINDINGS_H
@@ -11,7 +11,7 @@
 
 layout(constant_id = 0) const int kTileSize = 1;
 layout(constant_id = 1) const int kFilterRadius = 2;
-layout(constant_id = 2) const bool kBentNormal = false;
+layout(constant_id = 2) const bool kHistory = false;  // frames are accumulated
 layout(constant_id = 3) const bool kMotion = false;
 layout(constant_id = 4) const bool kPerspective = true;
 layout(constant_id = 5) const bool kStatic = false;  // the previous frame shows the same
@@ -24,48 +24,48 @@ layout(constant_id = 11) const bool kShaped = false;      // power or intensity 
 layout(constant_id = 12) const bool kReversed = false;    // raw depth is 1 at the near plane
 layout(constant_id = 13) const bool kAreas = false;  // images are read or written in part (areas.h)
 
+#ifdef BENT
+const bool kBentNormal = true;
+#else
+const bool kBentNormal = false;
+#endif
 #ifdef SPECULAR
 const bool kLobe = true;
-#define RAW_FORMAT rgba32ui
 #else
 const bool kLobe = false;
-#define RAW_FORMAT rg32ui
 #endif
 
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
-layout(set = 0, binding = 1, RAW_FORMAT) uniform readonly uimage2D raw_image;  // one texel a tile
-// Without bent normals it is never read, and another image is bound in its place.
-layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D bent_image;
-// The depth buffer as the projection wrote it. All samplers are nearest and clamp to the edge.
-layout(set = 0, binding = 3) uniform sampler2D depth_image;
-layout(set = 0, binding = 4) uniform texture2D normal_image;  // xyz
+layout(set = 0, binding = 16) uniform sampler nearest_sampler;  // it clamps to the edge
+layout(set = 0, binding = 1) uniform utexture2D raw_image;      // one texel a tile
+layout(set = 0, binding = 3) uniform texture2D depth_image;     // as the projection wrote it
+layout(set = 0, binding = 4) uniform texture2D normal_image;    // xyz
 
 #ifdef HALF
 layout(set = 0, binding = 5) uniform writeonly image2D half_image;        // pack_half_texel()
 layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // half_texel_depth()
 #else
-// If an output is not wanted, it is never written, and another image is bound in its place.
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
+#endif
+
+// What only a history needs is not used without kHistory.
+#ifdef HALF
+// half_image and half_depth_image of the previous frame.
+layout(set = 0, binding = 7) uniform texture2D history_image;
+layout(set = 0, binding = 8) uniform texture2D history_depth_image;
+#else
+layout(set = 0, binding = 7) uniform texture2D history_image;  // pack_history_texel()
+layout(set = 0, binding = 8) uniform writeonly image2D next_history_image;
+#endif
+layout(set = 0, binding = 9) uniform texture2D motion_image;  // read with kMotion
+
+#ifdef BENT
+layout(set = 0, binding = 2) uniform utexture2D bent_image;
+#ifndef HALF
 // In the space of the normals.
 layout(set = 0, binding = 6) uniform writeonly image2D bent_normal_image;
 #endif
-
-#ifdef HISTORY
-#ifdef HALF
-// half_image and half_depth_image of the previous frame.
-layout(set = 0, binding = 7) uniform sampler2D history_image;
-layout(set = 0, binding = 8) uniform sampler2D history_depth_image;
-#else
-layout(set = 0, binding = 7) uniform sampler2D history_image;  // pack_history_texel()
-layout(set = 0, binding = 8) uniform writeonly image2D next_history_image;
-#endif
-// Without kMotion it is never read, and another image is bound in its place.
-layout(set = 0, binding = 9) uniform texture2D motion_image;
-// Without bent normals it is never read, and another image is bound in its place.
-layout(set = 0, binding = 10) uniform sampler2D bent_history_image;  // pack_half_residual()
-#endif
-#if defined(HISTORY) || defined(HALF)
-// Without bent normals it is never written, and another image is bound in its place.
+layout(set = 0, binding = 10) uniform texture2D bent_history_image;  // pack_half_residual()
 layout(set = 0, binding = 11) uniform writeonly image2D next_bent_history_image;
 #endif
 
@@ -74,12 +74,8 @@ layout(set = 0, binding = 12) uniform texture2D roughness_image;  // perceptual
 #ifndef HALF
 layout(set = 0, binding = 13) uniform writeonly image2D specular_image;
 #endif
-#ifdef HISTORY
 layout(set = 0, binding = 14) uniform utexture2D lobe_history_image;  // LobeTexel
-#endif
-#if defined(HISTORY) || defined(HALF)
 layout(set = 0, binding = 15) uniform writeonly uimage2D next_lobe_history_image;
-#endif
 #endif
 
 // Width in pixels of the texels that are reconstructed.

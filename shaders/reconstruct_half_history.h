@@ -15,7 +15,7 @@ float moved_distance(Surface surface) {
 }
 
 HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2 uv) {
-  vec4 depths = textureGather(history_depth_image, uv);
+  vec4 depths = textureGather(sampler2D(history_depth_image, nearest_sampler), uv);
   float sharpness = parameters.history_sharpness * surface.n_dot_v;
   float per_depth = kPerspective ? previous.depth * surface.depth : 1.0;
   float expected = kPerspective ? 1.0 : previous.depth;
@@ -24,8 +24,8 @@ HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2
   HistoryTexels texels;
   texels.distances =
       depths * (per_depth * sharpness) - gather_offsets(gradient, part, expected * sharpness);
-  texels.occlusions = textureGather(history_image, uv, 0);
-  texels.weights = textureGather(history_image, uv, 1);
+  texels.occlusions = textureGather(sampler2D(history_image, nearest_sampler), uv, 0);
+  texels.weights = textureGather(sampler2D(history_image, nearest_sampler), uv, 1);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     texels.recents[i] = kMotion ? half_texel_recent_code(depths[i]) : 0.0;
   }

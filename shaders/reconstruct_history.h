@@ -1,4 +1,4 @@
-// Temporal accumulation: the part of reconstruct.comp that is compiled with HISTORY. It reads the
+// Temporal accumulation: the part of reconstruct.comp for frames with a history. It reads the
 // history at the position that the surface had in the previous frame, rejects texels of other
 // surfaces, and adds the samples of this frame.
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
@@ -41,16 +41,16 @@ History read_moving(Surface surface) {
   history.between = dot(part, 1.0 - part);
   if (kMotion)
     history.recent = recent_of_mean(dot(weights, texels.recents) * scale, history.occlusion);
-  if (kBentNormal) {
-    // The difference from 0 is weighted, so that the rounding of weights does not change a 0.
-    vec4 x = textureGather(bent_history_image, uv, 0) - kZeroHalfResidual;
-    vec4 y = textureGather(bent_history_image, uv, 1) - kZeroHalfResidual;
-    vec4 z = textureGather(bent_history_image, uv, 2) - kZeroHalfResidual;
-    vec3 sum = vec3(dot(weights, x), dot(weights, y), dot(weights, z));
-    history.residual = known ? sum * (scale * kHalfResidualUnit) : vec3(0.0);
-    // From the view space of the previous frame.
-    history.residual = history.residual * mat3(parameters.previous_from_view);
-  }
+#ifdef BENT
+  // The difference from 0 is weighted, so that the rounding of weights does not change a 0.
+  vec4 x = textureGather(sampler2D(bent_history_image, nearest_sampler), uv, 0) - kZeroHalfResidual;
+  vec4 y = textureGather(sampler2D(bent_history_image, nearest_sampler), uv, 1) - kZeroHalfResidual;
+  vec4 z = textureGather(sampler2D(bent_history_image, nearest_sampler), uv, 2) - kZeroHalfResidual;
+  vec3 sum = vec3(dot(weights, x), dot(weights, y), dot(weights, z));
+  history.residual = known ? sum * (scale * kHalfResidualUnit) : vec3(0.0);
+  // From the view space of the previous frame.
+  history.residual = history.residual * mat3(parameters.previous_from_view);
+#endif
 #ifdef SPECULAR
   uvec4 lobes = fetch_quad(lobe_history_image, ivec2(floor(previous.position + 0.5)));
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -66,10 +66,10 @@ History read_moving(Surface surface) {
 History read_static(Surface surface) {
   History history = fetch_history(surface);
   history.weight = min(history.weight, parameters.largest_weight);
-  if (kBentNormal) {
-    history.residual =
-        unpack_half_residual(texelFetch(bent_history_image, surface.place.texel, 0).xyz);
-  }
+#ifdef BENT
+  history.residual =
+      unpack_half_residual(texelFetch(bent_history_image, surface.place.texel, 0).xyz);
+#endif
 #ifdef SPECULAR
   LobeTexel lobe = unpack_lobe_texel(texelFetch(lobe_history_image, surface.place.texel, 0).r);
   history.lobe = lobe.open * vec2(lobe.occlusion, 1.0);
@@ -120,7 +120,7 @@ Sums sum_neighbourhood(Surface surface, History history, Window window) {
   return sum_near(surface, window);
 }
 
-void reconstruct(Surface surface) {
+void accumulate(Surface surface) {
   History history = no_history();
   if (!kFresh) history = kStatic ? read_static(surface) : read_moving(surface);
   float growth = plane_weight_growth(history.weight);

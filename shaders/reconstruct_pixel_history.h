@@ -25,8 +25,8 @@ float moved_distance(Surface surface) {
 }
 
 HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2 uv) {
-  vec4 depths = textureGather(history_image, uv, 0);
-  vec4 values = textureGather(history_image, uv, 1);
+  vec4 depths = textureGather(sampler2D(history_image, nearest_sampler), uv, 0);
+  vec4 values = textureGather(sampler2D(history_image, nearest_sampler), uv, 1);
   float log_depth =
       kPerspective ? log_inverse_depth(surface) - log2(previous.depth) : previous.depth;
   float sharpness = parameters.history_sharpness * surface.n_dot_v;

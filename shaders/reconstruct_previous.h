@@ -1,5 +1,5 @@
 // The position of a surface in the previous frame, and the values of the history there. It is a
-// part of reconstruct.comp that is compiled with HISTORY.
+// part of reconstruct.comp.
 #ifndef ALCOVE_RECONSTRUCT_PREVIOUS_H
 #define ALCOVE_RECONSTRUCT_PREVIOUS_H
 

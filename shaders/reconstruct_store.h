@@ -35,14 +35,12 @@ Result result_of(Sums sums) {
 // interleaved gradient noise [Jimenez 2014].
 float dither_of(Place place) { return fract(52.9829189 * fract(place.dither)); }
 
-#if defined(HISTORY) || defined(HALF)
-
 // Stores residual and lobe as history and upsampling read them.
 void store_kept(Surface surface, Result result, float dither) {
-  if (kBentNormal) {
-    vec3 residual = surface.sky ? vec3(0.0) : result.residual;
-    imageStore(next_bent_history_image, surface.place.texel, pack_half_residual(residual, dither));
-  }
+#ifdef BENT
+  vec3 residual = surface.sky ? vec3(0.0) : result.residual;
+  imageStore(next_bent_history_image, surface.place.texel, pack_half_residual(residual, dither));
+#endif
 #ifdef SPECULAR
   // The comparisons are false for NaN, which would stay in the history.
   bool valid = !surface.sky && result.lobe.x >= 0.0 && result.lobe.y < 1e30;
@@ -52,7 +50,6 @@ void store_kept(Surface surface, Result result, float dither) {
 #endif
 }
 
-#endif
 #ifdef HALF
 
 // Stores a texel for upsampling and for the next frame. `recent`, the occlusion of the last few
@@ -76,11 +73,11 @@ void store(Surface surface, Result result) {
     float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
     imageStore(visibility_image, texel, vec4(kShaped ? shaped : visibility));
   }
-  if (kBentNormal) {
-    vec3 residual = surface.sky ? vec3(0.0) : result.residual;
-    vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
-    imageStore(bent_normal_image, texel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
-  }
+#ifdef BENT
+  vec3 residual = surface.sky ? vec3(0.0) : result.residual;
+  vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
+  imageStore(bent_normal_image, texel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
+#endif
 #ifdef SPECULAR
   float occlusion = surface.sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
   imageStore(specular_image, texel, vec4(1.0 - occlusion));

@@ -80,18 +80,18 @@ ivec2 first_shared_tile() {
 
 // Reads the traced pixel of a tile from the image.
 TileSample fetch_tile_sample(ivec2 tile) {
-  uvec4 stored = imageLoad(raw_image, tile);
+  uvec4 stored = texelFetch(raw_image, tile, 0);
   RawOcclusion raw = unpack_raw_occlusion(stored.x);
   TileSample found;
   found.inverse_depth = uintBitsToFloat(stored.y);
   found.occluded = raw.open - raw.visible;
   found.open = raw.open;
   if (kByNormal) found.stereographic = stereographic_of_bits(raw_occlusion_normal(stored.x));
-  if (kBentNormal) {
-    uvec2 bent = imageLoad(bent_image, tile).xy;
-    found.residual = unpack_residual(bent.x);
-    found.expected_residual = unpack_residual(bent.y);
-  }
+#ifdef BENT
+  uvec2 bent = texelFetch(bent_image, tile, 0).xy;
+  found.residual = unpack_residual(bent.x);
+  found.expected_residual = unpack_residual(bent.y);
+#endif
   if (kLobe) {
     RawOcclusion lobe = unpack_lobe(stored.z);
     found.lobe = vec2(lobe.open - lobe.visible, lobe.open);

@@ -26,25 +26,24 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool kPerspective = true;
-layout(constant_id = 1) const bool kVisibility = true;  // whether visibility_image is written
-layout(constant_id = 2) const bool kShaped = false;     // power or intensity is not 1
-layout(constant_id = 3) const bool kBentNormal = false;
-layout(constant_id = 4) const uint kNormalEncoding = 0;  // as NormalEncoding has them
-layout(constant_id = 5) const bool kReversed = false;    // raw depth is 1 at the near plane
-layout(constant_id = 6) const bool kAreas = false;  // images are read or written in part (areas.h)
+layout(constant_id = 1) const bool kVisibility = true;   // whether visibility_image is written
+layout(constant_id = 2) const bool kShaped = false;      // power or intensity is not 1
+layout(constant_id = 3) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 4) const bool kReversed = false;    // raw depth is 1 at the near plane
+layout(constant_id = 5) const bool kAreas = false;  // images are read or written in part (areas.h)
 
 layout(set = 0, binding = 0) uniform Parameters { UpsampleParameters parameters; };
-// The samplers are nearest and clamp to the edge.
-layout(set = 0, binding = 1) uniform sampler2D half_image;        // pack_half_texel()
-layout(set = 0, binding = 2) uniform sampler2D half_depth_image;  // half_texel_depth()
-layout(set = 0, binding = 3) uniform sampler2D depth_image;       // as the projection wrote it
-layout(set = 0, binding = 4) uniform texture2D normal_image;      // xyz
-// pack_half_residual(). Without bent normals it is never read, and another image is bound.
-layout(set = 0, binding = 5) uniform sampler2D residual_image;
-// The next two are each bound to another image if they are not written.
+layout(set = 0, binding = 1) uniform texture2D half_image;        // pack_half_texel()
+layout(set = 0, binding = 2) uniform texture2D half_depth_image;  // half_texel_depth()
+layout(set = 0, binding = 3) uniform texture2D depth_image;       // as the projection wrote it
 layout(set = 0, binding = 6) uniform writeonly image2D visibility_image;
+layout(set = 0, binding = 8) uniform sampler nearest_sampler;  // it clamps to the edge
+#ifdef BENT
+layout(set = 0, binding = 4) uniform texture2D normal_image;    // xyz
+layout(set = 0, binding = 5) uniform texture2D residual_image;  // pack_half_residual()
 // In the space of the normals.
 layout(set = 0, binding = 7) uniform writeonly image2D bent_normal_image;
+#endif
 #ifdef SPECULAR
 layout(set = 0, binding = 9) uniform utexture2D lobe_image;  // LobeTexel
 layout(set = 0, binding = 10) uniform writeonly image2D specular_image;
@@ -82,10 +81,10 @@ Cell fetch_cell(ivec2 index) {
   cell.first = index * 2 - 1;
   cell.depths_ndc = gather_depth(index * 2, vec2(index * 2) * parameters.pixel_uv);
   vec2 uv = vec2(index) * parameters.texel_uv;
-  vec4 texel_depths = textureGather(half_depth_image, uv);
-  cell.occlusions = textureGather(half_image, uv, 0);
-  vec4 tilts_x = textureGather(half_image, uv, 2);
-  vec4 tilts_y = textureGather(half_image, uv, 3);
+  vec4 texel_depths = textureGather(sampler2D(half_depth_image, nearest_sampler), uv);
+  cell.occlusions = textureGather(sampler2D(half_image, nearest_sampler), uv, 0);
+  vec4 tilts_x = textureGather(sampler2D(half_image, nearest_sampler), uv, 2);
+  vec4 tilts_y = textureGather(sampler2D(half_image, nearest_sampler), uv, 3);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     vec2 tilt = vec2(tilts_x[i], tilts_y[i]);  // in units of kLargestTilt
     // About the cosine between the normal and the view direction.
@@ -132,6 +131,7 @@ vec4 weights_of(Cell cell, int j) {
   return weights;
 }
 
+#ifdef BENT
 vec3 unit_normal(ivec2 pixel) {
   vec2 slope =
       parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
@@ -146,6 +146,7 @@ vec3 unit_normal(ivec2 pixel) {
   }
   return seen_normal(given, view, of_depth);
 }
+#endif
 
 void main() {
   // The cell with the first pixel that is written, and those after it.
@@ -153,13 +154,12 @@ void main() {
   ivec2 size = size_px();
   if (any(greaterThan(index * 2, last_written() + 1))) return;
   Cell cell = fetch_cell(index);
+#ifdef BENT
   vec2 uv = vec2(index) * parameters.texel_uv;
-  vec4 residuals_x, residuals_y, residuals_z;
-  if (kBentNormal) {
-    residuals_x = textureGather(residual_image, uv, 0);
-    residuals_y = textureGather(residual_image, uv, 1);
-    residuals_z = textureGather(residual_image, uv, 2);
-  }
+  vec4 residuals_x = textureGather(sampler2D(residual_image, nearest_sampler), uv, 0);
+  vec4 residuals_y = textureGather(sampler2D(residual_image, nearest_sampler), uv, 1);
+  vec4 residuals_z = textureGather(sampler2D(residual_image, nearest_sampler), uv, 2);
+#endif
 #ifdef SPECULAR
   uvec4 lobes = fetch_quad(lobe_image, index);
 #endif
@@ -177,7 +177,8 @@ void main() {
       float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
       imageStore(visibility_image, output_pixel, vec4(kShaped ? shaped : visibility));
     }
-    if (kBentNormal && inside) {
+#ifdef BENT
+    if (inside) {
       vec3 stored =
           vec3(dot(weights, residuals_x), dot(weights, residuals_y), dot(weights, residuals_z));
       vec3 residual = sky ? vec3(0.0) : unpack_half_residual(stored * inverse_sum);
@@ -185,6 +186,7 @@ void main() {
       imageStore(bent_normal_image, output_pixel,
                  vec4(mat3(parameters.normal_from_view) * bent, 0.0));
     }
+#endif
 #ifdef SPECULAR
     if (inside) {
       vec2 sum = vec2(0.0);

@@ -31,7 +31,6 @@ void record_external(UseState& state, const ExternalRecord& external) {
   }
   if (!external.has_contents) return;
   state.layout = initial_state.layout;
-  state.used = 1;
 }
 
 }  // namespace

@@ -28,7 +28,6 @@ void record_use(UseState& state, const AccessRecord& access, std::int32_t time) 
     state.read_time = time;
   }
   state.layout = access.layout;
-  state.used = 1;
 }
 
 // Adds the last uses of a resource that gives up its memory to the state of the one that takes it.
@@ -298,7 +297,6 @@ void Synchroniser::tell_other_queues(std::uint32_t sub, const UseState& state) {
   UseState told;
   told.by_wait = 1;
   told.owner = state.owner;
-  told.used = state.used;
   told.layout = state.layout;
   told.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
   told.seen_access = kEveryAccess;

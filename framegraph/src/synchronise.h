@@ -167,7 +167,6 @@ inline void Synchroniser::record_transition(std::uint32_t position, const Access
   state.write_stages = access.stages;
   state.layout = access.layout;
   state.owner = queue_;
-  state.used = 1;
   if (access.flags & kWrite) {
     state.write_access = access.access & kWriteBits;
     state.write_time = pass_time(position);

@@ -40,7 +40,6 @@ struct UseState {
   // Set if a semaphore wait over all stages orders the next use after work of another queue.
   std::uint8_t by_wait = 0;
   QueueClass owner = QueueClass::graphics;  // the queue that changed it last
-  std::uint8_t used = 0;                    // it was used in this frame, or arrived with contents
   bool operator==(const UseState&) const = default;
 };
 

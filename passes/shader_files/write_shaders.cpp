@@ -147,8 +147,8 @@ const char* type_name(VkDescriptorType type) {
       return "parameters";
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
       return "table";
-    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
-      return "sampled image";
+    case VK_DESCRIPTOR_TYPE_SAMPLER:
+      return "sampler";
     case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
       return "fetched image";
     default:

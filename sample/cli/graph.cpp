@@ -13,11 +13,9 @@ namespace alcove::sample {
 namespace {
 
 passes::Frame frame_of(framegraph::Graph& graph, const Session& session, const Options& options) {
-  const CameraMatrices matrices =
-      camera_matrices(session.camera, options.view.width, options.view.height);
-  return pass_frame(graph, *session.gpu,
-                    {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-                     matrices.clip_from_view});
+  return pass_frame(
+      graph, *session.gpu,
+      gbuffer_view(session.camera, session.camera, {options.view.width, options.view.height}));
 }
 
 // Declares the frame of the occlusion, with placeholders for the images of the g-buffer.

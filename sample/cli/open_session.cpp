@@ -94,18 +94,25 @@ Result<SettingTimes> setting_times(const Options& options, const Session& sessio
                           options.use_cache);
   }
   StaticSetup setup = static_setup(options, session.camera);
+  const double pixels = static_cast<double>(setup.width) * setup.height;
+  if (options.clock == Clock::processor) {
+    // A software device takes seconds for an image of the target size.
+    return measured_times(session, setup, options.clock,
+                          options.target_width * options.target_height / pixels);
+  }
   setup.width = options.target_width;
   setup.height = options.target_height;
-  return measured_times(session, setup, options.clock);
+  return measured_times(session, setup, options.clock, 1.0);
 }
 
 std::string clock_text(const Options& options, const Session& session) {
   const std::string size = fmt::format("{}x{}", options.target_width, options.target_height);
   if (options.clock == Clock::modelled)
     return fmt::format("modelled time at {} on {}", size, options.gpu->title);
-  return fmt::format("{} time at {} on {}",
-                     options.clock == Clock::timestamps ? "GPU" : "processor", size,
-                     session.gpu->device().properties().deviceName);
+  const char* device = session.gpu->device().properties().deviceName;
+  if (options.clock == Clock::timestamps) return fmt::format("GPU time at {} on {}", size, device);
+  return fmt::format("processor time on {}, measured at {}x{} and scaled to {}", device,
+                     options.view.width, options.view.height, size);
 }
 
 TruthOptions truth_options(const Options& options) {

@@ -28,13 +28,13 @@ enum class Command {
   view,
   compare,
   recommend,
+  report,
   graph,
   doctor,
   // The laboratory.
   motion,
   cost,
-  measure,
-  report
+  measure
 };
 // Names are in the order of the enumerators.
 enum class GraphFormat { text, dot, work };
@@ -71,7 +71,7 @@ struct OcclusionOptions {
 
 struct CostOptions {
   CostInputs inputs;             // without the settings
-  bool loops = false;            // also prints the loops of the shaders
+  bool range = false;            // also models a moving frame under other assumptions
   std::filesystem::path json;    // empty for none
   std::filesystem::path budget;  // file for the budget of the presets; empty for none
 };

@@ -8,7 +8,7 @@
 
 namespace alcove::sample {
 Result<void> run_render(const Options& options) {
-  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY_VOID(create_folder(options.out));
   ALCOVE_TRY(const auto rendering, render(options));
   return write_images(rendering, options.out)
       .and_then([&] {

@@ -63,9 +63,9 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
     to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
 }
 
-// Appends --quality and --set options that give `settings`, with the quality that needs the fewest
-// --set options.
-void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
+}  // namespace
+
+std::vector<std::string> setting_arguments(const OcclusionSettings& settings) {
   Quality closest = Quality::console;
   std::vector<std::string> fewest = changes(closest, settings);
   for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
@@ -75,12 +75,10 @@ void append_settings(const OcclusionSettings& settings, std::vector<std::string>
       fewest = std::move(more);
     }
   }
-  to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
-                       number_text(settings.radius)});
-  for (const std::string& change : fewest) to.insert(to.end(), {"--set", change});
+  std::vector<std::string> arguments{"--quality", std::string(passes::name_of(closest))};
+  for (const std::string& change : fewest) arguments.insert(arguments.end(), {"--set", change});
+  return arguments;
 }
-
-}  // namespace
 
 std::vector<std::string> render_arguments(const Options& options, const Shot& shot) {
   std::vector<std::string> arguments{"alcove", "render"};
@@ -91,7 +89,9 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
   append_camera(shot.camera, arguments);
   arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", shot.width, shot.height)});
-  append_settings(shot.settings, arguments);
+  const auto settings = setting_arguments(shot.settings);
+  arguments.insert(arguments.end(), settings.begin(), settings.end());
+  arguments.insert(arguments.end(), {"--radius", number_text(shot.settings.radius)});
   if (options.occlusion.normals != NormalSource::shading) {
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
@@ -105,6 +105,13 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (options.device >= 0)
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   return arguments;
+}
+
+std::string choice_text(const Choice& choice) {
+  return shell_line(setting_arguments(choice.settings)) +
+         (choice.guard_band
+              ? fmt::format(", with a guard band of {:g} % of the height", 100.0 * kGuardBand)
+              : "");
 }
 
 std::string shell_line(const std::vector<std::string>& arguments) {

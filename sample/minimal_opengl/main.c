@@ -180,13 +180,10 @@ static void execute(const char* folder, const AlcoveWork* work, const GLuint* te
         glBindBufferRange(GL_UNIFORM_BUFFER, binding->number, parameters, 0,
                           dispatch->parameter_bytes);
       } else if (binding->type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE) {
-        const GLenum access = binding->access == ALCOVE_WORK_ACCESS_READ    ? GL_READ_ONLY
-                              : binding->access == ALCOVE_WORK_ACCESS_WRITE ? GL_WRITE_ONLY
-                                                                            : GL_READ_WRITE;
         glBindImageTexture(binding->number, textures[binding->resource], (GLint)binding->mip,
-                           GL_FALSE, 0, access,
+                           GL_FALSE, 0, GL_WRITE_ONLY,
                            format_of(work->resources[binding->resource].format));
-      } else {
+      } else if (binding->type == ALCOVE_BINDING_TYPE_FETCHED_IMAGE) {
         glBindTextureUnit(binding->number, textures[binding->resource]);
         glBindSampler(binding->number, sampler);
       }

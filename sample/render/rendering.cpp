@@ -47,8 +47,7 @@ Camera frame_camera(const RenderRequest& request, const Camera& camera, std::uin
 
 // The outputs of a frame.
 enum class Outputs : std::uint8_t {
-  visibility,    // visibility, and specular occlusion if the settings have it
-  specular,      // also specular occlusion
+  timed,         // visibility, and specular occlusion if the settings have it
   bent_normals,  // visibility, bent normals and multi-bounce
   all,
 };
@@ -66,10 +65,11 @@ class Run {
 
   // Draws the frames and returns the median times of the last kTimedFrames frames. If the run is
   // shorter, its last frame is drawn several times.
-  Result<Costs> time(Outputs outputs) {
+  Result<Costs> time() {
     std::vector<FrameCost> costs;
     for (std::uint32_t i = 0; i < timed_frames_; ++i) {
-      ALCOVE_TRY(auto cost, renderer_.draw(request(std::min(i, request_.frames - 1), outputs)));
+      ALCOVE_TRY(auto cost,
+                 renderer_.draw(request(std::min(i, request_.frames - 1), Outputs::timed)));
       count();
       if (i + kTimedFrames >= timed_frames_) costs.push_back(std::move(cost));
     }
@@ -92,23 +92,16 @@ class Run {
   }
 
  private:
-  CameraMatrices matrices(std::uint32_t frame) const {
-    return camera_matrices(frame_camera(request_, camera_, frame), request_.width, request_.height);
-  }
-
   FrameRequest request(std::uint32_t frame, Outputs outputs) const {
-    const CameraMatrices now = matrices(frame);
-    const CameraMatrices before = matrices(frame == 0 ? 0 : frame - 1);
     FrameRequest request;
-    request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
-                    before.clip_from_view, camera_.reversed_z};
+    request.view = gbuffer_view(frame_camera(request_, camera_, frame),
+                                frame_camera(request_, camera_, std::max(frame, 1u) - 1),
+                                {request_.width, request_.height});
     request.index = frame;
     request.static_frames = request_.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
-    if (outputs == Outputs::specular || outputs == Outputs::all)
-      request.occlusion.specular = specular_model(settings_);
-    if (outputs == Outputs::bent_normals || outputs == Outputs::all)
-      request.occlusion.bent_normal = true;
+    if (outputs == Outputs::all) request.occlusion.specular = specular_model(settings_);
+    if (outputs != Outputs::timed) request.occlusion.bent_normal = true;
     request.light = outputs == Outputs::all ? &request_.light : &timed_light_;
     return request;
   }
@@ -122,7 +115,7 @@ class Run {
   }
 
   void count() {
-    const std::uint32_t total = 2 * timed_frames_ + (one_run_ ? 1 : 2) * (request_.frames - 1);
+    const std::uint32_t total = timed_frames_ + (one_run_ ? 1 : 2) * (request_.frames - 1);
     progress_(static_cast<double>(++drawn_) / total);
   }
 
@@ -158,9 +151,8 @@ Result<Rendering> render(Session session, const RenderRequest& request) {
       const auto renderer,
       FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals));
   Run run(*renderer, request, session.camera, result.settings);
-  ALCOVE_TRY(result.costs, run.time(Outputs::visibility));
+  ALCOVE_TRY(result.costs, run.time());
   result.memory = renderer->memory();
-  ALCOVE_TRY(result.costs_with_specular, run.time(Outputs::specular));
   ALCOVE_TRY(result.images, run.draw());
   ALCOVE_TRY_VOID(check_validation(gpu));
   return result;

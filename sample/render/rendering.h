@@ -29,8 +29,7 @@ struct Rendering {
   // The images of the last frame. If the settings have no specular occlusion, specular occlusion
   // and the images lit with it come from a second run.
   FrameImages images;
-  Costs costs;                // with the settings as given
-  Costs costs_with_specular;  // with specular occlusion
+  Costs costs;  // with the settings as given
   framegraph::MemoryStatistics memory;
   std::string device;
   std::string driver;

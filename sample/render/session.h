@@ -19,7 +19,6 @@ struct DeviceRequest {
   int index = -1;           // As `alcove doctor` lists them; -1 chooses the first suitable one.
   bool validation = false;  // Turns on the validation layers and the checks of the render graph.
   std::vector<const char*> surface_extensions;  // Instance extensions of a window, if any.
-  bool capture = false;                         // DeviceOptions::capture
 };
 
 // A scene with a camera, settings and a device to draw it on.

@@ -52,9 +52,7 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
 }
 
 void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
-  const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
-  view_ = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-           matrices.clip_from_view, state.camera.reversed_z};
+  view_ = gbuffer_view(state.camera, state.camera, {size.width, size.height});
   choices_ = {state.settings, compared_settings(state), state.roughness};
   if (state.fits_budget)  // the history goes on when the number of samples changes
     choices_.settings.slices = choices_.settings.steps = 0;

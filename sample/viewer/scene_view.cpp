@@ -30,12 +30,7 @@ ViewState first_state(const Session& session, std::optional<float> roughness) {
 // Returns the path of the file. Creates the folder; an empty path is the current folder.
 tl::expected<std::filesystem::path, std::string> write_screenshot(
     const std::filesystem::path& folder, const Image<glm::vec3>& image) {
-  std::optional<OutputFolder> made;
-  if (!folder.empty()) {
-    auto created = OutputFolder::create(folder);
-    if (!created) return Failure(std::move(created.error()));
-    made.emplace(std::move(*created));
-  }
+  if (!folder.empty()) ALCOVE_TRY_VOID(create_folder(folder));
   std::filesystem::path file = folder / "view.png";
   for (int i = 2; std::filesystem::exists(file); ++i)
     file = folder / ("view-" + std::to_string(i) + ".png");

@@ -1,5 +1,6 @@
 # Compiles the translations of all shaders as far as glslang can: HLSL with its front end for HLSL, and
-# GLSL. cmake -D GLSLANG=... -D FOLDER=... -P translated_shaders.cmake
+# GLSL. Each resource of the HLSL must be a binding of interfaces.json, with its number and its type,
+# because a host binds no other. cmake -D GLSLANG=... -D FOLDER=... -P translated_shaders.cmake
 file(GLOB shaders ${FOLDER}/*.spv)
 list(LENGTH shaders count)
 if(count LESS 20)
@@ -13,6 +14,25 @@ foreach(shader IN LISTS shaders)
       OUTPUT_VARIABLE output)
     if(NOT status EQUAL 0)
       message(SEND_ERROR "${arguments}: ${output}")
+    endif()
+  endforeach()
+endforeach()
+
+set(of_b "parameters")
+set(of_s "sampler")
+set(of_t "fetched image|table")
+set(of_u "storage image")
+file(READ ${FOLDER}/interfaces.json interfaces)
+math(EXPR last "${count} - 1")
+foreach(i RANGE ${last})
+  string(JSON name GET ${interfaces} shaders ${i} name)
+  string(JSON bindings GET ${interfaces} shaders ${i} bindings)
+  file(READ ${FOLDER}/${name}.hlsl text)
+  string(REGEX MATCHALL "\n(cbuffer|RW[A-Z][A-Za-z]+|Texture|SamplerState|ByteAddress)[^;{\n]*" resources "${text}")
+  foreach(resource IN LISTS resources)
+    string(REGEX MATCH "register\\(([bstu])([0-9]+), space0\\)" place "${resource}")
+    if(NOT place OR NOT bindings MATCHES "\"binding\" : ${CMAKE_MATCH_2},[^}]*\"type\" : \"(${of_${CMAKE_MATCH_1}})\"")
+      message(SEND_ERROR "${name}.hlsl declares a resource that interfaces.json lacks:${resource}")
     endif()
   endforeach()
 endforeach()

@@ -97,8 +97,7 @@ class WorkExecutor {
 
   static VkDescriptorType descriptor_type(std::size_t binding_type) {
     constexpr std::array kTypes{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-                                VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_SAMPLER,
                                 VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
     return kTypes.at(binding_type);
   }
@@ -211,7 +210,7 @@ class WorkExecutor {
     for (std::uint32_t i = 0; i < dispatch.binding_count; ++i) {
       const AlcoveWorkBinding& of = dispatch.bindings[i];
       bindings[i] = {of.number, descriptor_type(of.type), 1, VK_SHADER_STAGE_COMPUTE_BIT,
-                     of.type == ALCOVE_BINDING_TYPE_SAMPLED_IMAGE ? &sampler_ : nullptr};
+                     of.type == ALCOVE_BINDING_TYPE_SAMPLER ? &sampler_ : nullptr};
     }
     const VkDescriptorSetLayoutCreateInfo set{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -289,9 +288,9 @@ class WorkExecutor {
     std::map<std::uint32_t, VkImageLayout> layouts;
     for (std::uint32_t i = 0; i < dispatch.binding_count; ++i) {
       const AlcoveWorkBinding& of = dispatch.bindings[i];
-      if (of.type >= ALCOVE_BINDING_TYPE_SAMPLED_IMAGE) {
-        VkImageLayout& layout = layouts.try_emplace(of.resource, kRead).first->second;
-        layout = of.type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE ? VK_IMAGE_LAYOUT_GENERAL : layout;
+      if (of.type >= ALCOVE_BINDING_TYPE_FETCHED_IMAGE) {
+        layouts[of.resource] =
+            of.type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE ? VK_IMAGE_LAYOUT_GENERAL : kRead;
       }
     }
     std::vector<VkImageMemoryBarrier2> barriers;
@@ -327,6 +326,7 @@ class WorkExecutor {
     check(vkAllocateDescriptorSets(device_, &info, &set));
     for (std::uint32_t i = 0; i < dispatch.binding_count; ++i) {
       const AlcoveWorkBinding& of = dispatch.bindings[i];
+      if (of.type == ALCOVE_BINDING_TYPE_SAMPLER) continue;  // the layout has it
       VkDescriptorBufferInfo buffer{VK_NULL_HANDLE, 0, VK_WHOLE_SIZE};
       VkDescriptorImageInfo image{};
       if (of.type == ALCOVE_BINDING_TYPE_PARAMETERS) {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <map>
 
 #include "c_interface_fixture.h"
 #include "work_executor.h"
@@ -247,7 +248,9 @@ TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime)
   for (std::uint32_t i = 0; i < work.dispatch_count; ++i) {
     for (std::uint32_t b = 0; b < work.dispatches[i].binding_count; ++b) {
       const AlcoveWorkBinding& binding = work.dispatches[i].bindings[b];
-      if (binding.type == ALCOVE_BINDING_TYPE_PARAMETERS) continue;
+      if (binding.type == ALCOVE_BINDING_TYPE_PARAMETERS ||
+          binding.type == ALCOVE_BINDING_TYPE_SAMPLER)
+        continue;
       ASSERT_LT(binding.resource, work.resource_count);
       const AlcoveWorkResource& resource = work.resources[binding.resource];
       EXPECT_EQ(binding.type == ALCOVE_BINDING_TYPE_TABLE,
@@ -257,6 +260,40 @@ TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime)
       if ((binding.access & ALCOVE_WORK_ACCESS_WRITE) != 0) {
         EXPECT_NE(resource.kind, ALCOVE_RESOURCE_KIND_INPUT) << resource.name;
         EXPECT_NE(resource.kind, ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS);
+      }
+    }
+  }
+}
+
+// WebGPU forbids to bind an image twice of which one binding is written, and guarantees 4 storage
+// images.
+TEST_F(WorkOfView, ImageThatADispatchWritesIsBoundOnceAndVisibilityNeedsAtMostFourStorageImages) {
+  for (std::uint32_t choice = 0; choice < 32; ++choice) {
+    const auto chosen = [&](std::uint32_t bit, VkFormat format) {
+      return (choice & bit) != 0 ? AlcoveWorkImage{format, 64, 48} : AlcoveWorkImage{};
+    };
+    info_.visibility = chosen(1, VK_FORMAT_R8_UNORM);
+    info_.bent_normal = chosen(2, VK_FORMAT_R8G8B8A8_SNORM);
+    info_.specular = chosen(4, VK_FORMAT_R8_UNORM);
+    settings_.half_resolution = choice & 8;
+    settings_.history_frames = (choice & 16) != 0 ? 32 : 0;
+    const Description made = describe();
+    if ((choice & 7) == 0) continue;  // a view without an output is an error
+    ASSERT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
+    for (const AlcoveWorkDispatch& dispatch :
+         std::span(made.work->dispatches).first(made.work->dispatch_count)) {
+      SCOPED_TRACE(testing::Message() << dispatch.label << ", choice " << choice);
+      std::map<std::uint32_t, std::uint32_t> bindings;  // of each resource
+      std::uint32_t written = 0;
+      const auto all = std::span(dispatch.bindings).first(dispatch.binding_count);
+      for (const AlcoveWorkBinding& binding : all) ++bindings[binding.resource];
+      for (const AlcoveWorkBinding& binding : all) {
+        if (binding.type != ALCOVE_BINDING_TYPE_STORAGE_IMAGE) continue;
+        EXPECT_EQ(bindings[binding.resource], 1u) << binding.name;
+        ++written;
+      }
+      if ((choice & 7) == 1) {
+        EXPECT_LE(written, 4u);
       }
     }
   }

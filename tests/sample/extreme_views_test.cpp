@@ -83,13 +83,8 @@ TEST(ExtremeViews, OutputsOfRandomExtremeViewsAreFiniteAndInRange) {
   for (std::uint32_t seed = 1; seed <= view_count(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const ExtremeView view = Generator(seed).next(scene);
-    const CameraMatrices matrices = camera_matrices(view.camera, size.width, size.height);
     const IndirectRequest light{.roughness = {0.3f}};
-    const FrameRequest request{.view = {.view_from_world = matrices.view_from_world,
-                                        .clip_from_view = matrices.clip_from_view,
-                                        .previous_view_from_world = matrices.view_from_world,
-                                        .previous_clip_from_view = matrices.clip_from_view,
-                                        .reversed_z = view.camera.reversed_z},
+    const FrameRequest request{.view = gbuffer_view(view.camera, view.camera, size),
                                .occlusion = view.settings,
                                .light = &light};
     const auto images = (*renderer)->draw_and_read(request);

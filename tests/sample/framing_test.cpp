@@ -110,7 +110,6 @@ struct File {
   const char* left_out = "";
   float eye_within = INFINITY;  // of the origin
 };
-std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.name; }
 
 std::vector<File> files() {
   const auto board = box({0, 0, 0}, {1, 0.03f, 1});

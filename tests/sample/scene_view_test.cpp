@@ -108,10 +108,8 @@ TEST_F(ViewerWindowTest, ShownVisibilityEqualsThatOfTheOffscreenRenderer) {
   const auto renderer =
       FrameRenderer::create(**gpu, view_->scene(), size, options_.occlusion.normals);
   ASSERT_TRUE(renderer) << renderer.error();
-  const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
   FrameRequest request;
-  request.view = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-                  matrices.clip_from_view, state.camera.reversed_z};
+  request.view = gbuffer_view(state.camera, state.camera, size);
   request.occlusion = state.settings;
   const auto images = (*renderer)->draw_and_read(request);
   ASSERT_TRUE(images) << images.error();

@@ -44,22 +44,16 @@ class Tables {
 
   void check_passes() {
     std::vector<std::uint32_t> seen(graph_.passes.size(), 0);
+    std::uint32_t next[kQueueClasses] = {};
     for (const PlannedPass& planned : plan_.passes) {
-      if (planned.pass >= graph_.passes.size()) {
-        fail("the plan runs a pass that was not declared");
-        return;
-      }
+      if (planned.pass >= graph_.passes.size())
+        return fail("the plan runs a pass that was not declared");
       if (seen[planned.pass]++) fail("the plan runs a pass twice");
       const auto queue = static_cast<std::size_t>(planned.queue);
       if (queue >= kQueueClasses || (queue != 0 && limits_.queue_families[queue] == kNone))
-        fail("a pass runs on a queue that the device does not have");
-    }
-    std::uint32_t last_effect[kQueueClasses] = {};
-    for (const PlannedPass& planned : plan_.passes) {
-      if (!(graph_.passes[planned.pass].flags & kSideEffect)) continue;
-      std::uint32_t& last = last_effect[static_cast<std::size_t>(planned.queue)];
-      if (planned.pass < last) fail("passes with side effects run in another order than declared");
-      last = planned.pass;
+        return fail("a pass runs on a queue that the device does not have");
+      if (planned.pass < std::exchange(next[queue], planned.pass))
+        fail("passes of a queue run in another order than declared");
     }
     for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
       if ((graph_.passes[pass].flags & kSideEffect) && !seen[pass])
@@ -76,18 +70,14 @@ class Tables {
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) {
       const Submission& submission = plan_.submissions[s];
       if (submission.first_pass != next ||
-          submission.pass_count > plan_.passes.size() - submission.first_pass) {
-        fail("submissions do not cover the passes in order");
-        return;
-      }
+          submission.pass_count > plan_.passes.size() - submission.first_pass)
+        return fail("submissions do not cover the passes in order");
       next += submission.pass_count;
       for (std::uint32_t p = submission.first_pass; p < next; ++p)
         if (plan_.passes[p].queue != submission.queue)
           fail("a pass is submitted to another queue than it was planned for");
-      if (submission.first_wait + submission.wait_count > plan_.waits.size()) {
-        fail("a submission's waits are out of range");
-        return;
-      }
+      if (submission.first_wait + submission.wait_count > plan_.waits.size())
+        return fail("a submission's waits are out of range");
       for (std::uint32_t w = 0; w < submission.wait_count; ++w)
         if (plan_.waits[submission.first_wait + w].submission >= s)
           fail("a submission waits for itself or a later one: it would hang");
@@ -112,10 +102,8 @@ class Tables {
     check(plan_.final_batch);
     for (const Transition& t : plan_.transitions) {
       if (t.resource == kNone) continue;
-      if (t.resource >= graph_.resources.size()) {
-        fail("a transition is of a resource that was not declared");
-        return;
-      }
+      if (t.resource >= graph_.resources.size())
+        return fail("a transition is of a resource that was not declared");
       const ResourceRecord& r = graph_.resources[t.resource];
       if (r.kind != ResourceKind::texture ||
           (t.range.mips == 0 || t.range.layers == 0 || t.range.base_mip + t.range.mips > r.mips ||

@@ -54,8 +54,8 @@ typedef enum AlcoveResourceKind {
 typedef enum AlcoveBindingType {
   ALCOVE_BINDING_TYPE_PARAMETERS = 0,     // a uniform buffer with AlcoveWorkDispatch::parameters
   ALCOVE_BINDING_TYPE_TABLE = 1,          // a storage buffer that is only read
-  ALCOVE_BINDING_TYPE_SAMPLED_IMAGE = 2,  // with a sampler: nearest, clamped to the edge, no mips
-  ALCOVE_BINDING_TYPE_FETCHED_IMAGE = 3,  // texelFetch or Load: no sampler
+  ALCOVE_BINDING_TYPE_SAMPLER = 2,        // nearest, clamped to the edge, no mips; for gathers
+  ALCOVE_BINDING_TYPE_FETCHED_IMAGE = 3,  // only read; a texture without a sampler of its own
   ALCOVE_BINDING_TYPE_STORAGE_IMAGE = 4,
   ALCOVE_BINDING_TYPE_MAX_ENUM = 0x7fffffff
 } AlcoveBindingType;
@@ -91,14 +91,16 @@ typedef struct AlcoveWorkResource {
   const void* data;  // static; null for images
 } AlcoveWorkResource;
 
-// Every binding of a shader needs a resource. If the constants switch off the only use of a
-// binding, it gets another resource of the same dispatch that is bound in the same way.
+// Every binding of an image needs a resource. If the constants switch off the only use of a binding
+// that is read, it gets another image that the dispatch reads. If they switch off the only use of
+// one that is written, it gets a transient of one texel. An image that a dispatch writes is
+// therefore never bound twice.
 typedef struct AlcoveWorkBinding {
   const char* name;  // of the variable in the shader; empty for PARAMETERS and TABLE
   uint32_t number;   // layout(binding = number), set 0
   AlcoveBindingType type;
   uint32_t access;    // a combination of AlcoveWorkAccess, as the shader declares it
-  uint32_t resource;  // index of the resource; ALCOVE_WORK_NONE for PARAMETERS
+  uint32_t resource;  // index of the resource; ALCOVE_WORK_NONE for PARAMETERS and SAMPLER
   uint32_t mip;       // the first mip that is bound, and the number of mips
   uint32_t mip_count;
 } AlcoveWorkBinding;
@@ -109,8 +111,8 @@ typedef struct AlcoveWorkConstant {
 } AlcoveWorkConstant;
 
 // A compute dispatch. Between two dispatches that access the same resource, of which one writes it,
-// there must be a barrier. Two bindings of one dispatch may have the same resource: one that is
-// sampled and stored to must be in a layout that allows both (VK_IMAGE_LAYOUT_GENERAL).
+// there must be a barrier. Two bindings of one dispatch may have the same image if both only read
+// it.
 typedef struct AlcoveWorkDispatch {
   const char* label;   // static, such as "gtao"
   const char* shader;  // static: the name for alcoveGetShader and of the file of the shader
@@ -126,7 +128,7 @@ typedef struct AlcoveWorkDispatch {
 } AlcoveWorkDispatch;
 
 // A texture that is kept from frame to frame, in two slots. The current slot of this frame is the
-// previous slot of the next one.
+// previous slot of the next one, so that each texture needs the usages of both slots.
 typedef struct AlcoveWorkHistory {
   uint32_t previous;  // index of the resource; its contents are not read if history_valid is 0
   uint32_t current;

@@ -14,8 +14,8 @@ using framegraph::Texture;
 namespace {
 
 bool is_image(const AlcoveWorkBinding& binding) {
-  return binding.type != ALCOVE_BINDING_TYPE_PARAMETERS &&
-         binding.type != ALCOVE_BINDING_TYPE_TABLE;
+  return binding.type == ALCOVE_BINDING_TYPE_FETCHED_IMAGE ||
+         binding.type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE;
 }
 
 bool same_mips(const AlcoveWorkBinding& a, const AlcoveWorkBinding& b) {

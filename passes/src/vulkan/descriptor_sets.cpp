@@ -50,7 +50,7 @@ VkResult DescriptorSets::create_pools(std::uint32_t slot_count) {
       Kernels::kMaxDispatches * std::tuple_size_v<decltype(DispatchSets::sets)>);
   std::array<VkDescriptorPoolSize, 5> sizes{{{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                                              {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                             {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+                                             {VK_DESCRIPTOR_TYPE_SAMPLER},
                                              {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                                              {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}}};
   for (VkDescriptorPoolSize& size : sizes) size.descriptorCount = kSets * most_bound(size.type);
@@ -155,17 +155,6 @@ DescriptorSets::Claim DescriptorSets::claim(framegraph::RecordContext& context,
   return {dispatches_++, replaced.set, false};
 }
 
-// Returns true if the dispatch binds `view` as a storage image.
-bool DescriptorSets::is_stored_to(const DispatchBindings& bound, VkImageView view) {
-  std::size_t image = 0;
-  for (const ShaderBinding& binding : bound.interface->bindings) {
-    const bool stored = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    if (stored && bound.views[image] == view) return true;
-    image += binding.is_image() ? 1 : 0;
-  }
-  return false;
-}
-
 void DescriptorSets::write(VkDescriptorSet set, const DispatchBindings& bound,
                            VkDeviceSize offset) {
   const VkDescriptorBufferInfo parameters{parameters_->buffer(), offset, bound.parameters.size()};
@@ -175,6 +164,7 @@ void DescriptorSets::write(VkDescriptorSet set, const DispatchBindings& bound,
   std::size_t image_count = 0;
   std::uint32_t write_count = 0;
   for (const ShaderBinding& binding : bound.interface->bindings) {
+    if (binding.type == VK_DESCRIPTOR_TYPE_SAMPLER) continue;  // the layout has it
     VkWriteDescriptorSet& write = writes.at(write_count++);
     write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
              .dstSet = set,
@@ -188,7 +178,7 @@ void DescriptorSets::write(VkDescriptorSet set, const DispatchBindings& bound,
     } else {
       const VkImageView view = bound.views[image_count];
       images.at(image_count) = {VK_NULL_HANDLE, view,
-                                is_stored_to(bound, view)
+                                binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                                     ? VK_IMAGE_LAYOUT_GENERAL
                                     : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.pImageInfo = &images.at(image_count++);

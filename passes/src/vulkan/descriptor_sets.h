@@ -92,7 +92,6 @@ class DescriptorSets {
   VkResult create_pools(std::uint32_t slot_count);
   VkResult allocate(Set& set, const DispatchBindings& bound);
   Claim claim(framegraph::RecordContext& context, const DispatchBindings& bound);
-  static bool is_stored_to(const DispatchBindings& bound, VkImageView view);
   void write(VkDescriptorSet set, const DispatchBindings& bound, VkDeviceSize offset);
 
   const framegraph::VulkanFunctions& vk_;

@@ -46,7 +46,7 @@ struct Kernels::State {
   framegraph::VulkanFunctions vk;
   framegraph::DeviceHandles handles;
   VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
-  VkSampler sampler = VK_NULL_HANDLE;      // of all sampled images that have one: nearest, clamped
+  VkSampler sampler = VK_NULL_HANDLE;      // of all shaders: nearest, clamped to the edge
   std::array<ShaderObjects, kShaderCount> shaders;
   std::vector<Pipeline> pipelines;
   std::unique_ptr<DescriptorSets> sets;
@@ -118,9 +118,9 @@ tl::expected<void, Error> Kernels::State::create_layout(std::size_t shader) {
   const std::vector<ShaderBinding>& bindings = interface_of(shader).bindings;
   std::array<VkDescriptorSetLayoutBinding, kMaxBindings> described{};
   for (std::size_t i = 0; i < bindings.size(); ++i) {
-    const bool sampled = bindings[i].type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    const bool samples = bindings[i].type == VK_DESCRIPTOR_TYPE_SAMPLER;
     described.at(i) = {bindings[i].number, bindings[i].type, 1, VK_SHADER_STAGE_COMPUTE_BIT,
-                       sampled ? &sampler : nullptr};
+                       samples ? &sampler : nullptr};
   }
   const VkDescriptorSetLayoutCreateInfo set_info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,

@@ -37,13 +37,12 @@ Reads reads_of(const GtaoInputs& inputs, const OcclusionSettings& settings) {
 // in radii, and the squares of such lengths would underflow.
 constexpr float kLargestRadius = 1e12f;
 
-std::array<NamedConstant, 16> constants_of(const WorkFrame& frame, const GtaoInputs& inputs,
+std::array<NamedConstant, 15> constants_of(const WorkFrame& frame, const GtaoInputs& inputs,
                                            const OcclusionSettings& settings, const Reads& reads,
                                            const maths::Projection& projection) {
   const bool horizons = settings.estimator == Estimator::horizons;
   return {{{"kSliceCount", settings.slices},
            {"kStepCount", settings.steps},
-           {"kBentNormal", flag(needs_bent_normal(settings))},
            {"kHorizons", flag(horizons)},
            {"kTileSize", settings.tile_size},
            {"kPerspective", flag(is_perspective(projection))},
@@ -62,8 +61,8 @@ std::array<NamedConstant, 16> constants_of(const WorkFrame& frame, const GtaoInp
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
 // groups, and groups are numbered column by column in each strip (invocation_tile() in
 // gtao.comp).
+constexpr std::uint32_t kGroup = 8;
 VkExtent3D in_strips(VkExtent2D tiles) {
-  constexpr std::uint32_t kGroup = 8;
   const std::uint32_t rows = (tiles.height + kGroup - 1) / kGroup;
   const std::uint32_t strips = std::max(rows / 16, 1u);
   return {(rows + strips - 1) / strips * kGroup, tiles.width, strips};
@@ -113,6 +112,7 @@ maths::GtaoParameters parameters_of(const WorkList& list, const WorkFrame& frame
       maths::vec2(static_cast<float>(interleave_offset.x), static_cast<float>(interleave_offset.y)),
       radius,
       index,
+      in_strips({tiles.width, tiles.height}).width / kGroup,
       settings.thickness,
       maths::hidden_exponent(settings.hidden_occlusion),
       settings.roughness,
@@ -163,14 +163,14 @@ tl::expected<RawOcclusionTextures, Error> describe_gtao(WorkList& list, const Wo
   const NamedTexture images[] = {{"depth_image", inputs.depth_ndc},
                                  {"normal_image", normals},
                                  {"raw_image", result.raw_occlusion},
-                                 {"bent_image", or_else(result.bent, result.raw_occlusion)},
+                                 {"bent_image", result.bent},
                                  {"back_image", back},
                                  {"second_image", second},
                                  {"receiver_image", receiver},
                                  {"roughness_image", roughness}};
   return list
       .dispatch({.label = "gtao",
-                 .shader = result.lobe ? Shader::gtao_specular : Shader::gtao,
+                 .shader = variant(Shader::gtao, bool(result.bent), result.lobe),
                  .constants = constants_of(frame, inputs, settings, reads, *projection),
                  .images = images,
                  .parameters = bytes_of(

@@ -44,7 +44,7 @@ void print(Text& to, const AlcoveWorkResource& resource) {
 }
 
 void print(Text& to, const AlcoveWorkBinding& binding, const AlcoveWork& work) {
-  constexpr std::array kTypes{"parameters", "table", "sampled", "fetched", "storage"};
+  constexpr std::array kTypes{"parameters", "table", "sampler", "fetched", "storage"};
   constexpr std::array kAccesses{"", " reads ", " writes ", " reads and writes "};
   to << "    binding " << std::uint64_t{binding.number} << " " << kTypes.at(binding.type);
   if (binding.resource != ALCOVE_WORK_NONE) {

@@ -28,14 +28,6 @@ enum class Past : std::uint8_t {
   unchanged,  // the previous frame shows the same
 };
 
-Shader shader_of(bool history, bool lobe, bool half) {
-  if (half && lobe)
-    return history ? Shader::reconstruct_half_specular_history : Shader::reconstruct_half_specular;
-  if (half) return history ? Shader::reconstruct_half_history : Shader::reconstruct_half;
-  if (lobe) return history ? Shader::reconstruct_specular_history : Shader::reconstruct_specular;
-  return history ? Shader::reconstruct_history : Shader::reconstruct;
-}
-
 Past past_of(const WorkFrame& frame, const ReconstructSizes& sizes, bool history_valid,
              bool motion) {
   if (!history_valid) return Past::none;
@@ -51,7 +43,7 @@ std::array<NamedConstant, 14> constants_of(const WorkFrame& frame, const Reconst
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
   return {{{"kTileSize", inputs.raw_occlusion.tile_size},
            {"kFilterRadius", filter_radius(settings)},
-           {"kBentNormal", flag(bool(inputs.raw_occlusion.bent))},
+           {"kHistory", flag(settings.history_frames > 0)},
            {"kMotion", flag(inputs.motion && past == Past::moving)},
            {"kPerspective", flag(is_perspective(projection))},
            {"kStatic", flag(past == Past::unchanged)},
@@ -122,36 +114,41 @@ Textures add_textures(WorkList& list, const WorkFrame& frame, const ReconstructI
   return textures;
 }
 
-// Returns the image of each binding that a variant of the shader can have. An image that the
-// variant does not use is replaced by another image of the same type. The image may be null if the
-// variant does not have the binding.
-std::array<NamedTexture, 18> images_of(const ReconstructInputs& in, const Textures& textures,
-                                       bool half) {
-  // At half resolution the upsampling pass writes the results, and only the weights of GGX lobes
-  // need normals.
-  const Occlusion out = half ? Occlusion{} : textures.result;
-  const Texture written = or_else(or_else(out.visibility, out.bent_normal), out.specular);
+// Returns the image of each binding that a variant of the shader can have. An image that is not
+// read is replaced by another one, and one that is not written by one of its own. The image is null
+// if the variant does not have the binding.
+std::array<NamedTexture, 18> images_of(WorkList& list, const ReconstructInputs& in,
+                                       const Textures& textures,
+                                       const OcclusionSettings& settings) {
+  const bool half = settings.half_resolution;
+  const Occlusion& out = textures.result;  // at half resolution the upsampling pass writes it
+  // At half resolution only the weights of GGX lobes need normals.
   const Texture normals = half && !in.raw_occlusion.lobe ? Texture{} : in.normals;
   const Texture sampled = in.depth_ndc;
   const Texture raw = in.raw_occlusion.raw_occlusion;
+  const auto unused = [&](bool bound, Texture texture, VkFormat format) {
+    return bound ? or_unused(list, texture, format) : texture;
+  };
   return {{{"raw_image", raw},
-           {"bent_image", or_else(in.raw_occlusion.bent, raw)},
+           {"bent_image", in.raw_occlusion.bent},
            {"depth_image", in.depth_ndc},
            {"normal_image", or_else(normals, sampled)},
            {"half_image", textures.texels.current},
            {"half_depth_image", textures.depth.current},
-           {"visibility_image", or_else(out.visibility, written)},
-           {"bent_normal_image", or_else(out.bent_normal, written)},
-           {"history_image", textures.texels.previous},
-           {"history_depth_image", textures.depth.previous},
-           {"next_history_image", textures.texels.current},
+           {"visibility_image", unused(!half, out.visibility, scalar_format(settings.precision))},
+           {"bent_normal_image", out.bent_normal},
+           {"history_image", or_else(textures.texels.previous, sampled)},
+           {"history_depth_image", or_else(textures.depth.previous, sampled)},
+           {"next_history_image", unused(!half, textures.texels.current, kHistoryFormat)},
            {"motion_image", or_else(in.motion, sampled)},
-           {"bent_history_image", or_else(textures.bent.previous, textures.texels.previous)},
-           {"next_bent_history_image", or_else(textures.bent.current, textures.texels.current)},
+           {"bent_history_image", or_else(textures.bent.previous, sampled)},
+           {"next_bent_history_image",
+            unused(bool(in.raw_occlusion.bent), textures.bent.current, kBentHistoryFormat)},
            {"roughness_image", or_else(in.roughness, sampled)},
            {"specular_image", out.specular},
-           {"lobe_history_image", textures.lobe.previous},
-           {"next_lobe_history_image", textures.lobe.current}}};
+           {"lobe_history_image", or_else(textures.lobe.previous, raw)},
+           {"next_lobe_history_image",
+            unused(in.raw_occlusion.lobe, textures.lobe.current, kLobeHistoryFormat)}}};
 }
 
 // Returns the frame without its previous view and sizes, which are not read if there is no history.
@@ -215,12 +212,14 @@ tl::expected<Occlusion, Error> describe_reconstruct(WorkList& list, const WorkFr
                            end(written.y + written.height, stored.height) - first(written.y)};
   // The number of texels that an invocation reconstructs, kBlocks of the shader.
   const std::uint32_t blocks = inputs.raw_occlusion.tile_size > (half ? 2u : 1u) ? 4 : 1;
-  auto added = list.dispatch({.label = "reconstruct",
-                              .shader = shader_of(history, inputs.raw_occlusion.lobe, half),
-                              .constants = constants_of(frame, inputs, settings, *projection, past),
-                              .images = images_of(inputs, textures, half),
-                              .parameters = bytes_of(parameters),
-                              .size = {covered.width, (covered.height + blocks - 1) / blocks, 1}});
+  auto added =
+      list.dispatch({.label = "reconstruct",
+                     .shader = variant(half ? Shader::reconstruct_half : Shader::reconstruct,
+                                       bool(inputs.raw_occlusion.bent), inputs.raw_occlusion.lobe),
+                     .constants = constants_of(frame, inputs, settings, *projection, past),
+                     .images = images_of(list, inputs, textures, settings),
+                     .parameters = bytes_of(parameters),
+                     .size = {covered.width, (covered.height + blocks - 1) / blocks, 1}});
   if (!added) return tl::unexpected(std::move(added.error()));
   if (!half) return textures.result;
   return describe_upsample(list, frame,

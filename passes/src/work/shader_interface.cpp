@@ -16,7 +16,7 @@ constexpr std::uint32_t kBoundWord = 3;  // all ids of the module are below this
 enum Op : std::uint32_t {
   kOpName = 5,
   kOpTypeImage = 25,
-  kOpTypeSampledImage = 27,
+  kOpTypeSampler = 26,
   kOpTypePointer = 32,
   kOpFunction = 54,
   kOpVariable = 59,
@@ -68,7 +68,7 @@ void read_instruction(Words words, std::vector<Id>& ids) {
         ids.at(words[1]).non_readable = true;
       break;
     case kOpTypeImage:
-    case kOpTypeSampledImage:
+    case kOpTypeSampler:
     case kOpTypePointer:
       ids.at(words[1]).definition = words;
       break;
@@ -99,7 +99,7 @@ VkDescriptorType descriptor_type(const std::vector<Id>& ids, const Id& variable)
   const Words pointer = ids.at(variable.definition[1]).definition;
   const Words type = ids.at(pointer[3]).definition;
   if (type.empty()) return VK_DESCRIPTOR_TYPE_MAX_ENUM;
-  if (opcode_of(type) == kOpTypeSampledImage) return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  if (opcode_of(type) == kOpTypeSampler) return VK_DESCRIPTOR_TYPE_SAMPLER;
   return type[7] == kImageWithoutSampler ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                                          : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
 }

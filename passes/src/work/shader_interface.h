@@ -22,7 +22,7 @@ struct ShaderBinding {
   std::uint32_t access = 0;  // a combination of AlcoveWorkAccess
 
   bool is_image() const {
-    return type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER && type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    return type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE || type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   }
 };
 

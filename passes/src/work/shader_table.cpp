@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "spirv/gtao.h"
+#include "spirv/gtao_bent.h"
+#include "spirv/gtao_bent_specular.h"
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
 #include "spirv/inspect.h"
@@ -15,15 +17,17 @@
 #include "spirv/multi_bounce.h"
 #include "spirv/normals.h"
 #include "spirv/reconstruct.h"
+#include "spirv/reconstruct_bent.h"
+#include "spirv/reconstruct_bent_specular.h"
 #include "spirv/reconstruct_half.h"
-#include "spirv/reconstruct_half_history.h"
+#include "spirv/reconstruct_half_bent.h"
+#include "spirv/reconstruct_half_bent_specular.h"
 #include "spirv/reconstruct_half_specular.h"
-#include "spirv/reconstruct_half_specular_history.h"
-#include "spirv/reconstruct_history.h"
 #include "spirv/reconstruct_specular.h"
-#include "spirv/reconstruct_specular_history.h"
 #include "spirv/resolve_depth.h"
 #include "spirv/upsample.h"
+#include "spirv/upsample_bent.h"
+#include "spirv/upsample_bent_specular.h"
 #include "spirv/upsample_specular.h"
 #include "tables/gtso.h"
 
@@ -38,17 +42,21 @@ constexpr ShaderSource kSources[] = {
     {"linear_depth", kLinearDepth},
     {"normals", kNormals},
     {"gtao", kGtao},
+    {"gtao_bent", kGtaoBent},
     {"gtao_specular", kGtaoSpecular},
+    {"gtao_bent_specular", kGtaoBentSpecular},
     {"reconstruct", kReconstruct},
-    {"reconstruct_history", kReconstructHistory},
+    {"reconstruct_bent", kReconstructBent},
     {"reconstruct_specular", kReconstructSpecular},
-    {"reconstruct_specular_history", kReconstructSpecularHistory},
+    {"reconstruct_bent_specular", kReconstructBentSpecular},
     {"reconstruct_half", kReconstructHalf},
-    {"reconstruct_half_history", kReconstructHalfHistory},
+    {"reconstruct_half_bent", kReconstructHalfBent},
     {"reconstruct_half_specular", kReconstructHalfSpecular},
-    {"reconstruct_half_specular_history", kReconstructHalfSpecularHistory},
+    {"reconstruct_half_bent_specular", kReconstructHalfBentSpecular},
     {"upsample", kUpsample},
+    {"upsample_bent", kUpsampleBent},
     {"upsample_specular", kUpsampleSpecular},
+    {"upsample_bent_specular", kUpsampleBentSpecular},
     {"resolve_depth", kResolveDepth},
     {"mask_depth", kMaskDepth},
     {"mask_depth_integer", kMaskDepthInteger},

@@ -7,6 +7,7 @@
 #include "upsample_parameters.h"
 #include "work/areas.h"
 #include "work/bindings.h"
+#include "work/output_format.h"
 #include "work/view_parameters.h"
 
 namespace alcove::passes {
@@ -19,7 +20,7 @@ namespace {
 // Fitted to the error over the development views (`alcove compare --set half_resolution=true`).
 constexpr float kTolerancePx = 1.0f;
 
-std::array<NamedConstant, 7> constants_of(const WorkFrame& frame, const UpsampleInputs& inputs,
+std::array<NamedConstant, 6> constants_of(const WorkFrame& frame, const UpsampleInputs& inputs,
                                           const Occlusion& result,
                                           const OcclusionSettings& settings,
                                           const maths::Projection& projection) {
@@ -28,7 +29,6 @@ std::array<NamedConstant, 7> constants_of(const WorkFrame& frame, const Upsample
   return {{{"kPerspective", flag(is_perspective(projection))},
            {"kVisibility", flag(bool(result.visibility))},
            {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
-           {"kBentNormal", flag(bool(result.bent_normal))},
            {"kNormalEncoding", encoding},
            {"kReversed", flag(is_reversed(projection))},
            {"kAreas", flag(has_areas(frame))}}};
@@ -68,18 +68,16 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
   const VkExtent2D read = read_size(frame, list.size(inputs.depth_ndc));
   const auto projection = projection_of(frame.view, read);
   if (!projection) return tl::unexpected(projection.error());
-  const Texture written = or_else(or_else(result.visibility, result.bent_normal), result.specular);
-  const bool bent = bool(result.bent_normal);
   const NamedTexture images[] = {
       {"half_image", inputs.half},
       {"half_depth_image", inputs.half_depth},
       {"depth_image", inputs.depth_ndc},
-      {"normal_image", or_else(bent ? inputs.normals : Texture{}, inputs.depth_ndc)},
-      {"residual_image", bent ? inputs.residuals : inputs.half},
-      {"visibility_image", or_else(result.visibility, written)},
-      {"bent_normal_image", or_else(result.bent_normal, written)},
-      {"lobe_image", or_else(inputs.lobes, inputs.half)},
-      {"specular_image", or_else(result.specular, written)}};
+      {"normal_image", or_else(inputs.normals, inputs.depth_ndc)},
+      {"residual_image", inputs.residuals},
+      {"visibility_image", or_unused(list, result.visibility, scalar_format(settings.precision))},
+      {"bent_normal_image", result.bent_normal},
+      {"lobe_image", inputs.lobes},
+      {"specular_image", result.specular}};
   // An invocation of the upsampling computes the pixels between the centres of four texels, of
   // which the first lies one pixel before the image.
   const AlcoveArea area = written_area(frame, read);
@@ -89,7 +87,7 @@ tl::expected<Occlusion, Error> describe_upsample(WorkList& list, const WorkFrame
   return list
       .dispatch(
           {.label = "upsample",
-           .shader = result.specular ? Shader::upsample_specular : Shader::upsample,
+           .shader = variant(Shader::upsample, bool(result.bent_normal), bool(result.specular)),
            .constants = constants_of(frame, inputs, result, settings, *projection),
            .images = images,
            .parameters = bytes_of(parameters_of(list, frame, inputs, settings, *projection, read)),

@@ -21,8 +21,8 @@ AlcoveBindingType binding_type(VkDescriptorType type) {
       return ALCOVE_BINDING_TYPE_PARAMETERS;
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
       return ALCOVE_BINDING_TYPE_TABLE;
-    case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
-      return ALCOVE_BINDING_TYPE_SAMPLED_IMAGE;
+    case VK_DESCRIPTOR_TYPE_SAMPLER:
+      return ALCOVE_BINDING_TYPE_SAMPLER;
     case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
       return ALCOVE_BINDING_TYPE_FETCHED_IMAGE;
     default:
@@ -152,7 +152,8 @@ bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding,
            .resource = ALCOVE_WORK_NONE,
            .mip = given.range.base_mip,
            .mip_count = 0};
-  if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS) return true;
+  if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS || bound.type == ALCOVE_BINDING_TYPE_SAMPLER)
+    return true;
   const Texture used =
       bound.type == ALCOVE_BINDING_TYPE_TABLE ? Texture{add_table("table", table)} : given.texture;
   if (find(used) == nullptr) return false;

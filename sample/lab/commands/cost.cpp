@@ -34,21 +34,18 @@ Result<std::vector<SettingsCost>> measure(const Options& options) {
   for (const passes::Quality quality : chosen_presets(options.occlusion)) {
     ALCOVE_TRY(settings.emplace_back(), labelled_settings(options, quality));
   }
-  return model_costs(settings, options.gpu);
-}
-
-Result<void> write_budget(const std::filesystem::path& file) {
-  ALCOVE_TRY(const auto device, create_null_device(kGpuParts.front().family));
-  ALCOVE_TRY(const auto costs, model_costs(budgeted_settings()));
-  return write_text(file, format_budget(costs, device.compiler));
+  return model_costs(settings, options.gpu, options.cost.range);
 }
 
 }  // namespace
 
 Result<void> run_cost(const Options& options) {
-  if (!options.cost.budget.empty()) return write_budget(options.cost.budget);
+  if (!options.cost.budget.empty()) {
+    ALCOVE_TRY(const auto budget, gpu_budget());
+    return write_text(options.cost.budget, budget);
+  }
   ALCOVE_TRY(const auto costs, measure(options));
-  std::cout << format_table(costs, options.cost.loops);
+  std::cout << format_table(costs);
   if (options.cost.json.empty()) return {};
   return write_text(options.cost.json, to_json(costs).dump(2) + "\n");
 }

@@ -95,30 +95,20 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
   return sentences;
 }
 
-Result<std::vector<std::string>> view_needs(const Session& session, const SituationErrors& errors,
+Result<std::vector<std::string>> view_needs(const Session& session, const Truths& truths,
                                             const SettingTimes& times,
                                             const RecommendationGoal& goal,
                                             const Achievement& chosen) {
-  ALCOVE_TRY(const auto band_rmse, errors.measure_with_guard_band(chosen.settings));
-  ALCOVE_TRY(const auto band_ms, times(chosen.settings, true));
-  const Achievement with{chosen.settings, band_rmse, band_ms};
-  FeatureEffect band = measure_effect(
-      fmt::format("a guard band of {:g} % of the height, by AlcoveView::written_area",
-                  100.0 * kGuardBand),
-      goal, with, chosen);
-  if (goal.prefers(with, chosen, kWorthwhile)) band.verdict = "worth it";
-  const Image<float>& visibility = errors.truths().scene.visibility;
   ALCOVE_TRY(const auto rays, RayScene::create(session.scene));
-  const GBuffer seen = cast_gbuffer(rays, session.camera, visibility.width, visibility.height);
+  const GBuffer seen =
+      cast_gbuffer(rays, session.camera, truths.surfaces.width, truths.surfaces.height);
   const TimeIncrease time_increase = [&](const auto& change) -> Result<double> {
     Achievement changed = chosen;
-    change(changed.settings);
-    ALCOVE_TRY(changed.ms, times(changed.settings, false));
+    change(changed.choice.settings);
+    ALCOVE_TRY(changed.ms, times(changed.choice));
     return goal.ms(changed) / goal.ms(chosen) - 1.0;
   };
-  ALCOVE_TRY(auto needs, output_needs(session.scene, seen, errors.truths(), time_increase));
-  needs.insert(needs.begin(), band.sentence());
-  return needs;
+  return output_needs(session.scene, seen, truths, time_increase);
 }
 
 }  // namespace alcove::sample

@@ -29,10 +29,9 @@ using TimeIncrease = std::function<Result<double>(
                                                             const Truths& truths,
                                                             const TimeIncrease& time_increase);
 
-// Returns what the session's view needs beside settings: a sentence on a guard band, then those of
-// output_needs(). `errors` and `times` are those of the view.
+// Returns output_needs() for the session's view. `truths` and `times` are those of the view.
 [[nodiscard]] Result<std::vector<std::string>> view_needs(const Session& session,
-                                                          const SituationErrors& errors,
+                                                          const Truths& truths,
                                                           const SettingTimes& times,
                                                           const RecommendationGoal& goal,
                                                           const Achievement& chosen);

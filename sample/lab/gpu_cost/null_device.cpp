@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -128,8 +129,8 @@ VkDescriptorType descriptor_type(AlcoveBindingType type) {
       return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     case ALCOVE_BINDING_TYPE_TABLE:
       return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case ALCOVE_BINDING_TYPE_SAMPLED_IMAGE:
-      return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case ALCOVE_BINDING_TYPE_SAMPLER:
+      return VK_DESCRIPTOR_TYPE_SAMPLER;
     case ALCOVE_BINDING_TYPE_FETCHED_IMAGE:
       return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     default:
@@ -153,9 +154,9 @@ bool create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch, VkPipe
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const AlcoveWorkBinding& binding :
        std::span(dispatch.bindings).first(dispatch.binding_count)) {
-    const bool sampled = binding.type == ALCOVE_BINDING_TYPE_SAMPLED_IMAGE;
+    const bool samples = binding.type == ALCOVE_BINDING_TYPE_SAMPLER;
     bindings.push_back({binding.number, descriptor_type(binding.type), 1,
-                        VK_SHADER_STAGE_COMPUTE_BIT, sampled ? &sampler : nullptr});
+                        VK_SHADER_STAGE_COMPUTE_BIT, samples ? &sampler : nullptr});
   }
   const VkDescriptorSetLayoutCreateInfo set_info{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -203,6 +204,9 @@ bool create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch, VkPipe
 }  // namespace
 
 Result<NullDevice> create_null_device(std::string_view family) {
+  // Parts of one family share a device, and with it the pipelines that it has compiled.
+  static std::map<std::string, NullDevice, std::less<>> known;
+  if (const auto found = known.find(family); found != known.end()) return found->second;
   const auto manifest = radv_manifest();
   if (!manifest) {
     return Failure(
@@ -235,7 +239,7 @@ Result<NullDevice> create_null_device(std::string_view family) {
                                          .pNext = &driver};
   vkGetPhysicalDeviceProperties2(null_device.physical_device, &properties);
   null_device.compiler = std::string(driver.driverName) + ", " + driver.driverInfo;
-  return null_device;
+  return known[std::string(family)] = null_device;
 }
 
 Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline) {

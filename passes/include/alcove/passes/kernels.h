@@ -30,17 +30,21 @@ enum class Shader : std::uint8_t {
   linear_depth,
   normals,
   gtao,
+  gtao_bent,
   gtao_specular,
+  gtao_bent_specular,
   reconstruct,
-  reconstruct_history,
+  reconstruct_bent,
   reconstruct_specular,
-  reconstruct_specular_history,
+  reconstruct_bent_specular,
   reconstruct_half,
-  reconstruct_half_history,
+  reconstruct_half_bent,
   reconstruct_half_specular,
-  reconstruct_half_specular_history,
+  reconstruct_half_bent_specular,
   upsample,
+  upsample_bent,
   upsample_specular,
+  upsample_bent_specular,
   resolve_depth,
   mask_depth,
   mask_depth_integer,
@@ -83,7 +87,7 @@ class Kernels {
   // may use it while passes are added.
   //
   // Errors: a null handle, frames in flight out of range, a Vulkan function that the device lacks,
-  // a limit maxPerStageDescriptorStorageImages below 8, or no more memory.
+  // a limit maxPerStageDescriptorStorageImages below 6, or no more memory.
   [[nodiscard]] static tl::expected<Kernels, Error> create(const framegraph::DeviceHandles& device,
                                                            std::uint32_t frames_in_flight,
                                                            VkPipelineCache cache = VK_NULL_HANDLE);
