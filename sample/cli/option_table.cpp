@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/settings.h"
 
 namespace alcove::sample {
@@ -110,8 +110,6 @@ void check_plane(const std::string& option, const std::optional<float>& distance
 }  // namespace
 
 std::span<const OptionRow> option_rows() {
-  static const std::string quality =
-      "preset: " + passes::names_text<passes::Quality>() + ". Default: medium";
   static const OptionRow rows[] = {
       {kOnDevice, kOptions, "--cut-blends", nullptr,
        "render alpha-blended materials as masks with a cutoff of 0.5, which suits foliage. "
@@ -267,10 +265,10 @@ std::span<const OptionRow> option_rows() {
              static_cast<float>(v.number(-360.0, 360.0, "an angle in degrees, -360 to 360")));
        }},
 
-      {kAll, kOcclusion, "--quality", "NAME", quality.c_str(),
+      {kAll, kOcclusion, "--quality", "NAME",
+       "preset: console, low, medium, high, ultra or reference. Default: medium",
        [](O& o, const V& v) {
-         o.occlusion.quality =
-             static_cast<passes::Quality>(v.one_of(passes::kNames<passes::Quality>));
+         o.occlusion.quality = static_cast<AlcoveQuality>(v.one_of(passes::kQualityNames));
          o.occlusion.quality_given = true;
        }},
       {kAll, kOcclusion, "--radius", "LENGTH",

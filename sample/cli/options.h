@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/situations.h"
+#include "gpu/occlusion.h"
 #include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"
@@ -59,7 +59,7 @@ struct ViewOptions {
 };
 
 struct OcclusionOptions {
-  passes::Quality quality = passes::Quality::medium;
+  AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM;
   bool quality_given = false;   // --quality was given
   std::optional<float> radius;  // scene units; none: ViewFinder::radius()
   NormalSource normals = NormalSource::shading;

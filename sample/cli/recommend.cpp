@@ -26,7 +26,7 @@ SituationWeights chosen_weights(const Options& options) {
 
 // The command line that renders the view with these settings.
 std::string render_line(const Options& options, const Session& session,
-                        const passes::OcclusionSettings& settings) {
+                        const OcclusionSettings& settings) {
   return shell_line(
       render_arguments(options, {session.camera, settings, std::nullopt, options.view.width,
                                  options.view.height, options.view.frames}));
@@ -80,7 +80,7 @@ void check_other_views(const Options& options, const Session& session,
   }
 }
 
-Result<void> write_settings(const Options& options, const passes::OcclusionSettings& settings) {
+Result<void> write_settings(const Options& options, const OcclusionSettings& settings) {
   if (options.settings_out.empty()) return {};
   nlohmann::ordered_json json{{"settings", to_json(settings)}};
   json["settings"].erase("radius");  // it belongs to the scene

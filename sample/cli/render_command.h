@@ -16,7 +16,7 @@ namespace alcove::sample {
 
 // Returns the options that give these settings except their radius: --quality with the quality that
 // needs the fewest changes, and --set for each change.
-[[nodiscard]] std::vector<std::string> setting_arguments(const passes::OcclusionSettings& settings);
+[[nodiscard]] std::vector<std::string> setting_arguments(const OcclusionSettings& settings);
 
 // Returns every setting of a choice that is not the default, as options of the commands.
 [[nodiscard]] std::string choice_text(const Choice& choice);

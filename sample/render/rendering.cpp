@@ -57,7 +57,7 @@ enum class Outputs : std::uint8_t {
 class Run {
  public:
   Run(FrameRenderer& renderer, const RenderRequest& request, const Camera& camera,
-      const passes::OcclusionSettings& settings)
+      const OcclusionSettings& settings)
       : renderer_(renderer), request_(request), camera_(camera), settings_(settings) {
     if (!request.light.roughness.empty())
       timed_light_.roughness = {request.light.roughness.front()};
@@ -122,7 +122,7 @@ class Run {
   FrameRenderer& renderer_;
   const RenderRequest& request_;
   Camera camera_;
-  passes::OcclusionSettings settings_;
+  OcclusionSettings settings_;
   bool one_run_ = settings_.specular == specular_model(settings_);
   std::uint32_t timed_frames_ = std::max(request_.frames, kTimedFrames + 1);
   IndirectRequest timed_light_;  // one roughness, and no light
@@ -132,8 +132,8 @@ class Run {
 
 }  // namespace
 
-passes::Specular specular_model(const passes::OcclusionSettings& settings) {
-  return settings.specular == passes::Specular::none ? passes::Specular::slices : settings.specular;
+AlcoveSpecular specular_model(const OcclusionSettings& settings) {
+  return settings.specular == ALCOVE_SPECULAR_NONE ? ALCOVE_SPECULAR_SLICES : settings.specular;
 }
 
 Result<Rendering> render(Session session, const RenderRequest& request) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/result.h"
@@ -25,7 +25,7 @@ struct DeviceRequest {
 struct Session {
   Scene scene;
   Camera camera;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   std::string radius_reason;  // Where the radius comes from.
   double load_seconds = 0.0;  // Of the scene.
   DeviceRequest device;
@@ -35,7 +35,7 @@ struct Session {
 // A view of a scene and the settings that its occlusion is drawn with.
 struct Shot {
   Camera camera;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   // Perceptual, [0,1], of every surface; null: the materials' own roughness.
   std::optional<float> roughness;
   std::uint32_t width = 0;  // pixels

@@ -160,8 +160,8 @@ void SceneView::lay_out() {
   facts_.height = presenter_->size().height;
   facts_.times.add(presenter_->timings());
   if (state_.fits_budget && facts_.refusal.empty()) {
-    state_.settings =
-        fitter_.fit({.target_ms = state_.target_ms}, presenter_->timings(), state_.settings);
+    state_.settings = fitter_.fit({sizeof(AlcoveBudget), state_.target_ms, 1, 2, 6, 12},
+                                  presenter_->timings(), state_.settings);
   }
   if (panel_shown_ && lay_out_panel(state_, facts_)) take_screenshot();
   gui_->end();

@@ -25,7 +25,7 @@ std::uint32_t view_count() {
 
 struct ExtremeView {
   Camera camera;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
 };
 
 class Generator {
@@ -50,10 +50,10 @@ class Generator {
     if (!camera.orthographic && pick({0.0f, 1.0f, 2.0f}) == 0.0f) camera.far_plane = INFINITY;
     camera.reversed_z = pick({0.0f, 1.0f}) == 1.0f;
     camera.offset_ndc = pick({0.0f, 0.0f, 0.7f}) * glm::vec2(vector(-1.0f, 1.0f));
-    const auto quality = static_cast<passes::Quality>(random_() % 4);
-    view.settings = passes::quality_settings(quality, pick({1e-5f, 0.05f, 0.5f, 50.0f, 1e6f}));
+    const auto quality = static_cast<AlcoveQuality>(random_() % 4);
+    view.settings = OcclusionSettings(quality, pick({1e-5f, 0.05f, 0.5f, 50.0f, 1e6f}));
     view.settings.bent_normal = true;
-    view.settings.specular = passes::Specular::slices;
+    view.settings.specular = ALCOVE_SPECULAR_SLICES;
     return view;
   }
 

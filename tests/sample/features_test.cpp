@@ -17,9 +17,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-using passes::Quality;
-
 class FeaturesTest : public GpuTest {
  protected:
   static FrameImages draw(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
@@ -37,7 +34,7 @@ class FeaturesTest : public GpuTest {
 
   const Scene scene_ = builtin_scene();
   StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::geometric};
-  const OcclusionSettings base_ = passes::quality_settings(Quality::medium, default_radius(scene_));
+  const OcclusionSettings base_ = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, default_radius(scene_));
 };
 
 TEST_F(FeaturesTest, EstimatorConnectedHasASmallerErrorThanHorizons) {
@@ -46,7 +43,7 @@ TEST_F(FeaturesTest, EstimatorConnectedHasASmallerErrorThanHorizons) {
   const double connected = truth.rmse(images.visibility);
   EXPECT_GT(connected, 0.01);
   OcclusionSettings horizons = base_;
-  horizons.estimator = passes::Estimator::horizons;
+  horizons.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   EXPECT_GT(truth.rmse(draw(horizons).visibility), 1.02 * connected);
 }
 
@@ -68,7 +65,7 @@ TEST_F(FeaturesTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesT
   const FrameImages images = draw(base_);
   const TracedTruth truth = truth_of(images);
   OcclusionSettings back_faces = base_;
-  back_faces.thickness_unit = passes::ThicknessUnit::back_faces;
+  back_faces.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   OcclusionSettings second_layer = base_;
   second_layer.depth_layers = 2;
   const double base = truth.rmse(images.visibility);
@@ -105,7 +102,7 @@ TEST_F(FeaturesTest, MoreStepsAndSlicesDoNotRaiseTheErrorByMoreThanTwoPercent) {
 // One renderer alternates between settings with and without hidden depths.
 TEST_F(FeaturesTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThem) {
   OcclusionSettings backs = base_;
-  backs.thickness_unit = passes::ThicknessUnit::back_faces;
+  backs.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   OcclusionSettings layers = base_;
   layers.depth_layers = 2;
   const auto renderer =

@@ -14,9 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "gpu_cost/budget.h"
 #include "gpu_cost/cache_traffic.h"
+#include "gpu_cost/presets.h"
 #include "gpu_cost/xegtao.h"
 
 namespace alcove::sample {
@@ -115,13 +116,13 @@ TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
 }
 
 // The number of times that each loop of the search runs; empty if one is not known.
-std::vector<double> search_iterations(const passes::OcclusionSettings& settings,
+std::vector<double> search_iterations(const OcclusionSettings& settings,
                                       const std::vector<CompiledLoop>& loops) {
   return loop_iterations({"gtao", settings}, loops).value_or(std::vector<double>{});
 }
 
 TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   settings.slices = 2;
   settings.steps = 16;
   const auto loop = [](std::uint32_t depth, std::uint32_t loads) {
@@ -142,7 +143,7 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), IsEmpty())
       << "visibility has no loop over occluder runs";
   settings.depth_layers = 2;
-  settings.thickness_unit = passes::ThicknessUnit::back_faces;
+  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   EXPECT_THAT(search_iterations(settings, {loop(1, 48), loop(2, 48)}), ElementsAre(2, 2))
       << "both depth layers share the loads of back faces";
   settings.slices = 1;
@@ -153,7 +154,7 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
 }
 
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
-  const passes::OcclusionSettings settings;
+  const OcclusionSettings settings;
   const CompiledLoop loop{.depth = 1, .instructions = 7};
   const auto iterations = loop_iterations({"normals", settings, FrameState::moving}, {&loop, 1});
   ASSERT_FALSE(iterations);
@@ -266,7 +267,7 @@ TEST(CacheTraffic, TrafficOfTheSearchAgreesWithAnotherModel) {
   };
   constexpr std::array<Expected, kGpuParts.size()> kExpected{
       {{3, 52.0, 152.8, 70.9}, {6, 42.6, 242.5, 14.1}, {6, 42.6, 240.8, 27.3}}};
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   settings.tile_size = 4;
   settings.slices = 2;
   settings.steps = 12;
@@ -342,9 +343,9 @@ Result<double> instructions_of(const GpuPart& part, const NullDevice& device,
 
 // Loops, rare branches and strips of groups must not hide samples from the model.
 TEST_P(CompiledPresets, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
-  for (const passes::Quality quality : {passes::Quality::low, passes::Quality::medium}) {
+  for (const AlcoveQuality quality : {ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
     CostInputs inputs;
-    inputs.settings = passes::quality_settings(quality, 0.5f);
+    inputs.settings = OcclusionSettings(quality, 0.5f);
     const auto frame = modelled_frame(part_, device_, inputs, FrameState::moving, nullptr);
     ASSERT_TRUE(frame) << frame.error();
     const ModelledPass& search = frame->passes.front();
@@ -355,20 +356,36 @@ TEST_P(CompiledPresets, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
   }
 }
 
+// A texel that a shader loads and accesses.cpp does not know would cost no byte.
+TEST_P(CompiledPresets, DeclaredAccessesAreTheLoadsOfTheCompiledShaders) {
+  CostInputs inputs;
+  inputs.width = 384;
+  inputs.height = 216;
+  for (const passes::Quality quality : presets()) {
+    inputs.settings = passes::quality_settings(quality, 0.5f);
+    const auto frame = modelled_frame(part_, device_, inputs, FrameState::moving);
+    ASSERT_TRUE(frame) << frame.error();
+    for (const ModelledPass& pass : frame->passes) {
+      // The loads of rare branches, such as those of a missing normal, are less than half a load.
+      EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
+          << passes::name_of(quality) << ", " << pass.pass;
+    }
+  }
+}
+
 // Bent normals need the normals once more. They are on for the GPU for which that costs most.
 TEST_P(CompiledPresets, DecodingPackedNormalsTakesAtMostTheStatedInstructionsPerPixel) {
-  using passes::NormalEncoding;
   struct PackedEncoding {
     const char* name;
-    NormalEncoding encoding;
+    AlcoveNormalEncoding encoding;
     std::array<double, 2> most;  // instructions per pixel by GPU, a little above the measured ones
   };
   constexpr PackedEncoding kPacked[] = {
-      {"unsigned xyz", NormalEncoding::unsigned_xyz, {4.5, 1.2}},
-      {"octahedral", NormalEncoding::octahedral, {13.0, 2.8}},
-      {"unsigned octahedral", NormalEncoding::unsigned_octahedral, {16.0, 3.5}}};
+      {"unsigned xyz", ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, {4.5, 1.2}},
+      {"octahedral", ALCOVE_NORMAL_ENCODING_OCTAHEDRAL, {13.0, 2.8}},
+      {"unsigned octahedral", ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL, {16.0, 3.5}}};
   CostInputs inputs;
-  inputs.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
+  inputs.settings = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, 0.5f);
   inputs.settings.bent_normal = !part_.rdna;
   const auto plain = instructions_of(part_, device_, inputs);
   ASSERT_TRUE(plain) << plain.error();

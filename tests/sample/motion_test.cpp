@@ -14,7 +14,7 @@ class Motion : public GpuTest {
  protected:
   static MotionSetup setup() {
     const float radius = default_radius(builtin_scene());
-    return {.occlusion = passes::quality_settings(passes::Quality::medium, radius),
+    return {.occlusion = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, radius),
             .view = {.width = 240, .height = 135, .normals = NormalSource::geometric},
             .truth = {.spp = 64, .use_cache = false}};
   }

@@ -47,7 +47,7 @@ TEST(Options, CommandLineWithManyOptionsIsParsed) {
   EXPECT_EQ(*options->view.eye, glm::dvec3(-9, 5.5, -0.4));
   EXPECT_EQ(options->view.reversed_z, true);
   EXPECT_TRUE(std::isinf(*options->view.far_plane));
-  EXPECT_EQ(options->occlusion.quality, passes::Quality::high);
+  EXPECT_EQ(options->occlusion.quality, ALCOVE_QUALITY_HIGH);
   EXPECT_EQ(options->occlusion.normals, NormalSource::geometric);
   EXPECT_EQ(options->occlusion.set.size(), 2u);
   EXPECT_EQ(options->occlusion.set[1].second, "5");

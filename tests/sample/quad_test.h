@@ -43,7 +43,7 @@ class QuadTest : public GpuTest {
     auto renderer = FrameRenderer::create(gpu(), scene, {size, size}, normals);
     EXPECT_TRUE(renderer) << renderer.error();
     const FrameRequest request{.view = gbuffer_view(camera, camera, {size, size}),
-                               .occlusion = passes::quality_settings(passes::Quality::low, 0.2f)};
+                               .occlusion = OcclusionSettings(ALCOVE_QUALITY_LOW, 0.2f)};
     auto images = (*renderer)->draw_and_read(request);
     EXPECT_TRUE(images) << images.error();
     return images ? std::move(*images) : FrameImages{};

@@ -1,3 +1,4 @@
+#include "alcove/passes/setting_table.h"
 #include "evaluate/recommendation.h"
 
 #include <gmock/gmock.h>
@@ -10,8 +11,6 @@
 
 namespace alcove::sample {
 namespace {
-
-using passes::OcclusionSettings;
 
 // A world in which errors and times have closed forms: more samples take longer and err less, and a
 // second layer takes 20 % of the error away for 15 % of the time.
@@ -35,7 +34,7 @@ struct World {
   double rmse(const OcclusionSettings& s) const {
     const double hidden = 0.1 * std::abs(s.hidden_occlusion - 0.33);
     const double layers = s.depth_layers > 1 ? 1.0 - layer_gain : 1.0;
-    const double horizons = s.estimator == passes::Estimator::horizons ? 1.6 : 1.0;
+    const double horizons = s.estimator == ALCOVE_ESTIMATOR_HORIZONS ? 1.6 : 1.0;
     return (0.04 + 0.02 / (0.5 + samples(s)) + hidden + (s.half_resolution ? 0.01 : 0.0)) * layers *
            horizons;
   }

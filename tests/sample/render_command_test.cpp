@@ -32,7 +32,7 @@ Shot some_shot() {
   shot.camera.near_plane = 0.05f;
   shot.camera.far_plane = std::numeric_limits<float>::infinity();
   shot.camera.reversed_z = true;
-  shot.settings = passes::quality_settings(passes::Quality::high, 0.7f);
+  shot.settings = OcclusionSettings(ALCOVE_QUALITY_HIGH, 0.7f);
   shot.width = 641;
   shot.height = 359;
   return shot;
@@ -112,19 +112,19 @@ TEST(PrintedRenderCommand, PrintedCommandParsesBackToTheSameShotAndOptions) {
 TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   Shot shot = some_shot();
   shot.roughness = 0.3f;
-  passes::OcclusionSettings& settings = shot.settings;
+  OcclusionSettings& settings = shot.settings;
   settings.radius = 0.1f;
   settings.slices = 3;
   settings.steps = 7;
-  settings.estimator = passes::Estimator::horizons;
+  settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   settings.thickness = 1.0f / 7.0f;
-  settings.thickness_unit = passes::ThicknessUnit::back_faces;
+  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   settings.hidden_occlusion = 0.123456789f;
   settings.tile_size = 4;
   settings.history_frames = 17;
   settings.bent_normal = true;
-  settings.specular = passes::Specular::table;
-  settings.precision = passes::Precision::float32;
+  settings.specular = ALCOVE_SPECULAR_TABLE;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   expect_round_trip(kDefaults, shot);
 }
 

@@ -1,7 +1,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/commands.h"
 #include "cli/settings.h"
 #include "gpu_cost/budget.h"
@@ -15,10 +15,10 @@ namespace alcove::sample {
 namespace {
 
 // The preset with the changes of --set.
-Result<LabelledSettings> labelled_settings(const Options& options, passes::Quality quality) {
+Result<LabelledSettings> labelled_settings(const Options& options, AlcoveQuality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
-  LabelledSettings labelled{std::string(passes::name_of(quality)), options.cost.inputs};
+  LabelledSettings labelled{std::string(passes::kQualityNames.at(quality)), options.cost.inputs};
   ALCOVE_TRY(labelled.inputs.settings,
              occlusion_settings(one, 0.5f));  // no instruction depends on the radius
   labelled.inputs.width = options.view.width;
@@ -31,7 +31,7 @@ Result<LabelledSettings> labelled_settings(const Options& options, passes::Quali
 
 Result<std::vector<SettingsCost>> measure(const Options& options) {
   std::vector<LabelledSettings> settings;
-  for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+  for (const AlcoveQuality quality : chosen_presets(options.occlusion)) {
     ALCOVE_TRY(settings.emplace_back(), labelled_settings(options, quality));
   }
   return model_costs(settings, options.gpu, options.cost.range);

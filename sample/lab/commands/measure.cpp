@@ -5,7 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/settings.h"
@@ -198,20 +198,22 @@ Result<void> run_measure(const Options& options) {
   std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
   ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(*session.gpu));
   std::cout << fmt::format("An empty dispatch takes {:.2f} microseconds, behind a barrier {:.2f}\n",
-                           dispatch.alone_us, dispatch.behind_barrier_us);
+                           dispatch.alone_us, dispatch.behind_barrier_us)
+            << std::flush;
   Json report{{"device", device.properties().deviceName},
               {"driver", device.driver()},
               {"frames", options.view.frames},
               {"dispatch_us", dispatch.alone_us},
               {"dispatch_behind_barrier_us", dispatch.behind_barrier_us}};
   for (const auto& [width, height] : options.sizes) {
-    for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+    for (const AlcoveQuality quality : chosen_presets(options.occlusion)) {
       OcclusionOptions one = options.occlusion;
       one.quality = quality;
       ALCOVE_TRY(const auto settings, occlusion_settings(one, session.settings.radius));
       const CostInputs inputs{.width = width, .height = height, .settings = settings};
-      ALCOVE_TRY(const auto frame,
-                 measure(session, options, {std::string(passes::name_of(quality)), inputs}));
+      ALCOVE_TRY(
+          const auto frame,
+          measure(session, options, {std::string(passes::kQualityNames.at(quality)), inputs}));
       report["measured"].push_back(print(frame));
     }
   }

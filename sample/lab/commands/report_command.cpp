@@ -24,8 +24,6 @@ namespace alcove::sample {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using passes::OcclusionSettings;
-using passes::Quality;
 
 constexpr auto kFirst = static_cast<std::size_t>(Situation::first);
 constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
@@ -109,7 +107,7 @@ class ScenePage {
 
   // The settings that `recommend` finds within the time of `medium`.
   Result<void> add_requirements() {
-    OcclusionSettings medium = passes::quality_settings(Quality::medium, session_.settings.radius);
+    OcclusionSettings medium = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, session_.settings.radius);
     ALCOVE_TRY(const auto limit, times_({medium}));
     RecommendationGoal goal;
     goal.budget_ms = goal.ms({{medium}, {}, limit});
@@ -141,10 +139,10 @@ class ScenePage {
     const Image<float> open(truth.width, truth.height, 1.0f);
     ALCOVE_TRY_VOID(add_picture("pictures", "truth", truth));
     ALCOVE_TRY_VOID(add_picture("pictures", "no occlusion", open));
-    for (const Quality quality : presets()) {
-      const std::string name(passes::name_of(quality));
+    for (const AlcoveQuality quality : presets()) {
+      const std::string name(passes::kQualityNames.at(quality));
       ALCOVE_TRY(const auto visibility,
-                 errors_.draw({passes::quality_settings(quality, session_.settings.radius)},
+                 errors_.draw({OcclusionSettings(quality, session_.settings.radius)},
                               options_.view.frames, 0));
       ALCOVE_TRY_VOID(add_picture("pictures", name, visibility));
       ALCOVE_TRY_VOID(add_picture("errors", name, error_colours(visibility, truth)));
@@ -156,7 +154,7 @@ class ScenePage {
   Result<void> add_split() {
     ALCOVE_TRY(const ErrorSplit split,
                split_error(*session_.gpu, session_.scene, static_setup(options_, session_.camera),
-                           passes::quality_settings(Quality::medium, session_.settings.radius),
+                           OcclusionSettings(ALCOVE_QUALITY_MEDIUM, session_.settings.radius),
                            errors_.truths().scene.visibility, errors_.truths().surfaces));
     json_["split"] = to_json(split);
     for (const ErrorCause& cause : split.causes) {

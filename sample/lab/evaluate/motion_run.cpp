@@ -57,7 +57,7 @@ class MotionRun {
       if (is_compared(now.frame)) compared.push_back(now);
     };
     ALCOVE_TRY_VOID(render_path(setup_.occlusion, measure));
-    passes::OcclusionSettings no_history = setup_.occlusion;
+    OcclusionSettings no_history = setup_.occlusion;
     no_history.history_frames = 0;
     ALCOVE_TRY_VOID(render_path(no_history, [&](const ComparedFrame&, const RunningMean& changed,
                                                 const Reprojection&) { unfiltered += changed; }));
@@ -82,7 +82,7 @@ class MotionRun {
                                  setup_.view.normals);
   }
 
-  FrameRequest request(const passes::OcclusionSettings& settings, std::uint32_t frame) const {
+  FrameRequest request(const OcclusionSettings& settings, std::uint32_t frame) const {
     StaticSetup view = setup_.view;
     view.camera = path_.camera(frame);
     FrameRequest request = frame_request(view, settings, frame);
@@ -101,7 +101,7 @@ class MotionRun {
 
   // Draws the frames of the path. The frames before the first measured one are drawn only if there
   // is a history to fill.
-  Result<void> render_path(const passes::OcclusionSettings& settings, const Visit& visit) {
+  Result<void> render_path(const OcclusionSettings& settings, const Visit& visit) {
     const bool history = settings.history_frames > 0;
     const Progress progress =
         print_progress(std::string(name_of(path_.kind())) + (history ? "" : " without history"));

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/static_view.h"
 #include "evaluate/truths.h"
 #include "evaluate/weave.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/scene.h"
 #include "support/image.h"
 #include "support/result.h"
@@ -20,7 +20,7 @@ namespace alcove::sample {
 
 // The inputs of a run other than its path, which has the cameras and the number of frames.
 struct MotionSetup {
-  passes::OcclusionSettings occlusion;  // with a history
+  OcclusionSettings occlusion;  // with a history
   StaticSetup view;
   TruthOptions truth;
 };

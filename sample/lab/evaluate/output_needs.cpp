@@ -11,8 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-
 // Materials that cover a smaller part of the surfaces in view do not decide.
 constexpr double kShare = 0.05;
 
@@ -51,7 +49,7 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
   const Mask glossy = where([&](std::size_t i) { return seen.roughness.pixels[i] < 0.5f; });
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   ALCOVE_TRY(const double specular_time,
-             time_increase([](OcclusionSettings& s) { s.specular = passes::Specular::slices; }));
+             time_increase([](OcclusionSettings& s) { s.specular = ALCOVE_SPECULAR_SLICES; }));
   add(covered_share(glossy, surfaces) > kShare, "specular occlusion (specular=slices)",
       fmt::format("{:.0f} % of the surfaces have a roughness below 0.5, and their visibility is "
                   "{:.2f} less than 1 on average; {:.0f} % more time",

@@ -7,12 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "alcove/passes/setting_table.h"
 #include "evaluate/sweep.h"
 
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
 using Values = std::array<double, 3>;  // by Situation
 
 struct Feature {
@@ -25,7 +25,7 @@ constexpr Feature kFeatures[] = {
     {"a second depth layer", [](Choice& c) { c.settings.depth_layers = 2; }},
     {"a guard band of 10 % of the height", [](Choice& c) { c.guard_band = true; }},
     {"thickness from back faces",
-     [](Choice& c) { c.settings.thickness_unit = passes::ThicknessUnit::back_faces; }},
+     [](Choice& c) { c.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; }},
     {"a thickness of 0.05", [](Choice& c) { c.settings.thickness = 0.05f; }},
     {"a thickness of 0.5", [](Choice& c) { c.settings.thickness = 0.5f; }},
     {"a hidden occlusion of 0.1", [](Choice& c) { c.settings.hidden_occlusion = 0.1f; }},
@@ -220,7 +220,7 @@ class Search {
       // A tenth of a frame at least is the search, whose time is proportional to the samples. More
       // samples that exceed the limit even so are left out without modelling their time.
       const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(before);
-      const auto change = [&](auto OcclusionSettings::*field, auto value) {
+      const auto change = [&](auto AlcoveSettings::*field, auto value) {
         Choice changed = before.choice;
         changed.settings.*field = value;
         const double more = samples_per_pixel(changed.settings) / samples_per_pixel(from) - 1.0;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 #include "support/progress.h"
 #include "support/result.h"
 
@@ -23,7 +23,7 @@ inline constexpr double kGuardBand = 0.1;
 
 // What a search chooses.
 struct Choice {
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   // Whether the image is rendered with a guard band of kGuardBand beyond each border, which is not
   // displayed (AlcoveView::written_area).
   bool guard_band = false;
@@ -89,7 +89,7 @@ struct RecommendationWorld {
 // that lowers the error is also tried with fewer samples. Last it changes slices, steps and tile
 // size a little, one at a time. If nothing meets the goal, the result is the closest. Errors: those
 // of the world's functions for numbers of samples.
-[[nodiscard]] Result<Recommendation> recommend(const passes::OcclusionSettings& base,
+[[nodiscard]] Result<Recommendation> recommend(const OcclusionSettings& base,
                                                const RecommendationGoal& goal,
                                                const RecommendationWorld& world);
 

@@ -15,7 +15,6 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using passes::OcclusionSettings;
 
 constexpr float kOrbit = 0.007f;             // radians per frame
 constexpr std::uint32_t kMovingFrames = 16;  // of the orbit

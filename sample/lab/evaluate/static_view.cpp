@@ -5,8 +5,6 @@
 
 namespace alcove::sample {
 
-using passes::OcclusionSettings;
-
 FrameRequest frame_request(const StaticSetup& setup, const OcclusionSettings& settings,
                            std::uint32_t frame) {
   const auto camera = [&](std::uint32_t at) {
@@ -20,7 +18,7 @@ FrameRequest frame_request(const StaticSetup& setup, const OcclusionSettings& se
   request.restart = frame == 0;
   request.static_frames = setup.orbit == 0.0f ? frame : 0;
   request.occlusion = settings;
-  request.occlusion.specular = passes::Specular::none;
+  request.occlusion.specular = ALCOVE_SPECULAR_NONE;
   return request;
 }
 

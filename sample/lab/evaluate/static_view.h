@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 #include "render/frame_renderer.h"
 #include "render/normal_source.h"
 #include "scene/camera.h"
@@ -27,15 +27,15 @@ struct StaticSetup {
 // Returns the request for a frame of the view: visibility, and bent normals if the settings have
 // them, with motion relative to the frame before.
 [[nodiscard]] FrameRequest frame_request(const StaticSetup& setup,
-                                         const passes::OcclusionSettings& settings,
+                                         const OcclusionSettings& settings,
                                          std::uint32_t frame);
 
 // Renders the frames of a view and reads the last one back.
 [[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
-                                              const passes::OcclusionSettings& settings);
+                                              const OcclusionSettings& settings);
 [[nodiscard]] Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene,
                                               const StaticSetup& setup,
-                                              const passes::OcclusionSettings& settings);
+                                              const OcclusionSettings& settings);
 
 // Returns the view with a guard band, which is this many pixels wide beyond the borders at the
 // sides, and at top and bottom.

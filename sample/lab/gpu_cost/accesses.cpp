@@ -22,8 +22,8 @@ maths::SliceNoise noise_of(Texel tile, bool moves) {
 }
 
 // The depth sample `step` of one half-slice, as in gtao_search_line.h.
-ImageAccess depth_sample(const PassImage& image, const passes::OcclusionSettings& settings,
-                         float radius_px, std::uint32_t slice, float side, std::uint32_t step) {
+ImageAccess depth_sample(const PassImage& image, const OcclusionSettings& settings, float radius_px,
+                         std::uint32_t slice, float side, std::uint32_t step) {
   const auto tile_size = static_cast<std::int32_t>(settings.tile_size);
   const auto texel = [=, slices = settings.slices,
                       steps = static_cast<float>(settings.steps)](Texel tile) {
@@ -39,7 +39,7 @@ ImageAccess depth_sample(const PassImage& image, const passes::OcclusionSettings
 
 // gtao.comp: each traced pixel reads its inputs, then depth along its slices, and writes its tile.
 Accesses gtao_accesses(const PassWork& work) {
-  const passes::OcclusionSettings& settings = work.settings;
+  const OcclusionSettings& settings = work.settings;
   const float radius_px = kRadius * static_cast<float>(work.height);
   const auto tile = static_cast<std::int32_t>(settings.tile_size);
   const Texel traced{tile / 2, tile / 4};
@@ -63,17 +63,17 @@ Accesses gtao_accesses(const PassWork& work) {
 }
 
 // The blocks of 8x8 texels that a group of reconstruct.comp computes, one below the other.
-std::int32_t blocks_of(const passes::OcclusionSettings& settings) {
+std::int32_t blocks_of(const OcclusionSettings& settings) {
   return settings.tile_size > (settings.half_resolution ? 2u : 1u) ? 4 : 1;
 }
 
 // load_tiles() of reconstruct.comp: a group loads the tiles around it, one per invocation.
 void add_tiles(const PassImage& image, const PassWork& work, Accesses& accesses) {
-  const passes::OcclusionSettings& settings = work.settings;
+  const OcclusionSettings& settings = work.settings;
   const std::uint32_t width = kGroup * (settings.half_resolution ? 2 : 1);
   const std::uint32_t height = width * static_cast<std::uint32_t>(blocks_of(settings));
   const bool fresh = settings.history_frames == 0 || work.state == FrameState::first;
-  const std::uint32_t radius = std::min(filter_radius(settings), fresh ? 3u : 1u);
+  const std::uint32_t radius = std::min(passes::filter_radius(settings), fresh ? 3u : 1u);
   const std::uint32_t span = width / settings.tile_size + 2 * radius;
   const std::uint32_t tiles = span * (height / settings.tile_size + 2 * radius);
   for (std::uint32_t first = 0; first < tiles; first += kGroup * kGroup) {
@@ -108,8 +108,7 @@ ImageAccess in_block(ImageAccess access, std::int32_t block, std::int32_t blocks
   return access;
 }
 
-// The normals of the pixels whose tangent plane does not come from depth. In the atrium, the arcade
-// and the helmet 16 to 27 % of the waves contain one; here a fifth of the blocks do.
+// The normals of the pixels whose tangent plane does not come from depth, in a fifth of the blocks.
 ImageAccess at_bent_depth(const PassImage& image) {
   return {image, 1,
           [](Texel invocation) {
@@ -117,7 +116,7 @@ ImageAccess at_bent_depth(const PassImage& image) {
             const bool reads = (invocation.x / kSide + 2 * (invocation.y / kSide)) % 5 == 0;
             return reads ? invocation : Texel{};
           },
-          true};
+          true, kBentDepth};
 }
 
 // The accesses of reconstruct.comp to an image for one block of texels.

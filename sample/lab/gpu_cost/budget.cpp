@@ -10,14 +10,13 @@ namespace alcove::sample {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using passes::Quality;
 
 constexpr float kRadius = 0.5f;  // scene units; the instructions do not depend on it
 
-LabelledSettings preset(Quality quality) {
+LabelledSettings preset(AlcoveQuality quality) {
   LabelledSettings settings;
-  settings.label = passes::name_of(quality);
-  settings.inputs.settings = passes::quality_settings(quality, kRadius);
+  settings.label = passes::kQualityNames.at(quality);
+  settings.inputs.settings = OcclusionSettings(quality, kRadius);
   return settings;
 }
 
@@ -42,13 +41,13 @@ Json budget_row(const GpuPart& part, const LabelledSettings& settings,
 
 std::vector<LabelledSettings> budgeted_settings() {
   std::vector<LabelledSettings> all;
-  for (const Quality quality : presets()) all.push_back(preset(quality));
-  LabelledSettings bent = preset(Quality::medium);
+  for (const AlcoveQuality quality : presets()) all.push_back(preset(quality));
+  LabelledSettings bent = preset(ALCOVE_QUALITY_MEDIUM);
   bent.label += " with bent normals";
   bent.inputs.settings.bent_normal = true;
-  LabelledSettings specular = preset(Quality::medium);
+  LabelledSettings specular = preset(ALCOVE_QUALITY_MEDIUM);
   specular.label += " with specular occlusion";
-  specular.inputs.settings.specular = passes::Specular::slices;
+  specular.inputs.settings.specular = ALCOVE_SPECULAR_SLICES;
   all.insert(all.end(), {bent, specular});
   return all;
 }
