@@ -12,8 +12,8 @@ namespace {
 
 class SecondDepthLayer : public HiddenDepthTest {};
 
-OcclusionSettings exact(Estimator estimator, float radius) {
-  OcclusionSettings settings = without_hidden_occlusion(estimator, radius);
+OcclusionSettings exact(float radius) {
+  OcclusionSettings settings = without_hidden_occlusion(radius);
   settings.thickness = 1.0f;
   return settings;
 }
@@ -46,13 +46,10 @@ TEST_F(SecondDepthLayer, VisibilityBesideAStepHiddenUnderAPlateMatchesTheClosedF
     }
     return sum;
   };
-  for (const Estimator estimator : kThickEstimators) {
-    SCOPED_TRACE(static_cast<int>(estimator));
-    const OcclusionSettings settings = exact(estimator, 1.5f);
-    const double error = mean_error(of_layers(settings, 2));
-    EXPECT_LT(error, 0.02);
-    EXPECT_LT(5.0 * error, mean_error(settings)) << "the first layer does not show the step";
-  }
+  const OcclusionSettings settings = exact(1.5f);
+  const double error = mean_error(of_layers(settings, 2));
+  EXPECT_LT(error, 0.02);
+  EXPECT_LT(5.0 * error, mean_error(settings)) << "the first layer does not show the step";
 }
 
 Scene tilted_and_box() {
@@ -67,20 +64,18 @@ TEST_F(SecondDepthLayer, SecondLayerWithoutHiddenSurfacesDoesNotChangeVisibility
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
-    for (const Estimator estimator : kThickEstimators) {
-      OcclusionSettings settings = exact(estimator, 1.2f);
-      settings.thickness = 0.2f;
-      settings.hidden_occlusion = 0.4f;
-      HostImage second = drawing.depth_ndc;
-      const HostImage expected = visibility(drawing, second, settings);
-      settings.depth_layers = 2;
-      // Two pipelines may round differently, by one step of 16 bits.
-      const auto same = testing::Pointwise(testing::FloatNear(1.6e-5f), expected.texels);
-      EXPECT_THAT(visibility(drawing, second, settings).texels, same);
-      for (const float none : {drawing.camera.sky(), std::numeric_limits<float>::quiet_NaN()}) {
-        std::ranges::fill(second.texels, none);
-        EXPECT_THAT(visibility(drawing, second, settings).texels, same) << none;
-      }
+    OcclusionSettings settings = exact(1.2f);
+    settings.thickness = 0.2f;
+    settings.hidden_occlusion = 0.4f;
+    HostImage second = drawing.depth_ndc;
+    const HostImage expected = visibility(drawing, second, settings);
+    settings.depth_layers = 2;
+    // Two pipelines may round differently, by one step of 16 bits.
+    const auto same = testing::Pointwise(testing::FloatNear(1.6e-5f), expected.texels);
+    EXPECT_THAT(visibility(drawing, second, settings).texels, same);
+    for (const float none : {drawing.camera.sky(), std::numeric_limits<float>::quiet_NaN()}) {
+      std::ranges::fill(second.texels, none);
+      EXPECT_THAT(visibility(drawing, second, settings).texels, same) << none;
     }
   }
 }
@@ -93,17 +88,15 @@ TEST_F(SecondDepthLayer, SearchingASecondDepthLayerNeverRaisesVisibility) {
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage second = draw_second_layer(view, 60, 40, scene);
-    for (const Estimator estimator : kThickEstimators) {
-      const OcclusionSettings settings = exact(estimator, 1.2f);
-      const HostImage one = visibility(drawing, second, settings);
-      const HostImage two = visibility(drawing, second, of_layers(settings, 2));
-      double darker = 0.0;
-      for (std::size_t i = 0; i < one.texels.size(); ++i) {
-        EXPECT_LE(two.texels[i], one.texels[i] + 1e-4f);
-        darker += one.texels[i] - two.texels[i];
-      }
-      EXPECT_GT(darker, 1.0);
+    const OcclusionSettings settings = exact(1.2f);
+    const HostImage one = visibility(drawing, second, settings);
+    const HostImage two = visibility(drawing, second, of_layers(settings, 2));
+    double darker = 0.0;
+    for (std::size_t i = 0; i < one.texels.size(); ++i) {
+      EXPECT_LE(two.texels[i], one.texels[i] + 1e-4f);
+      darker += one.texels[i] - two.texels[i];
     }
+    EXPECT_GT(darker, 1.0);
   }
 }
 
@@ -111,7 +104,8 @@ TEST_F(SecondDepthLayer, EstimatorHorizonsIgnoresTheSecondDepthLayer) {
   const Scene scene = tilted_and_box();
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, scene);
-  const OcclusionSettings settings = exact(Estimator::horizons, 1.2f);
+  OcclusionSettings settings = exact(1.2f);
+  settings.estimator = Estimator::horizons;
   const HostImage second = draw_second_layer(view, 60, 40, scene);
   EXPECT_EQ(visibility(drawing, second, of_layers(settings, 2)).texels,
             visibility(drawing, second, settings).texels);
