@@ -6,12 +6,6 @@
 namespace alcove::framegraph {
 namespace {
 
-constexpr VkBufferUsageFlags kBufferUsages =
-    VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-    VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-    VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-
 // Returns whether the fields of Limits and the format's features alone show that the device can
 // create the texture.
 bool needs_no_query(const ResourceRecord& record) {
@@ -47,13 +41,8 @@ std::string problem_with(const ResourceRecord& record, const ImageLimits& limits
 }  // namespace
 
 VkFlags history_usage(const Limits& limits, const ResourceRecord& record) {
-  if (record.kind == ResourceKind::buffer) return kBufferUsages | record.create_flags;
   VkFlags usage = limits.formats.query ? limits.formats.query(limits.formats.context, record.format)
                                        : ~VkFlags{0};
-  usage &= ~VkFlags{VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT};
-  constexpr VkFlags kDrawn =
-      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-  if ((usage & kDrawn) == 0) usage &= ~VkFlags{VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
   // Few devices support storage usage for multisampled images. A history would get this usage too,
   // because it is created with every usage that it can have. The usage is therefore removed.
   if (record.samples > 1) usage &= ~VkFlags{VK_IMAGE_USAGE_STORAGE_BIT};

@@ -39,4 +39,14 @@ tl::expected<Plan, Errors> compile(const GraphDescription& graph, const Limits& 
   return plan;
 }
 
+tl::expected<Plan, Errors> compile(const Graph& graph, const Limits& limits) {
+  auto plan = compile(graph.description(), limits);
+  if (!plan) return plan;
+  Errors errors;
+  for (const PlannedPass& planned : plan->passes)
+    if (!graph.has_callback(planned.pass)) errors.push_back(graph.missing_callback(planned.pass));
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return plan;
+}
+
 }  // namespace alcove::framegraph

@@ -22,6 +22,7 @@ class Culler {
     workspace_.cull.history_user.assign(graph_.resources.size(), kNone);
     do {
       found_history_ = false;
+      for (std::uint8_t& contents : plan_.contents) contents &= kHasContents;
       walk();
     } while (found_history_);
   }
@@ -29,7 +30,6 @@ class Culler {
  private:
   void walk() {
     plan_.cull_reasons.resize(graph_.passes.size());
-    plan_.live_accesses.assign(graph_.accesses.size(), 0);
     workspace_.cull.needed_by.assign(workspace_.first_sub.back(), kUnneeded);
     seed();
     for (std::uint32_t pass = static_cast<std::uint32_t>(graph_.passes.size()); pass-- > 0;)
@@ -45,7 +45,6 @@ class Culler {
       if (resource.origin == Origin::imported &&
           graph_.externals[resource.external].has_final_state)
         need_all(r, kByOutput);
-      if (resource.flags & kPersistent) need_all(r, kByOutput);
       const std::uint32_t user = workspace_.cull.history_user[r - resource.slot];
       if (user != kNone) need_all(r, user | kHistoryBit);
     }
@@ -60,21 +59,17 @@ class Culler {
   PassCullReason visit(std::uint32_t pass) {
     const PassRecord& record = graph_.passes[pass];
     const auto accesses = graph_.pass_accesses(pass);
-    std::uint8_t* const first_live = plan_.live_accesses.data() + record.first_access;
     bool pass_is_live = (record.flags & kSideEffect) != 0;
     bool writes = false;
     PassCullReason cull_reason{pass_is_live ? CullReason::side_effect : CullReason::unread, kNone,
                                kNone};
-    std::uint8_t* live = first_live;
     for (const AccessRecord& access : accesses) {
-      std::uint8_t& needed = *live++;
       if (!(access.flags & kWrite)) continue;
       writes = true;
       const std::uint32_t why = first_need(access);
       if (why != kUnneeded || graph_.resources[access.resource].origin == Origin::imported)
         plan_.contents[static_cast<std::size_t>(&access - graph_.accesses.data())] |= kIsNeeded;
       if (why == kUnneeded) continue;
-      needed = 1;
       if (!pass_is_live) cull_reason = explain(why, access.resource);
       pass_is_live = true;
     }
@@ -83,18 +78,15 @@ class Culler {
       return cull_reason;
     }
     // The accesses of a pass are to different subresources, so that their order does not matter.
-    live = first_live;
     for (const AccessRecord& access : accesses) {
-      std::uint8_t& needed = *live++;
-      if (!(access.flags & kOptional)) needed = 1;
       const bool writes_it = (access.flags & kWrite) != 0;
       // An access that both reads and writes needs the former contents.
       const bool reads_it = !writes_it || (access.access & ~kWriteBits) != 0;
-      if (needed && writes_it && (access.flags & kDiscard))
+      if (writes_it && (access.flags & kDiscard))
         end_need(access);
-      else if (needed && reads_it)
+      else if (reads_it)
         begin_need(access, pass);
-      if (needed) find_history(access, pass);
+      find_history(access, pass);
     }
     return cull_reason;
   }

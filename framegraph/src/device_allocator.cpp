@@ -90,17 +90,14 @@ bool DeviceAllocator::allocate_in_block(const MemoryRequest& request, MemoryRang
 }
 
 VkResult DeviceAllocator::allocate_from_vulkan(const MemoryRequest& request, MemoryRange& range) {
-  // Only transient attachments may use a lazily allocated memory type. For them it ranks first,
-  // because it may need no memory at all.
-  const auto rank = [&](std::uint32_t type) {
-    const VkMemoryPropertyFlags flags = device_.memory.memoryTypes[type].propertyFlags;
-    if (flags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT) return 2;
-    return (flags & request.preferred) == request.preferred ? 1 : 0;
+  const auto suits = [&](std::uint32_t type) {
+    return (device_.memory.memoryTypes[type].propertyFlags & request.preferred) ==
+           request.preferred;
   };
   std::uint32_t type = kNone;
   for (std::uint32_t i = device_.memory.memoryTypeCount; i-- > 0;) {
     if (!(request.requirements.memoryTypeBits & (1u << i))) continue;
-    if (type == kNone || rank(i) >= rank(type)) type = i;
+    if (type == kNone || suits(i) || !suits(type)) type = i;
   }
   if (type == kNone) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkMemoryAllocateInfo info{};

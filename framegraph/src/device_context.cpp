@@ -7,26 +7,63 @@
 namespace alcove::framegraph {
 namespace {
 
+// Sets the queue families that use an image or buffer.
+template <typename Info>
+void share(Info& info, const DeviceContext& device, bool concurrent) {
+  info.sharingMode = concurrent ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE;
+  if (!concurrent) return;
+  info.queueFamilyIndexCount = static_cast<std::uint32_t>(device.families.size());
+  info.pQueueFamilyIndices = device.families.data();
+}
+
+VkImageCreateInfo image_info(const DeviceContext& device, const ResourceRecord& record,
+                             VkFlags usage, bool concurrent) {
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.imageType = record.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+  info.flags = record.create_flags;
+  info.format = record.format;
+  info.extent = {record.width, record.height, record.depth};
+  info.mipLevels = record.mips;
+  info.arrayLayers = record.layers;
+  info.samples = static_cast<VkSampleCountFlagBits>(record.samples);
+  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = usage;
+  share(info, device, concurrent);
+  info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  return info;
+}
+
+VkBufferCreateInfo buffer_info(const DeviceContext& device, const ResourceRecord& record,
+                               VkFlags usage, bool concurrent) {
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = record.size;
+  info.usage = usage;
+  share(info, device, concurrent);
+  return info;
+}
+
 MemoryRequirements device_requirements(const void* context, const ResourceRecord& record,
-                                       VkFlags usage) {
+                                       VkFlags usage, bool concurrent) {
   const auto& device = *static_cast<const DeviceContext*>(context);
   VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
   if (!device.vk.vkGetDeviceImageMemoryRequirements) {
     // Without VK_KHR_maintenance4 a device reports the requirements of existing resources only.
     VkImage image = VK_NULL_HANDLE;
     VkBuffer buffer = VK_NULL_HANDLE;
-    if (create_unbound(device, record, usage, image, buffer, found.memoryRequirements) !=
-        VK_SUCCESS)
+    if (create_unbound(device, record, usage, concurrent, image, buffer,
+                       found.memoryRequirements) != VK_SUCCESS)
       return {0, 0, 0};
     device.vk.vkDestroyImage(device.handles.device, image, device.callbacks());
     device.vk.vkDestroyBuffer(device.handles.device, buffer, device.callbacks());
   } else if (record.kind == ResourceKind::texture) {
-    const VkImageCreateInfo info = image_info(record, usage);
+    const VkImageCreateInfo info = image_info(device, record, usage, concurrent);
     const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
                                                 nullptr, &info, VK_IMAGE_ASPECT_COLOR_BIT};
     device.vk.vkGetDeviceImageMemoryRequirements(device.handles.device, &query, &found);
   } else {
-    const VkBufferCreateInfo info = buffer_info(record, usage);
+    const VkBufferCreateInfo info = buffer_info(device, record, usage, concurrent);
     const VkDeviceBufferMemoryRequirements query{
         VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS, nullptr, &info};
     device.vk.vkGetDeviceBufferMemoryRequirements(device.handles.device, &query, &found);
@@ -37,7 +74,7 @@ MemoryRequirements device_requirements(const void* context, const ResourceRecord
 
 ImageLimits image_limits(const void* context, const ResourceRecord& record, VkFlags usage) {
   const auto& device = *static_cast<const DeviceContext*>(context);
-  const VkImageCreateInfo image = image_info(record, usage);
+  const VkImageCreateInfo image = image_info(device, record, usage, false);
   const VkPhysicalDeviceImageFormatInfo2 info{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_FORMAT_INFO_2,
                                               nullptr,
                                               image.format,
@@ -50,8 +87,8 @@ ImageLimits image_limits(const void* context, const ResourceRecord& record, VkFl
   const VkResult result = device.vk.vkGetPhysicalDeviceImageFormatProperties2(
       device.handles.physical_device, &info, &found);
   if (result != VK_SUCCESS) return {};
-  const bool stores = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
-  if (stores && !device.handles.storage_multisample)
+  // Storage of several samples needs a feature that the library does not ask for.
+  if (usage & VK_IMAGE_USAGE_STORAGE_BIT)
     found.imageFormatProperties.sampleCounts &= VK_SAMPLE_COUNT_1_BIT;
   const VkImageFormatProperties& p = found.imageFormatProperties;
   return {p.maxExtent, p.maxMipLevels, p.maxArrayLayers, p.sampleCounts};
@@ -74,10 +111,7 @@ VkImageUsageFlags format_usage(const void* context, VkFormat format) {
       {VK_FORMAT_FEATURE_TRANSFER_SRC_BIT, VK_IMAGE_USAGE_TRANSFER_SRC_BIT},
       {VK_FORMAT_FEATURE_TRANSFER_DST_BIT, VK_IMAGE_USAGE_TRANSFER_DST_BIT},
   };
-  // Vulkan has no format feature for the usages of input and transient attachments. A format
-  // supports them if it supports the colour or depth attachment usage.
-  VkImageUsageFlags usage =
-      VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
+  VkImageUsageFlags usage = 0;
   for (const Pair& pair : kPairs)
     if (properties.optimalTilingFeatures & pair.feature) usage |= pair.usage;
   return usage;
@@ -114,16 +148,16 @@ void read_limits(DeviceContext& context) {
   limits.max_samples = std::bit_floor(std::max(samples, VkSampleCountFlags{1}));
   limits.max_buffer_size = max_buffer_size(context);
   limits.buffer_image_granularity = device.bufferImageGranularity;
-  limits.separate_depth_stencil = context.handles.separate_depth_stencil;
   limits.memory = {device_requirements, &context};
   limits.formats = {format_usage, &context};
   limits.images = {image_limits, &context};
-  for (std::uint32_t i = 0; i < context.memory.memoryTypeCount; ++i)
-    if (context.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT)
-      limits.has_lazy_memory = true;
   for (std::size_t i = 0; i < kQueueClasses; ++i) {
     const QueueHandle& queue = context.handles.queues[i];
     limits.queue_families[i] = queue.queue == VK_NULL_HANDLE && i != 0 ? kNone : queue.family;
+    auto& families = context.families;
+    if (limits.queue_families[i] != kNone &&
+        std::find(families.begin(), families.end(), queue.family) == families.end())
+      families.push_back(queue.family);
   }
 }
 
@@ -137,6 +171,20 @@ void read_timestamp_bits(DeviceContext& context) {
     const std::uint32_t family = context.limits.queue_families[i];
     if (family < count) context.timestamp_bits[i] = families[family].timestampValidBits;
   }
+}
+
+bool has_validation_layers(const DeviceHandles& handles) {
+  const auto query = reinterpret_cast<PFN_vkGetPhysicalDeviceToolProperties>(
+      handles.get_instance_proc_addr(handles.instance, "vkGetPhysicalDeviceToolProperties"));
+  std::uint32_t count = 0;
+  if (query == nullptr || query(handles.physical_device, &count, nullptr) != VK_SUCCESS)
+    return false;
+  std::vector<VkPhysicalDeviceToolProperties> tools(
+      count, {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TOOL_PROPERTIES});
+  return query(handles.physical_device, &count, tools.data()) == VK_SUCCESS &&
+         std::any_of(tools.begin(), tools.end(), [](const auto& tool) {
+           return (tool.purposes & VK_TOOL_PURPOSE_VALIDATION_BIT) != 0;
+         });
 }
 
 Errors missing(std::string what) {
@@ -168,45 +216,22 @@ tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& han
   context.vk.vkGetPhysicalDeviceMemoryProperties(handles.physical_device, &context.memory);
   read_limits(context);
   read_timestamp_bits(context);
+  context.is_validated =
+      context.properties.apiVersion >= VK_API_VERSION_1_3 && has_validation_layers(handles);
   return {};
 }
 
-VkImageCreateInfo image_info(const ResourceRecord& record, VkFlags usage) {
-  VkImageCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-  info.imageType = record.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
-  info.flags = record.create_flags;
-  info.format = record.format;
-  info.extent = {record.width, record.height, record.depth};
-  info.mipLevels = record.mips;
-  info.arrayLayers = record.layers;
-  info.samples = static_cast<VkSampleCountFlagBits>(record.samples);
-  info.tiling = VK_IMAGE_TILING_OPTIMAL;
-  info.usage = usage;
-  info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
-  info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-  return info;
-}
-
-VkBufferCreateInfo buffer_info(const ResourceRecord& record, VkFlags usage) {
-  VkBufferCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-  info.size = record.size;
-  info.usage = usage;
-  info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
-  return info;
-}
-
 VkResult create_unbound(const DeviceContext& device, const ResourceRecord& record, VkFlags usage,
-                        VkImage& image, VkBuffer& buffer, VkMemoryRequirements& requirements) {
+                        bool concurrent, VkImage& image, VkBuffer& buffer,
+                        VkMemoryRequirements& requirements) {
   const VkDevice handle = device.handles.device;
   VkResult result = VK_SUCCESS;
   if (record.kind == ResourceKind::texture) {
-    const VkImageCreateInfo info = image_info(record, usage);
+    const VkImageCreateInfo info = image_info(device, record, usage, concurrent);
     result = device.vk.vkCreateImage(handle, &info, device.callbacks(), &image);
     if (result == VK_SUCCESS) device.vk.vkGetImageMemoryRequirements(handle, image, &requirements);
   } else {
-    const VkBufferCreateInfo info = buffer_info(record, usage);
+    const VkBufferCreateInfo info = buffer_info(device, record, usage, concurrent);
     result = device.vk.vkCreateBuffer(handle, &info, device.callbacks(), &buffer);
     if (result == VK_SUCCESS)
       device.vk.vkGetBufferMemoryRequirements(handle, buffer, &requirements);

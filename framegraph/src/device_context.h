@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "alcove/framegraph/error.h"
 #include "alcove/framegraph/executor.h"
@@ -18,6 +19,8 @@ struct DeviceContext {
   // timestamps.
   std::uint32_t timestamp_bits[kQueueClasses] = {};
   Limits limits;
+  bool is_validated = false;            // by validation layers
+  std::vector<std::uint32_t> families;  // of the queues, each once
 
   const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
 };
@@ -26,12 +29,10 @@ struct DeviceContext {
 // that the device lacks.
 [[nodiscard]] tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& handles);
 
-VkImageCreateInfo image_info(const ResourceRecord& record, VkFlags usage);
-VkBufferCreateInfo buffer_info(const ResourceRecord& record, VkFlags usage);
 // Creates the image or buffer of a resource, without memory, and queries its memory requirements.
 [[nodiscard]] VkResult create_unbound(const DeviceContext& device, const ResourceRecord& record,
-                                      VkFlags usage, VkImage& image, VkBuffer& buffer,
-                                      VkMemoryRequirements& requirements);
+                                      VkFlags usage, bool concurrent, VkImage& image,
+                                      VkBuffer& buffer, VkMemoryRequirements& requirements);
 
 Errors vulkan_error(VkResult result, std::string what);
 // Returns the name of a result, for example `VK_ERROR_OUT_OF_DEVICE_MEMORY`.

@@ -36,7 +36,6 @@ struct Executor::Implementation {
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
   tl::expected<void, Errors> check_call(const FrameInfo& info) const;
   tl::expected<void, Errors> adopt(Graph& graph) const;
-  static tl::expected<void, Errors> check_histories(Graph& graph);
   bool starts_anew(const CachedPlan& cached) const;
   tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                            const FrameInfo& info);
@@ -74,7 +73,6 @@ struct Executor::Attempt {
   Attempt(Implementation& implementation, Graph& of, const FrameInfo& with)
       : self(implementation), graph(of), info(with) {
     self.records = true;
-    graph.histories().begin_end();
     self.begin_frame(info);
   }
   ~Attempt() {
@@ -140,19 +138,16 @@ tl::expected<CachedPlan*, Errors> Executor::Implementation::plan_for(const Graph
   if (queues == Queues::one) limits.queue_families[1] = limits.queue_families[2] = kNone;
   if (auto done = compiler.compile(description, limits, room.plan); !done)
     return tl::unexpected(std::move(done.error()));
-  Errors errors;
-  for (const PlannedPass& planned : room.plan.passes) {
-    if (description.passes[planned.pass].flags & kHasCallback) continue;
-    errors.push_back({ErrorCode::missing_callback,
-                      std::string("pass '")
-                          .append(description.pass_name(planned.pass))
-                          .append("' is live but has nothing to record: call PassBuilder::record"),
-                      VK_SUCCESS, planned.pass, kNone, 0});
-  }
-  if (!errors.empty()) return tl::unexpected(std::move(errors));
   if (options.verify != nullptr) {
     if (auto right = options.verify(description, limits, room.plan); !right)
       return tl::unexpected(std::move(right.error()));
+  }
+  room.externals.clear();
+  for (std::uint32_t r = 0; r < description.resources.size(); ++r) {
+    const Origin origin = description.resources[r].origin;
+    if (origin == Origin::imported ||
+        (origin == Origin::history && room.plan.placements[r].first != kNone))
+      room.externals.push_back(r);
   }
   cache.keep(room, description);
   compiled = true;
@@ -175,33 +170,37 @@ VkResult Executor::Implementation::find_external(const Graph& graph, CachedPlan&
                        found);
 }
 
+// Finds the images and buffers of the frame. Those of transients stay the same until the pool
+// changes, so that an unchanged frame only looks up imports and histories.
 tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& graph,
                                                                    CachedPlan& cached) {
   const GraphDescription& description = graph.description();
-  cached.physical.resize(description.resources.size());
-  if (const VkResult result = pool->reserve(description, cached.plan, frame))
+  if (const VkResult result = pool->reserve(cached.plan, frame))
     return tl::unexpected(memory_error(result, "the frame's transients cannot be allocated"));
   const bool again = cached.generation == pool->generation();
-  for (std::uint32_t r = 0; r < description.resources.size(); ++r) {
-    const ResourceRecord& record = description.resources[r];
-    const Placement& placement = cached.plan.placements[r];
-    VkResult result = VK_SUCCESS;
-    if (placement.first == kNone && record.origin != Origin::imported) {
-      cached.physical[r] = nullptr;
-      continue;
-    }
-    if (record.origin != Origin::transient)
-      result = find_external(graph, cached, r);
-    else if (!again)
-      result = pool->transient(record, cached.plan, placement, description.resource_name(r),
-                               cached.physical[r]);
-    if (result != VK_SUCCESS)
-      return tl::unexpected(
-          memory_error(result, std::string(record.origin == Origin::history ? "the history '" : "'")
-                                       .append(description.resource_name(r)) +
-                                   "' cannot be created"));
+  if (!again) cached.physical.assign(description.resources.size(), nullptr);
+  const auto failed = [&](VkResult result, std::uint32_t r) {
+    const bool history = description.resources[r].origin == Origin::history;
+    return tl::unexpected(memory_error(
+        result, std::string(history ? "the history '" : "'").append(description.resource_name(r)) +
+                    "' cannot be created"));
+  };
+  for (const std::uint32_t r : cached.externals) {
+    if (const VkResult result = find_external(graph, cached, r)) return failed(result, r);
     cached.physical[r]->last_frame = frame;
   }
+  if (again && frame < cached.last_mark + kFramesUntilEviction / 2) return {};
+  for (std::uint32_t r = 0; r < description.resources.size(); ++r) {
+    const Placement& placement = cached.plan.placements[r];
+    if (placement.heap == kNone) continue;
+    if (!again) {
+      const VkResult result = pool->transient(description.resources[r], cached.plan, placement,
+                                              description.resource_name(r), cached.physical[r]);
+      if (result != VK_SUCCESS) return failed(result, r);
+    }
+    cached.physical[r]->last_frame = frame;
+  }
+  cached.last_mark = frame;
   cached.generation = pool->generation();
   return {};
 }
@@ -238,26 +237,19 @@ tl::expected<void, Errors> Executor::Implementation::check_call(const FrameInfo&
 // Binds the graph to this executor, which holds the contents of its histories.
 tl::expected<void, Errors> Executor::Implementation::adopt(Graph& graph) const {
   const std::shared_ptr<const char> other = graph.executor_.lock();
-  if (other == life) return {};
-  if (other)
+  if (other && other != life)
     return failure(ErrorCode::misuse,
                    "the graph was recorded by another executor, which holds its histories: use one "
                    "executor for a graph, or destroy the other one first");
-  const bool was_used = graph.executor_.owner_before(std::weak_ptr<const char>{}) ||
-                        std::weak_ptr<const char>{}.owner_before(graph.executor_);
-  if (was_used) graph.histories().forget_contents();
-  graph.executor_ = life;
-  return {};
-}
-
-tl::expected<void, Errors> Executor::Implementation::check_histories(Graph& graph) {
-  if (graph.histories().must_be_declared_anew())
-    return failure(ErrorCode::bad_description,
-                   "the frame was discarded, and with it the sizes or formats of its histories: "
-                   "declare it anew");
-  if (!graph.refresh_histories())
-    return failure(ErrorCode::bad_description,
-                   "a history that the frame declares was dropped since: declare the frame anew");
+  if (graph.lost_executor())
+    return failure(
+        ErrorCode::misuse,
+        "the executor that holds the graph's histories was destroyed after the frame was "
+        "declared: call Graph::reset and declare it again");
+  if (graph.recorded_)
+    return failure(ErrorCode::misuse,
+                   "the frame was recorded before: call Graph::reset and declare the next one");
+  if (!other) graph.executor_ = life;
   return {};
 }
 
@@ -272,7 +264,6 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
                                                                     Queues queues,
                                                                     CachedPlan*& cached) {
   if (auto right = adopt(graph); !right) return tl::unexpected(std::move(right.error()));
-  if (auto right = check_histories(graph); !right) return tl::unexpected(std::move(right.error()));
   pool->retire_histories(graph.histories(), frame);
   FrameReport report;
   auto found = plan_for(graph, queues, report.compiled);
@@ -298,6 +289,7 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
 void Executor::Implementation::finish(Graph& graph, const CachedPlan& cached) {
   before = &cached;
   before_generation = pool->generation();
+  graph.recorded_ = true;
   graph.leave_histories(cached.plan.finals);
 }
 
@@ -374,6 +366,7 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
     // A frame that was submitted in part may have written to any history.
     attempt.runs = self.submitter->stopped_midway();
     if (attempt.runs) graph.histories().invalidate_all();
+    graph.recorded_ = attempt.runs;
     self.before = nullptr;
     return tl::unexpected(vulkan_error(result, "the frame cannot be submitted"));
   }
@@ -405,8 +398,6 @@ std::span<const PassTiming> Executor::timings(std::uint32_t slot) {
 void Executor::forget(VkImage image) {
   implementation_->pool->forget(image, implementation_->frame);
 }
-
-void Executor::trim() { implementation_->pool->retire_transients(implementation_->frame); }
 
 const VulkanFunctions& Executor::functions() const { return implementation_->device.vk; }
 const Limits& Executor::limits() const { return implementation_->device.limits; }

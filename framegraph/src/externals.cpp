@@ -31,7 +31,6 @@ void record_external(UseState& state, const ExternalRecord& external) {
   }
   if (!external.has_contents) return;
   state.layout = initial_state.layout;
-  state.used = 1;
 }
 
 }  // namespace
@@ -52,11 +51,11 @@ void Synchroniser::apply_initial_states() {
   }
   s_.written.assign(subs_, 0);
   for (const PlannedPass& planned : plan_.passes) {
-    for_each_live(graph_, plan_, planned.pass, [&](const AccessRecord& access) {
+    for (const AccessRecord& access : graph_.pass_accesses(planned.pass)) {
       if (!(access.flags & kWrite) || graph_.resources[access.resource].origin != Origin::history)
-        return;
+        continue;
       for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) { s_.written[sub] = 1; });
-    });
+    }
   }
 }
 
@@ -69,29 +68,16 @@ void Synchroniser::apply_final_states() {
     const ExternalRecord& external = graph_.externals[resource.external];
     const bool used = plan_.placements[r].first != kNone;
     set_queue(QueueClass::graphics);
-    const auto begin = states_ + workspace_.first_sub[r];
-    const auto end_of_subs = states_ + workspace_.first_sub[r + 1];
     if (external.has_final_state) {
       end_reads(r, external.final_state);
       use(end, use_outside_frame(r, external.final_state));
-    } else if (resource.origin == Origin::imported && several() &&
-               !queues_share(graph_, workspace_, r) &&
-               std::any_of(begin, end_of_subs, [this](const UseState& state) {
-                 return state.used && family(state.owner) != family(queue_);
-               })) {
-      // The next frame expects the import to belong to the graphics queue.
-      use(end, use_outside_frame(r, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                     VK_ACCESS_2_MEMORY_READ_BIT, begin->layout}));
     }
     if (used && resource.origin == Origin::history) leave_history_slot(r);
   }
-  if (batch_time_ == batch_time(end) && !plan_.batches.empty()) {
-    Submission& last = plan_.submissions[workspace_.final_submission];
-    last.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
-    last.batch_count = 1;
-  }
   plan_.final_submission = workspace_.final_submission;
-  if (!s_.releases.empty()) add_releases();
+  plan_.final_batch = batch_time_ == batch_time(end) && !plan_.batches.empty()
+                          ? static_cast<std::uint32_t>(plan_.batches.size() - 1)
+                          : kNone;
 }
 
 // Orders the reads of an import before its final state. Work after the frame waits only for the
@@ -114,10 +100,9 @@ void Synchroniser::end_reads(std::uint32_t resource, const State& final_state) {
   const Placement& placement = plan_.placements[resource];
   std::int32_t time = kBeforeFrame;
   for (std::uint32_t p = placement.first; placement.first != kNone && p <= placement.last; ++p) {
-    for_each_live(graph_, plan_, plan_.passes[p].pass, [&](const AccessRecord& access) {
+    for (const AccessRecord& access : graph_.pass_accesses(plan_.passes[p].pass))
       if (access.resource == resource && (access.stages & ~final_state.stages) != 0)
         time = pass_time(p);
-    });
   }
   add_memory(time, static_cast<std::uint32_t>(plan_.passes.size()), wanted);
 }
@@ -150,8 +135,7 @@ void Synchroniser::leave_history_slot(std::uint32_t resource) {
   const UseState& lead = states_[first];
   for (std::uint32_t sub = first; sub < last; ++sub) {
     const UseState& state = states_[sub];
-    alike = alike && state.layout == lead.layout &&
-            (state.owner == queue_ || queues_share(graph_, workspace_, resource));
+    alike = alike && state.layout == lead.layout;
     seen_alike = seen_alike && state.read_stages == lead.read_stages &&
                  state.seen_stages == lead.seen_stages && state.seen_access == lead.seen_access;
     // A change on another queue was waited for by all commands.

@@ -4,8 +4,6 @@
 #include <atomic>
 #include <utility>
 
-#include "aspects.h"
-
 namespace alcove::framegraph {
 namespace {
 
@@ -28,14 +26,6 @@ std::size_t hash_of(const ImportHandles& handles) {
   return static_cast<std::size_t>(bits >> 32);
 }
 
-// Returns the size relative to another size, or 0 if the result is not a valid size.
-std::uint32_t relative_size(std::uint32_t size, const Extent& extent) {
-  if (extent.divisor == 0 || extent.multiplier == 0) return 0;
-  const std::uint64_t multiplied = std::uint64_t{size} * extent.multiplier;
-  const std::uint64_t divided = multiplied / extent.divisor + (multiplied % extent.divisor != 0);
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divided, 1, ~std::uint32_t{0}));
-}
-
 }  // namespace
 
 Graph::Graph() { reset(); }
@@ -52,10 +42,33 @@ void Graph::reset() {
   imports_.clear();
   std::fill(buckets_.begin(), buckets_.end(), kNone);
   histories_.begin_frame();
+  if (lost_executor()) {
+    histories_.forget_contents();
+    executor_.reset();
+  }
+  recorded_ = false;
   block_ = 0;
   next_ = end_ = nullptr;
   frame_ = next_frame();
   tag_ = repeating_tag_ = static_cast<std::uint32_t>(frame_);
+}
+
+// Returns whether the executor that recorded this graph, and with it the contents of the histories,
+// is gone.
+bool Graph::lost_executor() const {
+  const std::weak_ptr<const char> none;
+  return executor_.expired() && (executor_.owner_before(none) || none.owner_before(executor_));
+}
+
+Error Graph::missing_callback(std::uint32_t pass) const {
+  return {ErrorCode::missing_callback,
+          std::string("pass '")
+              .append(description_.pass_name(pass))
+              .append("' is live but has nothing to record: call PassBuilder::record"),
+          VK_SUCCESS,
+          pass,
+          kNone,
+          0};
 }
 
 void Graph::destroy_callables() {
@@ -101,23 +114,6 @@ void Graph::grow_passes() {
   callbacks_.resize(size);
 }
 
-ResourceRecord Graph::texture_record(const TextureDesc& desc) const {
-  ResourceRecord record;
-  fill_absolute(record, desc);
-  const Extent& extent = desc.extent;
-  const Texture& base = extent.relative_to;
-  if (!base) return record;
-  if (base.graph != tag_ || base.index >= description_.resources.size()) {
-    record.flags |= kRelativeToNothing;
-    return record;
-  }
-  const ResourceRecord& other = description_.resources[base.index];
-  if (extent.width == 0) record.width = relative_size(other.width, extent);
-  if (extent.height == 0) record.height = relative_size(other.height, extent);
-  if (extent.depth == 1) record.depth = relative_size(other.depth, extent);
-  return record;
-}
-
 std::uint32_t Graph::add_any_access(PassBuilder pass, std::uint32_t index, std::uint32_t version,
                                     std::uint32_t tag, const Access& access, Range range,
                                     std::uint32_t flags) {
@@ -139,7 +135,6 @@ std::uint32_t Graph::add_any_access(PassBuilder pass, std::uint32_t index, std::
 }
 
 Range Graph::resolved_range(Range range, const ResourceRecord& resource) {
-  if (range.aspects == aspects(resource.format)) range.aspects = 0;
   if (range.mips == kAll && range.base_mip < resource.mips)
     range.mips = static_cast<std::uint16_t>(resource.mips - range.base_mip);
   if (range.layers == kAll && range.base_layer < resource.layers)
@@ -190,8 +185,6 @@ std::uint32_t Graph::add_import(std::string_view name, const Import& import, Res
   record.origin = Origin::imported;
   record.external = static_cast<std::uint32_t>(description_.externals.size());
   handles.layers = record.layers;
-  handles.initial_family = import.initial_family;
-  handles.final_family = import.final_family;
   imports_.push_back(handles);
   ExternalRecord external;
   external.initial_state = import.initial_state;
@@ -201,7 +194,6 @@ std::uint32_t Graph::add_import(std::string_view name, const Import& import, Res
   external.has_final_state =
       import.final_state.stages != 0 || import.final_state.layout != VK_IMAGE_LAYOUT_UNDEFINED;
   external.has_handle = handles.image != VK_NULL_HANDLE || handles.buffer != VK_NULL_HANDLE;
-  external.concurrent = import.concurrent;
   external.same_as = find_same(record.external);
   add(description_.externals, external);
   return add_resource(name, record);
@@ -226,27 +218,13 @@ Buffer Graph::import_buffer(std::string_view name, const ImportedBuffer& import)
 
 ExternalRecord Graph::external_of(const HistoryEntry& entry, std::uint32_t slot) {
   const HistorySlot& state = entry.slots[entry.physical(slot)];
-  const bool keeps = slot != 0 || (entry.record.flags & kPersistent) != 0;
   ExternalRecord external;
   external.initial_state = state.state;
   external.validity = state.validity;
-  external.has_contents = keeps && state.validity == HistoryValidity::valid;
+  external.has_contents = slot != 0 && state.validity == HistoryValidity::valid;
   external.queue = state.queue;
   external.has_handle = 1;
   return external;
-}
-
-bool Graph::refresh_histories() {
-  if (!histories_.have_moved()) return true;
-  for (const ResourceRecord& record : description_.resources) {
-    if (record.origin != Origin::history) continue;
-    const HistoryEntry& entry = histories_.entry(imports_[record.external].history);
-    if (entry.dropped) return false;
-    description_.externals[record.external] = external_of(entry, record.slot);
-  }
-  description_.edition = next_frame();
-  histories_.clear_moved();
-  return true;
 }
 
 void Graph::add_stale_builder() {
@@ -255,13 +233,12 @@ void Graph::add_stale_builder() {
   add(description_.outputs, {kNone, 0, kStaleBuilder});
 }
 
-template <ResourceKind kKind>
-History<kKind> Graph::add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
-                                  std::uint32_t flags) {
-  History<kKind> made;
+TextureHistory Graph::create_texture_history(std::string_view name, const TextureDesc& desc,
+                                             std::uint32_t slots) {
+  TextureHistory made;
   made.slots = std::clamp(slots, 1u, kMaxHistorySlots);
+  ResourceRecord record = texture_record(desc);
   record.origin = Origin::history;
-  record.flags |= flags;
   record.slots = static_cast<std::uint8_t>(made.slots);
   ImportHandles handles;
   handles.history = histories_.declare(name, record);
@@ -274,7 +251,7 @@ History<kKind> Graph::add_history(std::string_view name, ResourceRecord record, 
     add(description_.externals, external);
     const std::uint32_t index = add_resource(name, record);
     if (slot == 0) made.current = {index, 0, tag_};
-    if (slot == 1 || made.slots == 1) made.validity = external.validity;
+    if (slot == 1) made.validity = external.validity;
   }
   return made;
 }
@@ -289,9 +266,8 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
     slot.queue = final.queue;
     if (final.written != WriteCoverage::nothing) {
       // A valid slot that is updated in place stays valid if only a part of it is written.
-      const bool keeps = record.slot != 0 || (record.flags & kPersistent) != 0;
       const bool whole = final.written == WriteCoverage::whole ||
-                         (keeps && slot.validity == HistoryValidity::valid);
+                         (record.slot != 0 && slot.validity == HistoryValidity::valid);
       slot.validity = whole ? HistoryValidity::valid : HistoryValidity::written_in_part;
     }
     histories_.leave(index, record.slot, slot);
@@ -301,24 +277,6 @@ void Graph::leave_histories(std::span<const FinalState> finals) {
     if (record.slot == 0 && final.written != WriteCoverage::nothing)
       histories_.rotate(imports_[record.external].history);
   }
-}
-
-TextureHistory Graph::create_texture_history(std::string_view name, const TextureDesc& desc,
-                                             std::uint32_t slots) {
-  return add_history<ResourceKind::texture>(name, texture_record(desc), slots);
-}
-
-BufferHistory Graph::create_buffer_history(std::string_view name, const BufferDesc& desc,
-                                           std::uint32_t slots) {
-  return add_history<ResourceKind::buffer>(name, buffer_record(desc), slots);
-}
-
-TextureHistory Graph::create_persistent_texture(std::string_view name, const TextureDesc& desc) {
-  return add_history<ResourceKind::texture>(name, texture_record(desc), 1, kPersistent);
-}
-
-BufferHistory Graph::create_persistent_buffer(std::string_view name, const BufferDesc& desc) {
-  return add_history<ResourceKind::buffer>(name, buffer_record(desc), 1, kPersistent);
 }
 
 void Graph::reset_history(std::string_view name) { histories_.invalidate(name); }

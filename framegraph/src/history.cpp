@@ -71,15 +71,8 @@ void HistoryTable::invalidate(std::uint32_t index) {
   }
 }
 
-// The frame may be a second one with the same declaration. undo() then takes back only that frame.
-void HistoryTable::begin_end() {
-  if (ended_) saved_.clear();
-  ended_ = false;
-}
-
 void HistoryTable::leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left) {
   remember(index);
-  ended_ = moved_ = true;
   HistoryEntry& entry = entries_[index];
   entry.slots[entry.physical(slot)] = left;
 }
@@ -97,19 +90,12 @@ void HistoryTable::remember(std::uint32_t index) {
 }
 
 void HistoryTable::undo() {
-  for (const SavedState& saved : saved_) {
-    HistoryState& state = entries_[saved.index];
-    anew_ = anew_ || saved.state.generation != state.generation;
-    state = saved.state;
-  }
+  for (const SavedState& saved : saved_)
+    static_cast<HistoryState&>(entries_[saved.index]) = saved.state;
   saved_.clear();
-  ended_ = false;
-  moved_ = true;
 }
 
 void HistoryTable::forget_contents() {
-  saved_.clear();
-  moved_ = true;
   for (HistoryEntry& entry : entries_) {
     for (HistorySlot& slot : entry.slots) {
       const bool held = slot.validity == HistoryValidity::valid;
@@ -128,7 +114,6 @@ bool HistoryTable::needs(std::uint32_t index, std::uint32_t generation) const {
 void HistoryTable::begin_frame() {
   end_frame();
   saved_.clear();
-  ended_ = anew_ = moved_ = false;
 }
 
 void HistoryTable::end_frame() {

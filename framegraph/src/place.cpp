@@ -1,13 +1,9 @@
 // Placement: offsets for all transients, in one heap for each set of memory types that they allow.
 //
-// The cheapest method is tried first: first fit in order of first use. It reaches the lower bound
-// (the most bytes that are live at once) if sizes are alike. If it does not, first fit is tried in
-// other orders: by decreasing size, by decreasing product of size and lifetime, by decreasing
-// lifetime, and by increasing distance in time from the peak. The last of these orders is then
-// changed a few times: the resource whose bytes end at the peak is placed first.
+// First fit in order of first use is tried first. It reaches the lower bound (the most bytes that
+// are live at once) if sizes are alike. If it does not, first fit by decreasing size is tried too.
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 #include "workspace.h"
 
@@ -45,21 +41,20 @@ class Placer {
     PlaceItem* item = s_.items.data();
     for (const std::uint32_t r : workspace_.transients) {
       Placement& placement = plan_.placements[r];
-      const MemoryRequirements needed = requirements(graph_.resources[r], placement.usage);
+      const MemoryRequirements needed =
+          limits_.memory(graph_.resources[r], placement.usage, placement.concurrent);
       // Aligning to whole pages keeps buffers and images in different pages of
       // bufferImageGranularity.
       placement.alignment = std::max(needed.alignment, limits_.buffer_image_granularity);
       placement.size = align_up(needed.size, limits_.buffer_image_granularity);
       placement.heap = heap_of(needed.memory_types);
       Heap& into = plan_.heaps[placement.heap];
+      into.alignment = std::max(into.alignment, placement.alignment);
+      into.device_address |= graph_.resources[r].kind == ResourceKind::buffer &&
+                             (placement.usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
       into.unaliased = align_up(into.unaliased, placement.alignment) + placement.size;
       *item++ = item_of(placement, r);
     }
-  }
-
-  MemoryRequirements requirements(const ResourceRecord& record, VkFlags usage) const {
-    return limits_.memory.query ? limits_.memory.query(limits_.memory.context, record, usage)
-                                : estimate_requirements(record);
   }
 
   std::uint32_t heap_of(std::uint32_t memory_types) {
@@ -68,7 +63,7 @@ class Placer {
       if (there.memory_types == memory_types) return heap;
       ++heap;
     }
-    plan_.heaps.push_back({memory_types, 0, 0, 0});
+    plan_.heaps.push_back({memory_types});
     return heap;
   }
 
@@ -108,24 +103,7 @@ class Placer {
 
   void fill(VkDeviceSize bound) {
     best_ = fit_by_time();
-    if (best_ <= bound) return;
-    const auto span = [](const PlaceItem& item) {
-      return VkDeviceSize{item.last - item.first + 1};
-    };
-    try_falling([](const PlaceItem& item) { return item.size; });
-    if (best_ > bound) try_falling([&](const PlaceItem& item) { return item.size * span(item); });
-    if (best_ > bound) try_falling(span);
-    if (best_ > bound) try_from_peak();
-    const std::size_t rounds =
-        std::clamp<std::size_t>(40'000 / (s_.items.size() * s_.items.size()), 4, 64);
-    for (std::size_t round = 0; round < rounds && best_ > bound; ++round) {
-      // The resource whose bytes end at the peak was placed too late.
-      const auto high = std::find_if(s_.order.begin(), s_.order.end(), [this](std::uint32_t i) {
-        return s_.offsets[i] + s_.items[i].size == peak_;
-      });
-      std::rotate(s_.order.begin(), high, high + 1);
-      try_order();
-    }
+    if (best_ > bound) try_by_size();
   }
 
   // Places by first fit in order of first use. `taken` holds the byte ranges in use, in order of
@@ -162,49 +140,21 @@ class Placer {
     return peak;
   }
 
-  template <typename Key>
-  void try_falling(Key&& key) {
+  // Places by first fit by decreasing size, and keeps the result if its peak is lower.
+  void try_by_size() {
     s_.order.resize(s_.items.size());
     s_.offsets.resize(s_.items.size());
     std::iota(s_.order.begin(), s_.order.end(), 0u);
-    std::sort(s_.order.begin(), s_.order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      const auto x = key(s_.items[a]);
-      const auto y = key(s_.items[b]);
+    std::sort(s_.order.begin(), s_.order.end(), [this](std::uint32_t a, std::uint32_t b) {
+      const VkDeviceSize x = s_.items[a].size;
+      const VkDeviceSize y = s_.items[b].size;
       return x != y ? x > y : a < b;
     });
-    try_order();
-  }
-
-  // Tries first fit with the resources that are live at the peak first, because they have the
-  // fewest possible offsets. The others follow in order of their distance in time from the peak.
-  void try_from_peak() {
-    std::int64_t live = 0;
-    std::int64_t most = -1;
-    std::uint32_t peak = 0;
-    for (std::uint32_t position = 0; position < s_.change.size(); ++position) {
-      live += s_.change[position];
-      if (live > most) {
-        most = live;
-        peak = position;
-      }
-    }
-    const auto distance = [&](const PlaceItem& item) {
-      const std::uint32_t positions = item.first > peak ? item.first - peak : peak - item.last;
-      return item.first <= peak && peak <= item.last ? 0 : static_cast<std::int64_t>(positions);
-    };
-    try_falling([&](const PlaceItem& item) {
-      return std::tuple(-distance(item), item.last - item.first, item.size);
-    });
-  }
-
-  // Places by first fit in s_.order, and keeps the result if its peak is lower than the best so
-  // far.
-  void try_order() {
     for (auto& block : s_.blocks) block.clear();
-    peak_ = 0;
-    for (const std::uint32_t index : s_.order) peak_ = std::max(peak_, fit(index));
-    if (peak_ >= best_) return;
-    best_ = peak_;
+    VkDeviceSize peak = 0;
+    for (const std::uint32_t index : s_.order) peak = std::max(peak, fit(index));
+    if (peak >= best_) return;
+    best_ = peak;
     for (std::size_t i = 0; i < s_.items.size(); ++i) s_.items[i].offset = s_.offsets[i];
   }
 
@@ -251,7 +201,6 @@ class Placer {
   Plan& plan_;
   Workspace::Place& s_;
   VkDeviceSize best_ = 0;
-  VkDeviceSize peak_ = 0;  // of the last order tried
 };
 
 }  // namespace

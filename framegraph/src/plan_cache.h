@@ -18,6 +18,9 @@ struct CachedPlan {
   // The images and buffers of the transients. They are valid for one generation of the pool.
   std::uint64_t generation = 0;
   std::vector<Physical*> physical;
+  // The imports and the history slots that passes use.
+  std::vector<std::uint32_t> externals;
+  std::uint64_t last_mark = 0;  // the last frame that wrote Physical::last_frame of the transients
 };
 
 class PlanCache {

@@ -9,10 +9,6 @@
 namespace alcove::framegraph {
 namespace {
 
-// The number of frames after which an unused object is destroyed. Imports and heaps are checked
-// once in so many frames.
-constexpr std::uint64_t kFramesUntilEviction = 120;
-
 // Makes room for `more` values before they exist, so that no object is lost if memory runs out.
 template <typename Value>
 void make_room(std::vector<Value>& values, std::size_t more = 1) {
@@ -28,27 +24,6 @@ bool belongs_to(const std::weak_ptr<const char>& life, const HistoryTable& table
 // A handle is a pointer or an integer, depending on the platform. This cast works for both.
 std::uint64_t handle_key(VkImage image, VkBuffer buffer) {
   return (std::uint64_t)image ^ (std::uint64_t)buffer;
-}
-
-bool has_address(const ResourceRecord& record, VkFlags usage) {
-  return record.kind == ResourceKind::buffer &&
-         (usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
-}
-
-bool wants_addresses(const GraphDescription& graph, const Plan& plan, std::uint32_t heap) {
-  for (std::size_t r = 0; r < plan.placements.size(); ++r) {
-    const Placement& placement = plan.placements[r];
-    if (placement.heap == heap && has_address(graph.resources[r], placement.usage)) return true;
-  }
-  return false;
-}
-
-// Returns the largest alignment of all placements in the heap.
-VkDeviceSize largest_alignment(const Plan& plan, std::uint32_t heap) {
-  VkDeviceSize alignment = 1;
-  for (const Placement& placement : plan.placements)
-    if (placement.heap == heap) alignment = std::max(alignment, placement.alignment);
-  return alignment;
 }
 
 bool same(const ResourceRecord& a, const ResourceRecord& b) {
@@ -76,9 +51,8 @@ Pool::~Pool() {
   for (const HeapMemory& heap : heaps_) memory_.free(heap.memory);
 }
 
-VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uint64_t frame) {
-  for (std::uint32_t h = 0; h < plan.heaps.size(); ++h) {
-    const Heap& wanted = plan.heaps[h];
+VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
+  for (const Heap& wanted : plan.heaps) {
     auto heap = std::find_if(heaps_.begin(), heaps_.end(), [&](const HeapMemory& made) {
       return made.memory_types == wanted.memory_types;
     });
@@ -87,11 +61,11 @@ VkResult Pool::reserve(const GraphDescription& graph, const Plan& plan, std::uin
       heap = heaps_.end() - 1;
     }
     heap->needed = std::max(heap->needed, wanted.size);
-    const bool has_addresses = heap->has_addresses || wants_addresses(graph, plan, h);
+    const bool has_addresses = heap->has_addresses || wanted.device_address;
     if (heap->size >= wanted.size && heap->has_addresses == has_addresses) continue;
     const VkDeviceSize size = std::max(heap->size, wanted.size);
     MemoryRange memory;
-    if (const VkResult result = allocate({size, largest_alignment(plan, h), wanted.memory_types},
+    if (const VkResult result = allocate({size, wanted.alignment, wanted.memory_types},
                                          has_addresses, MemoryLifetime::frame, memory))
       return result;
     // This includes transients of other heaps, because creating them again is cheap.
@@ -130,7 +104,8 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
   const auto [first, last] = transients_.equal_range(placement.offset);
   for (auto at = first; at != last; ++at) {
     Physical& there = *at->second;
-    if (there.heap == index && there.usage == placement.usage && same(there.record, record)) {
+    if (there.heap == index && there.usage == placement.usage &&
+        there.concurrent == placement.concurrent && same(there.record, record)) {
       found = &there;
       return VK_SUCCESS;
     }
@@ -138,6 +113,7 @@ VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const P
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = placement.usage;
+  made->concurrent = placement.concurrent;
   made->heap = index;
   made->offset = placement.offset;
   if (const VkResult result = create(*made, name)) return result;
@@ -160,6 +136,8 @@ VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint
   auto made = std::make_unique<Physical>();
   made->record = record;
   made->usage = usage;
+  // Passes of any queue may use it in later frames.
+  made->concurrent = device_.families.size() > 1;
   if (const VkResult result = create(*made, name)) return result;
   histories_.push_back({table.life(), entry, generation, position, std::move(made)});
   ++generation_;
@@ -227,10 +205,8 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
   info.image = physical.image;
   info.viewType = type;
   info.format = format;
-  const VkImageAspectFlags aspect =
-      range.aspects != 0 ? range.aspects : view_aspect(physical.record.format);
-  info.subresourceRange = {aspect, range.base_mip, range.mips, physical.layer + range.base_layer,
-                           range.layers};
+  info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
+                           physical.layer + range.base_layer, range.layers};
   VkImageView view = VK_NULL_HANDLE;
   if (device_.vk.vkCreateImageView(device_.handles.device, &info, device_.callbacks(), &view) !=
       VK_SUCCESS)
@@ -256,8 +232,8 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
       return true;
     });
   };
-  if (destroy_unused(transients_) != 0) ++generation_;
   if (frame % kFramesUntilEviction != 0) return;
+  if (destroy_unused(transients_) != 0) ++generation_;
   destroy_unused(imports_);
   bool shrinks = false;
   for (HeapMemory& heap : heaps_) {
@@ -290,16 +266,15 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
 VkResult Pool::create_bound(Physical& physical, std::string_view name) {
   const VkDevice device = device_.handles.device;
   VkMemoryRequirements needed{};
-  VkResult result = create_unbound(device_, physical.record, physical.usage, physical.image,
-                                   physical.buffer, needed);
+  VkResult result = create_unbound(device_, physical.record, physical.usage, physical.concurrent,
+                                   physical.image, physical.buffer, needed);
   if (result != VK_SUCCESS) return result;
   set_name(physical, name);
   MemoryRange memory;
   if (physical.heap != kNone) {
     memory = heaps_[physical.heap].memory;
   } else {
-    result = allocate(needed, has_address(physical.record, physical.usage),
-                      MemoryLifetime::persistent, physical.own_memory);
+    result = allocate(needed, false, MemoryLifetime::persistent, physical.own_memory);
     if (result != VK_SUCCESS) return result;
     physical.own_size = needed.size;
     memory = physical.own_memory;

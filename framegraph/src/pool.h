@@ -17,6 +17,10 @@
 
 namespace alcove::framegraph {
 
+// The number of frames after which an unused object is destroyed. All objects and heaps are checked
+// once in so many frames.
+inline constexpr std::uint64_t kFramesUntilEviction = 120;
+
 struct CachedView {
   Range range;
   VkImageViewType type = kViewTypeByRange;
@@ -27,6 +31,7 @@ struct CachedView {
 struct Physical {
   ResourceRecord record;
   VkFlags usage = 0;
+  bool concurrent = false;  // see Placement::concurrent
   VkDeviceSize offset = 0;
   std::uint32_t heap = kNone;  // index into the pool's heaps; kNone if its memory is its own
   VkImage image = VK_NULL_HANDLE;
@@ -36,6 +41,8 @@ struct Physical {
   bool owned = true;        // false for imports, of which the pool owns the views only
   std::uint32_t layer = 0;  // the image's layer at which an imported texture begins
   std::vector<CachedView> views;
+  // The last frame that used it. For a transient it may be up to half of kFramesUntilEviction
+  // older.
   std::uint64_t last_frame = 0;
 };
 
@@ -48,8 +55,7 @@ class Pool {
 
   // Makes the heaps of a plan large enough. If a heap had to grow, all transients are moved to the
   // list of objects to be destroyed, and `generation` changes.
-  [[nodiscard]] VkResult reserve(const GraphDescription& graph, const Plan& plan,
-                                 std::uint64_t frame);
+  [[nodiscard]] VkResult reserve(const Plan& plan, std::uint64_t frame);
   // Finds or creates the transient with this description at this place.
   [[nodiscard]] VkResult transient(const ResourceRecord& record, const Plan& plan,
                                    const Placement& placement, std::string_view name,
@@ -71,9 +77,6 @@ class Pool {
   // Destroys the objects on the retired list and those that were not used for a while, if the
   // device has finished the last frame that used them. `finished` is the last finished frame.
   void collect(std::uint64_t finished, std::uint64_t frame);
-
-  // Moves all heaps and transients to the list of objects to be destroyed.
-  void retire_transients(std::uint64_t frame);
 
   // Returns a number that changes when transients or histories are created or destroyed.
   std::uint64_t generation() const { return generation_; }
@@ -118,6 +121,8 @@ class Pool {
   VkResult allocate(const VkMemoryRequirements& requirements, bool has_addresses,
                     MemoryLifetime lifetime, MemoryRange& memory);
   void retire_objects(Objects& objects, std::uint64_t frame);
+  // Moves all heaps and transients to the list of objects to be destroyed.
+  void retire_transients(std::uint64_t frame);
   void destroy(Physical& physical);
   void set_name(const Physical& physical, std::string_view name);
 

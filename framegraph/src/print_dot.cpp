@@ -49,9 +49,8 @@ class DotPrinter {
     std::string style = "style=dashed color=gray fontcolor=gray";
     if (position_[pass] != kNone) {
       const PlannedPass& planned = plan_.passes[position_[pass]];
-      std::uint32_t barriers = 0;
-      for (std::uint32_t b = 0; b < planned.batch_count; ++b)
-        barriers += plan_.batches[planned.first_batch + b].count;
+      const std::uint32_t barriers =
+          planned.batch == kNone ? 0 : plan_.batches[planned.batch].count;
       label = std::to_string(position_[pass]).append(" ").append(label);
       if (barriers > 0) label.append(" | ").append(std::to_string(barriers)).append(" barriers");
       constexpr const char* kColors[] = {"lightsteelblue", "palegreen", "moccasin"};

@@ -28,8 +28,6 @@ constexpr Name kStages[] = {
     {VK_PIPELINE_STAGE_2_RESOLVE_BIT, "resolve"},
     {VK_PIPELINE_STAGE_2_CLEAR_BIT, "clear"},
     {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"},
-    {VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR, "acceleration structure build"},
-    {VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR, "ray tracing"},
     {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT, "transform feedback"},
     {VK_PIPELINE_STAGE_2_HOST_BIT, "host"},
     {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, "all commands"},
@@ -45,8 +43,6 @@ constexpr Name kImageUsages[] = {
     {VK_IMAGE_USAGE_STORAGE_BIT, "STORAGE"},
     {VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, "COLOR_ATTACHMENT"},
     {VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "DEPTH_STENCIL_ATTACHMENT"},
-    {VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT, "TRANSIENT_ATTACHMENT"},
-    {VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT, "INPUT_ATTACHMENT"},
 };
 
 constexpr Name kBufferUsages[] = {
@@ -60,9 +56,6 @@ constexpr Name kBufferUsages[] = {
     {VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "VERTEX_BUFFER"},
     {VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "INDIRECT_BUFFER"},
     {VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, "SHADER_DEVICE_ADDRESS"},
-    {VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR,
-     "ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY"},
-    {VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR, "ACCELERATION_STRUCTURE_STORAGE"},
 };
 
 template <std::size_t kCount>
@@ -96,7 +89,6 @@ std::string layout_name(VkImageLayout layout) {
                                {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, "color"},
                                {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, "depth"},
                                {VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, "depth read"},
-                               {VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL, "stencil"},
                                {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, "shader read"},
                                {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "transfer source"},
                                {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, "transfer destination"},
@@ -134,8 +126,6 @@ std::string range_name(const Range& range, std::uint32_t mips, std::uint32_t lay
   std::string text;
   if (range.mips != mips) text += part("mip", range.base_mip, range.mips);
   if (range.layers != layers) text += part("layer", range.base_layer, range.layers);
-  if (range.aspects == VK_IMAGE_ASPECT_DEPTH_BIT) text += " depth";
-  if (range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT) text += " stencil";
   return text;
 }
 

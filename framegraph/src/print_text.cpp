@@ -71,42 +71,38 @@ class TextPrinter {
       line(text);
     }
     for (std::uint32_t p = 0; p < submission.pass_count; ++p) pass(submission.first_pass + p);
-    batches(submission.first_batch, submission.batch_count);
+    batch(submission.end_batch);
+    if (index == plan_.final_submission) batch(plan_.final_batch);
     line("");
   }
 
   void pass(std::uint32_t position) {
     const PlannedPass& planned = plan_.passes[position];
-    batches(planned.first_batch, planned.batch_count);
+    batch(planned.batch);
     std::string head = padded(std::to_string(position), 4);
     head += padded(graph_.pass_name(planned.pass), kNameWidth) + " ";
-    const std::uint32_t first = graph_.passes[planned.pass].first_access;
-    const auto accesses = graph_.pass_accesses(planned.pass);
     std::vector<std::string> items;
-    for (std::size_t i = 0; i < accesses.size(); ++i)
-      items.push_back(access(accesses[i], plan_.live_accesses[first + i] != 0));
+    for (const AccessRecord& used : graph_.pass_accesses(planned.pass))
+      items.push_back(access(used));
     items.push_back(
         std::string("(").append(reason(graph_, plan_.cull_reasons[planned.pass])).append(")"));
     line(wrapped(head, items, " "));
   }
 
-  std::string access(const AccessRecord& access, bool live) const {
+  std::string access(const AccessRecord& access) const {
     const ResourceRecord& record = graph_.resources[access.resource];
     const bool writes = (access.flags & kWrite) != 0;
     std::string text = writes ? ">" : "<";
     text.append(names_[access.resource]);
     text.append(".").append(std::to_string(access.version + (writes ? 1 : 0)));
     text.append(range_name(access.range, record.mips, record.layers));
-    if (!live) text += " (unread)";
     return text;
   }
 
-  void batches(std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t b = first; b < first + count; ++b) batch(plan_.batches[b]);
-  }
-
   // Prints one line for all transitions of the batch with equal source and destination stages.
-  void batch(const Batch& batch) {
+  void batch(std::uint32_t index) {
+    if (index == kNone) return;
+    const Batch& batch = plan_.batches[index];
     std::vector<std::uint8_t> done(batch.count, 0);
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       if (done[i]) continue;
@@ -128,19 +124,12 @@ class TextPrinter {
   std::string change(const Transition& t) const {
     if (t.resource == kNone) return "memory";
     const ResourceRecord& record = graph_.resources[t.resource];
-    std::string text = names_[t.resource] + range_name(t.range, record.mips, record.layers);
-    if (record.kind == ResourceKind::texture)
-      text.append(" ")
-          .append(layout_name(t.old_layout))
-          .append(" -> ")
-          .append(layout_name(t.new_layout));
-    if (t.src_queue != t.dst_queue)
-      text.append(" (")
-          .append(queue_name(t.src_queue))
-          .append(" gives it to ")
-          .append(queue_name(t.dst_queue))
-          .append(")");
-    return text;
+    return std::string(names_[t.resource])
+        .append(range_name(t.range, record.mips, record.layers))
+        .append(" ")
+        .append(layout_name(t.old_layout))
+        .append(" -> ")
+        .append(layout_name(t.new_layout));
   }
 
   void culled() {

@@ -5,9 +5,11 @@
 //
 // A submission begins with a pass that waits for another queue, and ends with a pass for which
 // another queue waits, so that no queue waits longer than it must. With one queue there is one
-// submission. A pass that changes a subresource (writes it, or moves it to another layout or queue
-// family) waits for the passes of other queues that have used it since the last change. A pass that
-// only reads it waits for the last change.
+// submission. A pass that changes a subresource (writes it, or moves it to another layout) waits
+// for the passes of other queues that have used it since the last change. A pass that only reads it
+// waits for the last change. If passes of several queues read what a pass wrote, all in one other
+// layout, the queue of the writer changes the layout at the end of its submission. No reader then
+// has to change it, so that the readers need not wait for each other.
 #include <algorithm>
 #include <bit>
 
@@ -29,6 +31,7 @@ class QueueAssigner {
       plan_.submissions.push_back({.pass_count = count});
       return;
     }
+    find_moved_layouts();
     find_waits();
     cut();
     regroup();
@@ -38,6 +41,7 @@ class QueueAssigner {
 
  private:
   static constexpr std::uint32_t kNobody = kNone;
+  static constexpr VkImageLayout kMixed = Workspace::Queues::Reads::kMixed;
 
   std::uint32_t family(QueueClass queue) const {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
@@ -53,25 +57,50 @@ class QueueAssigner {
       if (!plan_.cull_reasons[pass].is_live()) continue;
       const QueueClass wanted = graph_.passes[pass].queue;
       const QueueClass queue = family(wanted) != kNone ? wanted : QueueClass::graphics;
-      plan_.passes.push_back({pass, queue, 0, 0, 0});
+      plan_.passes.push_back({pass, queue});
       workspace_.several_queues |= queue != QueueClass::graphics;
     }
-    workspace_.one_family = true;
-    for (const PlannedPass& planned : plan_.passes)
-      workspace_.one_family &= family(planned.queue) == family(QueueClass::graphics);
-    for (const ExternalRecord& external : graph_.externals)
-      workspace_.one_family &= family(initial_queue(external)) == family(QueueClass::graphics);
     // A graphics pass may use a resource that was last used on another queue.
     if (!workspace_.several_queues && !graph_.externals.empty()) {
       for (const PlannedPass& planned : plan_.passes) {
-        for_each_live(graph_, plan_, planned.pass, [&](const AccessRecord& access) {
+        for (const AccessRecord& access : graph_.pass_accesses(planned.pass)) {
           const std::uint32_t external = graph_.resources[access.resource].external;
           workspace_.several_queues |=
               external != kNone &&
               initial_queue(graph_.externals[external]) != QueueClass::graphics;
-        });
+        }
       }
     }
+  }
+
+  // Finds the writes after which the queue of the writer changes the layout. Goes from the last
+  // pass to the first, and follows for each subresource the layout and the queues of the reads up
+  // to the next write.
+  void find_moved_layouts() {
+    s_.moved_layouts.assign(graph_.accesses.size(), VK_IMAGE_LAYOUT_UNDEFINED);
+    s_.reads.assign(workspace_.first_sub.back(), {});
+    for (std::size_t position = plan_.passes.size(); position-- > 0;) {
+      const PlannedPass& planned = plan_.passes[position];
+      for (const AccessRecord& access : graph_.pass_accesses(planned.pass)) {
+        if (access.kind() != ResourceKind::texture) continue;
+        Workspace::Queues::Reads all;
+        const Workspace::Queues::Reads own{access.layout,
+                                           1u << static_cast<unsigned>(planned.queue)};
+        for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+          all.add(s_.reads[sub]);
+          if (access.flags & kWrite)
+            s_.reads[sub] = {};
+          else
+            s_.reads[sub].add(own);
+        });
+        if ((access.flags & kWrite) && !std::has_single_bit(all.queues) && all.layout != kMixed)
+          s_.moved_layouts[index_of(access)] = all.layout;
+      }
+    }
+  }
+
+  std::size_t index_of(const AccessRecord& access) const {
+    return static_cast<std::size_t>(&access - graph_.accesses.data());
   }
 
   // Finds, for each pass and each other queue, the last pass of that queue for which this pass must
@@ -103,14 +132,13 @@ class QueueAssigner {
     const QueueClass queue = plan_.passes[position].queue;
     const auto own = static_cast<std::size_t>(queue);
     std::uint32_t* waits = &s_.waits[position * kQueueClasses];
-    for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
-      const bool shares = queues_share(graph_, workspace_, access.resource);
+    for (const AccessRecord& access : graph_.pass_accesses(plan_.passes[position].pass)) {
+      const VkImageLayout moved = s_.moved_layouts[index_of(access)];
       for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
         Workspace::Queues::Uses& uses = s_.uses[sub];
         const bool changes =
             (access.flags & kWrite) != 0 ||
-            (access.kind() == ResourceKind::texture && uses.layout != access.layout) ||
-            (!shares && uses.owner != queue);
+            (access.kind() == ResourceKind::texture && uses.layout != access.layout);
         if (uses.changed == kNobody) s_.opened[position] |= opening_of(access, queue);
         for (std::size_t other = 0; other < kQueueClasses; ++other) {
           if (other == own) continue;
@@ -128,9 +156,9 @@ class QueueAssigner {
           uses.owner = queue;
         }
         uses.last[own] = position;
-        uses.layout = access.layout;
+        uses.layout = moved != VK_IMAGE_LAYOUT_UNDEFINED ? moved : access.layout;
       });
-    });
+    }
     s_.opened[position] &= static_cast<std::uint8_t>(~known_open_[own]);
     drop_implied(waits);
     for (std::size_t other = 0; other < kQueueClasses; ++other)
@@ -178,12 +206,9 @@ class QueueAssigner {
     if (resource.external == kNone) return 0;
     const ExternalRecord& external = graph_.externals[resource.external];
     const QueueClass owner = initial_queue(external);
-    if (owner == queue) return 0;
-    const bool transfers = external.has_contents && !(access.flags & kDiscard) &&
-                           family(owner) != family(queue) && !external.concurrent;
     // An initial state with stages means that earlier work on its queue must be done. Even if its
     // writes are visible to reads, they are so on that queue only.
-    if (!transfers && external.initial_state.stages == 0) return 0;
+    if (owner == queue || external.initial_state.stages == 0) return 0;
     return static_cast<std::uint8_t>(1u << static_cast<unsigned>(owner));
   }
 
@@ -223,13 +248,12 @@ class QueueAssigner {
   }
 
   void add_wait(std::uint32_t submission) {
-    plan_.waits.push_back({submission, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT});
+    plan_.waits.push_back({submission});
     ++plan_.submissions.back().wait_count;
   }
 
-  // Adds a submission without passes on each queue that must release a resource first. That is a
-  // queue on which a resource was last used before the frame, if the frame uses the resource on
-  // another queue. The other queue waits for the submission.
+  // Adds a submission without passes on each queue on which a resource was last used before the
+  // frame, if the frame uses the resource on another queue. That queue waits for the submission.
   void open_before() {
     std::fill(std::begin(s_.opening), std::end(s_.opening), kNobody);
     std::uint8_t opened = 0;
@@ -292,9 +316,7 @@ class QueueAssigner {
       if (resource.external == kNone) continue;
       const ExternalRecord& external = graph_.externals[resource.external];
       imports |= resource.origin == Origin::imported;
-      if (resource.origin == Origin::imported
-              ? !external.has_final_state && queues_share(graph_, workspace_, r)
-              : stays_on_one_queue(r))
+      if (resource.origin == Origin::imported ? !external.has_final_state : stays_on_one_queue(r))
         continue;
       for_each_sub_of(r, [&](std::uint32_t sub) {
         for (std::size_t other = 1; other < kQueueClasses; ++other) {
@@ -382,12 +404,6 @@ class QueueAssigner {
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan) {
   QueueAssigner(graph, limits, workspace, plan).run();
-}
-
-bool queues_share(const GraphDescription& graph, const Workspace& workspace,
-                  std::uint32_t resource) {
-  const std::uint32_t external = graph.resources[resource].external;
-  return workspace.one_family || (external != kNone && graph.externals[external].concurrent);
 }
 
 }  // namespace alcove::framegraph

@@ -5,6 +5,25 @@
 
 namespace alcove::framegraph {
 
+Physical* RecordContext::physical(std::uint32_t resource, std::uint32_t version) const {
+  const AccessRecord* const access = recorder_.declared(pass_, resource);
+  if (access == nullptr) return nullptr;
+  const GraphDescription& graph = recorder_.graph_->description();
+  const ResourceRecord& record = graph.resources[resource];
+  if (recorder_.frame_.check_uses && record.slot != 0 && version == 0 &&
+      !(access->flags & kWrite) && !graph.externals[record.external].has_contents &&
+      !(asked_ >> resource % 64 & 1)) {
+    recorder_.errors_.push_back(
+        {ErrorCode::undeclared_use,
+         std::string("pass '").append(pass_name()).append("' uses '") +
+             std::string(graph.resource_name(resource)) + "' of " + std::to_string(record.slot) +
+             " frame(s) ago, which has no contents: ask RecordContext::validity before",
+         VK_SUCCESS, pass_, resource, version});
+    return nullptr;
+  }
+  return (*recorder_.frame_.physical)[resource];
+}
+
 VkImageView RecordContext::view(Texture texture) const {
   const AccessRecord* access = recorder_.declared(pass_, texture.index);
   return access ? view(texture, access->range) : VkImageView{VK_NULL_HANDLE};
@@ -12,14 +31,13 @@ VkImageView RecordContext::view(Texture texture) const {
 
 VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType type,
                                 VkFormat format) const {
-  if (!recorder_.declared(pass_, texture.index)) return VK_NULL_HANDLE;
-  Physical* physical = (*recorder_.frame_.physical)[texture.index];
-  if (physical == nullptr || physical->image == VK_NULL_HANDLE) return VK_NULL_HANDLE;
+  Physical* const used = physical(texture.index, texture.version);
+  if (used == nullptr || used->image == VK_NULL_HANDLE) return VK_NULL_HANDLE;
   const GraphDescription& graph = recorder_.graph_->description();
   const ResourceRecord& record = graph.resources[texture.index];
   range = Graph::resolved_range(range, record);
   if (!recorder_.check_view(pass_, texture.index, range)) return VK_NULL_HANDLE;
-  if (record.origin == Origin::imported && range.mips == record.mips && range.aspects == 0 &&
+  if (record.origin == Origin::imported && range.mips == record.mips &&
       range.layers == record.layers && type == kViewTypeByRange && format == VK_FORMAT_UNDEFINED) {
     const VkImageView given = recorder_.graph_->imports_[record.external].view;
     if (given != VK_NULL_HANDLE) {
@@ -27,7 +45,7 @@ VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType ty
       return given;
     }
   }
-  const VkImageView view = recorder_.pool_.view(*physical, range, type, format);
+  const VkImageView view = recorder_.pool_.view(*used, range, type, format);
   if (view == VK_NULL_HANDLE) {
     recorder_.errors_.push_back(
         {ErrorCode::vulkan,
@@ -85,7 +103,6 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors, const At
     return refuse(ErrorCode::misuse, "begins a rendering with more than 8 color attachments");
   VkRenderingAttachmentInfo color_infos[kMost];
   VkRenderingAttachmentInfo depth_info{};
-  VkRenderingAttachmentInfo stencil_info{};
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
   const GraphDescription& graph = recorder_.graph_->description();
@@ -114,21 +131,12 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors, const At
   info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
   info.pColorAttachments = color_infos;
   if (depth.texture) {
-    const std::uint32_t resource = depth.texture.index;
-    if (recorder_.attachment_access(pass_, resource) == kNone) return false;
-    const VkImageAspectFlags all = aspects(format(depth.texture));
-    const auto bind = [&](VkImageAspectFlags aspect, VkRenderingAttachmentInfo& to,
-                          const VkRenderingAttachmentInfo*& bound) {
-      const std::uint32_t index = recorder_.find_attachment(pass_, resource, aspect);
-      if (!(all & aspect) || index == kNone) return true;
-      bound = &to;
-      return add(depth, index, to);
-    };
-    if (!bind(VK_IMAGE_ASPECT_DEPTH_BIT, depth_info, info.pDepthAttachment) ||
-        !bind(VK_IMAGE_ASPECT_STENCIL_BIT, stencil_info, info.pStencilAttachment))
+    // Depth and stencil have the same view, whose own aspects Vulkan ignores.
+    if (!add(depth, recorder_.attachment_access(pass_, depth.texture.index), depth_info))
       return false;
-    // Vulkan requires the same view for depth and stencil. The view's own aspects are ignored.
-    if (info.pDepthAttachment) stencil_info.imageView = depth_info.imageView;
+    const VkImageAspectFlags bound = aspects(format(depth.texture));
+    if (bound & VK_IMAGE_ASPECT_DEPTH_BIT) info.pDepthAttachment = &depth_info;
+    if (bound & VK_IMAGE_ASPECT_STENCIL_BIT) info.pStencilAttachment = &depth_info;
   }
   if (!alike)
     return refuse(
@@ -152,15 +160,13 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors, const At
 }
 
 VkImage RecordContext::image(Texture texture) const {
-  if (!recorder_.declared(pass_, texture.index)) return VK_NULL_HANDLE;
-  const Physical* physical = (*recorder_.frame_.physical)[texture.index];
-  return physical ? physical->image : VK_NULL_HANDLE;
+  const Physical* const used = physical(texture.index, texture.version);
+  return used ? used->image : VK_NULL_HANDLE;
 }
 
 VkBuffer RecordContext::buffer(Buffer buffer) const {
-  if (!recorder_.declared(pass_, buffer.index)) return VK_NULL_HANDLE;
-  const Physical* physical = (*recorder_.frame_.physical)[buffer.index];
-  return physical ? physical->buffer : VK_NULL_HANDLE;
+  const Physical* const used = physical(buffer.index, buffer.version);
+  return used ? used->buffer : VK_NULL_HANDLE;
 }
 
 VkExtent3D RecordContext::extent(Texture texture, std::uint32_t mip) const {
@@ -184,28 +190,11 @@ VkFormat RecordContext::format(Texture texture) const {
   return texture.index < resources.size() ? resources[texture.index].format : VK_FORMAT_UNDEFINED;
 }
 
-bool RecordContext::is_used(std::uint32_t resource, const Range& range) const {
+HistoryValidity RecordContext::validity(Texture texture) const {
   const GraphDescription& graph = recorder_.graph_->description();
-  const auto accesses = graph.pass_accesses(pass_);
-  const std::uint8_t* live =
-      recorder_.plan_->live_accesses.data() + graph.passes[pass_].first_access;
-  const auto meet = [](std::uint32_t a, std::uint32_t a_count, std::uint32_t b,
-                       std::uint32_t b_count) { return a < b + b_count && b < a + a_count; };
-  for (std::size_t i = 0; i < accesses.size(); ++i) {
-    const Range& own = accesses[i].range;
-    if (live[i] && accesses[i].resource == resource &&
-        meet(own.base_mip, own.mips, range.base_mip, range.mips) &&
-        meet(own.base_layer, own.layers, range.base_layer, range.layers) &&
-        (own.aspects == 0 || range.aspects == 0 || (own.aspects & range.aspects) != 0))
-      return true;
-  }
-  return false;
-}
-
-HistoryValidity RecordContext::validity(std::uint32_t resource) const {
-  const GraphDescription& graph = recorder_.graph_->description();
-  if (resource >= graph.resources.size()) return HistoryValidity::first_frame;
-  const std::uint32_t external = graph.resources[resource].external;
+  if (texture.index >= graph.resources.size()) return HistoryValidity::first_frame;
+  asked_ |= std::uint64_t{1} << texture.index % 64;
+  const std::uint32_t external = graph.resources[texture.index].external;
   return external == kNone ? HistoryValidity::valid : graph.externals[external].validity;
 }
 

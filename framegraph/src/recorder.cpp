@@ -1,5 +1,6 @@
 #include "recorder.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "aspects.h"
@@ -24,13 +25,10 @@ void Recorder::begin(const RecordedFrame& frame) {
   plan_ = frame.plan;
   errors_.clear();
   shares_with_buffers_ = false;
-  for (std::uint32_t r = 0; r < plan_->placements.size(); ++r) {
+  if (!device_.is_validated) return;
+  for (std::uint32_t r = 0; r < plan_->placements.size(); ++r)
     shares_with_buffers_ |= plan_->placements[r].heap != kNone &&
                             graph_->description().resources[r].kind == ResourceKind::buffer;
-  }
-  has_outside_families_ = false;
-  for (const ImportHandles& import : graph_->imports_)
-    has_outside_families_ |= import.initial_family != kNone || import.final_family != kNone;
 }
 
 void Recorder::full_barrier(VkCommandBuffer commands) {
@@ -49,11 +47,10 @@ void Recorder::full_barrier(VkCommandBuffer commands) {
 void Recorder::submission(std::uint32_t index, VkCommandBuffer commands, Timestamps* timestamps) {
   const Submission& submission = plan_->submissions[index];
   const std::uint32_t first_time = timestamps ? timestamps->add(submission.pass_count) : 0;
-  acquire_imports(index, commands);
   for (std::uint32_t i = 0; i < submission.pass_count; ++i)
     pass(plan_->passes[submission.first_pass + i], commands, timestamps, first_time + i);
-  batches(submission.first_batch, submission.batch_count, commands);
-  if (index == plan_->final_submission) release_imports(commands);
+  batch(submission.end_batch, commands);
+  if (index == plan_->final_submission) batch(plan_->final_batch, commands);
 }
 
 void Recorder::begin_label(std::string_view name, VkCommandBuffer commands) const {
@@ -69,7 +66,7 @@ void Recorder::begin_label(std::string_view name, VkCommandBuffer commands) cons
 
 void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timestamps* timestamps,
                     std::uint32_t time) {
-  batches(planned.first_batch, planned.batch_count, commands);
+  batch(planned.batch, commands);
   const std::string_view name = graph_->description().pass_name(planned.pass);
   const bool label = device_.handles.debug_utils && device_.vk.vkCmdBeginDebugUtilsLabelEXT;
   if (label) begin_label(name, commands);
@@ -78,16 +75,18 @@ void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timest
   context.resources_id = pool_.resources_id();
   context.frame_slot = frame_.slot;
   const Graph::Callback& callback = graph_->callbacks_[planned.pass];
-  callback.call(callback.object, context);
+  if (callback.call)
+    callback.call(callback.object, context);
+  else
+    errors_.push_back(graph_->missing_callback(planned.pass));
   if (timestamps) timestamps->end_pass(commands, time);
   if (label) device_.vk.vkCmdEndDebugUtilsLabelEXT(commands);
 }
 
-void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer commands) {
-  for (std::uint32_t b = first; b < first + count; ++b) {
-    const VkDependencyInfo info = dependency(plan_->batches[b]);
-    device_.vk.vkCmdPipelineBarrier2(commands, &info);
-  }
+void Recorder::batch(std::uint32_t index, VkCommandBuffer commands) {
+  if (index == kNone) return;
+  const VkDependencyInfo info = dependency(plan_->batches[index]);
+  device_.vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
 // Returns the barriers of a batch for vkCmdPipelineBarrier2. The result is valid until the next
@@ -95,7 +94,6 @@ void Recorder::batches(std::uint32_t first, std::uint32_t count, VkCommandBuffer
 VkDependencyInfo Recorder::dependency(const Batch& batch) {
   images_.clear();
   memories_.clear();
-  buffers_.clear();
   for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
     const Transition& t = plan_->transitions[i];
     const VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
@@ -104,8 +102,9 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
                                   t.src_access,
                                   t.dst_stages,
                                   t.dst_access};
-    if (t.resource != kNone && (*frame_.physical)[t.resource]->image) {
+    if (t.resource != kNone) {
       images_.push_back(image_barrier(t));
+      if (!device_.is_validated) continue;
       // An image barrier orders all commands of its stages, whichever resources they use. The
       // validation layers (1.3.239) assume that it orders only uses of its own image. They then
       // report a hazard between two other resources that this image barrier orders. A memory
@@ -113,8 +112,6 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
       // that the image barrier does not.
       const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && shares_with_buffers_;
       add_memory(takes_over ? memory : execution(t));
-    } else if (t.resource != kNone) {
-      buffers_.push_back(buffer_barrier(t));
     } else {
       add_memory(memory);
     }
@@ -123,8 +120,6 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.memoryBarrierCount = static_cast<std::uint32_t>(memories_.size());
   info.pMemoryBarriers = memories_.data();
-  info.bufferMemoryBarrierCount = static_cast<std::uint32_t>(buffers_.size());
-  info.pBufferMemoryBarriers = buffers_.data();
   info.imageMemoryBarrierCount = static_cast<std::uint32_t>(images_.size());
   info.pImageMemoryBarriers = images_.data();
   return info;
@@ -149,43 +144,18 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   // The validation layers (1.3.239) forget the last use of memory by other resources, and uses
   // before full_barrier(), unless the barrier names an access. There is nothing left to make
   // available, so that naming it changes nothing.
-  const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED && t.src_stages != 0;
-  if (takes_over) barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT;
-  if (device_.handles.debug_utils && (takes_over || frame_.starts_anew) && t.src_stages != 0)
-    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
+  const bool takes_over = t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED;
+  if (device_.is_validated && (takes_over || frame_.starts_anew) && t.src_stages != 0)
+    barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstStageMask = t.dst_stages;
   barrier.dstAccessMask = t.dst_access;
   barrier.oldLayout = t.old_layout;
   barrier.newLayout = t.new_layout;
-  barrier.srcQueueFamilyIndex = family(t, t.src_queue);
-  barrier.dstQueueFamilyIndex = family(t, t.dst_queue);
+  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = physical.image;
-  const VkImageAspectFlags all = aspects(physical.record.format);
-  barrier.subresourceRange = {t.range.aspects != 0 ? t.range.aspects : all, t.range.base_mip,
-                              t.range.mips, physical.layer + t.range.base_layer, t.range.layers};
+  barrier.subresourceRange = {aspects(physical.record.format), t.range.base_mip, t.range.mips,
+                              physical.layer + t.range.base_layer, t.range.layers};
   return barrier;
-}
-
-VkBufferMemoryBarrier2 Recorder::buffer_barrier(const Transition& t) const {
-  return {VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
-          nullptr,
-          t.src_stages,
-          t.src_access,
-          t.dst_stages,
-          t.dst_access,
-          family(t, t.src_queue),
-          family(t, t.dst_queue),
-          (*frame_.physical)[t.resource]->buffer,
-          0,
-          VK_WHOLE_SIZE};
-}
-
-// Returns the queue family of a transition, or VK_QUEUE_FAMILY_IGNORED if the owner stays.
-std::uint32_t Recorder::family(const Transition& t, QueueClass queue) const {
-  const auto& families = device_.limits.queue_families;
-  const bool changes = families[static_cast<std::size_t>(t.src_queue)] !=
-                       families[static_cast<std::size_t>(t.dst_queue)];
-  return changes ? families[static_cast<std::size_t>(queue)] : VK_QUEUE_FAMILY_IGNORED;
 }
 
 const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resource) const {
@@ -202,106 +172,29 @@ const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resourc
       error.message.append("' uses '").append(graph.resource_name(resource));
       error.message += "' while it records, which it did not declare: add a read or a write";
     } else {
-      error.message += "' uses a null handle while it records: check is_used for optional outputs";
+      error.message += "' uses a null handle while it records";
     }
     errors_.push_back(std::move(error));
   }
   return nullptr;
 }
 
-std::uint32_t Recorder::find_attachment(std::uint32_t pass, std::uint32_t resource,
-                                        VkImageAspectFlags aspect) const {
+std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t resource) const {
+  if (!declared(pass, resource) && frame_.check_uses) return kNone;
   constexpr VkFlags kDrawn =
       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   const GraphDescription& graph = graph_->description();
   std::uint32_t index = graph.passes[pass].first_access;
   for (const AccessRecord& access : graph.pass_accesses(pass)) {
-    const VkImageAspectFlags own = access.range.aspects;
-    if (access.resource == resource && (access.usage & kDrawn) != 0 &&
-        (own == 0 || aspect == 0 || own == aspect))
-      return index;
+    if (access.resource == resource && (access.usage & kDrawn) != 0) return index;
     ++index;
   }
-  return kNone;
-}
-
-std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t resource) const {
-  if (!declared(pass, resource)) {
-    if (frame_.check_uses) return kNone;
-  }
-  const std::uint32_t found = find_attachment(pass, resource, 0);
-  if (found != kNone) return found;
-  const GraphDescription& graph = graph_->description();
   errors_.push_back({ErrorCode::undeclared_use,
                      std::string("pass '").append(graph.pass_name(pass)) +
                          "' draws to a texture that it did not declare as an attachment: write it "
                          "with access::color_attachment or access::depth_attachment",
                      VK_SUCCESS, pass, resource, 0});
   return kNone;
-}
-
-void Recorder::acquire_imports(std::uint32_t index, VkCommandBuffer commands) {
-  const Submission& submission = plan_->submissions[index];
-  const GraphDescription& graph = graph_->description();
-  for (std::uint32_t r = 0; r < graph.resources.size() && has_outside_families_; ++r) {
-    const std::uint32_t external = graph.resources[r].external;
-    if (external == kNone || graph_->imports_[external].initial_family == kNone) continue;
-    const std::uint32_t first = plan_->placements[r].first;
-    const bool here = first == kNone ? index == plan_->final_submission &&
-                                           graph.externals[external].has_final_state
-                                     : first - submission.first_pass < submission.pass_count;
-    const auto own = device_.limits.queue_families[static_cast<std::size_t>(submission.queue)];
-    if (here)
-      transfer_import(r, graph_->imports_[external].initial_family, own,
-                      graph.externals[external].initial_state, true, commands);
-  }
-}
-
-void Recorder::release_imports(VkCommandBuffer commands) {
-  const GraphDescription& graph = graph_->description();
-  for (std::uint32_t r = 0; r < graph.resources.size() && has_outside_families_; ++r) {
-    const std::uint32_t external = graph.resources[r].external;
-    if (external == kNone || graph_->imports_[external].final_family == kNone) continue;
-    transfer_import(r, device_.limits.queue_families[0], graph_->imports_[external].final_family,
-                    graph.externals[external].final_state, false, commands);
-  }
-}
-
-// Records the queue ownership transfer of an import. The transfer does not change the layout: the
-// plan's own barriers do that. Vulkan ignores the destination stages and accesses of a release, and
-// the source stages and accesses of an acquire.
-void Recorder::transfer_import(std::uint32_t resource, std::uint32_t from, std::uint32_t to,
-                               const State& state, bool acquires, VkCommandBuffer commands) {
-  if (from == to) return;
-  const ResourceRecord& record = graph_->description().resources[resource];
-  Transition transition;
-  transition.src_stages = transition.dst_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  if (acquires)
-    transition.dst_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  else
-    transition.src_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  transition.resource = resource;
-  transition.old_layout = transition.new_layout = state.layout;
-  transition.range = {0, static_cast<std::uint16_t>(record.mips), 0,
-                      static_cast<std::uint16_t>(record.layers)};
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  VkImageMemoryBarrier2 image{};
-  VkBufferMemoryBarrier2 buffer{};
-  if (record.kind == ResourceKind::texture) {
-    image = image_barrier(transition);
-    image.srcQueueFamilyIndex = from;
-    image.dstQueueFamilyIndex = to;
-    info.imageMemoryBarrierCount = 1;
-    info.pImageMemoryBarriers = &image;
-  } else {
-    buffer = buffer_barrier(transition);
-    buffer.srcQueueFamilyIndex = from;
-    buffer.dstQueueFamilyIndex = to;
-    info.bufferMemoryBarrierCount = 1;
-    info.pBufferMemoryBarriers = &buffer;
-  }
-  device_.vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
 bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const {
@@ -321,29 +214,19 @@ bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Rang
     return fail(ErrorCode::bad_range, "but the texture has " + std::to_string(record.mips) +
                                           " mips and " + std::to_string(record.layers) + " layers");
   if (!frame_.check_uses) return true;
-  const VkImageAspectFlags seen = range.aspects != 0 ? range.aspects : view_aspect(record.format);
-  const std::uint8_t* const live = plan_->live_accesses.data() + graph.passes[pass].first_access;
   const auto is_declared = [&](std::uint32_t mip, std::uint32_t layer) {
     const auto accesses = graph.pass_accesses(pass);
-    for (std::size_t i = 0; i < accesses.size(); ++i) {
-      const Range& own = accesses[i].range;
-      if (live[i] && accesses[i].resource == resource &&
-          (own.aspects == 0 || own.aspects == seen) && mip >= own.base_mip &&
-          mip < own.base_mip + own.mips && layer >= own.base_layer &&
-          layer < own.base_layer + own.layers)
-        return true;
-    }
-    return false;
+    return std::any_of(accesses.begin(), accesses.end(), [&](const AccessRecord& access) {
+      const Range& own = access.range;
+      return access.resource == resource && mip >= own.base_mip && mip < own.base_mip + own.mips &&
+             layer >= own.base_layer && layer < own.base_layer + own.layers;
+    });
   };
-  for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer) {
-    for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip) {
+  for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer)
+    for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
       if (!is_declared(mip, layer))
-        return fail(
-            ErrorCode::undeclared_use,
-            "part of which it did not declare, or declared as an optional write that nobody "
-            "reads: add a read or a write of that range, or check is_used");
-    }
-  }
+        return fail(ErrorCode::undeclared_use,
+                    "part of which it did not declare: add a read or a write of that range");
   return true;
 }
 

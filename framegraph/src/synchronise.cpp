@@ -23,20 +23,11 @@ void record_use(UseState& state, const AccessRecord& access, std::int32_t time) 
     state.transition = kNone;
     state.reuses_memory = 0;
     state.by_wait = 0;
-    state.unordered_access = access.flags & kUnordered ? access.access : 0;
   } else {
     state.read_stages |= access.stages;
     state.read_time = time;
   }
   state.layout = access.layout;
-  state.used = 1;
-}
-
-// Returns whether the access continues a series of writes whose order does not matter. All writes
-// of the series wait for the same work as the first one, and not for each other.
-bool continues_write(const UseState& state, const AccessRecord& access) {
-  return (access.flags & kUnordered) && state.read_stages == 0 &&
-         state.write_stages == access.stages && state.unordered_access == access.access;
 }
 
 // Adds the last uses of a resource that gives up its memory to the state of the one that takes it.
@@ -73,13 +64,52 @@ void Synchroniser::run() {
     set_queue(planned.queue);
     if (several()) earliest_ = batch_time(plan_.submissions[planned.submission].first_pass) - 1;
     for (; start == position; start = next_start()) take_over_memory(*starting++);
-    for_each_live(graph_, plan_, planned.pass,
-                  [&](const AccessRecord& access) { use(position, access); });
-    if (batch_time_ != batch_time(position)) continue;
-    planned.first_batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
-    planned.batch_count = 1;
+    for (const AccessRecord& access : graph_.pass_accesses(planned.pass)) use(position, access);
+    if (batch_time_ == batch_time(position))
+      planned.batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
+    if (several()) end_pass(position);
   }
   apply_final_states();
+}
+
+// Notes the layouts that the submission of a pass changes at its end, and changes them after its
+// last pass.
+void Synchroniser::end_pass(std::uint32_t position) {
+  const PlannedPass& planned = plan_.passes[position];
+  const std::uint32_t first = graph_.passes[planned.pass].first_access;
+  const auto count = static_cast<std::uint32_t>(graph_.pass_accesses(planned.pass).size());
+  for (std::uint32_t i = first; i < first + count; ++i)
+    if (workspace_.queues.moved_layouts[i] != VK_IMAGE_LAYOUT_UNDEFINED) s_.moves.push_back(i);
+  const Submission& submission = plan_.submissions[planned.submission];
+  if (position + 1 != submission.first_pass + submission.pass_count || s_.moves.empty()) return;
+  move_layouts(position);
+  s_.moves.clear();
+}
+
+// Changes what passes of this submission wrote to the layouts in which passes of several queues
+// read it, in a batch after the last pass of the submission. A pass of the submission that reads it
+// may already have changed it.
+void Synchroniser::move_layouts(std::uint32_t last) {
+  const Batch batch{static_cast<std::uint32_t>(plan_.transitions.size()), 0};
+  plan_.batches.push_back(batch);
+  batch_time_ = pass_time(last);
+  s_.batch_memories.clear();
+  for (const std::uint32_t index : s_.moves) {
+    AccessRecord moved = graph_.accesses[index];
+    moved.layout = workspace_.queues.moved_layouts[index];
+    // The barrier needs a second scope, by which the signal of the submission comes after it.
+    moved.access = 0;
+    moved.flags = 0;
+    for_each_part(moved, [&](std::uint32_t sub, const Range& range) {
+      if (states_[sub].layout != moved.layout) use_range(last, moved, sub, range);
+    });
+  }
+  if (plan_.batches.back().count == 0)
+    plan_.batches.pop_back();
+  else
+    plan_.submissions[plan_.passes[last].submission].end_batch =
+        static_cast<std::uint32_t>(plan_.batches.size() - 1);
+  batch_time_ = kNever;  // No later dependency can use this batch.
 }
 
 // Finds the last use, in the previous frame, of each transient that is the last one in a frame to
@@ -108,8 +138,8 @@ void Synchroniser::find_last_uses() {
     const QueueClass queue = plan_.passes[position].queue;
     const std::uint32_t frame_before = queues_that_wait(position);
     UseState* const last_uses = last_uses_on(queue);
-    for_each_live(graph_, plan_, plan_.passes[position].pass, [&](const AccessRecord& access) {
-      if (!s_.is_last[access.resource]) return;
+    for (const AccessRecord& access : graph_.pass_accesses(plan_.passes[position].pass)) {
+      if (!s_.is_last[access.resource]) continue;
       for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
         UseState& last = last_uses[sub];
         const bool writes = (access.flags & kWrite) != 0;
@@ -123,7 +153,7 @@ void Synchroniser::find_last_uses() {
           there.frame_before = last.frame_before;
         });
       });
-    });
+    }
   }
 }
 
@@ -213,8 +243,7 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
   const ResourceRecord& resource = graph_.resources[access.resource];
   const std::uint32_t first = workspace_.first_sub[access.resource];
   const std::uint32_t lead =
-      first + access.range.base_mip +
-      (first_plane(access.range) * resource.layers + access.range.base_layer) * resource.mips;
+      first + access.range.base_mip + access.range.base_layer * resource.mips;
   UseState* const states = s_.states.data();
   bool alike = true;
   for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
@@ -229,14 +258,19 @@ void Synchroniser::use_several(std::uint32_t position, const AccessRecord& acces
     });
     return;
   }
-  for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-    const std::uint32_t mip = (sub - first) % resource.mips;
-    const std::uint32_t layer = (sub - first) / resource.mips % resource.layers;
-    Range range{static_cast<std::uint16_t>(mip), 1, static_cast<std::uint16_t>(layer), 1};
-    if (resource.planes == 2)
-      range.aspects = sub - first < resource.mips * resource.layers ? VK_IMAGE_ASPECT_DEPTH_BIT
-                                                                    : VK_IMAGE_ASPECT_STENCIL_BIT;
+  for_each_part(access, [&](std::uint32_t sub, const Range& range) {
     use_range(position, access, sub, range);
+  });
+}
+
+// Calls f(subresource, its range) for each subresource of an access.
+template <typename Function>
+void Synchroniser::for_each_part(const AccessRecord& access, Function&& f) const {
+  const std::uint32_t first = workspace_.first_sub[access.resource];
+  const std::uint32_t mips = graph_.resources[access.resource].mips;
+  for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
+    f(sub, Range{static_cast<std::uint16_t>((sub - first) % mips), 1,
+                 static_cast<std::uint16_t>((sub - first) / mips), 1});
   });
 }
 
@@ -244,12 +278,7 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
                                     std::uint32_t sub, const Range& range) {
   UseState& state = states_[sub];
   const bool writes = (access.flags & kWrite) != 0;
-  if (several()) {
-    if (state.frame_before != 0) wait_for_frame_before(position, state.frame_before);
-    if (state.owner != queue_ && !queues_share(graph_, workspace_, access.resource) &&
-        transfer(position, access, sub, range))
-      return;
-  }
+  if (several() && state.frame_before != 0) wait_for_frame_before(position, state.frame_before);
   const bool changes = access.kind() == ResourceKind::texture && state.layout != access.layout;
   if (changes)
     change_layout(position, access, state, range);
@@ -262,98 +291,16 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
   tell_other_queues(sub, state);
 }
 
-// Moves a subresource that another queue changed last to the current queue. A semaphore wait
-// between the two submissions orders the uses. If the queues are of different families and the
-// contents are kept, there is also an ownership release after the last pass of the first
-// submission, and an acquire before this pass, which also changes the layout. Returns true if so;
-// the access then needs no other barrier.
-bool Synchroniser::transfer(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
-                            const Range& range) {
-  UseState& state = states_[sub];
-  const bool texture = access.kind() == ResourceKind::texture;
-  const bool keeps = state.used && !(access.flags & kDiscard) &&
-                     (!texture || state.layout != VK_IMAGE_LAYOUT_UNDEFINED);
-  const bool changes_family = family(state.owner) != family(queue_);
-  if (!keeps || !changes_family) {
-    if (changes_family) state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    state.owner = queue_;
-    tell_other_queues(sub, state);
-    return false;
-  }
-  const UseState& theirs = states_on(state.owner)[sub];
-  Transition release;
-  release.src_stages = theirs.read_stages != 0 ? theirs.read_stages : theirs.write_stages;
-  release.src_access = theirs.read_stages != 0 ? 0 : theirs.write_access;
-  if (release.src_stages == 0) release.src_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  release.resource = access.resource;
-  release.range = range;
-  release.old_layout = texture ? state.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-  release.new_layout = texture ? access.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-  release.src_queue = state.owner;
-  release.dst_queue = queue_;
-  s_.releases.push_back(
-      {releasing_submission(theirs), static_cast<std::uint32_t>(s_.releases.size()), release});
-  Transition& acquire = next_image(kBeforeFrame, position);
-  acquire = release;
-  acquire.src_stages = waited_stages(access);
-  acquire.src_access = 0;
-  acquire.dst_stages = access.stages;
-  acquire.dst_access = access.access;
-  merge_neighbours();
-  record_transition(position, access, state);
-  tell_other_queues(sub, state);
-  return true;
-}
-
-// Returns the submission that releases a subresource: the last one that uses it on its queue.
-std::uint32_t Synchroniser::releasing_submission(const UseState& state) const {
-  const std::int32_t time = std::max(state.read_time, state.write_time);
-  if (time >= 0) return plan_.passes[static_cast<std::size_t>(time / 2)].submission;
-  const std::uint32_t opening = workspace_.queues.opening[static_cast<std::size_t>(state.owner)];
-  if (opening != kNone) return opening;
-  // A subresource of the history that no pass of this frame used is transferred at the end of the
-  // frame. Any submission on its queue may release it.
-  const auto own = std::find_if(
-      plan_.submissions.begin(), plan_.submissions.end(),
-      [&state](const Submission& submission) { return submission.queue == state.owner; });
-  return static_cast<std::uint32_t>(own - plan_.submissions.begin());
-}
-
 // Sets the state of a subresource on the other queues after this queue has changed it. Their next
 // use waits for the change with a semaphore, which covers all commands, but not the host.
 void Synchroniser::tell_other_queues(std::uint32_t sub, const UseState& state) {
   UseState told;
   told.by_wait = 1;
   told.owner = state.owner;
-  told.used = state.used;
   told.layout = state.layout;
   told.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
   told.seen_access = kEveryAccess;
   for_each_other(state.owner, [&](QueueClass other) { states_on(other)[sub] = told; });
-}
-
-// Adds the releases after the last passes of their submissions. The final barriers of the frame, if
-// there are any, are the last batch.
-void Synchroniser::add_releases() {
-  const std::uint32_t final = workspace_.final_submission;
-  std::sort(s_.releases.begin(), s_.releases.end(), [final](const auto& a, const auto& b) {
-    if (a.submission == b.submission) return a.number < b.number;
-    if (a.submission == final || b.submission == final) return a.submission == final;
-    return a.submission < b.submission;
-  });
-  std::uint32_t last = kNone;
-  for (const auto& release : s_.releases) {
-    Submission& submission = plan_.submissions[release.submission];
-    if (release.submission != last) {
-      last = release.submission;
-      if (submission.batch_count++ == 0)
-        submission.first_batch = static_cast<std::uint32_t>(plan_.batches.size());
-      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
-    }
-    plan_.transitions.push_back(release.transition);
-    ++plan_.batches.back().count;
-  }
-  s_.releases.clear();
 }
 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
@@ -373,7 +320,6 @@ inline void Synchroniser::change_layout(std::uint32_t position, const AccessReco
   wanted.old_layout = access.flags & kDiscard ? VK_IMAGE_LAYOUT_UNDEFINED : state.layout;
   wanted.new_layout = access.layout;
   wanted.range = range;
-  wanted.src_queue = wanted.dst_queue = queue_;
   merge_neighbours();
   record_transition(position, access, state);
 }
@@ -393,9 +339,14 @@ void Synchroniser::read_in_same_layout(std::uint32_t position, const AccessRecor
       // The state stores the stages and the accesses to which the write is visible as two separate
       // masks. The barrier makes the write visible to every combination of the two.
       wanted.dst_stages = access.stages;
-      if (access.access & ~state.seen_access) wanted.dst_stages |= state.seen_stages;
       wanted.dst_access = access.access;
-      if (access.stages & ~state.seen_stages) wanted.dst_access |= reads_in(state.seen_access);
+      const bool new_stages = (access.stages & ~state.seen_stages) != 0;
+      if (new_stages) wanted.dst_access |= reads_in(state.seen_access);
+      // The stages of this access may not be able to make the other accesses.
+      const bool others =
+          state.seen_access != kEveryAccess && (state.seen_access & ~access.access) != 0;
+      if ((access.access & ~state.seen_access) != 0 || (new_stages && others))
+        wanted.dst_stages |= state.seen_stages;
       add_memory(state.write_time, position, wanted);
     }
     state.seen_stages |= access.stages;
@@ -406,10 +357,6 @@ void Synchroniser::read_in_same_layout(std::uint32_t position, const AccessRecor
 
 void Synchroniser::write_in_same_layout(std::uint32_t position, const AccessRecord& access,
                                         UseState& state) {
-  if (continues_write(state, access)) {
-    state.write_time = pass_time(position);
-    return;
-  }
   Transition wanted;
   wanted.src_stages = state.read_stages | state.write_stages;
   wanted.src_access = state.write_access;
@@ -424,7 +371,7 @@ void Synchroniser::write_in_same_layout(std::uint32_t position, const AccessReco
   record_use(state, access, pass_time(position));
 }
 
-// Extends the barrier `last` to also cover the mips, layers or aspect of `next`, if both barriers
+// Extends the barrier `last` to also cover the mips or layers of `next`, if both barriers
 // are of one resource, cover adjacent subresources, and make the same change. Returns whether it
 // did.
 bool Synchroniser::extend(Transition& last, const Transition& next) {
@@ -432,19 +379,13 @@ bool Synchroniser::extend(Transition& last, const Transition& next) {
   const Range& b = next.range;
   const bool alike = last.src_stages == next.src_stages && last.src_access == next.src_access &&
                      last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
-                     last.old_layout == next.old_layout && last.new_layout == next.new_layout &&
-                     last.src_queue == next.src_queue && last.dst_queue == next.dst_queue;
-  const bool same_aspects = a.aspects == b.aspects;
-  const bool next_mips = same_aspects && a.base_layer == b.base_layer && a.layers == b.layers &&
-                         a.base_mip + a.mips == b.base_mip;
-  const bool next_layers = same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
-                           a.base_layer + a.layers == b.base_layer;
-  const bool next_aspect = !same_aspects && a.base_mip == b.base_mip && a.mips == b.mips &&
-                           a.base_layer == b.base_layer && a.layers == b.layers;
-  if (!alike || !(next_mips || next_layers || next_aspect)) return false;
-  if (next_aspect)
-    last.range.aspects = 0;
-  else if (next_mips)
+                     last.old_layout == next.old_layout && last.new_layout == next.new_layout;
+  const bool next_mips =
+      a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
+  const bool next_layers =
+      a.base_mip == b.base_mip && a.mips == b.mips && a.base_layer + a.layers == b.base_layer;
+  if (!alike || !(next_mips || next_layers)) return false;
+  if (next_mips)
     last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
   else
     last.range.layers = static_cast<std::uint16_t>(a.layers + b.layers);

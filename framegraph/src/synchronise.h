@@ -1,6 +1,5 @@
-// The Synchroniser is split into two source files. synchronise.cpp follows the passes and moves
-// resources between queues, and externals.cpp handles the initial and final states of imports and
-// histories.
+// The Synchroniser is split into two source files. synchronise.cpp follows the passes, and
+// externals.cpp handles the initial and final states of imports and histories.
 #pragma once
 
 #include <algorithm>
@@ -53,6 +52,10 @@ class Synchroniser {
   void wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before);
   void use(std::uint32_t position, const AccessRecord& access);
   void use_several(std::uint32_t position, const AccessRecord& access);
+  template <typename Function>
+  void for_each_part(const AccessRecord& access, Function&& f) const;
+  void end_pass(std::uint32_t position);
+  void move_layouts(std::uint32_t last);
   void use_range(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
                  const Range& range);
   void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
@@ -65,11 +68,7 @@ class Synchroniser {
   std::uint32_t family(QueueClass queue) const {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
   }
-  bool transfer(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
-                const Range& range);
-  std::uint32_t releasing_submission(const UseState& state) const;
   void tell_other_queues(std::uint32_t sub, const UseState& state);
-  void add_releases();
 
   // externals.cpp
   void apply_initial_states();
@@ -168,11 +167,9 @@ inline void Synchroniser::record_transition(std::uint32_t position, const Access
   state.write_stages = access.stages;
   state.layout = access.layout;
   state.owner = queue_;
-  state.used = 1;
   if (access.flags & kWrite) {
     state.write_access = access.access & kWriteBits;
     state.write_time = pass_time(position);
-    state.unordered_access = access.flags & kUnordered ? access.access : 0;
     return;
   }
   state.write_time = batch_time_;

@@ -17,13 +17,8 @@ bool check_extent(Validation& v, std::uint32_t index, const ResourceRecord& r) {
     v.fail(ErrorCode::bad_description, v.resource_text(index) + " " + what, kNone, index);
     return false;
   };
-  if (r.flags & kRelativeToNothing)
-    return bad(
-        "has an extent relative to a handle of another graph or frame: make it relative to a "
-        "texture declared in this frame");
   if (r.width == 0 || r.height == 0 || r.depth == 0)
-    return bad("has size " + size_text(r) +
-               ": every side must be at least 1 (a divisor of 0 also gives 0)");
+    return bad("has size " + size_text(r) + ": every side must be at least 1");
   const std::uint32_t limit = r.depth > 1 ? v.limits.max_extent_3d : v.limits.max_extent_2d;
   const std::uint32_t longest = std::max({r.width, r.height, r.depth});
   if (longest > limit)
@@ -90,21 +85,19 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
         v.resource_text(index) + " is imported without a Vulkan handle: set " +
             (r.kind == ResourceKind::texture ? "ImportedTexture::image" : "ImportedBuffer::buffer"),
         kNone, index);
-  if (r.origin == Origin::history && r.slot == 0 && r.slots < 2 && !(r.flags & kPersistent))
-    v.fail(ErrorCode::history_cycle,
-           v.resource_text(index) +
-               " is a history of one slot, whose last frame is this frame: give it at least 2 "
-               "slots, or "
-               "create a persistent texture or buffer",
-           kNone, index);
+  if (r.origin == Origin::history && r.slots < 2)
+    v.fail(
+        ErrorCode::history_cycle,
+        v.resource_text(index) +
+            " is a history of one slot, whose last frame is this frame: give it at least 2 slots",
+        kNone, index);
 }
 
 // Returns whether the resource is a valid transient texture with one subresource and without flags.
 bool is_plain_texture(const ResourceRecord& r, std::uint32_t max_extent) {
-  return r.kind == ResourceKind::texture && r.external == kNone &&
-         (r.flags | r.create_flags) == 0 && r.format != VK_FORMAT_UNDEFINED && r.depth == 1 &&
-         r.mips == 1 && r.layers == 1 && r.planes == 1 && r.samples == 1 &&
-         r.width - 1 < max_extent && r.height - 1 < max_extent;
+  return r.kind == ResourceKind::texture && r.external == kNone && r.create_flags == 0 &&
+         r.format != VK_FORMAT_UNDEFINED && r.depth == 1 && r.mips == 1 && r.layers == 1 &&
+         r.samples == 1 && r.width - 1 < max_extent && r.height - 1 < max_extent;
 }
 
 // Checks any resource. Returns the number of its subresources, 0 if its description is invalid.
@@ -113,7 +106,7 @@ std::uint32_t subresources_of(Validation& v, std::uint32_t index, const Resource
   const bool right = texture ? check_texture(v, index, r) : check_buffer(v, index, r);
   if (r.external != kNone) check_external(v, index, r);
   if (!right) return 0;
-  return texture ? r.mips * r.layers * r.planes : 1;
+  return texture ? r.mips * r.layers : 1;
 }
 
 }  // namespace

@@ -26,7 +26,6 @@ struct UseState {
   VkPipelineStageFlags2 read_stages = 0;   // of the reads after that write
   VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
   VkAccessFlags2 seen_access = 0;
-  VkAccessFlags2 unordered_access = 0;  // of the last write, if it is Contents::accumulate
   std::int32_t write_time = kNever;
   std::int32_t read_time = kNever;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -41,7 +40,6 @@ struct UseState {
   // Set if a semaphore wait over all stages orders the next use after work of another queue.
   std::uint8_t by_wait = 0;
   QueueClass owner = QueueClass::graphics;  // the queue that changed it last
-  std::uint8_t used = 0;                    // it was used in this frame, or arrived with contents
   bool operator==(const UseState&) const = default;
 };
 
@@ -57,8 +55,8 @@ struct PlaceItem {
 
 struct Workspace {
   // The index of each resource's first subresource in the numbering of all subresources. Within a
-  // resource the mip varies fastest, then the layer, then the plane. A resource with an invalid
-  // description has no subresources.
+  // resource the mip varies fastest, then the layer. A resource with an invalid description has no
+  // subresources.
   std::vector<std::uint32_t> first_sub;
 
   // Whether the frame uses queues other than graphics, or resources that were last used on another
@@ -67,9 +65,6 @@ struct Workspace {
 
   // Written by lifetimes, read by place: the live transients in order of first use.
   std::vector<std::uint32_t> transients;
-
-  // Whether all queues of the frame are of one family, so that no resource changes its owner.
-  bool one_family = true;
 
   // The submission of the graphics queue after which the final states are reached.
   std::uint32_t final_submission = 0;
@@ -92,15 +87,29 @@ struct Workspace {
     std::vector<std::uint32_t> history_user;
   } cull;
   struct Queues {
-    // The uses of a subresource since it was last changed: written, or moved to another layout or
-    // queue family.
+    // The uses of a subresource since it was last changed: written, or moved to another layout.
     struct Uses {
       std::uint32_t changed = kNone;  // position of the change, kNone if it was before the frame
       std::uint32_t last[kQueueClasses] = {kNone, kNone, kNone};  // by queue, with the change
       VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
       QueueClass owner = QueueClass::graphics;  // that changed it last
     };
-    std::vector<Uses> uses;                // by subresource
+    // The reads of a subresource between two writes: their layout and their queues, one bit each.
+    struct Reads {
+      static constexpr VkImageLayout kMixed = VK_IMAGE_LAYOUT_MAX_ENUM;
+      VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+      std::uint32_t queues = 0;
+
+      void add(const Reads& more) {
+        if (more.queues != 0) layout = queues == 0 || layout == more.layout ? more.layout : kMixed;
+        queues |= more.queues;
+      }
+    };
+    std::vector<Uses> uses;    // by subresource
+    std::vector<Reads> reads;  // by subresource
+    // By access: the layout to which the queue of the writer changes what the access wrote, at the
+    // end of its submission, or VK_IMAGE_LAYOUT_UNDEFINED.
+    std::vector<VkImageLayout> moved_layouts;
     std::vector<std::uint32_t> waits;      // by position and queue: the pass waited for
     std::vector<std::uint8_t> waited_for;  // by position
     std::vector<std::uint8_t> opened;      // by position: bits of opening submissions waited for
@@ -137,12 +146,7 @@ struct Workspace {
     std::vector<std::uint8_t> written;          // by subresource: a live pass writes it
     std::vector<MemoryMap> memory;              // by heap
     std::vector<std::uint32_t> batch_memories;  // memory barriers of the last batch
-    struct Release {
-      std::uint32_t submission = 0;
-      std::uint32_t number = 0;  // in order of need
-      Transition transition;
-    };
-    std::vector<Release> releases;
+    std::vector<std::uint32_t> moves;           // accesses of this submission with moved layouts
   } synchronise;
 };
 
@@ -158,23 +162,9 @@ inline void for_each_sub(const GraphDescription& graph, const Workspace& workspa
   }
   const ResourceRecord& resource = graph.resources[access.resource];
   const Range& range = access.range;
-  const std::uint32_t planes = first_plane(range) + plane_count(resource, range);
-  for (std::uint32_t plane = first_plane(range); plane < planes; ++plane) {
-    for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i) {
-      const std::uint32_t layer = plane * resource.layers + i;
-      for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
-        f(first + layer * resource.mips + mip);
-    }
-  }
-}
-
-// Calls f(access) for each live access of a pass.
-template <typename Function>
-inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::uint32_t pass,
-                          Function&& f) {
-  const std::uint8_t* live = plan.live_accesses.data() + graph.passes[pass].first_access;
-  for (const AccessRecord& access : graph.pass_accesses(pass))
-    if (*live++) f(access);
+  for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer)
+    for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
+      f(first + layer * resource.mips + mip);
 }
 
 // The phases, in the order in which they run.
@@ -183,15 +173,12 @@ inline void for_each_live(const GraphDescription& graph, const Plan& plan, std::
 // Finds the attachments that have earlier contents, and writes plan.contents.
 bool validate(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan,
               Errors& errors);
-// Finds the passes and accesses that are not culled and the writes whose result is needed, and
-// writes plan.cull_reasons, plan.live_accesses and plan.contents.
+// Finds the passes that are not culled and the writes whose result is needed, and writes
+// plan.cull_reasons and plan.contents.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 // Assigns passes to queues and submissions.
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
-// Returns whether several queues may use a resource without ownership transfers.
-bool queues_share(const GraphDescription& graph, const Workspace& workspace,
-                  std::uint32_t resource);
 // Finds the first and last position of each resource, and its usage.
 void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                Plan& plan);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "cli/option_value.h"
-#include "scene/framing.h"
 
 namespace alcove::sample {
 namespace {
@@ -33,7 +32,8 @@ std::string list_names(const std::vector<Camera>& cameras) {
 
 }  // namespace
 
-Result<Camera> choose_camera(const ViewOptions& view, const Scene& scene) {
+Result<Camera> choose_camera(const ViewOptions& view, const ViewFinder& finder) {
+  const Scene& scene = finder.scene();
   const Camera* named = find_camera(scene, view.camera);
   if (!named && !view.camera.empty()) {
     return tl::unexpected(
@@ -41,7 +41,7 @@ Result<Camera> choose_camera(const ViewOptions& view, const Scene& scene) {
         (scene.cameras.empty() ? "none: use --eye and --target" : list_names(scene.cameras)));
   }
   const double aspect = static_cast<double>(view.width) / view.height;
-  Camera camera = named ? *named : framing_camera(scene, aspect);
+  Camera camera = named ? *named : finder.framing_camera(aspect);
   camera.origin = scene.origin;
   if (view.eye) camera.eye_ws = *view.eye - scene.origin;
   if (view.target) camera.target_ws = *view.target - scene.origin;
@@ -67,7 +67,7 @@ Result<Camera> choose_camera(const ViewOptions& view, const Scene& scene) {
         "lengths from 1e-15 to 1e15");
   }
   if (std::exchange(camera.fit_planes, false) && !(view.near_plane && view.far_plane))
-    camera = with_fitted_planes(scene, camera, aspect);
+    camera = finder.with_fitted_planes(camera, aspect);
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);
   if (!camera.orthographic && !(camera.near_plane > 0.0f)) {

@@ -39,12 +39,13 @@ Result<Weave> static_weave(Options options, const Truths& truths) {
   });
 }
 
-Errors measure_errors(const Rendering& rendering, const Truths& truths) {
+Errors measure_errors(const Rendering& rendering, const Truths& truths,
+                      const HeightFieldTruth& height_field) {
   const FrameImages& images = rendering.images;
   const Image<float>& scene = truths.scene.visibility;
   return {compare_images(images.visibility, scene, truths.surfaces),
-          compare_images(images.visibility, truths.height_field.visibility, truths.surfaces),
-          compare_images(truths.height_field.visibility, scene, truths.surfaces),
+          compare_images(images.visibility, height_field.visibility, truths.surfaces),
+          compare_images(height_field.visibility, scene, truths.surfaces),
           compare_directions(images.bent_normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           compare_directions(images.normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           open_surfaces(images.visibility, scene, truths.surfaces),
@@ -82,12 +83,13 @@ std::string error_table(const Errors& errors) {
 }
 
 Result<void> write_truths(const Rendering& rendering, const Truths& truths,
+                          const HeightFieldTruth& height_field,
                           const std::filesystem::path& folder) {
   const Image<float>& scene = truths.scene.visibility;
   const Image<float>& result = rendering.images.visibility;
   ALCOVE_TRY_VOID(write_exr(folder / "truth_scene.exr", scene));
   ALCOVE_TRY_VOID(write_png(folder / "truth_scene.png", scene));
-  ALCOVE_TRY_VOID(write_exr(folder / "truth_height_field.exr", truths.height_field.visibility));
+  ALCOVE_TRY_VOID(write_exr(folder / "truth_height_field.exr", height_field.visibility));
   ALCOVE_TRY_VOID(write_exr(folder / "truth_bent_normal.exr", truths.scene.bent_normal_ws));
   return write_png(folder / "error.png", error_colours(result, scene));
 }
@@ -109,15 +111,15 @@ Result<std::string> split_table(const Options& options, const Rendering& renderi
 
 Result<void> run_compare(const Options& options) {
   // The folder is created first, because the comparison takes minutes.
-  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY_VOID(create_folder(options.out));
   ALCOVE_TRY(const auto rendering, render(options));
   const FrameImages& images = rendering.images;
-  ALCOVE_TRY(const auto truths,
-             compute_truths({rendering.scene, rendering.camera, rendering.settings.radius,
-                             images.depth_ndc, images.normal_ws},
-                            truth_options(options)));
+  const TruthFrame frame{rendering.scene, rendering.camera, rendering.settings.radius,
+                         images.depth_ndc, images.normal_ws};
+  ALCOVE_TRY(const auto truths, compute_truths(frame, truth_options(options)));
+  const HeightFieldTruth height_field = compute_height_field_truth(frame, truth_options(options));
   ALCOVE_TRY(const auto light, compute_indirect_truths(rendering, truth_options(options)));
-  Errors errors = measure_errors(rendering, truths);
+  Errors errors = measure_errors(rendering, truths, height_field);
   if (options.view.orbit != 0.0f) {
     ALCOVE_TRY(errors.static_weave, static_weave(options, truths));
   }
@@ -137,7 +139,7 @@ Result<void> run_compare(const Options& options) {
     ALCOVE_TRY(causes, split_table(options, rendering, truths, report));
   }
   ALCOVE_TRY_VOID(write_images(rendering, options.out));
-  ALCOVE_TRY_VOID(write_truths(rendering, truths, options.out));
+  ALCOVE_TRY_VOID(write_truths(rendering, truths, height_field, options.out));
   if (light.lit) ALCOVE_TRY_VOID(write_lit_steps(rendering, light, options.out));
   ALCOVE_TRY_VOID(write_text(options.out / "report.json", report.dump(2) + "\n"));
   std::cout << time_table(rendering) << error_table(errors) << indirect_error_table(indirect_errors)

@@ -1,9 +1,12 @@
+#include <array>
 #include <iostream>
 #include <memory>
+#include <span>
+#include <string>
 
+#include "alcove/alcove_work.h"
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/print.h"
-#include "alcove/passes/work.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "render/surfaces.h"
@@ -12,12 +15,9 @@
 namespace alcove::sample {
 namespace {
 
-passes::Frame frame_of(framegraph::Graph& graph, const Session& session, const Options& options) {
-  const CameraMatrices matrices =
-      camera_matrices(session.camera, options.view.width, options.view.height);
-  return pass_frame(graph, *session.gpu,
-                    {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-                     matrices.clip_from_view});
+AlcoveViewInfo view_of(const Session& session, const Options& options) {
+  return view_info(
+      gbuffer_view(session.camera, session.camera, {options.view.width, options.view.height}));
 }
 
 // Declares the frame of the occlusion, with placeholders for the images of the g-buffer.
@@ -43,45 +43,57 @@ Result<void> declare(framegraph::Graph& graph, const Session& session, const Opt
     surfaces.gbuffer.back_depth = texture("back-face depth", VK_FORMAT_R32_SFLOAT);
   if (hidden.second_layer)
     surfaces.gbuffer.second_depth = texture("second depth", VK_FORMAT_R32_SFLOAT);
-  ALCOVE_TRY(const auto outputs,
-             add_occlusion(frame_of(graph, session, options), surfaces, session.settings));
+  ALCOVE_TRY(const auto outputs, add_occlusion(graph, *session.gpu, view_of(session, options), 0,
+                                               surfaces, session.settings));
   for (const framegraph::Texture output :
        {outputs.visibility, outputs.bent_normal, outputs.specular})
     if (output) graph.output(output);
   return {};
 }
 
-// Prints the work of the occlusion as data.
+// Returns a text that a function of the library writes.
+template <typename Write>
+std::string text_of(const Write& write) {
+  std::string text(write(nullptr, 0) + 1, '\0');
+  text.resize(write(text.data(), text.size()));
+  return text;
+}
+
+// Prints the work of the occlusion as data, and the pipelines that its frames can need.
 Result<void> print_work(const Session& session, const Options& options) {
-  const auto work = std::make_unique<AlcoveWork>();
-  passes::WorkList list(*work);
-  const auto image = [&](bool wanted, AlcoveResourceKind kind, const char* name, VkFormat format) {
-    return wanted ? list.add(kind, name, format, {options.view.width, options.view.height})
-                  : framegraph::Texture{};
+  const OcclusionSettings& settings = session.settings;
+  AlcoveWorkInfo info{.struct_size = sizeof info, .view = view_of(session, options)};
+  info.view.settings = &settings;
+  const auto add = [&](bool wanted, AlcoveImageRole role, VkFormat format) {
+    if (wanted) {
+      info.images[role] = {static_cast<std::uint32_t>(format), options.view.width,
+                           options.view.height};
+    }
   };
-  const auto input = [&](bool wanted, const char* name, VkFormat format) {
-    return image(wanted, ALCOVE_RESOURCE_KIND_INPUT, name, format);
-  };
-  const auto output = [&](bool wanted, const char* name, VkFormat format) {
-    return image(wanted, ALCOVE_RESOURCE_KIND_OUTPUT, name, format);
-  };
-  const passes::OcclusionSettings& settings = session.settings;
   const HiddenDepths hidden = hidden_depths_of(settings);
-  const bool given_normals = options.occlusion.normals != NormalSource::depth;
-  const passes::OcclusionInputs inputs{
-      .depth_ndc = input(true, "depth", VK_FORMAT_R32_SFLOAT),
-      .normals = input(given_normals, "normals", kNormalFormat),
-      .back_depth_ndc = input(hidden.back_faces, "back-face depth", VK_FORMAT_R32_SFLOAT),
-      .second_depth_ndc = input(hidden.second_layer, "second depth", VK_FORMAT_R32_SFLOAT),
-      .into = {output(settings.visibility, "visibility", VK_FORMAT_R8_UNORM),
-               output(settings.bent_normal, "bent normals", VK_FORMAT_R8G8B8A8_SNORM),
-               output(settings.specular != passes::Specular::none, "specular occlusion",
-                      VK_FORMAT_R8_UNORM)}};
-  framegraph::Graph graph;
-  const auto outputs = passes::describe_occlusion(
-      list, {.view = frame_of(graph, session, options).view}, inputs, settings);
-  if (!outputs) return tl::unexpected(outputs.error().message);
-  std::cout << passes::print_work(*work);
+  add(true, ALCOVE_IMAGE_DEPTH, VK_FORMAT_R32_SFLOAT);
+  add(options.occlusion.normals != NormalSource::depth, ALCOVE_IMAGE_NORMALS, kNormalFormat);
+  add(hidden.back_faces, ALCOVE_IMAGE_BACK_DEPTH, VK_FORMAT_R32_SFLOAT);
+  add(hidden.second_layer, ALCOVE_IMAGE_SECOND_DEPTH, VK_FORMAT_R32_SFLOAT);
+  add(settings.visibility, ALCOVE_IMAGE_VISIBILITY, VK_FORMAT_R8_UNORM);
+  add(settings.bent_normal, ALCOVE_IMAGE_BENT_NORMAL, VK_FORMAT_R8G8B8A8_SNORM);
+  add(settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR, VK_FORMAT_R8_UNORM);
+  const auto work = std::make_unique<AlcoveWork>();
+  char message[ALCOVE_MAX_MESSAGE];
+  std::array<AlcoveWorkPipeline, ALCOVE_MAX_WORK_PIPELINES> pipelines;
+  std::uint32_t count = pipelines.size();
+  if (alcoveDescribeWork(&info, work.get(), message) != ALCOVE_SUCCESS ||
+      alcoveListPipelines(&info, &count, pipelines.data(), message) != ALCOVE_SUCCESS)
+    return tl::unexpected(std::string(message));
+  std::cout << text_of([&](char* text, std::size_t size) {
+    return alcovePrintWork(work.get(), text, size);
+  }) << "pipelines of all frames\n";
+  for (const AlcoveWorkPipeline& pipeline : std::span(pipelines).first(count)) {
+    std::cout << "  " << pipeline.shader << ":";
+    for (const auto& [id, value] : std::span(pipeline.constants).first(pipeline.constant_count))
+      std::cout << " " << id << "=" << value;
+    std::cout << "\n";
+  }
   return {};
 }
 

@@ -20,13 +20,14 @@ using Failure = tl::unexpected<std::string>;
 
 namespace {
 
+void print_note(const std::string& note) { std::cerr << "note: " << note << "\n"; }
+
 // Prints the notes about a scene, at most the first twenty, because a file may cause any number.
 void print_notes(const std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 20;
-  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i)
-    std::cerr << "note: " << notes[i] << "\n";
+  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) print_note(notes[i]);
   if (notes.size() > kMost)
-    std::cerr << "note: There are " << notes.size() - kMost << " more notes on this scene.\n";
+    print_note(fmt::format("There are {} more notes on this scene.", notes.size() - kMost));
 }
 
 }  // namespace
@@ -39,15 +40,14 @@ Result<Session> load_session(const Options& options) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!scene) return Failure(std::move(scene.error()));
   session.scene = std::move(*scene);
+  const ViewFinder finder(session.scene);
+  ALCOVE_TRY(session.camera, choose_camera(options.view, finder));
+  const double aspect = static_cast<double>(options.view.width) / options.view.height;
+  const RadiusChoice radius = finder.radius(session.camera, aspect);
+  session.radius_reason = options.occlusion.radius ? "--radius" : radius.reason;
+  for (const std::string& note : {finder.left_out(), radius.advice})
+    if (!note.empty()) session.scene.warnings.insert(session.scene.warnings.begin(), note);
   print_notes(session.scene.warnings);
-  ALCOVE_TRY(const auto camera, choose_camera(options.view, session.scene));
-  session.camera = camera;
-  RadiusChoice radius{0.0f, "--radius"};
-  if (!options.occlusion.radius) {
-    const double aspect = static_cast<double>(options.view.width) / options.view.height;
-    radius = radius_for_view(session.scene, session.camera, aspect);
-  }
-  session.radius_reason = radius.reason;
   ALCOVE_TRY(const auto settings, occlusion_settings(options.occlusion, radius.radius));
   session.settings = settings;
   return session;
@@ -65,7 +65,7 @@ Result<Session> open_session(const Options& options,
 
 Result<Rendering> render(const Options& options) {
   ALCOVE_TRY(auto session, open_session(options));
-  ALCOVE_TRY(auto environment, load_environment(options.environment));
+  ALCOVE_TRY(auto environment, load_environment(options.environment, print_note));
   const std::string radius =
       "Radius " + number_text(session.settings.radius) + ": " + session.radius_reason + "\n";
   auto rendering = render(std::move(session),
@@ -94,18 +94,25 @@ Result<SettingTimes> setting_times(const Options& options, const Session& sessio
                           options.use_cache);
   }
   StaticSetup setup = static_setup(options, session.camera);
+  const double pixels = static_cast<double>(setup.width) * setup.height;
+  if (options.clock == Clock::processor) {
+    // A software device takes seconds for an image of the target size.
+    return measured_times(session, setup, options.clock,
+                          options.target_width * options.target_height / pixels);
+  }
   setup.width = options.target_width;
   setup.height = options.target_height;
-  return measured_times(session, setup, options.clock);
+  return measured_times(session, setup, options.clock, 1.0);
 }
 
 std::string clock_text(const Options& options, const Session& session) {
   const std::string size = fmt::format("{}x{}", options.target_width, options.target_height);
   if (options.clock == Clock::modelled)
     return fmt::format("modelled time at {} on {}", size, options.gpu->title);
-  return fmt::format("{} time at {} on {}",
-                     options.clock == Clock::timestamps ? "GPU" : "processor", size,
-                     session.gpu->device().properties().deviceName);
+  const char* device = session.gpu->device().properties().deviceName;
+  if (options.clock == Clock::timestamps) return fmt::format("GPU time at {} on {}", size, device);
+  return fmt::format("processor time on {}, measured at {}x{} and scaled to {}", device,
+                     options.view.width, options.view.height, size);
 }
 
 TruthOptions truth_options(const Options& options) {

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/settings.h"
 
 namespace alcove::sample {
@@ -94,7 +94,8 @@ void read_roughness(O& o, const V& v) {
 }
 
 // The names of the modelled GPUs.
-constexpr std::array<std::string_view, 2> kGpuNames{kGpuParts[0].name, kGpuParts[1].name};
+constexpr std::array<std::string_view, 3> kGpuNames{kGpuParts[0].name, kGpuParts[1].name,
+                                                    kGpuParts[2].name};
 
 // Throws a Mistake if a near or far plane is at the eye or behind it. Only orthographic views may
 // have such planes.
@@ -109,8 +110,6 @@ void check_plane(const std::string& option, const std::optional<float>& distance
 }  // namespace
 
 std::span<const OptionRow> option_rows() {
-  static const std::string quality =
-      "preset: " + passes::names_text<passes::Quality>() + ". Default: medium";
   static const OptionRow rows[] = {
       {kOnDevice, kOptions, "--cut-blends", nullptr,
        "render alpha-blended materials as masks with a cutoff of 0.5, which suits foliage. "
@@ -140,7 +139,7 @@ std::span<const OptionRow> option_rows() {
        "size of the image whose time counts; errors are measured at --size. Default: 1920x1080",
        [](O& o, const V& v) { std::tie(o.target_width, o.target_height) = v.size(); }},
       {kStatic, kOptions, "--gpu", "NAME",
-       "the GPU whose time is modelled: ps4 (PS4-like) or rdna2. Default: rdna2",
+       "the GPU whose time is modelled: ps4, ps5 or rx6800xt. Default: ps5",
        [](O& o, const V& v) { o.gpu = &kGpuParts[v.one_of(kGpuNames)]; }},
       {kStatic, kOptions, "--clock", "NAME",
        "which time counts: modelled (time on --gpu by the cost model, the same in every run), "
@@ -196,9 +195,8 @@ std::span<const OptionRow> option_rows() {
        [](O& o, const V&) { o.validation = true; }},
 
       {kMotion, "Motion", "--path", "NAME",
-       "orbit (around the middle of the view), dolly (towards it), strafe (past a column that is "
-       "added near the eye), object (static camera, a block slides over the ground), cut (the "
-       "camera jumps to another place) or all. Default: all",
+       "orbit (around the middle of the view), dolly (towards it), object (static camera, a block "
+       "slides over the ground), cut (the camera jumps to another place) or all. Default: all",
        [](O& o, const V& v) { o.path = v.one_of_or<MotionKind>(kMotionKindNames, "all"); }},
       {kMotion, "Motion", "--frames", "N",
        "number of frames of each path, which begins at the given view. Three of them are compared "
@@ -267,10 +265,10 @@ std::span<const OptionRow> option_rows() {
              static_cast<float>(v.number(-360.0, 360.0, "an angle in degrees, -360 to 360")));
        }},
 
-      {kAll, kOcclusion, "--quality", "NAME", quality.c_str(),
+      {kAll, kOcclusion, "--quality", "NAME",
+       "preset: console, low, medium, high, ultra or reference. Default: medium",
        [](O& o, const V& v) {
-         o.occlusion.quality =
-             static_cast<passes::Quality>(v.one_of(passes::kNames<passes::Quality>));
+         o.occlusion.quality = static_cast<AlcoveQuality>(v.one_of(passes::kQualityNames));
          o.occlusion.quality_given = true;
        }},
       {kAll, kOcclusion, "--radius", "LENGTH",
@@ -308,7 +306,7 @@ std::span<const OptionRow> option_rows() {
        "equirectangular image of the light, .exr. Default: a generated sky",
        [](O& o, const V& v) { o.environment = v.text; }},
 
-      {kCost, kCostModel, "--gpu", "NAME", "modelled GPU: ps4 (PS4-like) or rdna2. Default: both",
+      {kCost, kCostModel, "--gpu", "NAME", "modelled GPU: ps4, ps5 or rx6800xt. Default: all",
        [](O& o, const V& v) { o.gpu = &kGpuParts[v.one_of(kGpuNames)]; }},
       {kCost, kCostModel, "--motion-vectors", nullptr,
        "model the passes with motion vectors as an input, which moving objects need",
@@ -321,10 +319,10 @@ std::span<const OptionRow> option_rows() {
       {kCost, kCostModel, "--samples", nullptr,
        "model the passes with depth of four samples per pixel",
        [](O& o, const V&) { o.cost.inputs.samples = true; }},
-      {kCost, kCostModel, "--loops", nullptr,
-       "also print the instructions of a wave by kind, and each loop that the compiler did not "
-       "unroll with its iterations",
-       [](O& o, const V&) { o.cost.loops = true; }},
+      {kCost, kCostModel, "--range", nullptr,
+       "also print the time of a moving frame under other assumptions about the caches, of which "
+       "the model is least sure",
+       [](O& o, const V&) { o.cost.range = true; }},
       {kCost, kCostModel, "--json", "FILE", "also write all figures as JSON",
        [](O& o, const V& v) { o.cost.json = v.text; }},
       {kCost, kCostModel, "--write-budget", "FILE",

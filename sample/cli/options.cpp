@@ -38,20 +38,20 @@ constexpr std::array<CommandRow, 10> kCommands{{
     {Command::recommend, kUse, "recommend",
      "find the most accurate setting within a time, or the fastest within an error", Scenes::one,
      480, 270, kHistory, 64},
+    {Command::report, kUse, "report",
+     "write a web page: error against time, pictures beside the truth, and what a scene requires",
+     Scenes::many, 480, 270, kHistory},
     {Command::graph, kUse, "graph", "print the compiled plan of a frame: passes, barriers, memory"},
     {Command::doctor, kUse, "doctor", "list the Vulkan devices and the features that they lack",
      Scenes::none},
     {Command::motion, kLaboratory, "motion",
      "measure errors and flicker while the camera or an object moves", Scenes::one, 960, 540, 48},
     {Command::cost, kLaboratory, "cost",
-     "print registers, instructions and modelled time of the passes on two GPUs; needs no GPU",
+     "print registers, instructions and modelled time of the passes on three GPUs; needs no GPU",
      Scenes::none, 1920, 1080},
     {Command::measure, kLaboratory, "measure",
      "time each pass on the device, beside the times that the model of `cost` predicts",
      Scenes::one, 960, 540, 200},
-    {Command::report, kLaboratory, "report",
-     "write a web page: error against time, pictures beside the truth, and what a scene requires",
-     Scenes::many, 480, 270, kHistory},
 }};
 
 void add_option(CLI::App& app, const OptionRow& row, Options& options) {
@@ -141,7 +141,7 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "Ambient occlusion of a scene, and how far it is from the truth.\n"
       "  alcove render scene.gltf --camera hall --out out\n"
       "  alcove compare groove:60 --radius 1\n"
-      "  alcove motion scene.gltf --path strafe\n"
+      "  alcove motion scene.gltf --path orbit\n"
       "  alcove recommend scene.gltf --tolerance 0.05\n"
       "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality high",
       "alcove");

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/situations.h"
+#include "gpu/occlusion.h"
 #include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "render/normal_source.h"
@@ -28,13 +28,13 @@ enum class Command {
   view,
   compare,
   recommend,
+  report,
   graph,
   doctor,
   // The laboratory.
   motion,
   cost,
-  measure,
-  report
+  measure
 };
 // Names are in the order of the enumerators.
 enum class GraphFormat { text, dot, work };
@@ -59,9 +59,9 @@ struct ViewOptions {
 };
 
 struct OcclusionOptions {
-  passes::Quality quality = passes::Quality::medium;
+  AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM;
   bool quality_given = false;   // --quality was given
-  std::optional<float> radius;  // scene units; none: radius_for_view()
+  std::optional<float> radius;  // scene units; none: ViewFinder::radius()
   NormalSource normals = NormalSource::shading;
   std::vector<std::pair<std::string, std::string>> file;  // settings of --settings
   std::vector<std::pair<std::string, std::string>> set;   // --set name=value, in order
@@ -71,7 +71,7 @@ struct OcclusionOptions {
 
 struct CostOptions {
   CostInputs inputs;             // without the settings
-  bool loops = false;            // also prints the loops of the shaders
+  bool range = false;            // also models a moving frame under other assumptions
   std::filesystem::path json;    // empty for none
   std::filesystem::path budget;  // file for the budget of the presets; empty for none
 };

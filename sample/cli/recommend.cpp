@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -27,16 +26,10 @@ SituationWeights chosen_weights(const Options& options) {
 
 // The command line that renders the view with these settings.
 std::string render_line(const Options& options, const Session& session,
-                        const passes::OcclusionSettings& settings) {
+                        const OcclusionSettings& settings) {
   return shell_line(
       render_arguments(options, {session.camera, settings, std::nullopt, options.view.width,
                                  options.view.height, options.view.frames}));
-}
-
-std::string samples_text(const passes::OcclusionSettings& settings) {
-  return fmt::format("tile_size={} slices={} steps={}{}{}", settings.tile_size, settings.slices,
-                     settings.steps, settings.half_resolution ? " half_resolution=true" : "",
-                     settings.depth_layers > 1 ? " depth_layers=2" : "");
 }
 
 void print_achievement(const Achievement& of) {
@@ -70,12 +63,12 @@ void check_other_views(const Options& options, const Session& session,
   for (const Camera& camera : other_views(session)) {
     const auto rmse =
         SituationErrors::create(session, static_setup(options, camera), truth_options(options))
-            .and_then([&](SituationErrors errors) { return errors.measure(chosen.settings); });
+            .and_then([&](SituationErrors errors) { return errors.measure(chosen.choice); });
     if (!rmse) {
       std::cout << "  view " << camera.name << ": not checked (" << rmse.error() << ")\n";
       continue;
     }
-    const double error = goal.rmse({chosen.settings, *rmse, chosen.ms});
+    const double error = goal.rmse({chosen.choice, *rmse, chosen.ms});
     std::cout << fmt::format("  view {}: RMSE {:.4f}", camera.name, error);
     if (goal.tolerance) {
       std::cout << (error <= *goal.tolerance
@@ -87,7 +80,7 @@ void check_other_views(const Options& options, const Session& session,
   }
 }
 
-Result<void> write_settings(const Options& options, const passes::OcclusionSettings& settings) {
+Result<void> write_settings(const Options& options, const OcclusionSettings& settings) {
   if (options.settings_out.empty()) return {};
   nlohmann::ordered_json json{{"settings", to_json(settings)}};
   json["settings"].erase("radius");  // it belongs to the scene
@@ -116,38 +109,26 @@ Result<void> run_recommend(const Options& options) {
   ALCOVE_TRY(const auto times, setting_times(options, session));
   ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(options, session.camera),
                                                   truth_options(options)));
-  constexpr double kExpected = 60;  // calls; their number depends on what they find
-  double calls = 0;
-  const Progress progress = print_progress("settings");
-  const auto advance = [&] { progress(std::min(++calls / kExpected, 0.99)); };
-  const RecommendationWorld measured = recommendation_world(errors, times);
-  const RecommendationWorld world{[&](const passes::OcclusionSettings& settings) {
-                                    advance();
-                                    return measured.measure(settings);
-                                  },
-                                  [&](const passes::OcclusionSettings& settings) {
-                                    advance();
-                                    return measured.time(settings);
-                                  }};
+  const RecommendationWorld world{[&](const Choice& choice) { return errors.measure(choice); },
+                                  times, print_progress("settings")};
   ALCOVE_TRY(const Recommendation found, recommend(session.settings, goal, world));
   ALCOVE_TRY_VOID(check_validation(*session.gpu));
   const Achievement& chosen = found.chosen;
-  const std::string text =
-      fmt::format("{}: RMSE {:.4f} in {:.4f} ms", samples_text(chosen.settings), goal.rmse(chosen),
-                  goal.ms(chosen));
-  if (!goal.met(chosen)) return Failure(unmet_message(goal, text));
-  std::cout << text << "\n";
+  const std::string text = fmt::format("{}: RMSE {:.4f} in {:.4f} ms", choice_text(chosen.choice),
+                                       goal.rmse(chosen), goal.ms(chosen));
+  if (goal.met(chosen)) std::cout << text << "\n";
   print_achievement(chosen);
   for (const FeatureEffect& feature : found.features)
     std::cout << "  " << feature.sentence() << "\n";
-  ALCOVE_TRY(const auto needs, view_needs(session, errors, times, goal, chosen));
+  ALCOVE_TRY(const auto needs, view_needs(session, errors.truths(), times, goal, chosen));
   for (const std::string& need : needs) std::cout << "  " << need << "\n";
   std::cout << std::flush;
+  if (!goal.met(chosen)) return Failure(unmet_message(goal, text));
   check_other_views(options, session, goal, chosen);
   std::cout << fmt::format("RMSE of visibility against ray-traced truth at {}x{}; {}\n{}\n",
                            options.view.width, options.view.height, clock_text(options, session),
-                           render_line(options, session, chosen.settings));
-  return write_settings(options, chosen.settings);
+                           render_line(options, session, chosen.choice.settings));
+  return write_settings(options, chosen.choice.settings);
 }
 
 }  // namespace alcove::sample

@@ -8,7 +8,7 @@
 
 namespace alcove::sample {
 Result<void> run_render(const Options& options) {
-  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY_VOID(create_folder(options.out));
   ALCOVE_TRY(const auto rendering, render(options));
   return write_images(rendering, options.out)
       .and_then([&] {
@@ -16,7 +16,6 @@ Result<void> run_render(const Options& options) {
                           rendering_report(rendering, options).dump(2) + "\n");
       })
       .map([&] {
-        if (!shows_surfaces(rendering)) std::cerr << "note: The view shows nothing but sky.\n";
         std::cout << time_table(rendering) << "Images and report.json are in "
                   << options.out.string() << "\n";
       });

@@ -12,9 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-using passes::Quality;
-
 std::string vector_text(const glm::vec3& v) {
   return fmt::format("{},{},{}", number_text(v.x), number_text(v.y), number_text(v.z));
 }
@@ -30,18 +27,15 @@ std::string degrees_text(float radians) {
 }
 
 // Returns the settings that differ from those of a quality, in the form of --set.
-std::vector<std::string> changes(Quality quality, const OcclusionSettings& settings) {
-  const OcclusionSettings preset = passes::quality_settings(quality, settings.radius);
-  std::vector<std::string> before, result;
-  passes::for_each_setting(preset, [&](const passes::SettingInfo& info, const auto& value) {
-    before.push_back(fmt::format("{}={}", info.name, value_text(value)));
-  });
-  std::size_t i = 0;
-  passes::for_each_setting(settings, [&](const passes::SettingInfo& info, const auto& value) {
-    std::string now = fmt::format("{}={}", info.name, value_text(value));
-    if (now != before[i++] && info.group != passes::SettingGroup::surface)
-      result.push_back(std::move(now));
-  });
+std::vector<std::string> changes(AlcoveQuality quality, const OcclusionSettings& settings) {
+  const OcclusionSettings preset(quality, settings.radius);
+  std::vector<std::string> result;
+  for (const passes::SettingInfo& info : passes::setting_table()) {
+    const std::string now = setting_text(settings, info);
+    if (now != setting_text(preset, info) && !info.of_material)
+      result.push_back(fmt::format("{}={}", info.name, now));
+  }
+  if (settings.bent_normal) result.emplace_back("bent_normal=true");
   return result;
 }
 
@@ -63,24 +57,22 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
     to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
 }
 
-// Appends --quality and --set options that give `settings`, with the quality that needs the fewest
-// --set options.
-void append_settings(const OcclusionSettings& settings, std::vector<std::string>& to) {
-  Quality closest = Quality::console;
+}  // namespace
+
+std::vector<std::string> setting_arguments(const OcclusionSettings& settings) {
+  AlcoveQuality closest = ALCOVE_QUALITY_CONSOLE;
   std::vector<std::string> fewest = changes(closest, settings);
-  for (std::size_t i = 1; i < passes::kNames<Quality>.size(); ++i) {
-    std::vector<std::string> more = changes(static_cast<Quality>(i), settings);
+  for (std::size_t i = 1; i < passes::kQualityNames.size(); ++i) {
+    std::vector<std::string> more = changes(static_cast<AlcoveQuality>(i), settings);
     if (more.size() < fewest.size()) {
-      closest = static_cast<Quality>(i);
+      closest = static_cast<AlcoveQuality>(i);
       fewest = std::move(more);
     }
   }
-  to.insert(to.end(), {"--quality", std::string(passes::name_of(closest)), "--radius",
-                       number_text(settings.radius)});
-  for (const std::string& change : fewest) to.insert(to.end(), {"--set", change});
+  std::vector<std::string> arguments{"--quality", std::string(passes::kQualityNames.at(closest))};
+  for (const std::string& change : fewest) arguments.insert(arguments.end(), {"--set", change});
+  return arguments;
 }
-
-}  // namespace
 
 std::vector<std::string> render_arguments(const Options& options, const Shot& shot) {
   std::vector<std::string> arguments{"alcove", "render"};
@@ -91,7 +83,9 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
     arguments.insert(arguments.end(), {"--camera", options.view.camera});
   append_camera(shot.camera, arguments);
   arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", shot.width, shot.height)});
-  append_settings(shot.settings, arguments);
+  const auto settings = setting_arguments(shot.settings);
+  arguments.insert(arguments.end(), settings.begin(), settings.end());
+  arguments.insert(arguments.end(), {"--radius", number_text(shot.settings.radius)});
   if (options.occlusion.normals != NormalSource::shading) {
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
@@ -105,6 +99,13 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (options.device >= 0)
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   return arguments;
+}
+
+std::string choice_text(const Choice& choice) {
+  return shell_line(setting_arguments(choice.settings)) +
+         (choice.guard_band
+              ? fmt::format(", with a guard band of {:g} % of the height", 100.0 * kGuardBand)
+              : "");
 }
 
 std::string shell_line(const std::vector<std::string>& arguments) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "evaluate/recommendation.h"
 #include "render/session.h"
 
 namespace alcove::sample {
@@ -12,6 +13,13 @@ namespace alcove::sample {
 // arguments that parse_options() reads back. Scene, treatment of materials, environment, normals,
 // device and the name of the camera are those of `options`.
 [[nodiscard]] std::vector<std::string> render_arguments(const Options& options, const Shot& shot);
+
+// Returns the options that give these settings except their radius: --quality with the quality that
+// needs the fewest changes, and --set for each change.
+[[nodiscard]] std::vector<std::string> setting_arguments(const OcclusionSettings& settings);
+
+// Returns every setting of a choice that is not the default, as options of the commands.
+[[nodiscard]] std::string choice_text(const Choice& choice);
 
 // The arguments as a line for a POSIX shell, quoted where necessary.
 [[nodiscard]] std::string shell_line(const std::vector<std::string>& arguments);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <limits>
 
-#include "alcove/passes/setting_names.h"
 #include "render/settings_json.h"
 #include "support/mib.h"
 #include "support/process_memory.h"
@@ -38,14 +37,6 @@ Json camera_json(const Camera& camera) {
   return json;
 }
 
-Json costs_json(const Costs& costs) {
-  Json json;
-  for (const PassTime& pass : costs.passes) json["timings_ms"][pass.pass] = pass.milliseconds;
-  json["timings_ms"]["total"] = costs.occlusion_ms;
-  json["cpu_ms"] = costs.cpu_ms;
-  return json;
-}
-
 }  // namespace
 
 Json rendering_report(const Rendering& rendering, const Options& options) {
@@ -57,9 +48,10 @@ Json rendering_report(const Rendering& rendering, const Options& options) {
   report["camera"] = camera_json(rendering.camera);
   report["normals"] = name_of(options.occlusion.normals);
   report["settings"] = to_json(rendering.settings);
-  report.update(costs_json(rendering.costs));
-  report["with_specular"] = costs_json(rendering.costs_with_specular);
-  report["with_specular"]["model"] = passes::name_of(specular_model(rendering.settings));
+  for (const PassTime& pass : rendering.costs.passes)
+    report["timings_ms"][pass.pass] = pass.milliseconds;
+  report["timings_ms"]["total"] = rendering.costs.occlusion_ms;
+  report["cpu_ms"] = rendering.costs.cpu_ms;
   report["memory"] = {{"transient_bytes", rendering.memory.aliased},
                       {"transient_bytes_without_aliasing", rendering.memory.unaliased},
                       {"transient_bytes_lower_bound", rendering.memory.lower_bound},
@@ -80,8 +72,6 @@ std::string time_table(const Rendering& rendering) {
   for (const PassTime& pass : rendering.costs.passes) row(pass.pass, pass.milliseconds);
   row("occlusion, by GPU timestamps", rendering.costs.occlusion_ms);
   row("occlusion, processor time", rendering.costs.cpu_ms);
-  row("with specular, by GPU timestamps", rendering.costs_with_specular.occlusion_ms);
-  row("with specular, processor time", rendering.costs_with_specular.cpu_ms);
   return text + fmt::format("  transients {:.2f} MiB aliased, {:.2f} MiB without aliasing\n",
                             mib(rendering.memory.aliased), mib(rendering.memory.unaliased));
 }

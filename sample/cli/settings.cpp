@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <iomanip>
-#include <nlohmann/json.hpp>
+#include <ranges>
 #include <sstream>
-#include <type_traits>
 #include <utility>
 
 #include "alcove/passes/setting_table.h"
@@ -17,62 +16,33 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-using passes::SettingGroup;
 using passes::SettingInfo;
 using Failure = tl::unexpected<std::string>;
 
-// Returns the allowed values of a setting.
-template <typename Value>
-std::string allowed(const SettingInfo& info, Value /*value*/) {
-  if constexpr (passes::kNames<Value>.empty())
-    return info.range.text();
-  else
-    return passes::names_text<Value>();
-}
+// The output that --set turns on beside the settings of the passes.
+constexpr std::string_view kBentNormal = "bent_normal";
 
-// Parses `text` as the value of a setting. Returns an empty text, or, if `text` is not allowed, the
-// allowed values for the error sentence.
-template <typename Value>
-std::string parse(const std::string& text, const SettingInfo& info, Value& value) {
-  if constexpr (passes::kNames<Value>.empty()) {
-    const auto number = parse_number<Value>(text);
-    if (!number || !info.range.contains(*number))
-      return (std::is_integral_v<Value> ? "a whole number, " : "a number, ") + info.range.text();
-    value = *number;
-  } else {
-    const auto& names = passes::kNames<Value>;
-    const auto found = std::ranges::find(names, text);
-    if (found == names.end()) return allowed(info, value);
-    value = static_cast<Value>(found - names.begin());
-  }
-  return "";
-}
-
-// Calls `visit(info, field)` for each setting that --set accepts: all except those of surfaces,
-// which have options of their own, such as --roughness.
-template <typename Settings, typename Visit>
-void for_each_option(Settings& settings, const Visit& visit) {
-  passes::for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
-    if (info.group != SettingGroup::surface) visit(info, field);
-  });
-}
+// Returns whether --set accepts a setting: those of materials have options of their own, such as
+// --roughness.
+bool is_option(const SettingInfo& info) { return !info.of_material; }
 
 // Changes one setting by its name. If that fails, returns the allowed names or values.
 std::optional<std::string> set(OcclusionSettings& settings, const std::string& name,
                                const std::string& value) {
-  bool known = false;
-  std::string wanted;
+  if (name == kBentNormal) {
+    settings.bent_normal = value == "true";
+    return value == "true" || value == "false" ? std::nullopt : std::optional("false or true");
+  }
   std::string names;
-  for_each_option(settings, [&](const SettingInfo& info, auto& field) {
-    names += (names.empty() ? "" : ", ") + std::string(info.name);
+  for (const SettingInfo& info : passes::setting_table() | std::views::filter(is_option)) {
     if (name == info.name) {
-      known = true;
-      wanted = parse(value, info, field);
+      return passes::parse_setting(settings, name, value)
+                 ? std::nullopt
+                 : std::optional(passes::allowed_text(info));
     }
-  });
-  if (!known) return "one of " + names;
-  return wanted.empty() ? std::nullopt : std::optional(wanted);
+    names += std::string(info.name) + ", ";
+  }
+  return "one of " + names + std::string(kBentNormal);
 }
 
 }  // namespace
@@ -87,17 +57,20 @@ std::string settings_help() {
   std::ostringstream text;
   text << "Settings, for --set NAME=VALUE. Brackets hold what it may be, and the default:";
   const OcclusionSettings settings;
-  for_each_option(settings, [&](const SettingInfo& info, const auto& field) {
+  for (const SettingInfo& info : passes::setting_table() | std::views::filter(is_option)) {
     text << "\n  " << std::left << std::setw(kColumn) << info.name << info.help << " ["
-         << allowed(info, field) << "; " << value_text(field) << "]";
-  });
+         << (info.kind == SettingInfo::Kind::choice ? allowed_text(info) : info.range.text())
+         << "; " << setting_text(settings, info) << "]";
+  }
+  text << "\n  " << std::left << std::setw(kColumn) << kBentNormal
+       << "Also writes bent normals: the mean unoccluded direction of each pixel. [false or true; "
+          "false]";
   return text.str();
 }
 
 Result<OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
                                              float default_radius) {
-  OcclusionSettings settings =
-      passes::quality_settings(options.quality, options.radius.value_or(default_radius));
+  OcclusionSettings settings(options.quality, options.radius.value_or(default_radius));
   for (const auto* list : {&options.file, &options.set}) {
     for (const auto& [name, value] : *list)
       if (const auto wanted = set(settings, name, value))
@@ -114,27 +87,25 @@ Result<std::vector<std::pair<std::string, std::string>>> read_settings(const std
   if (!opened) return Failure("cannot read " + printable(file) + ": " + opened.error());
   std::string text(kMost + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), opened->get()));
-  const auto json = text.size() > kMost ? nlohmann::ordered_json()
-                                        : nlohmann::ordered_json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("settings") || !json["settings"].is_object()) {
-    return Failure(printable(file) +
-                   " holds no settings; give a file that `alcove recommend --out` wrote");
-  }
   std::vector<std::pair<std::string, std::string>> found;
-  for (const auto& [name, value] : json["settings"].items()) {
-    const std::string shown_value = value.is_string()         ? value.get<std::string>()
-                                    : value.is_number_float() ? number_text(value.get<float>())
-                                                              : value.dump();
-    if (const auto wanted = wanted_instead(name, shown_value)) {
-      return Failure(printable(file) + ": " + printable(name) + " is " + printable(shown_value) +
+  std::istringstream lines(text);
+  std::string name, equals, value;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    if (text.size() > kMost || !(words >> name >> equals >> value) || equals != "=") {
+      return Failure(printable(file) +
+                     " holds no settings; give a file that `alcove recommend --out` wrote");
+    }
+    if (const auto wanted = wanted_instead(name, value)) {
+      return Failure(printable(file) + ": " + printable(name) + " is " + printable(value) +
                      "; give " + *wanted);
     }
-    found.emplace_back(name, shown_value);
+    found.emplace_back(name, value);
   }
   return found;
 }
 
-std::vector<passes::Quality> chosen_presets(const OcclusionOptions& options) {
+std::vector<AlcoveQuality> chosen_presets(const OcclusionOptions& options) {
   return options.quality_given ? std::vector{options.quality} : presets();
 }
 

@@ -5,18 +5,17 @@
 #include <utility>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
-#include "alcove/passes/setting_names.h"
 #include "cli/option_value.h"
 #include "cli/options.h"
+#include "gpu/occlusion.h"
 #include "support/result.h"
 
 namespace alcove::sample {
 
 // Returns the occlusion settings of the options: a quality, a radius in scene units (by default
 // `default_radius`), and the changes by --set. Errors name the setting and its allowed values.
-[[nodiscard]] Result<passes::OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
-                                                                   float default_radius);
+[[nodiscard]] Result<OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
+                                                           float default_radius);
 
 // Checks NAME and VALUE of an option --set. Returns the allowed names if the name is unknown, the
 // allowed values if the value is out of range, and nothing if both are valid. Settings that depend
@@ -24,25 +23,16 @@ namespace alcove::sample {
 [[nodiscard]] std::optional<std::string> wanted_instead(const std::string& name,
                                                         const std::string& value);
 
-// Returns the text of a setting's value, from which --set reads the same value.
-template <typename Value>
-std::string value_text(Value value) {
-  if constexpr (passes::kNames<Value>.empty())
-    return number_text(value);
-  else
-    return std::string(passes::name_of(value));
-}
-
 // Returns a text with one line for each setting: name, meaning, range, default.
 [[nodiscard]] std::string settings_help();
 
-// Reads the names and values of settings from a file that `alcove recommend --out` wrote: a JSON
-// object `settings` with a value for each name of --set. Errors: the file cannot be read, it is not
-// such an object, or a name or value is not allowed.
+// Reads the names and values of settings from a file that `alcove recommend --out` wrote: a line
+// `name = value` for each name of --set. Errors: the file cannot be read, a line has another form,
+// or a name or value is not allowed.
 [[nodiscard]] Result<std::vector<std::pair<std::string, std::string>>> read_settings(
     const std::string& file);
 
 // The preset of --quality, or all presets for frames in real time if it was not given.
-[[nodiscard]] std::vector<passes::Quality> chosen_presets(const OcclusionOptions& options);
+[[nodiscard]] std::vector<AlcoveQuality> chosen_presets(const OcclusionOptions& options);
 
 }  // namespace alcove::sample

@@ -5,8 +5,6 @@
 
 #include "gpu/gpu_image.h"
 
-#include "gpu/pipeline_capture.h"
-
 namespace alcove::sample {
 namespace {
 
@@ -17,8 +15,7 @@ framegraph::DeviceHandles device_handles(const VulkanDevice& device) {
   handles.instance = device.instance();
   handles.physical_device = device.physical_device();
   handles.device = device.device();
-  handles.get_instance_proc_addr =
-      device.captures() ? capturing_functions() : vkGetInstanceProcAddr;
+  handles.get_instance_proc_addr = vkGetInstanceProcAddr;
   handles.queues[static_cast<std::size_t>(framegraph::QueueClass::graphics)] = {
       device.queue(), device.queue_family()};
   return handles;

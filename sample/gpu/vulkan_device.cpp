@@ -23,16 +23,6 @@ Failure failure(std::string what, VkResult result) {
   return Failure(std::move(what) + " (" + std::string(result_name(result)) + ").");
 }
 
-bool has_extension(VkPhysicalDevice device, std::string_view name) {
-  std::uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
-  std::vector<VkExtensionProperties> extensions(count);
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-  return std::ranges::any_of(extensions, [&](const VkExtensionProperties& extension) {
-    return extension.extensionName == name;
-  });
-}
-
 // The structures of the Vulkan 1.3 features that Alcove uses, as a pNext chain.
 struct Features {
   VkPhysicalDeviceVulkan13Features v13{.sType =
@@ -281,15 +271,6 @@ tl::expected<void, std::string> VulkanDevice::create_device(const DeviceOptions&
   }
   std::vector<const char*> extensions;
   if (!options.surface_extensions.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR capture{
-      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
-      .pipelineExecutableInfo = VK_TRUE};
-  if (options.capture &&
-      has_extension(physical_device_, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) {
-    extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
-    enabled.v13.pNext = &capture;
-    captures_ = true;
-  }
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &enabled.all,
                                 .queueCreateInfoCount = 1,

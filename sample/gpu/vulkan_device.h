@@ -23,10 +23,6 @@ struct DeviceOptions {
   // Instance extensions of the window system. If there are any, the swapchain extension is enabled
   // too.
   std::vector<const char*> surface_extensions;
-  // Whether compute pipelines keep the statistics of the driver's compiler
-  // (gpu/pipeline_capture.h). No effect on devices without
-  // VK_KHR_pipeline_executable_properties.
-  bool capture = false;
 };
 
 // A physical device as `alcove doctor` lists it.
@@ -59,8 +55,6 @@ class VulkanDevice {
   // Returns the largest anisotropy for samplers: 1 on software devices and on devices without
   // anisotropic filtering.
   float max_anisotropy() const { return max_anisotropy_; }
-  // Whether compute pipelines may keep statistics (DeviceOptions::capture).
-  bool captures() const { return captures_; }
 
   // Returns the largest allocation in bytes, which also limits the size of buffers and images.
   VkDeviceSize max_allocation() const { return max_allocation_; }
@@ -95,7 +89,6 @@ class VulkanDevice {
   VkPhysicalDeviceMemoryProperties memory_{};
   std::string driver_;
   float max_anisotropy_ = 1.0f;
-  bool captures_ = false;
   VkDeviceSize max_allocation_ = 0;
   std::vector<std::string> messages_;
 };

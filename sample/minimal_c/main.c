@@ -195,15 +195,15 @@ int main(int argc, char** argv) {
   AlcoveSettings settings = {.struct_size = sizeof settings};
   alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings);
 
-  AlcoveView view = {.struct_size = sizeof view, .settings = &settings};
-  float* clip = view.camera.clip_from_view; /* column-major */
+  AlcoveView view = {.struct_size = sizeof view, .info.settings = &settings};
+  float* clip = view.info.camera.clip_from_view; /* column-major */
   clip[0] = kFocal * kHeight / kWidth;
   clip[5] = -kFocal; /* Vulkan's clip space has y down */
   clip[11] = -1;
   clip[14] = kNear;
-  for (int i = 0; i < 4; ++i) view.camera.view_from_world[5 * i] = 1; /* the eye is the origin */
-  view.previous_camera = view.camera;
-  view.depth = (AlcoveImage){
+  for (int i = 0; i < 4; ++i) view.info.camera.view_from_world[5 * i] = 1; /* eye: origin */
+  view.info.previous_camera = view.info.camera;
+  view.images[ALCOVE_IMAGE_DEPTH] = (AlcoveImage){
       .image = depth.image,
       .format = VK_FORMAT_R32_SFLOAT,
       .width = kWidth,
@@ -213,7 +213,7 @@ int main(int argc, char** argv) {
                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
       .final_state = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
-  view.visibility = (AlcoveImage){
+  view.images[ALCOVE_IMAGE_VISIBILITY] = (AlcoveImage){
       .image = visibility.image,
       .format = VK_FORMAT_R8_UNORM,
       .width = kWidth,
@@ -228,20 +228,20 @@ int main(int argc, char** argv) {
   for (uint32_t i = 0; i < kFrames; ++i) {
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     CHECK_VK(vkBeginCommandBuffer(commands, &begin));
+    AlcoveImage* drawn = &view.images[ALCOVE_IMAGE_DEPTH];
     if (i == 0) { /* An engine draws its depth here, in every frame. */
       image_barrier(commands, depth.image, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                     VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
       vkCmdCopyBufferToImage(commands, buffer, depth.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                              &region);
-      view.depth.initial_state =
+      drawn->initial_state =
           (AlcoveState){VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
     } else {
-      view.depth.initial_state = view.depth.final_state;
+      drawn->initial_state = drawn->final_state;
     }
-    view.static_frames = i;
-    const AlcoveFrame frame = {
-        .struct_size = sizeof frame, .index = i, .slot = 0, .view_count = 1, .views = &view};
+    view.info.static_frames = i;
+    const AlcoveFrame frame = {sizeof frame, .index = i, .view_count = 1, .views = &view};
     check(alcoveRecordFrame(context, commands, &frame) == ALCOVE_SUCCESS,
           alcoveGetMessage(context));
     if (i + 1 == kFrames) {

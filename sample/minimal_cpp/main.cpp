@@ -8,7 +8,7 @@
 // back.
 #include <alcove/framegraph/executor.h>
 #include <alcove/framegraph/graph.h>
-#include <alcove/passes/occlusion.h>
+#include <alcove/passes/graph.h>
 #include <vulkan/vulkan.h>
 
 #include <algorithm>
@@ -43,10 +43,10 @@ void check(VkResult result, const std::string& what) {
 std::string text(const framegraph::Errors& errors) { return framegraph::to_string(errors); }
 std::string text(const passes::Error& error) { return error.message; }
 
-template <typename T, typename Error>
-T value_of(tl::expected<T, Error> result) {
+template <typename Result>
+auto value_of(Result result) {
   require(result.has_value(), result ? "" : text(result.error()));
-  return std::move(*result);
+  if constexpr (!std::is_void_v<typename Result::value_type>) return std::move(*result);
 }
 
 // Creates the first device that has a queue family for graphics and compute. The graph needs Vulkan
@@ -161,28 +161,33 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
   const auto from = graph.import_buffer("upload", upload.import);
   auto draw = graph.add_pass("depth");  // An engine draws its depth here.
   draw.read(from, framegraph::buffer_access::transfer_source);
-  const auto depth = draw.write(
-      graph.create_texture("depth",
-                           {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)}),
-      framegraph::access::transfer_destination, {}, framegraph::Contents::discard);
+  const auto size = framegraph::Extent::absolute(kWidth, kHeight);
+  const auto depth =
+      draw.write(graph.create_texture("depth", {VK_FORMAT_R32_SFLOAT, size}),
+                 framegraph::access::transfer_destination, {}, framegraph::Contents::discard);
   draw.record([=](RecordContext& context) {
     vkCmdCopyBufferToImage(context.commands, context.buffer(from), context.image(depth),
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &kWholeImage);
   });
 
-  passes::View view;  // The eye is the origin, and looks along -Z.
-  view.clip_from_view = {
-      kFocal * kHeight / kWidth, 0, 0, 0, 0, -kFocal, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0};
-  const passes::Frame frame{
-      .graph = graph, .kernels = kernels, .view = view, .index = index, .static_frames = index};
-  const auto occlusion = value_of(passes::add_occlusion(
-      frame, {.depth_ndc = depth}, passes::quality_settings(passes::Quality::medium, 0.5f)));
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings);
+  const AlcoveCamera camera{
+      // The eye is the origin, and looks along -Z.
+      {kFocal * kHeight / kWidth, 0, 0, 0, 0, -kFocal, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0},
+      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+  const AlcoveViewInfo view{
+      .static_frames = index, .settings = &settings, .camera = camera, .previous_camera = camera};
+  passes::ViewTextures images{};
+  images[ALCOVE_IMAGE_DEPTH] = depth;
+  images[ALCOVE_IMAGE_VISIBILITY] = graph.create_texture("visibility", {VK_FORMAT_R8_UNORM, size});
+  value_of(passes::add_view(graph, kernels, view, index, images));
 
   const auto target = graph.import_buffer("result", result.import);
   auto copy = graph.add_pass("read back");
-  copy.read(occlusion.visibility, framegraph::access::transfer_source);
+  copy.read(images[ALCOVE_IMAGE_VISIBILITY], framegraph::access::transfer_source);
   const auto filled = copy.write(target, framegraph::buffer_access::transfer_destination);
-  copy.record([visibility = occlusion.visibility, filled](RecordContext& context) {
+  copy.record([visibility = images[ALCOVE_IMAGE_VISIBILITY], filled](RecordContext& context) {
     vkCmdCopyImageToBuffer(context.commands, context.image(visibility),
                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1,
                            &kWholeImage);
@@ -199,16 +204,14 @@ int main(int argc, char** argv) {
   for (std::uint32_t i = 0; i < kWidth * kHeight; ++i)
     static_cast<float*>(upload.mapped)[i] = depth_at(i % kWidth, i / kWidth);
   {
-    constexpr framegraph::ExecutorOptions kOptions{.frames_in_flight = 1};
-    framegraph::Executor executor = value_of(framegraph::Executor::create(handles, kOptions));
-    passes::Kernels kernels = value_of(passes::Kernels::create(handles, 1));
+    auto executor = value_of(framegraph::Executor::create(handles, {.frames_in_flight = 1}));
+    auto kernels = value_of(passes::Kernels::create(handles, 1));
     framegraph::Graph graph;
     for (std::uint32_t i = 0; i < kFrames; ++i) {
       kernels.begin_frame(0);
       declare(graph, kernels, upload, result, i);
       (void)value_of(executor.submit(graph));
-      const auto done = executor.wait();
-      require(done.has_value(), done ? "" : text(done.error()));
+      value_of(executor.wait());
     }
   }
   std::ofstream file(argv[1], std::ios::binary);

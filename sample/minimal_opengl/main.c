@@ -180,8 +180,8 @@ static void execute(const char* folder, const AlcoveWork* work, const GLuint* te
         glBindBufferRange(GL_UNIFORM_BUFFER, binding->number, parameters, 0,
                           dispatch->parameter_bytes);
       } else if (binding->type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE) {
-        glBindImageTexture(binding->number, textures[binding->resource], (GLint)binding->mip,
-                           GL_FALSE, 0, GL_WRITE_ONLY,
+        glBindImageTexture(binding->number, textures[binding->resource], 0, GL_FALSE, 0,
+                           GL_WRITE_ONLY,
                            format_of(work->resources[binding->resource].format));
       } else if (binding->type == ALCOVE_BINDING_TYPE_FETCHED_IMAGE) {
         glBindTextureUnit(binding->number, textures[binding->resource]);
@@ -202,21 +202,21 @@ int main(int argc, char** argv) {
   for (int i = 0; i < kWidth * kHeight; ++i) depths[i] = depth_at(i % kWidth, i / kWidth);
   AlcoveSettings settings = {.struct_size = sizeof settings};
   alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings);
-  AlcoveWorkInfo info = {.struct_size = sizeof info,
-                         .settings = &settings,
-                         .depth = {100, kWidth, kHeight},    /* R32_SFLOAT */
-                         .visibility = {9, kWidth, kHeight}, /* R8_UNORM */
-                         .motion_scale = {1, 1}};
-  float* clip = info.camera.clip_from_view; /* column-major */
+  AlcoveWorkInfo info = {
+      .struct_size = sizeof info,
+      .view.settings = &settings,
+      .images = {[ALCOVE_IMAGE_DEPTH] = {100, kWidth, kHeight},      /* R32_SFLOAT */
+                 [ALCOVE_IMAGE_VISIBILITY] = {9, kWidth, kHeight}}}; /* R8_UNORM */
+  float* clip = info.view.camera.clip_from_view;                     /* column-major */
   clip[0] = kFocal * kHeight / kWidth;
   clip[5] = -kFocal; /* Alcove's first row is the upper one, as in the depth image above */
   clip[11] = -1;
   clip[14] = kNear;
-  for (int i = 0; i < 4; ++i) info.camera.view_from_world[5 * i] = 1; /* the eye is the origin */
+  for (int i = 0; i < 4; ++i) info.view.camera.view_from_world[5 * i] = 1; /* eye: origin */
 
-  const GLuint depth = create_texture(info.depth.format, kWidth, kHeight);
+  const GLuint depth = create_texture(100, kWidth, kHeight);
   glTextureSubImage2D(depth, 0, 0, 0, kWidth, kHeight, GL_RED, GL_FLOAT, depths);
-  const GLuint visibility = create_texture(info.visibility.format, kWidth, kHeight);
+  const GLuint visibility = create_texture(9, kWidth, kHeight);
   GLuint parameters;
   glCreateBuffers(1, &parameters);
   glNamedBufferStorage(parameters, ALCOVE_MAX_WORK_PARAMETER_BYTES, NULL, GL_DYNAMIC_STORAGE_BIT);
@@ -232,7 +232,7 @@ int main(int argc, char** argv) {
   char message[ALCOVE_MAX_MESSAGE];
   for (uint32_t i = 0; i < kFrames; ++i) {
     info.index = i;
-    info.static_frames = i;
+    info.view.static_frames = i;
     info.previous = i > 0 ? &work : NULL;
     check(alcoveDescribeWork(&info, &work, message) == ALCOVE_SUCCESS, message);
     prepare_textures(&work, depth, visibility, textures);

@@ -3,8 +3,6 @@
 #include <ctime>
 #include <utility>
 
-#include "alcove/passes/multi_bounce.h"
-
 namespace alcove::sample {
 namespace {
 
@@ -82,22 +80,19 @@ Result<FrameRenderer::DeclaredFrame> FrameRenderer::declare_occlusion(Graph& gra
     }
   }
   if (!roughness.empty()) surfaces.roughness = roughness.front();
-  passes::OcclusionSettings settings = request.occlusion;
-  settings.linear_depth = request.light != nullptr;
   if (request.index == 0 || request.restart) graph.reset_histories();
-  DeclaredFrame declared{
-      pass_frame(graph, gpu_, request.view, request.index, request.static_frames),
-      surfaces,
-      {},
-      {}};
-  ALCOVE_TRY(declared.outputs, add_occlusion(declared.frame, surfaces, settings));
+  DeclaredFrame declared{surfaces, {}, {}};
+  const auto add = [&](std::uint32_t id, bool multi_bounce) {
+    return add_occlusion(graph, gpu_, view_info(request.view, id, request.static_frames),
+                         request.index, surfaces, request.occlusion, multi_bounce);
+  };
+  ALCOVE_TRY(declared.outputs, add(0, request.light != nullptr && request.occlusion.bent_normal));
   if (declared.outputs.specular) declared.specular_occlusion.push_back(declared.outputs.specular);
   // Specular occlusion for each further roughness value runs all occlusion passes again, with its
   // own history.
   for (std::size_t i = 1; i < roughness.size() && declared.outputs.specular; ++i) {
     surfaces.roughness = roughness[i];
-    ALCOVE_TRY(const auto more,
-               add_occlusion(declared.frame, surfaces, settings, "roughness " + std::to_string(i)));
+    ALCOVE_TRY(const auto more, add(static_cast<std::uint32_t>(i), false));
     declared.specular_occlusion.push_back(more.specular);
   }
   return declared;
@@ -106,7 +101,7 @@ Result<FrameRenderer::DeclaredFrame> FrameRenderer::declare_occlusion(Graph& gra
 void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, ReadBack& read_back,
                                    FrameImages& images) {
   const Gbuffer& gbuffer = declared.surfaces.gbuffer;
-  const passes::OcclusionOutputs& outputs = declared.outputs;
+  const Occlusion& outputs = declared.outputs;
   const auto read = [&](Texture texture, std::function<void(const Texels&)> store) {
     read_back.add(graph, texture, std::move(store));
   };
@@ -119,28 +114,21 @@ void FrameRenderer::read_occlusion(Graph& graph, const DeclaredFrame& declared, 
   read(gbuffer.emissive, [&](const Texels& t) { images.metallic = channel(t, 3); });
   read(outputs.visibility, [&](const Texels& t) { images.visibility = channel(t, 0); });
   read(outputs.bent_normal, [&](const Texels& t) { images.bent_normal_ws = rgb(t); });
+  read(outputs.multi_bounce, [&](const Texels& t) { images.multi_bounce = rgb(t); });
   for (const Texture specular : declared.specular_occlusion)
     read(specular, [&](const Texels& t) { images.specular_occlusion.push_back(channel(t, 0)); });
 }
 
-// Adds the passes that use visibility and bent normals: multi-bounce, and the lighting of the
-// surfaces with the environment, if `light` is not null. Adds nothing if no bent normals are
-// computed. Emission is left out, because the ray-traced reference does not have it.
-Result<void> FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
-                                          const DeclaredFrame& declared, const Light* light,
-                                          ReadBack& read_back, FrameImages& images) {
-  const passes::OcclusionOutputs& outputs = declared.outputs;
-  if (!outputs.bent_normal || request.light == nullptr) return {};
-  const auto bounced = passes::add_multi_bounce(
-      declared.frame, {outputs.visibility, declared.surfaces.gbuffer.albedo},
-      request.occlusion.precision);
-  if (!bounced) return Failure(bounced.error().message);
-  read_back.add(graph, *bounced, [&](const Texels& t) { images.multi_bounce = rgb(t); });
-  if (light == nullptr) return {};
-  const Texture environment = light->import(graph);
+// Adds the lighting of the surfaces. Emission is left out, because the ray-traced reference does
+// not have it.
+void FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
+                                  const DeclaredFrame& declared, const Light& light,
+                                  ReadBack& read_back, FrameImages& images) {
+  const Occlusion& outputs = declared.outputs;
+  const Texture environment = light.import(graph);
   const auto add = [&](const LightOcclusion& occlusion, Image<glm::vec3> LitImages::*image) {
     const Lit lit =
-        light->add(graph, environment, request.view, declared.surfaces, outputs.normals, occlusion);
+        light.add(graph, environment, request.view, declared.surfaces, outputs.normals, occlusion);
     read_back.add(graph, lit.all,
                   [&images, image](const Texels& t) { images.lit.*image = rgb(t); });
     return lit;
@@ -150,12 +138,11 @@ Result<void> FrameRenderer::declare_light(Graph& graph, const FrameRequest& requ
   const Lit lit = add(all, &LitImages::all);
   read_back.add(graph, lit.diffuse, [&](const Texels& t) { images.lit.diffuse = rgb(t); });
   read_back.add(graph, lit.specular, [&](const Texels& t) { images.lit.specular = rgb(t); });
-  if (!request.light->lit_steps) return {};
+  if (!request.light->lit_steps) return;
   add({}, &LitImages::unoccluded);
   add({outputs.visibility}, &LitImages::unbent);
   add({outputs.visibility, outputs.bent_normal}, &LitImages::occluded);
   add({outputs.visibility, outputs.bent_normal, outputs.visibility, true}, &LitImages::bounced);
-  return {};
 }
 
 Result<std::unique_ptr<FrameRenderer>> FrameRenderer::create(Gpu& gpu, const Scene& scene,
@@ -199,13 +186,14 @@ Result<FrameImages> FrameRenderer::draw_and_read(const FrameRequest& request) {
   const auto declare = [&](Graph& graph) -> Result<void> {
     ALCOVE_TRY(const auto declared, declare_occlusion(graph, request));
     read_occlusion(graph, declared, read_back, images);
-    ALCOVE_TRY_VOID(declare_light(graph, request, declared, light.get(), read_back, images));
+    if (light && declared.outputs.bent_normal)
+      declare_light(graph, request, declared, *light, read_back, images);
     return read_back.added();
   };
   ALCOVE_TRY_VOID(gpu_.run(declare));
   read_back.finish();
   // Eight bits hold no exact unit vectors.
-  if (request.occlusion.precision == passes::Precision::unorm8)
+  if (request.occlusion.precision == ALCOVE_PRECISION_UNORM8)
     for (glm::vec3& bent : images.bent_normal_ws.pixels) bent = glm::normalize(bent);
   // Normals that are computed from depth are in view space, with their bent normals.
   if (normals_ == NormalSource::depth) {

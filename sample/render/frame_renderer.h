@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "alcove/framegraph/executor.h"
-#include "alcove/passes/occlusion.h"
 #include "gpu/gpu.h"
 #include "gpu/gpu_image.h"
 #include "render/gbuffer.h"
@@ -37,10 +36,10 @@ struct FrameRequest {
   GbufferView view;
   std::uint32_t index = 0;          // number of the frame; 0 resets the histories
   bool restart = false;             // also resets the histories
-  std::uint32_t static_frames = 0;  // see passes::Frame::static_frames
+  std::uint32_t static_frames = 0;  // see AlcoveViewInfo::static_frames
   // Whether the occlusion passes get motion vectors; if not, only the camera moves.
   bool motion_vectors = false;
-  passes::OcclusionSettings occlusion;
+  OcclusionSettings occlusion;
   const IndirectRequest* light = nullptr;  // null: nothing besides occlusion
 };
 
@@ -99,9 +98,8 @@ class FrameRenderer {
  private:
   // The textures of a frame that computes occlusion.
   struct DeclaredFrame {
-    passes::Frame frame;
     Surfaces surfaces;
-    passes::OcclusionOutputs outputs;
+    Occlusion outputs;
     std::vector<framegraph::Texture> specular_occlusion;
   };
 
@@ -116,9 +114,9 @@ class FrameRenderer {
   // Reads back the textures of declare_occlusion() and, below, of the passes that it adds.
   static void read_occlusion(framegraph::Graph& graph, const DeclaredFrame& declared,
                              ReadBack& read_back, FrameImages& images);
-  Result<void> declare_light(framegraph::Graph& graph, const FrameRequest& request,
-                             const DeclaredFrame& declared, const Light* light, ReadBack& read_back,
-                             FrameImages& images);
+  static void declare_light(framegraph::Graph& graph, const FrameRequest& request,
+                            const DeclaredFrame& declared, const Light& light, ReadBack& read_back,
+                            FrameImages& images);
   void append_times(FrameCost& cost, bool occlusion);
 
   Gpu& gpu_;

@@ -75,6 +75,13 @@ constexpr std::size_t kDepthAttributes = 7;
 
 }  // namespace
 
+GbufferView gbuffer_view(const Camera& now, const Camera& before, VkExtent2D size) {
+  const CameraMatrices matrices = camera_matrices(now, size.width, size.height);
+  const CameraMatrices previous = camera_matrices(before, size.width, size.height);
+  return {matrices.view_from_world, matrices.clip_from_view, previous.view_from_world,
+          previous.clip_from_view, now.reversed_z};
+}
+
 Result<void> GbufferRenderer::upload(const Scene& scene) {
   const VulkanDevice& device = gpu_.device();
   const auto uniform = [&](std::size_t stride, std::size_t count) {

@@ -11,6 +11,7 @@
 #include "render/gpu_meshes.h"
 #include "render/gpu_textures.h"
 #include "render/graphics.h"
+#include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/result.h"
 
@@ -29,6 +30,9 @@ struct GbufferView {
 
   bool operator==(const GbufferView&) const = default;
 };
+
+// Returns the view of a camera; `before` is the camera of the previous frame.
+[[nodiscard]] GbufferView gbuffer_view(const Camera& now, const Camera& before, VkExtent2D size);
 
 // The textures that the rasterisation of a frame writes. A texture that is null is not drawn. Depth
 // is required.

@@ -47,8 +47,7 @@ Camera frame_camera(const RenderRequest& request, const Camera& camera, std::uin
 
 // The outputs of a frame.
 enum class Outputs : std::uint8_t {
-  visibility,    // visibility, and specular occlusion if the settings have it
-  specular,      // also specular occlusion
+  timed,         // visibility, and specular occlusion if the settings have it
   bent_normals,  // visibility, bent normals and multi-bounce
   all,
 };
@@ -58,7 +57,7 @@ enum class Outputs : std::uint8_t {
 class Run {
  public:
   Run(FrameRenderer& renderer, const RenderRequest& request, const Camera& camera,
-      const passes::OcclusionSettings& settings)
+      const OcclusionSettings& settings)
       : renderer_(renderer), request_(request), camera_(camera), settings_(settings) {
     if (!request.light.roughness.empty())
       timed_light_.roughness = {request.light.roughness.front()};
@@ -66,10 +65,11 @@ class Run {
 
   // Draws the frames and returns the median times of the last kTimedFrames frames. If the run is
   // shorter, its last frame is drawn several times.
-  Result<Costs> time(Outputs outputs) {
+  Result<Costs> time() {
     std::vector<FrameCost> costs;
     for (std::uint32_t i = 0; i < timed_frames_; ++i) {
-      ALCOVE_TRY(auto cost, renderer_.draw(request(std::min(i, request_.frames - 1), outputs)));
+      ALCOVE_TRY(auto cost,
+                 renderer_.draw(request(std::min(i, request_.frames - 1), Outputs::timed)));
       count();
       if (i + kTimedFrames >= timed_frames_) costs.push_back(std::move(cost));
     }
@@ -92,23 +92,16 @@ class Run {
   }
 
  private:
-  CameraMatrices matrices(std::uint32_t frame) const {
-    return camera_matrices(frame_camera(request_, camera_, frame), request_.width, request_.height);
-  }
-
   FrameRequest request(std::uint32_t frame, Outputs outputs) const {
-    const CameraMatrices now = matrices(frame);
-    const CameraMatrices before = matrices(frame == 0 ? 0 : frame - 1);
     FrameRequest request;
-    request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
-                    before.clip_from_view, camera_.reversed_z};
+    request.view = gbuffer_view(frame_camera(request_, camera_, frame),
+                                frame_camera(request_, camera_, std::max(frame, 1u) - 1),
+                                {request_.width, request_.height});
     request.index = frame;
     request.static_frames = request_.orbit == 0.0f ? frame : 0;
     request.occlusion = settings_;
-    if (outputs == Outputs::specular || outputs == Outputs::all)
-      request.occlusion.specular = specular_model(settings_);
-    if (outputs == Outputs::bent_normals || outputs == Outputs::all)
-      request.occlusion.bent_normal = true;
+    if (outputs == Outputs::all) request.occlusion.specular = specular_model(settings_);
+    if (outputs != Outputs::timed) request.occlusion.bent_normal = true;
     request.light = outputs == Outputs::all ? &request_.light : &timed_light_;
     return request;
   }
@@ -122,14 +115,14 @@ class Run {
   }
 
   void count() {
-    const std::uint32_t total = 2 * timed_frames_ + (one_run_ ? 1 : 2) * (request_.frames - 1);
+    const std::uint32_t total = timed_frames_ + (one_run_ ? 1 : 2) * (request_.frames - 1);
     progress_(static_cast<double>(++drawn_) / total);
   }
 
   FrameRenderer& renderer_;
   const RenderRequest& request_;
   Camera camera_;
-  passes::OcclusionSettings settings_;
+  OcclusionSettings settings_;
   bool one_run_ = settings_.specular == specular_model(settings_);
   std::uint32_t timed_frames_ = std::max(request_.frames, kTimedFrames + 1);
   IndirectRequest timed_light_;  // one roughness, and no light
@@ -139,8 +132,8 @@ class Run {
 
 }  // namespace
 
-passes::Specular specular_model(const passes::OcclusionSettings& settings) {
-  return settings.specular == passes::Specular::none ? passes::Specular::slices : settings.specular;
+AlcoveSpecular specular_model(const OcclusionSettings& settings) {
+  return settings.specular == ALCOVE_SPECULAR_NONE ? ALCOVE_SPECULAR_SLICES : settings.specular;
 }
 
 Result<Rendering> render(Session session, const RenderRequest& request) {
@@ -158,9 +151,8 @@ Result<Rendering> render(Session session, const RenderRequest& request) {
       const auto renderer,
       FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals));
   Run run(*renderer, request, session.camera, result.settings);
-  ALCOVE_TRY(result.costs, run.time(Outputs::visibility));
+  ALCOVE_TRY(result.costs, run.time());
   result.memory = renderer->memory();
-  ALCOVE_TRY(result.costs_with_specular, run.time(Outputs::specular));
   ALCOVE_TRY(result.images, run.draw());
   ALCOVE_TRY_VOID(check_validation(gpu));
   return result;

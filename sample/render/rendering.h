@@ -24,20 +24,19 @@ struct Rendering {
   Scene scene;
   double load_seconds = 0.0;  // time that loading the scene took
   Camera camera;              // in the last frame
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   IndirectRequest light;
   // The images of the last frame. If the settings have no specular occlusion, specular occlusion
   // and the images lit with it come from a second run.
   FrameImages images;
-  Costs costs;                // with the settings as given
-  Costs costs_with_specular;  // with specular occlusion
+  Costs costs;  // with the settings as given
   framegraph::MemoryStatistics memory;
   std::string device;
   std::string driver;
 };
 
 // Returns the method with which specular occlusion is drawn: `slices` if the settings have none.
-[[nodiscard]] passes::Specular specular_model(const passes::OcclusionSettings& settings);
+[[nodiscard]] AlcoveSpecular specular_model(const OcclusionSettings& settings);
 
 // The frames to draw, and the outputs of the last one.
 struct RenderRequest {

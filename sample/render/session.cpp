@@ -10,8 +10,7 @@ Result<std::unique_ptr<Gpu>> open_gpu(const DeviceRequest& request) {
   executor.check_uses = executor.check_uses || request.validation;
   return Gpu::create({.validation = request.validation,
                       .index = request.index,
-                      .surface_extensions = request.surface_extensions,
-                      .capture = request.capture},
+                      .surface_extensions = request.surface_extensions},
                      executor);
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/result.h"
@@ -19,14 +19,13 @@ struct DeviceRequest {
   int index = -1;           // As `alcove doctor` lists them; -1 chooses the first suitable one.
   bool validation = false;  // Turns on the validation layers and the checks of the render graph.
   std::vector<const char*> surface_extensions;  // Instance extensions of a window, if any.
-  bool capture = false;                         // DeviceOptions::capture
 };
 
 // A scene with a camera, settings and a device to draw it on.
 struct Session {
   Scene scene;
   Camera camera;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   std::string radius_reason;  // Where the radius comes from.
   double load_seconds = 0.0;  // Of the scene.
   DeviceRequest device;
@@ -36,7 +35,7 @@ struct Session {
 // A view of a scene and the settings that its occlusion is drawn with.
 struct Shot {
   Camera camera;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   // Perceptual, [0,1], of every surface; null: the materials' own roughness.
   std::optional<float> roughness;
   std::uint32_t width = 0;  // pixels

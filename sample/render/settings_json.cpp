@@ -5,25 +5,23 @@
 #include "alcove/passes/setting_table.h"
 
 namespace alcove::sample {
-namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json show(float value) { return value; }
-Json show(std::uint32_t value) { return value; }
-Json show(bool value) { return value; }
-template <typename Choice>
-Json show(Choice value) {
-  return passes::name_of(value);
-}
-
-}  // namespace
-
-Json to_json(const passes::OcclusionSettings& settings) {
-  Json json;
-  passes::for_each_setting(settings, [&](const passes::SettingInfo& info, const auto& field) {
-    if (info.group != passes::SettingGroup::surface) json[info.name] = show(field);
-  });
+nlohmann::ordered_json to_json(const OcclusionSettings& settings) {
+  using Kind = passes::SettingInfo::Kind;
+  nlohmann::ordered_json json;
+  for (const passes::SettingInfo& info : passes::setting_table()) {
+    if (info.of_material) continue;
+    const auto number = passes::setting_value<std::uint32_t>(settings, info);
+    if (info.kind == Kind::real)
+      json[info.name] = passes::setting_value<float>(settings, info);
+    else if (info.kind == Kind::whole)
+      json[info.name] = number;
+    else if (info.choices.front() == "false")
+      json[info.name] = number != 0;
+    else
+      json[info.name] = passes::setting_text(settings, info);
+  }
+  json["bent_normal"] = settings.bent_normal;
   return json;
 }
 

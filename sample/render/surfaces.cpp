@@ -2,16 +2,17 @@
 
 #include <cstring>
 
+#include "alcove/passes/setting_table.h"
+
 namespace alcove::sample {
 namespace {
 
-passes::Matrix to_matrix(const glm::mat4& matrix) {
-  passes::Matrix result;
-  std::memcpy(result.data(), &matrix, sizeof(result));
-  return result;
+AlcoveCamera to_camera(const glm::mat4& clip_from_view, const glm::mat4& view_from_world) {
+  AlcoveCamera camera;
+  std::memcpy(camera.clip_from_view, &clip_from_view, sizeof camera.clip_from_view);
+  std::memcpy(camera.view_from_world, &view_from_world, sizeof camera.view_from_world);
+  return camera;
 }
-
-std::string message(const passes::Error& error) { return error.message; }
 
 }  // namespace
 
@@ -23,36 +24,57 @@ bool HiddenDepths::covers(const HiddenDepths& other) const {
   return (back_faces || !other.back_faces) && (second_layer || !other.second_layer);
 }
 
-HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings) {
+HiddenDepths hidden_depths_of(const AlcoveSettings& settings) {
   return {passes::needs_back_depth(settings), passes::needs_second_depth(settings)};
 }
 
-passes::Frame pass_frame(Graph& graph, Gpu& gpu, const GbufferView& view, std::uint32_t index,
-                         std::uint32_t static_frames) {
-  return {graph,
-          gpu.kernels(),
-          {to_matrix(view.clip_from_view), to_matrix(view.view_from_world)},
-          index,
-          {to_matrix(view.previous_clip_from_view), to_matrix(view.previous_view_from_world)},
-          static_frames};
+AlcoveViewInfo view_info(const GbufferView& view, std::uint32_t id, std::uint32_t static_frames) {
+  return {
+      .id = id,
+      .static_frames = static_frames,
+      .camera = to_camera(view.clip_from_view, view.view_from_world),
+      .previous_camera = to_camera(view.previous_clip_from_view, view.previous_view_from_world)};
 }
 
-Result<passes::OcclusionOutputs> add_occlusion(const passes::Frame& frame, const Surfaces& surfaces,
-                                               passes::OcclusionSettings settings,
-                                               std::string_view history_name) {
+Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& view,
+                                std::uint32_t index, const Surfaces& surfaces,
+                                OcclusionSettings settings, bool multi_bounce) {
   const Gbuffer& gbuffer = surfaces.gbuffer;
-  passes::OcclusionInputs inputs{.depth_ndc = gbuffer.depth};
-  inputs.back_depth_ndc = gbuffer.back_depth;
-  inputs.second_depth_ndc = gbuffer.second_depth;
-  if (surfaces.normals != NormalSource::depth) inputs.normals = gbuffer.normal;
-  if (surfaces.motion_vectors) inputs.motion = gbuffer.motion;
+  const bool has_normals = surfaces.normals != NormalSource::depth;
+  passes::ViewTextures textures{};
+  textures[ALCOVE_IMAGE_DEPTH] = gbuffer.depth;
+  textures[ALCOVE_IMAGE_BACK_DEPTH] = gbuffer.back_depth;
+  textures[ALCOVE_IMAGE_SECOND_DEPTH] = gbuffer.second_depth;
+  if (has_normals) textures[ALCOVE_IMAGE_NORMALS] = gbuffer.normal;
+  if (surfaces.motion_vectors) textures[ALCOVE_IMAGE_MOTION] = gbuffer.motion;
   if (surfaces.roughness) {
     settings.roughness = *surfaces.roughness;
   } else {
-    inputs.roughness = gbuffer.albedo;
+    textures[ALCOVE_IMAGE_ROUGHNESS] = gbuffer.albedo;
     settings.roughness_channel = 3;
   }
-  return passes::add_occlusion(frame, inputs, settings, history_name).map_error(message);
+  if (multi_bounce) {
+    textures[ALCOVE_IMAGE_ALBEDO] = gbuffer.albedo;
+    const VkFormat format = settings.precision == ALCOVE_PRECISION_UNORM8 ? VK_FORMAT_R8G8B8A8_UNORM
+                            : settings.precision == ALCOVE_PRECISION_FLOAT16
+                                ? VK_FORMAT_R16G16B16A16_SFLOAT
+                                : VK_FORMAT_R32G32B32A32_SFLOAT;
+    textures[ALCOVE_IMAGE_MULTI_BOUNCE] =
+        graph.create_texture("multi-bounce", {format, extent_of(graph, gbuffer.depth)});
+  }
+  const auto message = [](const passes::Error& error) { return error.message; };
+  ALCOVE_TRY_VOID(
+      add_occlusion(graph, gpu.kernels(), view, index, settings, textures).map_error(message));
+  Occlusion result{textures[ALCOVE_IMAGE_VISIBILITY], textures[ALCOVE_IMAGE_BENT_NORMAL],
+                   textures[ALCOVE_IMAGE_SPECULAR], textures[ALCOVE_IMAGE_MULTI_BOUNCE],
+                   gbuffer.normal};
+  if (!has_normals) {
+    ALCOVE_TRY(
+        const auto made,
+        passes::add_surface(graph, gpu.kernels(), view.camera, gbuffer.depth).map_error(message));
+    result.normals = made.normals;
+  }
+  return result;
 }
 
 }  // namespace alcove::sample

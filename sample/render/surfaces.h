@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "render/gbuffer.h"
 #include "render/normal_source.h"
 #include "support/result.h"
@@ -30,14 +31,24 @@ struct HiddenDepths {
   [[nodiscard]] HiddenDepths with(const HiddenDepths& other) const;
   [[nodiscard]] bool covers(const HiddenDepths& other) const;
 };
-[[nodiscard]] HiddenDepths hidden_depths_of(const passes::OcclusionSettings& settings);
+[[nodiscard]] HiddenDepths hidden_depths_of(const AlcoveSettings& settings);
 
-[[nodiscard]] passes::Frame pass_frame(framegraph::Graph& graph, Gpu& gpu, const GbufferView& view,
-                                       std::uint32_t index = 0, std::uint32_t static_frames = 0);
+[[nodiscard]] AlcoveViewInfo view_info(const GbufferView& view, std::uint32_t id = 0,
+                                       std::uint32_t static_frames = 0);
+
+// The occlusion of the surfaces. Outputs that were not requested are null.
+struct Occlusion {
+  framegraph::Texture visibility;
+  framegraph::Texture bent_normal;
+  framegraph::Texture specular;
+  framegraph::Texture multi_bounce;
+  framegraph::Texture normals;  // those that the passes used
+};
 
 // Adds the occlusion passes. The roughness of the surfaces replaces that of the settings.
-[[nodiscard]] Result<passes::OcclusionOutputs> add_occlusion(
-    const passes::Frame& frame, const Surfaces& surfaces, passes::OcclusionSettings settings,
-    std::string_view history_name = "occlusion");
+[[nodiscard]] Result<Occlusion> add_occlusion(framegraph::Graph& graph, Gpu& gpu,
+                                              const AlcoveViewInfo& view, std::uint32_t index,
+                                              const Surfaces& surfaces, OcclusionSettings settings,
+                                              bool multi_bounce = false);
 
 }  // namespace alcove::sample

@@ -1,15 +1,20 @@
 #include "scene/environment.h"
 
+#include <ImfChannelList.h>
 #include <ImfRgbaFile.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
+#include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <new>
 #include <vector>
 
 #include "support/block_mean.h"
+#include "support/foreign_file.h"
+#include "support/printable.h"
 
 namespace alcove::sample {
 namespace {
@@ -35,35 +40,63 @@ glm::vec3 sky_radiance(const glm::vec3& d) {
   return glm::mix(ground, haze + glow, above);
 }
 
-// The largest radiance of an OpenEXR file of 16-bit floats, or 0 if the value is invalid.
-float valid(float value) { return value > 0.0f ? std::min(value, kLargestHalf) : 0.0f; }
+// The sides of a window of an OpenEXR file, in pixels.
+glm::i64vec2 size_of(const Imath::Box2i& window) {
+  return {int64_t{window.max.x} - window.min.x + 1, int64_t{window.max.y} - window.min.y + 1};
+}
+
+// Returns the names of the channels of an OpenEXR file.
+std::string channel_names(const Imf::Header& header) {
+  std::string out;
+  for (auto at = header.channels().begin(); at != header.channels().end(); ++at)
+    out += (out.empty() ? "" : ", ") + std::string(at.name());
+  return shortened(out, 80);
+}
 
 // Reads an OpenEXR file, and reduces the image by a whole factor to at most kLargestSide pixels a
-// side. The error text is the end of a sentence that begins with the file's name.
-Result<EnvironmentImage> read_environment(const std::filesystem::path& file) {
+// side. The display window is the sphere. Where the file has no data, it is black. The error text
+// is the end of a sentence.
+Result<EnvironmentImage> read_environment(const std::filesystem::path& file, bool& is_clipped) {
   constexpr int64_t kLargestFileSide = 16384;
+  constexpr int kGray = Imf::WRITE_Y;
   try {
     Imf::RgbaInputFile input(file.string().c_str());
-    const Imath::Box2i window = input.dataWindow();
-    const int64_t width = int64_t{window.max.x} - window.min.x + 1;
-    const int64_t height = int64_t{window.max.y} - window.min.y + 1;
-    const int64_t longest = std::max(width, height);
-    if (longest > kLargestFileSide)
-      return Failure("has more than " + std::to_string(kLargestFileSide) + " pixels a side");
-    const auto factor = static_cast<uint32_t>((longest + kLargestSide - 1) / kLargestSide);
-    BlockMean<float, double, 3> mean(static_cast<uint32_t>(width), static_cast<uint32_t>(height),
-                                     factor);
-    EnvironmentImage image(mean.reduced(static_cast<uint32_t>(width)),
-                           mean.reduced(static_cast<uint32_t>(height)));
+    if ((input.channels() & Imf::WRITE_RGB) != Imf::WRITE_RGB && (input.channels() & kGray) == 0) {
+      return Failure("has no channels R, G and B, but " + channel_names(input.header()) +
+                     "; save it with these three");
+    }
+    const Imath::Box2i data = input.dataWindow(), window = input.displayWindow();
+    const glm::i64vec2 size = size_of(window), data_size = size_of(data);
+    const int64_t longest = std::max({size.x, size.y, data_size.x, data_size.y});
+    if (longest > kLargestFileSide) {
+      return Failure("has more than " + std::to_string(kLargestFileSide) +
+                     " pixels a side; save it smaller");
+    }
+    if (!data.intersects(window))
+      return Failure("has no pixels in its display window; crop it again");
+    const auto width = static_cast<uint32_t>(size.x), height = static_cast<uint32_t>(size.y);
+    const auto factor =
+        static_cast<uint32_t>((std::max(size.x, size.y) + kLargestSide - 1) / kLargestSide);
+    BlockMean<float, double, 3> mean(width, height, factor);
+    EnvironmentImage image(mean.reduced(width), mean.reduced(height));
     size_t written = 0;
-    std::vector<Imf::Rgba> row(static_cast<size_t>(width));
+    std::vector<Imf::Rgba> row(static_cast<size_t>(data_size.x));
     std::vector<float> light;
-    input.setFrameBuffer(row.data() - window.min.x, 1, 0);  // each row into the same memory
+    input.setFrameBuffer(row.data() - data.min.x, 1, 0);  // each row into the same memory
     for (int y = window.min.y; y <= window.max.y; ++y) {
-      input.readPixels(y);
-      light.clear();
-      for (const Imf::Rgba& pixel : row)
-        light.insert(light.end(), {valid(pixel.r), valid(pixel.g), valid(pixel.b)});
+      light.assign(size_t{3} * width, 0.0f);
+      if (y >= data.min.y && y <= data.max.y) {
+        input.readPixels(y);
+        for (int x = std::max(data.min.x, window.min.x); x <= std::min(data.max.x, window.max.x);
+             ++x) {
+          const Imf::Rgba& pixel = row[static_cast<size_t>(x - data.min.x)];
+          float* out = &light[3 * static_cast<size_t>(x - window.min.x)];
+          for (const float value : {pixel.r, pixel.g, pixel.b}) {
+            is_clipped |= value > kLargestHalf;
+            *out++ = value > 0.0f ? std::min(value, kLargestHalf) : 0.0f;
+          }
+        }
+      }
       mean.add_row(light, [&](size_t, double value) {
         image.pixels[written / 3][static_cast<int>(written % 3)] = static_cast<float>(value);
         ++written;
@@ -73,8 +106,13 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    return Failure(std::string("is no OpenEXR file that can be read (OpenEXR says: ") +
-                   error.what() + ")");
+    std::array<char, 64> start{};
+    std::ifstream(file, std::ios::binary).read(start.data(), start.size());
+    const auto* bytes = reinterpret_cast<const uint8_t*>(start.data());
+    const std::string kind = foreign_kind({bytes, start.size()}, "convert it to OpenEXR");
+    if (!kind.empty() && !kind.starts_with("is OpenEXR")) return Failure(kind);
+    return Failure(std::string("is no OpenEXR image that can be read (OpenEXR says: ") +
+                   error.what() + "); save it again as a flat image of the channels R, G and B");
   }
 }
 
@@ -88,11 +126,19 @@ EnvironmentImage procedural_sky() {
   return sky;
 }
 
-Result<EnvironmentImage> load_environment(const std::filesystem::path& file) {
+Result<EnvironmentImage> load_environment(const std::filesystem::path& file,
+                                          const std::function<void(const std::string&)>& note) {
   if (file.empty()) return procedural_sky();
-  return read_environment(file).map_error([&](const std::string& why) {
-    return "The environment " + file.string() + " cannot be used: it " + why + ".";
-  });
+  const auto refuse = [&](const std::string& why) {
+    return "The environment " + printable(file.string()) + " cannot be used: " + why + ".";
+  };
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return Failure(refuse(missing_file(file)));
+  bool is_clipped = false;
+  auto image = read_environment(file, is_clipped);
+  if (!image) return Failure(refuse("it " + image.error()));
+  if (is_clipped && note) note("The environment's light above 65504 is clipped to that.");
+  return image;
 }
 
 glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "support/glm.h"
@@ -19,10 +20,13 @@ using EnvironmentImage = Image<glm::vec3>;
 [[nodiscard]] EnvironmentImage procedural_sky();
 
 // Reads an OpenEXR file of at most 16384 pixels a side as 16-bit floats, and reduces it by a whole
-// factor to at most 2048. An empty name gives the procedural sky. Radiance that is negative or NaN
-// becomes 0, and radiance above the largest 16-bit float, 65504, becomes that. The error is a
-// sentence with the file's name: unreadable, damaged, or another format.
-[[nodiscard]] Result<EnvironmentImage> load_environment(const std::filesystem::path& file);
+// factor to at most 2048. Its display window is the sphere, which is black where the file has no
+// data. An empty name gives the procedural sky. Radiance that is negative or NaN becomes 0, and
+// radiance above the largest 16-bit float, 65504, becomes that, which `note` is called with a
+// sentence about. The error is a sentence with the file's name: unreadable, damaged, or another
+// format.
+[[nodiscard]] Result<EnvironmentImage> load_environment(
+    const std::filesystem::path& file, const std::function<void(const std::string&)>& note = {});
 
 // Returns the radiance from a unit direction in world space, interpolated bilinearly.
 [[nodiscard]] glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction);

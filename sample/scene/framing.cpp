@@ -1,408 +1,299 @@
 #include "scene/framing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <vector>
+#include <span>
+
+#include "support/median.h"
 
 namespace alcove::sample {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr uint32_t kPictureHeight = 90;  // pixels, of a depth picture
+using Parts = std::span<const MeshInstance>;
 
-using Polygon = std::vector<glm::dvec3>;
-using Triangle = std::array<glm::dvec3, 3>;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-double distance(const glm::dvec4& plane, const glm::dvec3& p) {
-  return glm::dot(glm::dvec3(plane), p) + plane.w;
+glm::vec3 size_of(const Bounds& bounds) { return bounds.high - bounds.low; }
+glm::vec3 middle(const Bounds& bounds) { return 0.5f * bounds.low + 0.5f * bounds.high; }
+
+bool is_wider(const Bounds& bounds, const Bounds& rest) {
+  constexpr double kMost = 1e4;  // a rest that is smaller is nothing to look at
+  const glm::vec3 size = size_of(bounds), least = 3.0f * size_of(rest);
+  return size.x >= least.x && size.z >= least.z && diagonal(bounds) < kMost * diagonal(rest);
 }
 
-// Cuts off the part of a convex polygon at the negative side of a plane.
-void clip(Polygon& polygon, const glm::dvec4& plane) {
-  Polygon out;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3& a = polygon[i];
-    const glm::dvec3& b = polygon[(i + 1) % polygon.size()];
-    const double da = distance(plane, a), db = distance(plane, b);
-    if (da >= 0.0) out.push_back(a);
-    if ((da < 0.0) != (db < 0.0)) out.push_back(glm::mix(a, b, da / (da - db)));
-  }
-  polygon = std::move(out);
+bool is_ground(const Bounds& bounds, const Bounds& rest) {
+  constexpr float kFlat = 0.005f;  // of the width; a circuit board is thicker
+  constexpr float kSunk = 0.2f;    // of the height of the rest, in the ground
+  const glm::vec3 size = size_of(bounds);
+  return is_wider(bounds, rest) && size.y <= kFlat * std::min(size.x, size.z) &&
+         bounds.high.y <= rest.low.y + kSunk * size_of(rest).y;
 }
 
-// Half the size of the image at distance 1, or of an orthographic view at any distance.
-glm::dvec2 half_size(const Camera& camera, double aspect) {
-  const double y = camera.orthographic ? 0.5 * camera.ortho_height : std::tan(0.5 * camera.fov_y);
-  return {y * aspect, y};
+// Returns the distance at which a ray meets a mesh if it meets a face of it that is drawn, and no
+// other.
+std::optional<float> distance_to_shell(const RayScene& rays, uint32_t mesh, const glm::vec3& from,
+                                       const glm::vec3& direction) {
+  constexpr int kMostHits = 64;
+  std::optional<float> found;
+  float distance = 0.0f;
+  for (int i = 0; i < kMostHits; ++i) {
+    const auto hit = rays.nearest(from + distance * direction, direction, kInfinity, true);
+    if (!hit) return found;
+    distance = 1.0001f * (distance + hit->distance);
+    if (hit->mesh != mesh) continue;
+    if (found || !(hit->front || rays.scene().materials[hit->material].double_sided)) break;
+    found = distance;
+  }
+  return std::nullopt;
 }
 
-// Returns the planes of the image's four sides in view space, and in perspective also the plane
-// through the eye. The visible part of space is on their positive sides.
-std::vector<glm::dvec4> side_planes(const Camera& camera, double aspect) {
-  const auto [x, y] = std::pair(half_size(camera, aspect).x, half_size(camera, aspect).y);
-  if (camera.orthographic) return {{1, 0, 0, x}, {-1, 0, 0, x}, {0, 1, 0, y}, {0, -1, 0, y}};
-  return {{1, 0, -x, 0}, {-1, 0, -x, 0}, {0, 1, -y, 0}, {0, -1, -y, 0}, {0, 0, -1, 0}};
+bool is_sky(const RayScene& rays, const MeshInstance& part, const Bounds& rest) {
+  const glm::vec3 border = 0.1f * size_of(rest);
+  if (!is_wider(part.bounds_ws, rest) || !contains(part.bounds_ws, rest.low + border) ||
+      !contains(part.bounds_ws, rest.high - border))
+    return false;
+  for (int i = 0; i < 13; ++i) {  // eight rays to the sides, five up
+    const float angle = 0.7854f * static_cast<float>(i) + 0.19f;  // not to the edges of boxes
+    const glm::vec3 to(std::cos(angle), i < 8 ? 0.03f : i < 12 ? 1.1f : 50.0f, std::sin(angle));
+    if (!distance_to_shell(rays, part.mesh, middle(rest), glm::normalize(to))) return false;
+  }
+  return true;
 }
 
-DepthRange united(const DepthRange& a, const DepthRange& b) {
-  return {std::min(a.nearest, b.nearest), std::max(a.farthest, b.farthest)};
-}
-
-// Consecutive triangles of a mesh.
-struct Block {
-  size_t first;  // index
-  size_t last;
-  Bounds bounds;  // in mesh space
-};
-
-std::vector<Block> split(const Mesh& mesh) {
-  constexpr size_t kIndices = size_t{3} << 16;
-  std::vector<Block> blocks;
-  const size_t count = mesh.indices.size() / 3 * 3;
-  for (size_t first = 0; first < count; first += kIndices) {
-    const size_t last = std::min(first + kIndices, count);
-    blocks.push_back({first, last, bounds_of_triangles(mesh, first, last)});
-  }
-  return blocks;
-}
-
-// A block of an instance that may be in view.
-struct Candidate {
-  uint32_t mesh;
-  uint32_t instance;
-  uint32_t block;
-  float nearest;  // a lower limit of its depth
-};
-
-// Draws the blocks in view, the nearest first, into a depth picture.
-class DepthDrawing {
- public:
-  DepthDrawing(const Scene& scene, const Camera& camera, double aspect)
-      : scene_(scene),
-        view_from_world_(camera_matrices(camera, 1, 1).view_from_world),
-        perspective_(!camera.orthographic),
-        planes_(side_planes(camera, aspect)),
-        half_size_(half_size(camera, aspect)) {
-    const double width = std::clamp(std::round(kPictureHeight * aspect), 16.0, 1024.0);
-    depth_ = Image<float>(static_cast<uint32_t>(width), kPictureHeight,
-                          std::numeric_limits<float>::infinity());
-    for (const Mesh& mesh : scene.meshes) blocks_.push_back(split(mesh));
-  }
-
-  DepthPicture run() {
-    std::vector<Candidate> candidates = candidates_in_view();
-    std::ranges::sort(candidates, {}, &Candidate::nearest);
-    constexpr uint64_t kMostTriangles = uint64_t{1} << 25;
-    uint64_t triangles = 0;
-    for (const Candidate& candidate : candidates) {
-      const Block& block = blocks_[candidate.mesh][candidate.block];
-      triangles += (block.last - block.first) / 3;
-      const glm::dmat4 view = view_from_mesh(scene_.meshes[candidate.mesh], candidate.instance);
-      if (triangles <= kMostTriangles)
-        draw_block(scene_.meshes[candidate.mesh], block, view);
-      else
-        draw_bounds(block.bounds, view);
-    }
-    DepthPicture out{std::move(depth_), std::nullopt};
-    if (range_.nearest <= range_.farthest) out.range = range_;
-    return out;
-  }
-
- private:
-  glm::dmat4 view_from_mesh(const Mesh& mesh, size_t instance) const {
-    return view_from_world_ * glm::dmat4(glm::dmat4x3(world_from_mesh(mesh, instance)));
-  }
-
-  // Returns whether all points are on the negative side of one of the planes.
-  template <size_t N>
-  bool is_outside(const std::array<glm::dvec3, N>& points) const {
-    return std::ranges::any_of(planes_, [&](const glm::dvec4& plane) {
-      return std::ranges::all_of(points,
-                                 [&](const glm::dvec3& p) { return distance(plane, p) < 0.0; });
-    });
-  }
-
-  // Returns the range of depths of a box, or null if it is out of view.
-  std::optional<DepthRange> depth_bounds(const Bounds& bounds, const glm::dmat4& view) const {
-    std::array<glm::dvec3, 8> corners_vs;
-    const auto corners = corners_of(bounds);
-    DepthRange out{kInfinity, -kInfinity};
-    for (size_t i = 0; i < corners.size(); ++i) {
-      corners_vs[i] = glm::dvec3(view * glm::dvec4(corners[i], 1.0));
-      out = united(out, {-corners_vs[i].z, -corners_vs[i].z});
-    }
-    if (is_outside(corners_vs)) return std::nullopt;
-    if (perspective_) out.nearest = std::max(out.nearest, 0.0);
-    return out;
-  }
-
-  std::vector<Candidate> candidates_in_view() const {
-    std::vector<Candidate> out;
-    for (uint32_t m = 0; m < scene_.meshes.size(); ++m) {
-      const Mesh& mesh = scene_.meshes[m];
-      const size_t count = blocks_[m].empty() ? 0 : instance_count(mesh);
-      for (uint32_t instance = 0; instance < count; ++instance) {
-        const glm::dmat4 view = view_from_mesh(mesh, instance);
-        for (uint32_t b = 0; b < blocks_[m].size(); ++b) {
-          const auto bounds = depth_bounds(blocks_[m][b].bounds, view);
-          if (bounds) out.push_back({m, instance, b, static_cast<float>(bounds->nearest)});
-        }
-      }
-    }
-    return out;
-  }
-
-  void draw_block(const Mesh& mesh, const Block& block, const glm::dmat4& view) {
-    const double side = glm::determinant(glm::dmat3(view)) < 0.0 ? -1.0 : 1.0;
-    const bool culls = !scene_.materials[mesh.material].double_sided;
-    for (size_t i = block.first; i < block.last; i += 3) {
-      Triangle triangle;
+// Returns the box of parts without strays, and counts the strays.
+Bounds bounds_without_strays(const Scene& scene, Parts parts, size_t& strays) {
+  constexpr double kSamples = 30000.0, kBeyond = 0.001 / 6.0;  // share of the area at each side
+  struct Triangle {
+    Bounds bounds_ws;
+    double area;
+  };
+  std::vector<Triangle> triangles;
+  Bounds all = empty_bounds(), box, core = empty_bounds();
+  double area = 0.0, sampled = 0.0, visited = 0.0;
+  for (const MeshInstance& part : parts) {
+    const Mesh& mesh = scene.meshes[part.mesh];
+    const glm::dmat4x3 world(world_from_mesh(mesh, part.instance));
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      std::array<glm::dvec3, 3> at;
       for (size_t c = 0; c < 3; ++c)
-        triangle[c] = glm::dvec3(view * glm::dvec4(mesh.positions[mesh.indices[i + c]], 1.0));
-      const auto& [a, b, c] = triangle;
-      if (culls) {
-        const glm::dvec3 normal = side * glm::cross(b - a, c - a);
-        if (perspective_ ? glm::dot(normal, a) >= 0.0 : normal.z <= 0.0) continue;
-      }
-      if (is_outside(triangle)) continue;
-      extend_range(triangle);
-      draw(triangle);
+        at[c] = world * glm::dvec4(mesh.positions[mesh.indices[i + c]], 1.0);
+      triangles.push_back(
+          {{glm::min(at[0], glm::min(at[1], at[2])), glm::max(at[0], glm::max(at[1], at[2]))},
+           glm::length(glm::cross(at[1] - at[0], at[2] - at[0]))});
+      all = united(all, triangles.back().bounds_ws);
+      area += triangles.back().area;
     }
   }
-
-  void draw_bounds(const Bounds& bounds, const glm::dmat4& view) {
-    const auto depths = depth_bounds(bounds, view);
-    if (!depths) return;
-    range_ = united(range_, *depths);
-    const glm::dvec3 centre(view * glm::dvec4(0.5f * (bounds.low + bounds.high), 1.0));
-    set_pixel(to_pixel(homogeneous(centre)), -centre.z);
-  }
-
-  void extend_range(const Triangle& triangle) {
-    const auto& [a, b, c] = triangle;
-    const double nearest = -std::max({a.z, b.z, c.z}), farthest = -std::min({a.z, b.z, c.z});
-    if (nearest >= range_.nearest && farthest <= range_.farthest) return;
-    Polygon polygon(triangle.begin(), triangle.end());
-    for (const glm::dvec4& plane : planes_) clip(polygon, plane);
-    for (const glm::dvec3& p : polygon) range_ = united(range_, {-p.z, -p.z});
-  }
-
-  // A point of view space with the weight by which perspective divides.
-  glm::dvec3 homogeneous(const glm::dvec3& p) const {
-    return {p.x, p.y, perspective_ ? -p.z : 1.0};
-  }
-  // Returns the position in the image, in pixels from the top left corner.
-  glm::dvec2 to_pixel(const glm::dvec3& point) const {
-    const glm::dvec2 ndc = glm::dvec2(point) / point.z / half_size_;
-    return {0.5 * (1.0 + ndc.x) * depth_.width, 0.5 * (1.0 - ndc.y) * depth_.height};
-  }
-
-  void set_pixel(const glm::dvec2& pixel, double depth) {
-    if (!(pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < depth_.width && pixel.y < depth_.height) ||
-        (perspective_ && depth <= 0.0))
-      return;
-    float& at = depth_.at(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y));
-    at = std::min(at, static_cast<float>(depth));
-  }
-
-  // Draws a triangle in homogeneous coordinates (Olano and Greer 1997), which need no clipping.
-  void draw(const Triangle& triangle) {
-    const glm::dvec3 p0 = homogeneous(triangle[0]), p1 = homogeneous(triangle[1]),
-                     p2 = homogeneous(triangle[2]);
-    glm::dvec2 low(0.0), high(depth_.width, depth_.height);
-    if (p0.z > 0.0 && p1.z > 0.0 && p2.z > 0.0) {
-      const glm::dvec2 a = to_pixel(p0), b = to_pixel(p1), c = to_pixel(p2);
-      const glm::dvec2 first = glm::min(a, glm::min(b, c)), last = glm::max(a, glm::max(b, c));
-      if (last.x - first.x < 1.0 && last.y - first.y < 1.0)
-        return set_pixel((a + b + c) / 3.0, -(triangle[0].z + triangle[1].z + triangle[2].z) / 3.0);
-      low = glm::max(low, glm::floor(first));
-      high = glm::min(high, glm::ceil(last));
-    }
-    const glm::dvec3 e0 = glm::cross(p1, p2), e1 = glm::cross(p2, p0), e2 = glm::cross(p0, p1);
-    for (double y = low.y + 0.5; y < high.y; ++y) {
-      for (double x = low.x + 0.5; x < high.x; ++x) {
-        const glm::dvec3 at((2.0 * x / depth_.width - 1.0) * half_size_.x,
-                            (1.0 - 2.0 * y / depth_.height) * half_size_.y, 1.0);
-        const double w0 = glm::dot(e0, at), w1 = glm::dot(e1, at), w2 = glm::dot(e2, at);
-        const bool inside =
-            (w0 >= 0.0 && w1 >= 0.0 && w2 >= 0.0) || (w0 <= 0.0 && w1 <= 0.0 && w2 <= 0.0);
-        const double sum = w0 + w1 + w2;
-        if (!inside || sum == 0.0) continue;
-        set_pixel({x, y}, -(w0 * triangle[0].z + w1 * triangle[1].z + w2 * triangle[2].z) / sum);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> lows, highs;  // of triangles, as often as their area is large
+    sampled = visited = 0.0;
+    for (const Triangle& triangle : triangles) {
+      for (visited += triangle.area; sampled < visited; sampled += area / kSamples) {
+        lows.push_back(triangle.bounds_ws.low[axis]);
+        highs.push_back(triangle.bounds_ws.high[axis]);
       }
     }
+    box.low[axis] = percentile(std::move(lows), kBeyond);
+    box.high[axis] = percentile(std::move(highs), 1.0 - kBeyond);
   }
-
-  const Scene& scene_;
-  glm::dmat4 view_from_world_;
-  bool perspective_;
-  std::vector<glm::dvec4> planes_;
-  glm::dvec2 half_size_;
-  std::vector<std::vector<Block>> blocks_;  // by mesh
-  Image<float> depth_;
-  DepthRange range_{kInfinity, -kInfinity};
-};
-
-// Calls `visit(position_ws)` for each pixel of a depth picture that has a surface.
-template <class Visit>
-void for_each_surface(const DepthPicture& picture, const Camera& camera, double aspect,
-                      const Visit& visit) {
-  const glm::dmat4 world(camera_matrices(camera, 1, 1).world_from_view);
-  const glm::dvec2 half = half_size(camera, aspect);
-  for (uint32_t y = 0; y < picture.depth.height; ++y) {
-    for (uint32_t x = 0; x < picture.depth.width; ++x) {
-      const double depth = picture.depth.at(x, y);
-      if (std::isinf(depth)) continue;
-      const glm::dvec2 ndc((2.0 * x + 1.0) / picture.depth.width - 1.0,
-                           1.0 - (2.0 * y + 1.0) / picture.depth.height);
-      const glm::dvec2 at = ndc * half * (camera.orthographic ? 1.0 : depth);
-      visit(glm::vec3(world * glm::dvec4(at, -depth, 1.0)));
-    }
+  for (const Triangle& triangle : triangles) {
+    const glm::vec3 low = glm::max(triangle.bounds_ws.low, box.low);
+    const bool apart = glm::any(glm::lessThan(glm::min(triangle.bounds_ws.high, box.high), low));
+    strays += apart ? 1 : 0;
+    if (!apart) core = united(core, triangle.bounds_ws);
   }
+  if (diagonal(core) < 0.9 * diagonal(all)) return core;
+  strays = 0;
+  return all;
 }
 
-// Returns the bounds of the subject, grown by the error of positions in a depth picture.
-Bounds grown_subject(const Scene& scene) {
-  const Bounds& bounds = scene.subject.bounds_ws;
-  const auto margin = static_cast<float>(0.02 * diagonal(bounds));
-  return {bounds.low - margin, bounds.high + margin};
+// Returns a point from which most rays meet front faces, but which few rays from outside meet.
+std::optional<glm::vec3> inside_of_room(const RayScene& rays, const Bounds& bounds) {
+  constexpr int kRays = 64, kPoints = 27;
+  constexpr float kShares[] = {0.5f, 0.25f, 0.75f};
+  const auto reach = static_cast<float>(diagonal(bounds));
+  for (int p = 0; p < kPoints; ++p) {
+    const glm::vec3 share(kShares[p / 3 % 3], kShares[p % 3], kShares[p / 9]);
+    const glm::vec3 at = bounds.low + share * size_of(bounds);
+    int walls = 0, outsides = 0;
+    for (int r = 0; r < kRays; ++r) {  // directions on a spiral
+      const float y = 1.0f - (2.0f * static_cast<float>(r) + 1.0f) / kRays;
+      const float angle = 2.4f * static_cast<float>(r), radius = std::sqrt(1.0f - y * y);
+      const glm::vec3 to(radius * std::cos(angle), y, radius * std::sin(angle));
+      const auto wall = rays.nearest(at, to, reach);
+      const auto outside = rays.nearest(at + reach * to, -to, reach);
+      walls += wall && wall->front ? 1 : 0;
+      outsides += outside && outside->front ? 1 : 0;
+    }
+    if (4 * walls >= 3 * kRays && 3 * outsides <= 2 * walls) return at;
+  }
+  return std::nullopt;
 }
 
 // Returns the least distance of the eye from the centre of a box at which the whole box is in view,
 // with a margin of a tenth of the image. `back` is the unit vector from the centre to the eye.
-float distance_in_view(const Bounds& bounds, const glm::vec3& back, float fov_y, float aspect) {
-  constexpr float kFilled = 0.9f;  // of the half-width and half-height of the image
-  const float up_limit = kFilled * std::tan(0.5f * fov_y), right_limit = up_limit * aspect;
+float distance_in_view(const Bounds& bounds, const glm::vec3& back, float fov_y, double aspect) {
+  const float up_limit = 0.9f * std::tan(0.5f * fov_y);
+  const float right_limit = up_limit * static_cast<float>(aspect);
   const glm::vec3 right = glm::normalize(glm::cross(Camera().up_ws, back));
-  const glm::vec3 up = glm::cross(back, right);
-  const glm::vec3 centre = 0.5f * (bounds.low + bounds.high);
-  float distance = 0.0f;
+  float distance = 1e-6f;
   for (const glm::vec3& corner : corners_of(bounds)) {
-    const glm::vec3 at = corner - centre;
-    distance = std::max({distance, glm::dot(at, back) + std::abs(glm::dot(at, up)) / up_limit,
-                         glm::dot(at, back) + std::abs(glm::dot(at, right)) / right_limit});
+    const glm::vec3 at = corner - middle(bounds);
+    const float up = std::abs(glm::dot(at, glm::cross(back, right))) / up_limit;
+    distance = std::max(
+        distance, glm::dot(at, back) + std::max(up, std::abs(glm::dot(at, right)) / right_limit));
   }
   return distance;
 }
 
 }  // namespace
 
-DepthPicture draw_depth(const Scene& scene, const Camera& camera, double aspect) {
-  return DepthDrawing(scene, camera, aspect).run();
+// What a view shows at a low resolution. Depths are distances along the view axis.
+struct ViewFinder::Picture {
+  std::vector<float> depths;                    // of surfaces that are no sky
+  float nearest = kInfinity;                    // depth of all surfaces
+  size_t pixels = 0, surfaces = 0, fronts = 0;  // fronts: front faces of the subject
+  size_t backs = 0;                             // pixels with nothing but faces that are not drawn
+};
+
+ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bounds_ws) {
+  constexpr uint64_t kMostTriangles = uint64_t{1} << 23;
+  constexpr size_t kMostSurroundings = 8;
+  if (scene.meshes.empty() || triangle_count(scene) > kMostTriangles) return;
+  if (auto rays = RayScene::create(scene, RayScene::Build::quick)) rays_ = std::move(*rays);
+  std::vector<MeshInstance> parts = instances_of(scene.meshes);
+  const auto width = [](const MeshInstance& part) { return size_of(part.bounds_ws).x; };
+  std::ranges::stable_sort(parts, std::greater<>(), width);
+  // The widest parts are left out if each is a sky or a ground of the others.
+  for (size_t count = std::min(parts.size() - 1, kMostSurroundings);; --count) {
+    if (count > 0 && width(parts[count - 1]) < 3.0f * width(parts[count])) continue;
+    size_t strays = 0, grounds = 0;
+    subject_ws_ = bounds_without_strays(scene, Parts(parts).subspan(count), strays);
+    skies_.clear();
+    for (const MeshInstance& part : Parts(parts).first(count)) {
+      if (is_ground(part.bounds_ws, subject_ws_))
+        ++grounds;
+      else if (rays_ && is_sky(*rays_, part, subject_ws_))
+        skies_.push_back(part.mesh);
+    }
+    if (skies_.size() + grounds < count) continue;
+    left_out_ = std::string(skies_.empty() ? "" : ", sky") + (grounds > 0 ? ", ground" : "");
+    if (strays > 0) left_out_ += fmt::format(", stray triangles ({})", strays);
+    if (!left_out_.empty())
+      left_out_ = "The default view is framed without " + left_out_.substr(2) + ".";
+    return;
+  }
 }
 
-Camera framing_camera(const Scene& scene, double aspect) {
-  const Bounds& bounds = scene.subject.bounds_ws;
-  const float radius = std::max(static_cast<float>(0.5 * diagonal(bounds)), 1e-6f);
-  Camera camera;
-  camera.name = "frame";
-  camera.origin = scene.origin;
-  camera.fov_y = glm::radians(45.0f);
-  camera.target_ws = 0.5f * (bounds.low + bounds.high);
-  camera.fit_planes = true;
-  const Bounds grown = grown_subject(scene);
-  Camera best = camera;
-  double most = 0.0;  // share of the image that the subject would fill if all of it were in view
-  for (size_t i = 0; i < kSidesOfSubject.size(); ++i) {
-    constexpr float kInside =
-        0.85f;  // of the distance at which a sky or a wall would be in the way
-    constexpr double kEnough = 1.0 / 6.0;
-    const glm::vec3 back = glm::normalize(kSidesOfSubject[i]);
-    const float whole = distance_in_view(bounds, back, camera.fov_y, static_cast<float>(aspect));
-    const float distance =
-        std::min(std::max(whole, 0.1f * radius), kInside * scene.subject.free_distance_ws[i]);
-    camera.eye_ws = camera.target_ws + distance * back;
-    camera.near_plane = 0.02f * distance;
-    camera.far_plane =
-        distance + 4.0f * std::max(radius, static_cast<float>(diagonal(scene.bounds_ws)));
-    const DepthPicture picture = draw_depth(scene, camera, aspect);
-    size_t pixels = 0;
-    for_each_surface(picture, camera, aspect,
-                     [&](const glm::vec3& at) { pixels += contains(grown, at); });
-    // An eye that is too near shows a large part of a subject that is cut off.
-    const double nearness = std::min(1.0, static_cast<double>(distance) / whole);
-    const double share = nearness * nearness * static_cast<double>(pixels) /
-                         static_cast<double>(picture.depth.pixels.size());
-    // A later side has to show clearly more.
-    if (i == 0 || share > 1.25 * most) {
-      best = camera;
-      most = share;
+ViewFinder::Picture ViewFinder::look(const Camera& camera, double aspect) const {
+  constexpr uint32_t kHeight = 72;
+  Picture out;
+  if (!rays_) return out;
+  const auto width = static_cast<uint32_t>(std::clamp(std::round(kHeight * aspect), 16.0, 1024.0));
+  const CameraMatrices matrices = camera_matrices(camera, width, kHeight);
+  const glm::vec3 margin = 0.02f * size_of(subject_ws_);
+  const Bounds subject{subject_ws_.low - margin, subject_ws_.high + margin};
+  out.pixels = size_t{width} * kHeight;
+  for (uint32_t i = 0; i < out.pixels; ++i) {
+    const glm::uvec2 pixel(i % width, i / width);
+    const Ray ray =
+        camera_ray(matrices, camera.orthographic, glm::vec2(pixel) + 0.5f, width, kHeight);
+    const float cosine = -glm::dot(ray.direction_ws, glm::vec3(matrices.world_from_view[2]));
+    const glm::vec3 start = ray.origin_ws + ray.direction_ws * (camera.near_plane / cosine);
+    const float far = (camera.far_plane - camera.near_plane) / cosine;
+    const auto hit = rays_->nearest(start, ray.direction_ws, far);
+    if (!hit) {
+      out.backs += rays_->nearest(start, ray.direction_ws, far, true) ? 1 : 0;
+      continue;
     }
-    if (most > kEnough) break;
+    ++out.surfaces;
+    const float depth = camera.near_plane + hit->distance * cosine;
+    out.nearest = std::min(out.nearest, depth);
+    if (std::ranges::find(skies_, hit->mesh) != skies_.end()) continue;
+    out.depths.push_back(depth);
+    out.fronts += hit->front && contains(subject, start + ray.direction_ws * hit->distance) ? 1 : 0;
+  }
+  return out;
+}
+
+Camera ViewFinder::framing_camera(double aspect) const {
+  constexpr glm::vec3 kSides[] = {
+      {0.6f, 0.45f, 0.85f}, {-0.85f, 0.45f, 0.6f}, {-0.6f, 0.45f, -0.85f}, {0.85f, 0.45f, -0.6f}};
+  constexpr float kInside = 0.85f;  // of the distance to a sky or a wall
+  const auto room = rays_ ? inside_of_room(*rays_, subject_ws_) : std::nullopt;
+  Camera camera, best;
+  camera.name = "frame";
+  camera.origin = scene_.origin;
+  camera.fov_y = glm::radians(room ? 65.0f : 45.0f);
+  camera.target_ws = room.value_or(middle(subject_ws_));
+  camera.near_plane = 0.0f;
+  camera.far_plane = kInfinity;
+  camera.fit_planes = true;
+  float most = -1.0f;
+  for (const glm::vec3& side : kSides) {
+    const glm::vec3 back = glm::normalize(room ? side * size_of(subject_ws_) : side);
+    float free = kInfinity;
+    for (const uint32_t sky : skies_)
+      free = std::min(free, distance_to_shell(*rays_, sky, camera.target_ws, back).value_or(free));
+    if (room) {
+      const glm::vec3 wall = glm::mix(subject_ws_.low, subject_ws_.high, glm::step(0.0f, back));
+      const glm::vec3 exit = (wall - *room) / back;
+      const auto hit = rays_->nearest(*room, back, std::min({free, exit.x, exit.y, exit.z}));
+      free = hit ? hit->distance : std::min({free, exit.x, exit.y, exit.z});
+    }
+    const float distance =
+        std::min(kInside * free, distance_in_view(subject_ws_, back, camera.fov_y, aspect));
+    camera.eye_ws = camera.target_ws + distance * back;
+    // An eye that is too near shows a large part of a subject that is cut off.
+    const float score = distance * static_cast<float>(look(camera, aspect).fronts);
+    if (score <= 1.25f * most) continue;
+    best = camera;
+    most = score;
   }
   return best;
 }
 
-Camera with_fitted_planes(const Scene& scene, const Camera& camera, double aspect) {
-  const auto range = draw_depth(scene, camera, aspect).range;
-  if (!range) return camera;
+Camera ViewFinder::with_fitted_planes(const Camera& camera, double aspect) const {
+  const auto size = static_cast<float>(diagonal(subject_ws_));
+  float reach = size;
+  for (const glm::vec3& corner : corners_of(scene_.bounds_ws))
+    reach = std::max(reach, 2.0f * size + glm::distance(corner, camera.eye_ws));
   Camera out = camera;
-  const double size = diagonal(scene.subject.bounds_ws);
-  // The margin covers the rounding of positions and planes, which are floats.
-  const double margin = 1e-3 * std::max(size, range->farthest - range->nearest);
-  if (camera.orthographic) {
-    out.near_plane = static_cast<float>(range->nearest - margin);
-    out.far_plane = static_cast<float>(range->farthest + margin);
-  } else {
-    // The far plane must also be far enough for other positions and directions of the camera within
-    // the subject.
-    double farthest = range->farthest;
-    for (const glm::vec3& corner : corners_of(scene.subject.bounds_ws))
-      farthest = std::max(farthest, double(glm::distance(corner, camera.eye_ws)) + 2.0 * size);
-    const double least = std::max(2e-4 * size, 1e-6 * farthest);
-    out.near_plane =
-        static_cast<float>(std::max(std::min(0.5 * range->nearest, 0.01 * size), least));
-    out.far_plane = static_cast<float>(std::max(farthest + margin, 2.0 * out.near_plane));
-  }
+  out.near_plane = camera.orthographic ? -reach : 0.0f;
+  out.far_plane = reach;
+  if (!camera.orthographic)
+    out.near_plane = std::clamp(0.5f * look(out, aspect).nearest, 2e-5f * size, 0.01f * size);
   return out.near_plane < out.far_plane ? out : camera;
 }
 
-RadiusChoice radius_for_view(const Scene& scene, const Camera& camera, double aspect) {
-  constexpr double kShare = 0.05;     // of the extent of the surfaces in view
-  constexpr size_t kLeastShown = 50;  // one pixel in so many shows the subject
-  if (scene.suggested_radius > 0.0f) return {scene.suggested_radius, "the scene suggests it"};
-  const DepthPicture picture = draw_depth(scene, camera, aspect);
-  const Bounds grown = grown_subject(scene);
-  // Coordinates by axis, and distances from the eye.
-  std::array<std::vector<float>, 4> all, subject;
-  for_each_surface(picture, camera, aspect, [&](const glm::vec3& at) {
-    const glm::vec4 values(at, glm::distance(at, camera.eye_ws));
-    for (int c = 0; c < 4; ++c) {
-      all[static_cast<size_t>(c)].push_back(values[c]);
-      if (contains(grown, at)) subject[static_cast<size_t>(c)].push_back(values[c]);
-    }
-  });
-  if (all[0].empty())
-    return {default_radius(scene), "a twentieth of the size of the subject: no surface is in view"};
-  const bool shows_subject = subject[0].size() * kLeastShown >= picture.depth.pixels.size();
-  auto& values = shows_subject ? subject : all;
-  for (std::vector<float>& one : values) std::ranges::sort(one);
-  const auto quantile = [&](size_t which, double share) {
-    const std::vector<float>& sorted = values[which];
-    return double{sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))]};
-  };
-  // The central nine tenths of the pixels have nine tenths of the extent.
-  constexpr double kCentral = 0.9;
-  glm::dvec3 extent(0.0);
-  for (size_t c = 0; c < 3; ++c) {
-    extent[static_cast<int>(c)] =
-        (quantile(c, 0.5 + 0.5 * kCentral) - quantile(c, 0.5 - 0.5 * kCentral)) / kCentral;
+RadiusChoice ViewFinder::radius(const Camera& camera, double aspect) const {
+  const Picture picture = look(camera, aspect);
+  RadiusChoice out{scene_.suggested_radius, "the scene suggests it", ""};
+  if (out.radius <= 0.0f) {
+    const float depth = picture.depths.empty() ? glm::distance(camera.eye_ws, camera.target_ws)
+                                               : median(picture.depths);
+    const float height =
+        camera.orthographic ? camera.ortho_height : 2.0f * std::tan(0.5f * camera.fov_y) * depth;
+    out.radius = 0.05f * height * static_cast<float>(aspect);
+    out.reason = "a twentieth of the width of the view at the median distance of its surfaces";
   }
-  RadiusChoice choice{static_cast<float>(kShare * glm::length(extent)),
-                      shows_subject ? "a twentieth of the extent of the part of the subject in view"
-                                    : "a twentieth of the extent of the surfaces in view"};
-  constexpr float kWhole = 0.7f;  // of the extent of the subject: the view shows it as a whole
-  const auto whole = static_cast<float>(kShare * diagonal(scene.subject.bounds_ws));
-  if (!(choice.radius > 0.0f) || (shows_subject && choice.radius > kWhole * whole))
-    choice = {default_radius(scene), "a twentieth of the size of the subject"};
-  // A larger radius would cover most of the image.
-  constexpr double kMostOfDistance = 0.25;
-  const double most = kMostOfDistance * quantile(3, 0.5);
-  if (!camera.orthographic && most > 0.0 && choice.radius > most)
-    choice = {static_cast<float>(most), "a quarter of the median distance of the surfaces in view"};
-  return choice;
+  if (picture.surfaces * 10 >= picture.pixels) return out;
+  if (picture.backs > picture.surfaces)
+    out.advice =
+        "The view shows back faces, which are not drawn: draw them by --both-sides, or turn it "
+        "with --eye and --target.";
+  else if (picture.surfaces == 0)
+    out.advice =
+        "The view shows nothing but sky: turn it with --eye and --target, or widen --near and "
+        "--far.";
+  else
+    out.advice =
+        "Surfaces fill less than a tenth of the view: choose another by --eye and --target.";
+  return out;
 }
 
 }  // namespace alcove::sample

@@ -2,58 +2,54 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "scene/ray_scene.h"
 #include "scene/scene.h"
-#include "support/image.h"
 
 namespace alcove::sample {
 
-// Returns a camera that looks at the subject of a scene (find_subject()) from above and from one
-// side, as near as possible with the whole subject in view. `aspect` is the width of the image
-// divided by its height. Of four candidate eyes it takes the first in whose image the subject fills
-// a sixth, or the one that shows most of it, where a subject that is cut off counts as if it were
-// seen from where all of it is in view. The eye stays inside of a sky and of a closed room.
-// Call with_fitted_planes() afterwards.
-[[nodiscard]] Camera framing_camera(const Scene& scene, double aspect);
-
-// A range of distances along the view direction, measured from the plane through the eye. In
-// orthographic views they may be negative.
-struct DepthRange {
-  double nearest;
-  double farthest;
-};
-
-// The depth of the surfaces in a view, at a low resolution.
-struct DepthPicture {
-  Image<float> depth;               // distance along the view direction; infinite without a surface
-  std::optional<DepthRange> range;  // of all triangles within the image; null if nothing is in view
-};
-
-// Draws the front faces in view, and the back faces of double-sided materials, without regard to
-// near and far plane.
-//
-// The range is exact if the triangles that could change it are fewer than 2^25. The other blocks of
-// triangles count by their bounds, so that the range may then be too wide.
-[[nodiscard]] DepthPicture draw_depth(const Scene& scene, const Camera& camera, double aspect);
-
-// Returns the camera with its near and far plane fitted to the triangles in view. If nothing is in
-// view, the camera is unchanged.
-//
-// Perspective: the near plane is at half the distance of the nearest triangle in view, limited to
-// 1/5000 to 1/100 of the diagonal of the subject. The far plane is behind the farthest triangle in
-// view, and behind the subject for every position and direction of the camera within the subject.
-// Orthographic: the planes enclose the triangles in view.
-[[nodiscard]] Camera with_fitted_planes(const Scene& scene, const Camera& camera, double aspect);
-
-// An occlusion radius and where it comes from.
+// An occlusion radius.
 struct RadiusChoice {
   float radius;        // scene units
-  std::string reason;  // the end of a sentence that begins with the radius
+  std::string reason;  // where it comes from: the end of a sentence that begins with the radius
+  std::string advice;  // a sentence on what to do if the view shows few surfaces, else empty
 };
 
-// Returns the radius that suits a view: that of the scene if it suggests one, or a twentieth of the
-// extent of the surfaces in view, but at most a quarter of their median distance from the eye.
-// These are the surfaces of the subject, or all if the view shows hardly any of the subject.
-[[nodiscard]] RadiusChoice radius_for_view(const Scene& scene, const Camera& camera, double aspect);
+// Chooses cameras and radii by rays through a scene, which must outlive it.
+//
+// The subject of a scene is everything but skies, grounds and strays, judged by the boxes of the
+// instances of meshes. Skies and grounds are at least three times as wide as the rest in both
+// horizontal directions. A sky contains the rest, and rays from there to the sides and up meet it
+// once. A ground is flat and below the rest. Strays are triangles outside the box that holds 99.9 %
+// of the area, if the subject is clearly larger with them. Scenes of more than 2^23 triangles are
+// judged by boxes alone.
+class ViewFinder {
+ public:
+  explicit ViewFinder(const Scene& scene);
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  // A sentence on what the subject lacks, or empty.
+  [[nodiscard]] const std::string& left_out() const { return left_out_; }
+  // Returns a camera that looks at the whole subject diagonally from above, inside of a sky, from
+  // the first of four sides or one that shows clearly more front faces. In a room whose walls have
+  // no outside, the eye is inside. Call with_fitted_planes() afterwards.
+  [[nodiscard]] Camera framing_camera(double aspect) const;
+  // Returns the camera with a near and far plane around the surfaces in view.
+  [[nodiscard]] Camera with_fitted_planes(const Camera& camera, double aspect) const;
+  // Returns the radius of the scene if it suggests one, or a twentieth of the width of the view at
+  // the median distance of the surfaces in view.
+  [[nodiscard]] RadiusChoice radius(const Camera& camera, double aspect) const;
+
+ private:
+  struct Picture;
+  [[nodiscard]] Picture look(const Camera& camera, double aspect) const;
+
+  const Scene& scene_;
+  std::optional<RayScene> rays_;
+  Bounds subject_ws_;
+  std::vector<uint32_t> skies_;  // indices of meshes
+  std::string left_out_;
+};
 
 }  // namespace alcove::sample

@@ -14,7 +14,7 @@
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_scene.h"
-#include "scene/subject.h"
+#include "support/foreign_file.h"
 #include "support/printable.h"
 
 namespace alcove::sample {
@@ -45,15 +45,6 @@ void tidy(std::vector<std::string>& warnings) {
   warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
 }
 
-void add_subject(Scene& scene) {
-  scene.subject = find_subject(scene);
-  if (scene.subject.triangles_outside == 0) return;
-  scene.warnings.push_back(std::to_string(scene.subject.triangles_outside) + " of " +
-                           std::to_string(triangle_count(scene)) +
-                           " triangles surround the others or lie far from them: the default view, "
-                           "radius and near plane are chosen without them.");
-}
-
 Result<Scene> build_scene(GltfModel read, const GltfLimits& limits, const Progress& progress) {
   make_names_readable(read.model);
   const tinygltf::Model& model = read.model;
@@ -76,10 +67,9 @@ Result<Scene> build_scene(GltfModel read, const GltfLimits& limits, const Progre
   // The vertices have been copied, so that only images can be in the file's bytes.
   if (model.images.empty()) read.model.buffers.clear();
   scene.bounds_ws = bounds_of(scene.meshes);
-  add_subject(scene);
   add_images(model, read.files, limits.images, scene);
   for (const PlacedCamera& camera : cameras) {
-    scene.cameras.push_back(aimed(camera, scene.subject.bounds_ws));
+    scene.cameras.push_back(aimed(camera, scene.bounds_ws));
     scene.cameras.back().origin = scene.origin;
   }
   tidy(scene.warnings);
@@ -119,7 +109,7 @@ Result<Scene> load_gltf(const fs::path& file, const Progress& progress) {
   };
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) return refuse("there is no such file");
+  if (status.type() == fs::file_type::not_found) return refuse(missing_file(file));
   if (!fs::status_known(status)) return refuse(error.message());
   if (fs::is_directory(status)) return refuse("it is a folder; name the .gltf or .glb in it");
   try {

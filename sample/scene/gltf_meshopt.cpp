@@ -34,6 +34,17 @@ void unfilter(const std::string& filter, std::vector<uint8_t>& data, size_t coun
   if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(data.data(), count, stride);
 }
 
+// Returns the name of what KHR_meshopt_compression added to EXT_meshopt_compression, if data uses
+// it.
+std::string newer_codec(std::span<const uint8_t> bytes, const std::string& filter) {
+  constexpr uint8_t kVertices = 0xa0;  // the first byte of the data is the codec and its version
+  constexpr uint8_t kVersion = 0x0f;
+  const uint8_t header = bytes.empty() ? 0 : bytes[0];
+  if ((header & ~kVersion) == kVertices && (header & kVersion) > 0)
+    return "vertex codec " + std::to_string(header & kVersion) + " of meshoptimizer";
+  return filter == "COLOR" ? "the filter COLOR" : "";
+}
+
 Result<std::vector<uint8_t>> decompressed(const tinygltf::Model& model,
                                           const tinygltf::Value& extension, uint64_t most_bytes) {
   const uint64_t count = number(extension, "count"), stride = number(extension, "byteStride");
@@ -51,6 +62,10 @@ Result<std::vector<uint8_t>> decompressed(const tinygltf::Model& model,
   view.byteOffset = number(extension, "byteOffset");
   view.byteLength = number(extension, "byteLength");
   ALCOVE_TRY(const auto bytes, view_bytes(model, view));
+  if (const auto newer = newer_codec(bytes, filter); !newer.empty())
+    return Failure(
+        "uses " + newer +
+        ", which is not read here; pack it by gltfpack -ce ext, or add a fallback by -cf");
   std::vector<uint8_t> out(count * stride);
   const int failed =
       attributes ? meshopt_decodeVertexBuffer(out.data(), count, stride, bytes.data(), bytes.size())
@@ -64,19 +79,24 @@ Result<std::vector<uint8_t>> decompressed(const tinygltf::Model& model,
 
 }  // namespace
 
-Result<void> decompress_views(tinygltf::Model& model) {
+Result<void> decompress_views(tinygltf::Model& model, std::vector<std::string>& notes) {
   uint64_t bytes_left = uint64_t{1} << 30;
   for (size_t i = 0; i < model.bufferViews.size(); ++i) {
     tinygltf::BufferView& view = model.bufferViews[i];
     const tinygltf::Value* extension = compression(view);
     if (extension == nullptr) continue;
-    const std::string name = "compressed buffer view " + std::to_string(i) + " ";
-    ALCOVE_TRY(auto data, decompressed(model, *extension, bytes_left).map_error(with_prefix(name)));
-    bytes_left -= data.size();
+    auto data = decompressed(model, *extension, bytes_left);
+    if (!data && view_bytes(model, view)) {
+      notes.push_back(
+          "Compressed buffer views that cannot be read are replaced by their fallback.");
+      continue;
+    }
+    if (!data) return Failure("compressed buffer view " + std::to_string(i) + " " + data.error());
+    bytes_left -= data->size();
     view.buffer = static_cast<int>(model.buffers.size());
     view.byteOffset = 0;
-    view.byteLength = data.size();
-    model.buffers.emplace_back().data = std::move(data);
+    view.byteLength = data->size();
+    model.buffers.emplace_back().data = std::move(*data);
   }
   return {};
 }

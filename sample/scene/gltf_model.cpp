@@ -19,6 +19,7 @@
 #include "scene/gltf_draco.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_properties.h"
+#include "support/foreign_file.h"
 
 namespace alcove::sample {
 namespace {
@@ -32,8 +33,10 @@ Result<json> parse(std::span<const uint8_t> text) {
     if (!root.is_object()) return Failure("it is not glTF: its JSON is not an object");
     return root;
   } catch (const json::parse_error& error) {
+    const std::string kind = foreign_kind(text, "convert it to glTF 2.0, for example with Blender");
+    if (!kind.empty()) return Failure("it " + kind);
     return Failure("it is not glTF, or damaged: its JSON cannot be read at byte " +
-                   std::to_string(error.byte) + "; export it again");
+                   std::to_string(error.byte) + "; export it as glTF 2.0 again");
   } catch (const json::exception&) {
     return Failure("its JSON has a number that is too large; export it again");
   }
@@ -46,8 +49,8 @@ Result<void> check_version(const json& root) {
   if (asset == root.end() || !asset->is_object()) return {};
   for (const char* name : {"version", "minVersion"}) {
     const auto found = asset->find(name);
-    if (found == asset->end() || !found->is_string()) continue;
-    const auto& text = found->get_ref<const std::string&>();
+    if (found == asset->end() || !(found->is_string() || found->is_number())) continue;
+    const std::string text = found->is_string() ? found->get<std::string>() : found->dump();
     unsigned major = 0, minor = 0;
     if (std::sscanf(text.c_str(), "%4u.%4u", &major, &minor) != 2) {
       return Failure("asset." + std::string(name) + " is \"" + text +
@@ -195,6 +198,8 @@ Result<void> fill_buffers(const json& buffers, std::vector<uint8_t> file, const 
     }
     const auto length = buffers[i].at("byteLength").get<uint64_t>();
     if (length > out.data.size()) {
+      const std::string kind = foreign_kind(out.data, "export the scene again");
+      if (!kind.empty()) return Failure(name + " " + kind);
       return Failure(name + " has " + std::to_string(out.data.size()) +
                      " bytes, and its byteLength says " + std::to_string(length));
     }
@@ -217,7 +222,7 @@ Result<GltfModel> read_gltf_model(std::vector<uint8_t> file, const std::filesyst
   ALCOVE_TRY_VOID(fill_model(root, out.model));
   ALCOVE_TRY_VOID(fill_buffers(root.value("buffers", json::array()), std::move(file), parts,
                                out.files, out.model));
-  ALCOVE_TRY_VOID(decompress_views(out.model));
+  ALCOVE_TRY_VOID(decompress_views(out.model, out.warnings));
   ALCOVE_TRY_VOID(decompress_primitives(out.model));
   return out;
 }

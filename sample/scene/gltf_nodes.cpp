@@ -43,46 +43,36 @@ bool is_hidden(const tinygltf::Node& node) {
          !found->second.Get("visible").Get<bool>();
 }
 
-// The nodes without a parent: first those that are drawn, then the others, whose transforms joints
-// may need.
+// The nodes at which the tree is entered: first those that are drawn, then those without a parent,
+// because joints may need their transforms.
 struct Roots {
   std::vector<int> nodes;
   size_t drawn;  // how many of them
 };
 
 Result<Roots> find_roots(const tinygltf::Model& model) {
-  const auto missing = [](int node) {
-    return Failure("it names node " + std::to_string(node) + ", which does not exist");
-  };
   const auto count = static_cast<int>(model.nodes.size());
-  std::vector<char> is_reached(model.nodes.size(), 0);
-  for (const tinygltf::Node& node : model.nodes) {
-    for (const int child : node.children) {
-      if (child >= count) return missing(child);
-      if (std::exchange(is_reached[static_cast<size_t>(child)], 1))
-        return Failure("node " + std::to_string(child) + " is reached twice: it has two parents");
-    }
-  }
-  Roots out;
+  const auto check = [&](const std::vector<int>& nodes) -> Result<void> {
+    for (const int node : nodes)
+      if (node >= count)
+        return Failure("it names node " + std::to_string(node) + ", which does not exist");
+    return {};
+  };
+  Roots out{{}, 0};
   if (!model.scenes.empty()) {
-    const std::string scene = std::to_string(std::max(model.defaultScene, 0));
     const auto index = static_cast<size_t>(std::max(model.defaultScene, 0));
-    if (index >= model.scenes.size()) return Failure("it has no scene " + scene);
-    for (const int node : model.scenes[index].nodes) {
-      if (node >= count) return missing(node);
-      if (std::exchange(is_reached[static_cast<size_t>(node)], 1)) {
-        const bool twice = std::ranges::find(out.nodes, node) != out.nodes.end();
-        return twice ? Failure("scenes[" + scene + "].nodes lists node " + std::to_string(node) +
-                               " twice; list each node once")
-                     : Failure("node " + std::to_string(node) +
-                               " is reached twice: it is a root of the scene and has a parent");
-      }
-      out.nodes.push_back(node);
-    }
+    if (index >= model.scenes.size()) return Failure("it has no scene " + std::to_string(index));
+    out.nodes = model.scenes[index].nodes;
+    ALCOVE_TRY_VOID(check(out.nodes));
   }
   out.drawn = out.nodes.size();
+  std::vector<char> has_parent(model.nodes.size(), 0);
+  for (const tinygltf::Node& node : model.nodes) {
+    ALCOVE_TRY_VOID(check(node.children));
+    for (const int child : node.children) has_parent[static_cast<size_t>(child)] = 1;
+  }
   for (int node = 0; node < count; ++node)
-    if (!is_reached[static_cast<size_t>(node)]) out.nodes.push_back(node);
+    if (has_parent[static_cast<size_t>(node)] == 0) out.nodes.push_back(node);
   if (model.scenes.empty()) out.drawn = out.nodes.size();
   return out;
 }
@@ -165,11 +155,15 @@ Result<NodeTree> read_nodes(const tinygltf::Model& model, uint64_t most_instance
     open.push_back({roots.nodes[i], glm::dmat4(1.0), i < roots.drawn});
   NodeTree out;
   out.world_from_node.assign(model.nodes.size(), glm::dmat4(1.0));
-  size_t visited = 0;
-  for (; !open.empty(); ++visited) {
+  std::vector<char> visited(model.nodes.size(), 0);
+  while (!open.empty()) {
     const Step step = open.back();
     open.pop_back();
     const auto index = static_cast<size_t>(step.node);
+    if (std::exchange(visited[index], 1) != 0) {
+      out.repeats += step.drawn ? 1 : 0;
+      continue;
+    }
     const tinygltf::Node& node = model.nodes[index];
     const glm::dmat4 world = step.world_from_parent * local_transform(node);
     out.world_from_node[index] = world;
@@ -178,8 +172,8 @@ Result<NodeTree> read_nodes(const tinygltf::Model& model, uint64_t most_instance
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
       open.push_back({*child, world, drawn});
   }
-  // Each node has one parent at most, so that only those of a cycle have not been visited.
-  if (visited < model.nodes.size()) return Failure("some of its nodes form a cycle");
+  if (std::ranges::find(visited, 0) != visited.end())
+    return Failure("some of its nodes form a cycle; export it again");
   for (DrawnNode& drawn : out.drawn) {
     const tinygltf::Node& node = model.nodes[drawn.node];
     ALCOVE_TRY_VOID(check_references(model, node));

@@ -38,6 +38,7 @@ struct DrawnNode {
 struct NodeTree {
   std::vector<glm::dmat4> world_from_node;  // by node
   std::vector<DrawnNode> drawn;             // in the order of the tree
+  size_t repeats = 0;  // how often the scene reaches a node again, which is drawn once
 };
 
 // Computes the transforms of the nodes of a file. The drawn nodes are those of the default scene,

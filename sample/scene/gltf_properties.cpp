@@ -30,7 +30,7 @@ constexpr const char* kTypes = R"({
   "compressed view": {
     "buffer!": "index", "byteOffset": "size", "byteLength!": "size", "byteStride!": "whole 1 256",
     "count!": "index", "mode!": "text ATTRIBUTES|TRIANGLES|INDICES",
-    "filter": "text NONE|OCTAHEDRAL|QUATERNION|EXPONENTIAL"}
+    "filter": "text NONE|OCTAHEDRAL|QUATERNION|EXPONENTIAL|COLOR"}
 })";
 
 // The rule of a glTF file: all properties that the loader reads. A colour may exceed the 1 of the

@@ -127,6 +127,10 @@ class NodeReader {
 Result<void> add_nodes(const tinygltf::Model& model, GltfLimits& budget,
                        std::vector<PlacedCamera>& cameras, Scene& scene, const Progress& progress) {
   ALCOVE_TRY(const auto nodes, read_nodes(model, budget.instances));
+  if (nodes.repeats > 0) {
+    scene.warnings.push_back(
+        "The scene reaches nodes again by a second parent or as a root: each is drawn once.");
+  }
   scene.origin = chosen_origin(model, nodes);
   NodeReader reader(model, nodes, budget, scene);
   size_t done = 0;

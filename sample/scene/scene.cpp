@@ -50,11 +50,7 @@ const Camera* find_camera(const Scene& scene, const std::string& name) {
 
 float default_radius(const Scene& scene) {
   if (scene.suggested_radius > 0.0f) return scene.suggested_radius;
-  for (const Bounds& bounds : {scene.subject.bounds_ws, scene.bounds_ws}) {
-    const float diagonal = glm::length(bounds.high - bounds.low);
-    if (diagonal > 0.0f) return 0.05f * diagonal;
-  }
-  return 1.0f;
+  return static_cast<float>(0.05 * diagonal(scene.bounds_ws));
 }
 
 MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex) {

@@ -7,7 +7,6 @@
 
 #include "scene/bounds.h"
 #include "scene/camera.h"
-#include "scene/subject.h"
 #include "support/glm.h"
 
 namespace alcove::sample {
@@ -118,8 +117,7 @@ struct Scene {
   // are in the coordinates of the file.
   glm::dvec3 origin{0.0};
   Bounds bounds_ws;                   // of all triangles
-  Subject subject;                    // see find_subject()
-  float suggested_radius = 0.0f;      // scene units; 0: the view decides (radius_for_view())
+  float suggested_radius = 0.0f;      // scene units; 0: the view decides (ViewFinder::radius())
   bool has_animations = false;        // in the file; they are not played
   std::vector<std::string> warnings;  // one sentence for each part that is not drawn as stored
 };
@@ -130,7 +128,7 @@ struct Scene {
 // Returns the camera of a name, or the first for an empty name. Null if there is no such camera.
 [[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);
 
-// Returns a radius in scene units that suits the whole subject.
+// Returns the suggested radius, or one that suits the whole scene.
 [[nodiscard]] float default_radius(const Scene& scene);
 
 // Returns the transform of an instance, whose index is below instance_count(). It is the identity

@@ -190,7 +190,6 @@ Scene SceneBuilder::finish(const std::string& name) {
   scene_.name = name;
   std::erase_if(scene_.meshes, [](const Mesh& m) { return m.indices.empty(); });
   scene_.bounds_ws = bounds_of(scene_.meshes);
-  scene_.subject.bounds_ws = scene_.bounds_ws;
   return std::exchange(scene_, {});
 }
 

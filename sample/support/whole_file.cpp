@@ -38,35 +38,14 @@ Result<void> fill(const fs::path& file, const void* bytes, size_t size) {
 
 }  // namespace
 
-Result<OutputFolder> OutputFolder::create(const fs::path& folder) {
-  OutputFolder out;
+Result<void> create_folder(const fs::path& folder) {
   std::error_code error;
-  fs::path part;
-  for (const fs::path& name : folder) {
-    part /= name;
-    if (!name.empty() && fs::create_directory(part, error)) out.made_.push_back(part);
-    if (error) break;
-  }
-  if (error || !fs::is_directory(folder, error)) {
-    const std::string reason =
-        error ? error.message() : std::make_error_code(std::errc::not_a_directory).message();
-    return Failure(fmt::format("The folder {} could not be created: {}; choose another by --out.",
-                               folder.string(), reason));
-  }
-  const fs::path probe = temporary_beside(folder / "probe");
-  if (auto written = fill(probe, "", 0); !written) {
-    return Failure(
-        fmt::format("Nothing can be written to the folder {}: {}; choose another by --out.",
-                    folder.string(), written.error()));
-  }
-  fs::remove(probe, error);
-  return out;
-}
-
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
-    fs::remove(*folder, ignored);  // fails if it is not empty
+  fs::create_directories(folder, error);
+  if (!error && !fs::is_directory(folder, error) && !error)
+    error = std::make_error_code(std::errc::not_a_directory);
+  if (!error) return {};
+  return Failure(fmt::format("The folder {} could not be created: {}; choose another by --out.",
+                             folder.string(), error.message()));
 }
 
 Result<void> write_whole(const fs::path& file,

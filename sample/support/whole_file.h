@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "support/result.h"
 
@@ -13,21 +12,8 @@ namespace alcove::sample {
 // and then renamed. Errors are one sentence with the file's name and the system's reason, such as a
 // full disk or a folder without write permission.
 
-// An output folder that is created, with its parents, before the work whose results it receives.
-// The destructor removes the folders that it created and that are still empty, so that a failed run
-// leaves nothing behind.
-class OutputFolder {
- public:
-  // Returns an error also if the folder exists and no file can be created in it.
-  [[nodiscard]] static Result<OutputFolder> create(const std::filesystem::path& folder);
-  OutputFolder(OutputFolder&&) = default;
-  OutputFolder& operator=(OutputFolder&&) = delete;
-  ~OutputFolder();
-
- private:
-  OutputFolder() = default;
-  std::vector<std::filesystem::path> made_;  // the outermost first
-};
+// Creates a folder with its parents, before the work whose results it receives.
+[[nodiscard]] Result<void> create_folder(const std::filesystem::path& folder);
 
 // `write` fills the temporary file of the given name, and returns whether it succeeded.
 [[nodiscard]] Result<void> write_whole(

@@ -26,9 +26,8 @@ double occlusion_ms(const std::vector<PassTime>& times) {
 
 }  // namespace
 
-passes::OcclusionSettings BudgetFitter::fit(const passes::Budget& budget,
-                                            const std::vector<PassTime>& times,
-                                            const passes::OcclusionSettings& settings) {
+OcclusionSettings BudgetFitter::fit(const AlcoveBudget& budget, const std::vector<PassTime>& times,
+                                    const OcclusionSettings& settings) {
   if (!(settings == settings_)) {
     settings_ = settings;
     milliseconds_.clear();
@@ -38,8 +37,11 @@ passes::OcclusionSettings BudgetFitter::fit(const passes::Budget& budget,
     if (milliseconds_.size() == kTimes) milliseconds_.erase(milliseconds_.begin());
     milliseconds_.push_back(occlusion_ms(times));
   }
-  const auto fitted = passes::fit_budget(budget, milliseconds_, settings);
-  return fitted ? *fitted : settings;
+  OcclusionSettings fitted = settings;
+  std::uint32_t changed = 0;
+  alcoveFitBudget(&budget, milliseconds_.data(), static_cast<std::uint32_t>(milliseconds_.size()),
+                  &fitted, &changed);
+  return fitted;
 }
 
 }  // namespace alcove::sample

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "alcove/passes/fit_budget.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 
 namespace alcove::sample {
 
@@ -14,14 +14,14 @@ class BudgetFitter {
  public:
   // Adds the pass times of the frame that the device has finished last, and returns the settings of
   // the next frame. `settings` are those of the last frame; they may differ from the settings that
-  // the last call returned. Settings that fit_budget() refuses are returned unchanged.
-  [[nodiscard]] passes::OcclusionSettings fit(const passes::Budget& budget,
-                                              const std::vector<PassTime>& times,
-                                              const passes::OcclusionSettings& settings);
+  // the last call returned. Settings that alcoveFitBudget refuses are returned unchanged.
+  [[nodiscard]] OcclusionSettings fit(const AlcoveBudget& budget,
+                                      const std::vector<PassTime>& times,
+                                      const OcclusionSettings& settings);
 
  private:
   std::vector<double> milliseconds_;  // the newest last
-  passes::OcclusionSettings settings_;
+  OcclusionSettings settings_;
   std::uint32_t frames_ = 0;  // since the settings changed
 };
 

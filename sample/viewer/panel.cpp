@@ -7,7 +7,6 @@
 #include <glm/gtc/constants.hpp>
 #include <string_view>
 
-#include "alcove/passes/setting_names.h"
 #include "alcove/passes/setting_table.h"
 #include "support/mib.h"
 #include "viewer/orbit_camera.h"
@@ -15,8 +14,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-using passes::SettingGroup;
 using passes::SettingInfo;
 using passes::SettingRange;
 
@@ -39,34 +36,35 @@ SettingRange slider_range(const SettingInfo& info) {
   return range;
 }
 
-// Each overload lays out the widget for one type of setting. The range is multiplied by `unit`.
-void widget(const SettingInfo& info, float& value, float unit) {
-  const SettingRange range = slider_range(info);
-  ImGui::SliderFloat(info.name, &value, range.minimum * unit, range.maximum * unit, "%.3g",
-                     unit == 1.0f ? ImGuiSliderFlags_None : ImGuiSliderFlags_Logarithmic);
-}
-
-void widget(const SettingInfo& info, std::uint32_t& value, float /*unit*/) {
-  if (info.range.power_of_two) {
+// Lays out the widget of a setting. The range is multiplied by `unit`.
+void widget(const SettingInfo& info, AlcoveSettings& settings, float unit) {
+  if (info.kind == SettingInfo::Kind::real) {
+    const SettingRange range = slider_range(info);
+    auto value = passes::setting_value<float>(settings, info);
+    ImGui::SliderFloat(info.name, &value, range.minimum * unit, range.maximum * unit, "%.3g",
+                       unit == 1.0f ? ImGuiSliderFlags_None : ImGuiSliderFlags_Logarithmic);
+    passes::set_setting(settings, info, value);
+    return;
+  }
+  auto value = passes::setting_value<std::uint32_t>(settings, info);
+  if (info.kind == SettingInfo::Kind::choice && info.choices.front() == "false") {
+    bool on = value != 0;
+    ImGui::Checkbox(info.name, &on);
+    value = on ? 1 : 0;
+  } else if (info.kind == SettingInfo::Kind::choice) {
+    combo(info.name, value, info.choices);
+  } else if (info.range.power_of_two) {
     if (ImGui::BeginCombo(info.name, std::to_string(value).c_str())) {
       for (std::uint32_t choice = 1; info.range.contains(choice); choice *= 2)
         if (ImGui::Selectable(std::to_string(choice).c_str(), choice == value)) value = choice;
       ImGui::EndCombo();
     }
-    return;
+  } else {
+    const auto low = static_cast<std::uint32_t>(info.range.minimum);
+    const auto high = static_cast<std::uint32_t>(info.range.maximum);
+    ImGui::SliderScalar(info.name, ImGuiDataType_U32, &value, &low, &high, "%u");
   }
-  const auto low = static_cast<std::uint32_t>(info.range.minimum);
-  const auto high = static_cast<std::uint32_t>(info.range.maximum);
-  ImGui::SliderScalar(info.name, ImGuiDataType_U32, &value, &low, &high, "%u");
-}
-
-void widget(const SettingInfo& info, bool& value, float /*unit*/) {
-  ImGui::Checkbox(info.name, &value);
-}
-
-template <typename Choice>
-void widget(const SettingInfo& info, Choice& value, float /*unit*/) {
-  combo(info.name, value, passes::kNames<Choice>);
+  passes::set_setting(settings, info, value);
 }
 
 const ImVec4 kRefused{1.0f, 0.45f, 0.35f, 1.0f};
@@ -88,26 +86,26 @@ void lay_out_picture(ViewState& state, const PanelFacts& facts) {
 // (control and click) may be out of range; the passes refuse invalid ones. `radius` is the default
 // radius of the scene, and scales the slider of the radius.
 void lay_out_settings(OcclusionSettings& settings, float radius) {
-  passes::for_each_setting(settings, [&](const SettingInfo& info, auto& value) {
-    if (info.group == SettingGroup::surface) return;
+  for (const SettingInfo& info : passes::setting_table()) {
+    if (info.of_material) continue;
     ImGui::BeginDisabled(info.matters != nullptr && !info.matters(settings));
-    widget(info, value, std::string_view(info.name) == "radius" ? radius : 1.0f);
+    widget(info, settings, std::string_view(info.name) == "radius" ? radius : 1.0f);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
       ImGui::SetTooltip("%s", info.help);
-  });
+  }
+  ImGui::Checkbox("bent_normal", &settings.bent_normal);
 }
 
 void lay_out_qualities(ViewState& state, const PanelFacts& facts) {
-  for (std::size_t i = 0; i < passes::kNames<passes::Quality>.size(); ++i) {
-    const auto quality = static_cast<passes::Quality>(i);
-    const char* const name = passes::name_of(quality).data();
+  for (std::size_t i = 0; i < passes::kQualityNames.size(); ++i) {
+    const auto quality = static_cast<AlcoveQuality>(i);
+    const char* const name = passes::kQualityNames.at(quality).data();
     const ImGuiStyle& style = ImGui::GetStyle();
     const float width = ImGui::CalcTextSize(name).x + 2.0f * style.FramePadding.x;
     const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) ImGui::SameLine();
-    if (ImGui::Button(name))
-      state.settings = passes::quality_settings(quality, state.settings.radius);
+    if (ImGui::Button(name)) state.settings = OcclusionSettings(quality, state.settings.radius);
   }
   if (ImGui::Button("reset settings (R)")) state.settings = facts.first_settings;
 }

@@ -28,9 +28,9 @@ struct PanelFacts {
   std::uint32_t height = 0;
   SmoothedTimes times;
   framegraph::MemoryStatistics memory;
-  std::string refusal;  // why the chosen settings are not drawn; empty if they are
-  std::string message;  // the result of the last screenshot or dropped file
-  passes::OcclusionSettings first_settings;  // settings that a reset restores
+  std::string refusal;               // why the chosen settings are not drawn; empty if they are
+  std::string message;               // the result of the last screenshot or dropped file
+  OcclusionSettings first_settings;  // settings that a reset restores
 };
 
 // The mouse and the keys of the window, a line each, for the panel and for the program's help.

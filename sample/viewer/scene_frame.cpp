@@ -3,14 +3,12 @@
 #include <limits>
 #include <utility>
 
-#include "alcove/passes/multi_bounce.h"
 #include "render/display.h"
 #include "spirv/picture.h"
 
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
 using Failure = tl::unexpected<std::string>;
 
 // The motion that is shown in full colour, as a fraction of the image's size.
@@ -20,9 +18,8 @@ constexpr float kFullMotion = 0.02f;
 OcclusionSettings with_outputs(OcclusionSettings settings, Picture picture) {
   const bool lit = picture == Picture::lit;
   settings.bent_normal = settings.bent_normal || lit || picture == Picture::bent_normal;
-  if ((lit || picture == Picture::specular_occlusion) &&
-      settings.specular == passes::Specular::none)
-    settings.specular = passes::Specular::slices;
+  if ((lit || picture == Picture::specular_occlusion) && settings.specular == ALCOVE_SPECULAR_NONE)
+    settings.specular = ALCOVE_SPECULAR_SLICES;
   return settings;
 }
 
@@ -52,9 +49,7 @@ tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
 }
 
 void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
-  const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
-  view_ = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-           matrices.clip_from_view, state.camera.reversed_z};
+  view_ = gbuffer_view(state.camera, state.camera, {size.width, size.height});
   choices_ = {state.settings, compared_settings(state), state.roughness};
   if (state.fits_budget)  // the history goes on when the number of samples changes
     choices_.settings.slices = choices_.settings.steps = 0;
@@ -79,17 +74,14 @@ void SceneFrame::advance() {
   ++index_;
 }
 
-passes::Frame SceneFrame::frame_of(Graph& graph) const {
-  return pass_frame(graph, gpu_, view_, index_, static_frames_);
-}
-
 tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,
                                                        const ViewState& state) {
-  begin(graph, state, graph.extent(target));
+  const VkExtent3D size = graph.extent(target);
+  begin(graph, state, size);
   const OcclusionSettings settings = with_outputs(state.settings, state.picture);
   const std::optional<OcclusionSettings> compared = compared_settings(state);
-  const bool specular = settings.specular != passes::Specular::none ||
-                        (compared && compared->specular != passes::Specular::none);
+  const bool specular = settings.specular != ALCOVE_SPECULAR_NONE ||
+                        (compared && compared->specular != ALCOVE_SPECULAR_NONE);
   const HiddenDepths hidden =
       hidden_depths_of(settings).with(compared ? hidden_depths_of(*compared) : HiddenDepths{});
   const bool wanted[kGbufferTargets.size()] = {
@@ -104,20 +96,18 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
   for (std::size_t i = 0; i < kGbufferTargets.size(); ++i) {
     const auto& [member, format, name] = kGbufferTargets[i];
     if (wanted[i]) {
-      surfaces.gbuffer.*member =
-          graph.create_texture(name, {format, framegraph::Extent::relative(target)});
+      surfaces.gbuffer.*member = graph.create_texture(name, {format, {size.width, size.height}});
     }
   }
   surfaces.gbuffer = gbuffer_->add(graph, view_, surfaces.gbuffer);
   environment_ = state.picture == Picture::lit ? light_->import(graph) : Texture();
 
   maths::PictureParameters parameters = picture_parameters(state);
-  auto picture = add_picture(graph, state, surfaces, settings, "occlusion");
+  auto picture = add_picture(graph, state, surfaces, settings, 0);
   if (!picture) return picture;
   Texture shown[2] = {*picture};
   if (compared) {
-    auto other =
-        add_picture(graph, state, surfaces, with_outputs(*compared, state.picture), "compared");
+    auto other = add_picture(graph, state, surfaces, with_outputs(*compared, state.picture), 1);
     if (!other) return other;
     shown[1] = *other;
     parameters.split = state.split * static_cast<float>(graph.extent(target).width);
@@ -161,10 +151,11 @@ maths::PictureParameters SceneFrame::picture_parameters(const ViewState& state) 
 // Adds the passes of the picture with `settings`, and returns the texture that is shown.
 tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const ViewState& state,
                                                            const Surfaces& surfaces,
-                                                           OcclusionSettings settings,
-                                                           std::string_view history_name) {
-  settings.linear_depth = true;  // which a picture of it reads
-  const auto outputs = add_occlusion(frame_of(graph), surfaces, settings, history_name);
+                                                           const OcclusionSettings& settings,
+                                                           std::uint32_t view_id) {
+  const AlcoveViewInfo view = view_info(view_, view_id, static_frames_);
+  const auto outputs = add_occlusion(graph, gpu_, view, index_, surfaces, settings,
+                                     state.picture == Picture::multi_bounce);
   if (!outputs) return Failure(outputs.error());
   // All outputs of the settings are computed, and timed, whether they are shown or not.
   for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular})
@@ -176,10 +167,7 @@ tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const V
                 {outputs->visibility, outputs->bent_normal, outputs->specular, true})
           .all;
     case Picture::multi_bounce:
-      return passes::add_multi_bounce(frame_of(graph),
-                                      {outputs->visibility, surfaces.gbuffer.albedo},
-                                      settings.precision)
-          .map_error([](const passes::Error& error) { return error.message; });
+      return outputs->multi_bounce;
     case Picture::bent_normal:
       return outputs->bent_normal;
     case Picture::specular_occlusion:
@@ -187,7 +175,9 @@ tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const V
     case Picture::normals:
       return outputs->normals;
     case Picture::depth:
-      return outputs->linear_depth;
+      return passes::add_surface(graph, gpu_.kernels(), view.camera, surfaces.gbuffer.depth)
+          .map([](const passes::SurfaceTextures& made) { return made.linear_depth; })
+          .map_error([](const passes::Error& error) { return error.message; });
     case Picture::albedo:
       return surfaces.gbuffer.albedo;
     case Picture::motion:

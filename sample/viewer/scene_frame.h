@@ -38,27 +38,26 @@ class SceneFrame {
   // The choices that determine format and size of the histories. If a frame differs from the
   // previous one in these, it does not count as static.
   struct HistoryFormat {
-    passes::OcclusionSettings settings;
+    OcclusionSettings settings;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     bool operator==(const HistoryFormat&) const = default;
   };
   // The choices that the previous frame was drawn with. Histories restart if they change.
   struct Choices {
-    passes::OcclusionSettings settings;
-    std::optional<passes::OcclusionSettings> compared;
+    OcclusionSettings settings;
+    std::optional<OcclusionSettings> compared;
     std::optional<float> roughness;
     bool operator==(const Choices&) const = default;
   };
 
   SceneFrame(Gpu& gpu, NormalSource normals) : gpu_(gpu), normals_(normals) {}
   void begin(framegraph::Graph& graph, const ViewState& state, VkExtent3D size);
-  passes::Frame frame_of(framegraph::Graph& graph) const;
   tl::expected<framegraph::Texture, std::string> add_picture(framegraph::Graph& graph,
                                                              const ViewState& state,
                                                              const Surfaces& surfaces,
-                                                             passes::OcclusionSettings settings,
-                                                             std::string_view history_name);
+                                                             const OcclusionSettings& settings,
+                                                             std::uint32_t view_id);
   maths::PictureParameters picture_parameters(const ViewState& state) const;
 
   Gpu& gpu_;
@@ -69,7 +68,7 @@ class SceneFrame {
   std::unique_ptr<FullScreenPass> picture_;
   float exposure_ = 1.0f;
   std::uint32_t index_ = 0;
-  std::uint32_t static_frames_ = 0;  // see passes::Frame
+  std::uint32_t static_frames_ = 0;  // see AlcoveViewInfo
   GbufferView view_;                 // of the declared frame
   Choices choices_;
   std::optional<GbufferView> previous_view_;

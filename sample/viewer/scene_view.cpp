@@ -30,12 +30,7 @@ ViewState first_state(const Session& session, std::optional<float> roughness) {
 // Returns the path of the file. Creates the folder; an empty path is the current folder.
 tl::expected<std::filesystem::path, std::string> write_screenshot(
     const std::filesystem::path& folder, const Image<glm::vec3>& image) {
-  std::optional<OutputFolder> made;
-  if (!folder.empty()) {
-    auto created = OutputFolder::create(folder);
-    if (!created) return Failure(std::move(created.error()));
-    made.emplace(std::move(*created));
-  }
+  if (!folder.empty()) ALCOVE_TRY_VOID(create_folder(folder));
   std::filesystem::path file = folder / "view.png";
   for (int i = 2; std::filesystem::exists(file); ++i)
     file = folder / ("view-" + std::to_string(i) + ".png");
@@ -74,11 +69,13 @@ SceneView::~SceneView() {
 }
 
 tl::expected<void, std::string> SceneView::create_frame(const Scene& scene) {
-  return load_environment(request_.environment).and_then([&](const EnvironmentImage& environment) {
-    presenter_->wait();
-    return assign(frame_, SceneFrame::create(*session_.gpu, scene, environment, request_.normals,
-                                             presenter_->format()));
-  });
+  const auto print = [](const std::string& note) { std::cerr << "note: " << note << "\n"; };
+  return load_environment(request_.environment, print)
+      .and_then([&](const EnvironmentImage& environment) {
+        presenter_->wait();
+        return assign(frame_, SceneFrame::create(*session_.gpu, scene, environment,
+                                                 request_.normals, presenter_->format()));
+      });
 }
 
 tl::expected<void, std::string> SceneView::replace_scene(const std::string& file) {
@@ -120,7 +117,7 @@ Camera SceneView::camera_around_scene() const {
 void SceneView::fit_radius() {
   const VkExtent2D size = presenter_->size();
   const double aspect = static_cast<double>(size.width) / std::max(size.height, 1u);
-  const RadiusChoice choice = radius_for_view(session_.scene, state_.camera, aspect);
+  const RadiusChoice choice = ViewFinder(session_.scene).radius(state_.camera, aspect);
   state_.settings.radius = choice.radius;
   facts_.message = fmt::format("Radius {:.3g}: {}.", choice.radius, choice.reason);
 }
@@ -163,8 +160,8 @@ void SceneView::lay_out() {
   facts_.height = presenter_->size().height;
   facts_.times.add(presenter_->timings());
   if (state_.fits_budget && facts_.refusal.empty()) {
-    state_.settings =
-        fitter_.fit({.target_ms = state_.target_ms}, presenter_->timings(), state_.settings);
+    state_.settings = fitter_.fit({sizeof(AlcoveBudget), state_.target_ms, 1, 2, 6, 12},
+                                  presenter_->timings(), state_.settings);
   }
   if (panel_shown_ && lay_out_panel(state_, facts_)) take_screenshot();
   gui_->end();

@@ -72,7 +72,7 @@ class SceneView {
  private:
   // The choices that the passes may refuse.
   struct Choice {
-    passes::OcclusionSettings settings;
+    OcclusionSettings settings;
     std::optional<float> roughness;
     bool operator==(const Choice&) const = default;
   };

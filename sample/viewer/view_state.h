@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 #include "scene/camera.h"
 
 namespace alcove::sample {
@@ -34,26 +34,25 @@ inline constexpr std::array<std::string_view, 4> kComparisonNames{
 // Everything that the user can choose in the window.
 struct ViewState {
   Camera camera;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
   std::optional<float> roughness;  // of every surface; null: the roughness of its material
   Picture picture = Picture::visibility;
   Comparison comparison = Comparison::none;
-  passes::OcclusionSettings saved;  // the settings of Comparison::saved
-  bool fits_budget = false;         // whether slices and steps follow the measured times
-  float target_ms = 2.0f;           // of the occlusion passes, if fits_budget
-  float split = 0.5f;               // position of the right part's left edge, 0..1 of the width
+  OcclusionSettings saved;   // the settings of Comparison::saved
+  bool fits_budget = false;  // whether slices and steps follow the measured times
+  float target_ms = 2.0f;    // of the occlusion passes, if fits_budget
+  float split = 0.5f;        // position of the right part's left edge, 0..1 of the width
 };
 
 // Returns the settings of the right part, or null without a comparison.
-[[nodiscard]] inline std::optional<passes::OcclusionSettings> compared_settings(
-    const ViewState& state) {
-  passes::OcclusionSettings settings = state.settings;
+[[nodiscard]] inline std::optional<OcclusionSettings> compared_settings(const ViewState& state) {
+  OcclusionSettings settings = state.settings;
   switch (state.comparison) {
     case Comparison::horizons:
-      settings.estimator = passes::Estimator::horizons;
+      settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
       return settings;
     case Comparison::reference:
-      settings = passes::quality_settings(passes::Quality::reference, settings.radius);
+      settings = OcclusionSettings(ALCOVE_QUALITY_REFERENCE, settings.radius);
       settings.specular = state.settings.specular;
       return settings;
     case Comparison::saved:

@@ -1,5 +1,6 @@
 // Declarations that the examples of README.md and passes/INTEGRATION.md take from the engine.
 #include <alcove/alcove.h>
+#include <alcove/alcove_work.h>
 
 extern VkInstance instance;
 extern VkPhysicalDevice physical_device;
@@ -19,6 +20,8 @@ extern size_t length;
 extern char message[ALCOVE_MAX_MESSAGE];
 extern double milliseconds[32];
 extern uint32_t time_count;
+extern const AlcoveWork* work;
+extern uint64_t transients, history;
 void write_log(void* user, AlcoveSeverity severity, const char* sentence);
 void fail(const char* sentence);
 void submit_and_wait_for_slot(uint32_t slot);

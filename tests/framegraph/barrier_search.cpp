@@ -16,18 +16,16 @@ using Changes = std::vector<std::vector<Transition>>;  // indexed by position
 // bit is set in `mask` and that is not after the pass that needs the change.
 Changes moved_changes(const Plan& plan, std::uint32_t mask) {
   Changes changes(plan.passes.size() + 1);
-  const auto move = [&](std::uint32_t first, std::uint32_t count, std::size_t position) {
+  const auto move = [&](std::uint32_t index, std::size_t position) {
+    if (index == kNone) return;
     std::size_t to = position;
     while (to > 0 && !(mask & (1u << to))) --to;
-    for (std::uint32_t b = first; b < first + count; ++b) {
-      const Batch& batch = plan.batches[b];
-      for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
-        if (plan.transitions[t].resource != kNone) changes[to].push_back(plan.transitions[t]);
-    }
+    const Batch& batch = plan.batches[index];
+    for (std::uint32_t t = batch.first; t < batch.first + batch.count; ++t)
+      if (plan.transitions[t].resource != kNone) changes[to].push_back(plan.transitions[t]);
   };
-  for (std::size_t p = 0; p < plan.passes.size(); ++p)
-    move(plan.passes[p].first_batch, plan.passes[p].batch_count, p);
-  move(plan.submissions[0].first_batch, plan.submissions[0].batch_count, plan.passes.size());
+  for (std::size_t p = 0; p < plan.passes.size(); ++p) move(plan.passes[p].batch, p);
+  move(plan.final_batch, plan.passes.size());
   return changes;
 }
 
@@ -60,12 +58,11 @@ Plan with_barriers_at(const Plan& plan, std::uint32_t mask) {
   made.batches.clear();
   made.transitions.clear();
   for (std::size_t p = 0; p <= plan.passes.size(); ++p) {
-    const auto first = static_cast<std::uint32_t>(made.batches.size());
-    const std::uint32_t count = mask & (1u << p) ? 1 : 0;
-    if (count) append_full_barrier(made, changes[p]);
-    const bool last = p == plan.passes.size();
-    (last ? made.submissions[0].first_batch : made.passes[p].first_batch) = first;
-    (last ? made.submissions[0].batch_count : made.passes[p].batch_count) = count;
+    std::uint32_t& batch = p == plan.passes.size() ? made.final_batch : made.passes[p].batch;
+    batch = kNone;
+    if (!(mask & (1u << p))) continue;
+    batch = static_cast<std::uint32_t>(made.batches.size());
+    append_full_barrier(made, changes[p]);
   }
   return made;
 }

@@ -28,7 +28,7 @@ TEST(Barriers, CompiledPlanHasTheFewestBarrierCommandsOfAllValidPlans) {
     graph.reset_histories();
     Dice dice(seed);
     declare_random(graph, dice, options);
-    const auto plan = compile(graph);
+    const auto plan = compile(graph.description());
     ASSERT_TRUE(plan) << to_string(plan.error());
     const auto used = static_cast<int>(plan->batches.size());
     for (std::uint32_t mask = 0; mask < 2u << plan->passes.size(); ++mask) {
@@ -64,13 +64,13 @@ TEST(Barriers, LayersAndMipsWrittenByDifferentPassesShareOneBarrierBeforeTheirRe
     PassBuilder later = graph.add_pass("later");
     later.read(cube, access::sampled_compute);
     later.side_effect();
-    const auto plan = compile(graph);
+    const auto plan = compile(graph.description());
     ASSERT_TRUE(plan) << to_string(plan.error());
     EXPECT_TRUE(verify(graph.description(), {}, *plan));
     const PlannedPass& first = plan->passes[std::size_t{6} * mips];
-    ASSERT_EQ(first.batch_count, 1u);
-    EXPECT_EQ(plan->batches[first.first_batch].count, 1u);
-    EXPECT_EQ(plan->passes.back().batch_count, 0u);
+    ASSERT_NE(first.batch, kNone);
+    EXPECT_EQ(plan->batches[first.batch].count, 1u);
+    EXPECT_EQ(plan->passes.back().batch, kNone);
   }
 }
 
@@ -83,7 +83,7 @@ TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
     reader.read(texture, i % 2 ? access::sampled_fragment : access::sampled_compute);
     reader.side_effect();
   }
-  const auto plan = compile(graph);
+  const auto plan = compile(graph.description());
   ASSERT_TRUE(plan);
   // One transition is for the first use, and one for all readers in both stages.
   EXPECT_EQ(plan->transitions.size(), 2u);
@@ -103,7 +103,7 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
     reader.read(data, access);
     reader.side_effect();
   };
-  add_reader(buffer_access::uniform_graphics);
+  add_reader(buffer_access::uniform(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT));
   // The barrier before this pass comes between the write and the second reader. The second reader's
   // dependency is added to it.
   other = graph.add_pass("fill").write(other, buffer_access::fill);
@@ -111,10 +111,10 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
   mixed.read(other, buffer_access::storage_read_compute);
   mixed.read(data, buffer_access::storage_read_compute);
   mixed.side_effect();
-  add_reader(buffer_access::uniform_compute);
+  add_reader(buffer_access::uniform(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT));
   add_reader({VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
               VK_IMAGE_LAYOUT_UNDEFINED});
-  const auto plan = compile(graph);
+  const auto plan = compile(graph.description());
   ASSERT_TRUE(plan) << to_string(plan.error());
   const auto verified = verify(graph.description(), {}, *plan);
   EXPECT_TRUE(verified) << to_string(verified.error());
@@ -132,7 +132,7 @@ class InitialStates : public testing::Test {
                                             .final_state = final_state});
   }
   Plan compiled() {
-    const auto plan = compile(graph_);
+    const auto plan = compile(graph_.description());
     EXPECT_TRUE(plan) << to_string(plan.error());
     const auto right = verify(graph_.description(), {}, *plan);
     EXPECT_TRUE(right) << to_string(right.error());
@@ -188,8 +188,8 @@ TEST_F(InitialStates,
   declare(access::sampled_compute, access::sampled_fragment);
   const Plan plan = compiled();
   const PlannedPass& first = plan.passes[0];
-  ASSERT_EQ(first.batch_count, 1u) << "the last write was visible to compute shaders only";
-  const Transition& seen = plan.transitions[plan.batches[first.first_batch].first];
+  ASSERT_NE(first.batch, kNone) << "the last write was visible to compute shaders only";
+  const Transition& seen = plan.transitions[plan.batches[first.batch].first];
   EXPECT_EQ(seen.src_stages, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
   EXPECT_EQ(seen.dst_stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
@@ -218,7 +218,7 @@ TEST(Barriers, AllMipsAndLayersWrittenByOnePassShareOneBarrierBeforeTheirReader)
   PassBuilder reader = graph.add_pass("reader");
   reader.read(texture, access::sampled_compute);
   reader.side_effect();
-  const auto plan = compile(graph);
+  const auto plan = compile(graph.description());
   ASSERT_TRUE(plan);
   EXPECT_EQ(plan->transitions.size(), 2u);
 }
@@ -242,7 +242,7 @@ TEST(Barriers, WriteAfterReadsNeedsNothingMadeAvailable) {
   reader.side_effect();
   texture = graph.add_pass("updater").write(texture, access::storage_read_write_compute);
   graph.output(texture);
-  const auto plan = compile(graph);
+  const auto plan = compile(graph.description());
   ASSERT_TRUE(plan);
   ASSERT_EQ(plan->transitions.size(), 3u);
   EXPECT_EQ(plan->transitions[2].src_access, VK_ACCESS_2_NONE);
@@ -275,7 +275,7 @@ TEST(Barriers, ManySubresourcesWithDifferentStatesShareFewBarriers) {
   PassBuilder reader = graph.add_pass("reader");
   reader.read(texture, access::sampled_compute);
   reader.side_effect();
-  const auto plan = compile(graph);
+  const auto plan = compile(graph.description());
   ASSERT_TRUE(plan) << to_string(plan.error());
   EXPECT_LE(plan->transitions.size(), 2u + 3u * 2048u);
 }

@@ -21,7 +21,7 @@ class Cull : public testing::Test {
   }
   Texture make(const char* name) { return write(name, graph_.create_texture(name, kDesc)); }
   Plan plan() {
-    auto compiled = compile(graph_);
+    auto compiled = compile(graph_.description());
     EXPECT_TRUE(compiled) << to_string(compiled.error());
     return std::move(*compiled);
   }
@@ -64,18 +64,6 @@ TEST_F(Cull, PassWhoseOutputTheNextPassDiscardsIsCulled) {
   const Plan result = plan();
   EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::output);
-}
-
-TEST_F(Cull, OptionalOutputThatNobodyReadsGetsNoMemory) {
-  Texture main = graph_.create_texture("main", kDesc);
-  Texture extra = graph_.create_texture("extra", kDesc);
-  PassBuilder pass = graph_.add_pass("pass");
-  main = pass.write(main, access::storage_write_compute);
-  extra = pass.write_optional(extra, access::storage_write_compute);
-  graph_.output(main);
-  const Plan result = plan();
-  EXPECT_EQ(result.live_accesses, (std::vector<std::uint8_t>{1, 0}));
-  EXPECT_EQ(result.placements[extra.index].heap, kNone);
 }
 
 TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
@@ -130,13 +118,13 @@ TEST_F(Cull, PassThatUpdatesAHistoryInPlaceIsKeptOnlyIfAKeptPassReadsThatHistory
 class CullReadModifyWrite : public Cull {
  protected:
   // Returns the plan of the frame above. The arguments are the accesses of the two passes to `acc`.
-  Plan plan_of_update(const Access& clear, Contents cleared, Need need, const Access& update) {
+  Plan plan_of_update(const Access& clear, const Access& update) {
     TextureDesc desc = kDesc;
     if (update.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)
       desc.format = VK_FORMAT_D32_SFLOAT;
     Texture acc = graph_.create_texture("acc", desc);
     Texture second = graph_.create_texture("second", kDesc);
-    acc = graph_.add_pass("clear").write(acc, clear, {}, cleared, need);
+    acc = graph_.add_pass("clear").write(acc, clear, {}, Contents::discard);
     PassBuilder both = graph_.add_pass("update");
     (void)both.write(acc, update);
     second = both.write(second, access::storage_write_compute, {}, Contents::discard);
@@ -145,39 +133,27 @@ class CullReadModifyWrite : public Cull {
   }
 };
 
-// Reading and writing in a shader, blending, the depth test, and a write marked as optional.
+// Reading and writing in a shader, blending, and the depth test.
 TEST_F(CullReadModifyWrite, PassThatWritesTheInputOfAReadModifyWriteIsNotCulled) {
-  struct Case {
-    Access clear;
-    Contents contents;
-    Need need;
-    Access update;
-  };
-  for (const Case& c :
-       {Case{access::clear, Contents::discard, Need::required, access::storage_read_write_compute},
-        Case{access::clear, Contents::discard, Need::required, access::color_attachment},
-        Case{access::depth_attachment, Contents::discard, Need::required, access::depth_attachment},
-        Case{access::storage_write_compute, Contents::keep, Need::optional,
-             access::storage_read_write_compute}}) {
+  for (const auto& [clear, update] : {std::pair{access::clear, access::storage_read_write_compute},
+                                      {access::clear, access::color_attachment},
+                                      {access::depth_attachment, access::depth_attachment}}) {
     graph_.reset();
-    const Plan plan = plan_of_update(c.clear, c.contents, c.need, c.update);
+    const Plan plan = plan_of_update(clear, update);
     EXPECT_EQ(plan.passes.size(), 2u);
     EXPECT_EQ(plan.cull_reasons[0].cull_reason, CullReason::feeds_pass);
     EXPECT_EQ(plan.cull_reasons[0].consumer, 1u);
-    EXPECT_EQ(plan.live_accesses, (std::vector<std::uint8_t>{1, 1, 1}));
   }
 }
 
 TEST_F(CullReadModifyWrite, PassIsCulledIfItsTextureIsOnlyWrittenAgainWithoutBeingRead) {
-  const Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
-                                     access::storage_write_compute);
+  const Plan result = plan_of_update(access::clear, access::storage_write_compute);
   EXPECT_EQ(result.passes.size(), 1u);
   EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
 }
 
 TEST_F(CullReadModifyWrite, VerifierRefusesAPlanThatLacksTheWriterOfAReadModifyWritesInput) {
-  Plan result = plan_of_update(access::clear, Contents::discard, Need::required,
-                               access::storage_read_write_compute);
+  Plan result = plan_of_update(access::clear, access::storage_read_write_compute);
   // `wrong` is the plan of the same frame, except that its update does not read `acc`. The pass
   // that clears `acc` is therefore culled in that plan.
   const GraphDescription& description = graph_.description();

@@ -118,9 +118,12 @@ class DeferredFrame {
 
 }  // namespace
 
-MemoryRequirements paged_requirements(const void*, const ResourceRecord& record, VkFlags) {
+MemoryRequirements paged_requirements(const void*, const ResourceRecord& record, VkFlags, bool) {
   constexpr VkDeviceSize kPage = 65536;
-  MemoryRequirements needed = estimate_requirements(record);
+  const VkDeviceSize texel = record.format == VK_FORMAT_R8_UNORM              ? 1
+                             : record.format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8
+                                                                              : 4;
+  MemoryRequirements needed{record.size + texel * record.width * record.height};
   needed.size = (needed.size + kPage - 1) / kPage * kPage;
   needed.alignment = kPage;
   return needed;
@@ -133,7 +136,7 @@ void declare_deferred_frame(Graph& graph, std::uint32_t width, std::uint32_t hei
 tl::expected<Plan, Errors> compile_deferred_frame(Graph& graph, Limits& limits) {
   declare_deferred_frame(graph, 1920, 1080);
   limits.memory.query = paged_requirements;
-  return compile(graph, limits);
+  return compile(graph.description(), limits);
 }
 
 }  // namespace alcove::framegraph

@@ -14,7 +14,6 @@ bool is_lost = false;
 int submit_count = 0;
 int update_count = 0;
 int wait_count = 0;
-int outside_count = 0;
 int full_count = 0;
 int submissions_left = -1;  // until the device is lost; negative: it is not lost
 
@@ -96,11 +95,6 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const 
 }
 
 VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, const VkDependencyInfo* info) {
-  for (std::uint32_t i = 0; i < info->imageMemoryBarrierCount; ++i) {
-    const VkImageMemoryBarrier2& image = info->pImageMemoryBarriers[i];
-    outside_count += image.srcQueueFamilyIndex == VK_QUEUE_FAMILY_EXTERNAL ||
-                     image.dstQueueFamilyIndex == VK_QUEUE_FAMILY_EXTERNAL;
-  }
   for (std::uint32_t i = 0; i < info->memoryBarrierCount; ++i) {
     const VkMemoryBarrier2& memory = info->pMemoryBarriers[i];
     full_count += memory.srcStageMask == VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT &&
@@ -171,7 +165,6 @@ int alive() { return alive_count; }
 int descriptor_updates() { return update_count; }
 int submits() { return submit_count; }
 int semaphore_waits() { return wait_count; }
-int outside_transfers() { return outside_count; }
 int full_barriers() { return full_count; }
 
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {

@@ -23,9 +23,6 @@ int descriptor_updates();
 // Return the number of calls of vkQueueSubmit2, and of the semaphores that they wait for.
 int submits();
 int semaphore_waits();
-// Returns the number of recorded image barriers with VK_QUEUE_FAMILY_EXTERNAL as one of their queue
-// families.
-int outside_transfers();
 // Returns the number of recorded memory barriers over all commands.
 int full_barriers();
 // The function to give to the executor instead of vkGetInstanceProcAddr.

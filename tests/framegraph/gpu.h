@@ -104,7 +104,6 @@ class Gpu {
     handles.get_instance_proc_addr = vkGetInstanceProcAddr;
     handles.queues[0] = {device_->queue(), device_->queue_family()};
     handles.debug_utils = validation_;
-    handles.separate_depth_stencil = true;
     return handles;
   }
 

@@ -6,8 +6,9 @@
 // processor time per pass:
 //   setup    declaring a frame that differs from the previous one
 //   compile  Compiler::compile with all working memory already allocated
-//   steady   declaring the same frame again and finding its plan, which is the usual cost of a
-//   frame
+//   steady   declaring the same frame again and finding its plan
+//   record   declaring the same frame again and recording it with an executor, on a device whose
+//            functions do nothing, which is the usual cost of a frame
 // and the number of allocations of a steady frame, counted by replacing operator new.
 //
 // Then it prints the cost in milliseconds of a frame whose declaration changes, with the ratio of
@@ -33,6 +34,7 @@
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/verify.h"
 #include "allocation_counter.h"
+#include "null_device.h"
 #include "random_graph.h"
 
 #ifdef _WIN32
@@ -96,6 +98,22 @@ double time_ns(int repeats, Function&& f) {
   return static_cast<double>(std::clock() - start) * 1e9 / CLOCKS_PER_SEC / repeats;
 }
 
+// Returns the time of declaring and recording an unchanged frame, in nanoseconds.
+double time_record(std::span<const Reads> reads, std::span<Texture> textures, bool sizes,
+                   int repeats) {
+  auto executor = Executor::create(null_device());
+  if (!executor) std::abort();
+  Graph graph;
+  std::vector<double> times;
+  for (int run = 0; run < 51; ++run) {
+    times.push_back(time_ns(repeats, [&] {
+      declare(graph, reads, textures, 1920, sizes);
+      if (!executor->record(graph, VK_NULL_HANDLE)) std::abort();
+    }));
+  }
+  return median(times);
+}
+
 void measure(Shape shape, std::uint32_t passes) {
   Graph graph;
   const bool sizes = shape == Shape::sizes;
@@ -130,12 +148,13 @@ void measure(Shape shape, std::uint32_t passes) {
   const double count = passes;
   const double setup_ns = median(setup) / count;
   const double compile_ns = median(compile) / count;
-  std::printf("%-7s %5u  %8.1f %8.1f %8.1f  %8.1f  %6zu   %zu of %u live\n",
+  const double record = time_record(reads, textures, sizes, repeats);
+  std::printf("%-7s %5u  %8.1f %8.1f %8.1f  %8.1f %8.1f  %6zu   %zu of %u live\n",
               shape == Shape::chain ? "chain"
               : sizes               ? "sizes"
                                     : "random",
               passes, setup_ns, compile_ns, setup_ns + compile_ns, median(steady) / count,
-              steady_allocations, plan.passes.size(), passes);
+              record / count, steady_allocations, plan.passes.size(), passes);
 }
 
 // Declares passes that each write one texture of random size and read up to three of the last 16
@@ -195,15 +214,15 @@ void measure_verifier(std::uint32_t passes) {
   Graph graph;
   std::vector<Texture> textures(passes);
   declare(graph, choose_reads(Shape::random, passes), textures);
-  const auto plan = compile(graph);
+  const auto plan = compile(graph.description());
   const double time = time_ns(3, [&] {
     if (!plan || !verify(graph.description(), {}, *plan)) std::abort();
   });
   std::printf("%5u passes: %.1f ms\n", passes, time * 1e-6);
 }
 
-// The times of one row: setup, compile, both and steady.
-using Row = std::array<double, 4>;
+// The times of one row: setup, compile, both, steady and record.
+using Row = std::array<double, 5>;
 
 // Runs a program and adds the rows of its first table to `lowest`, with the lowest time of all
 // runs.
@@ -215,8 +234,8 @@ bool run(const std::string& program, std::map<std::string, Row>& lowest) {
     char shape[16];
     unsigned passes = 0;
     Row row{};
-    if (std::sscanf(line, "%15s %u %lf %lf %lf %lf", shape, &passes, &row[0], &row[1], &row[2],
-                    &row[3]) != 6 ||
+    if (std::sscanf(line, "%15s %u %lf %lf %lf %lf %lf", shape, &passes, &row[0], &row[1], &row[2],
+                    &row[3], &row[4]) != 7 ||
         std::strstr(line, "live") == nullptr)
       continue;
     const auto [there, is_new] =
@@ -239,7 +258,8 @@ int compare(const std::string& own, const std::string& other) {
   }
   std::printf("lowest of 3 runs, own and other nanoseconds a pass, and their ratio\n%-12s",
               "frame");
-  for (const char* column : {"setup", "compile", "both", "steady"}) std::printf("  %-22s", column);
+  for (const char* column : {"setup", "compile", "both", "steady", "record"})
+    std::printf("  %-22s", column);
   for (const auto& [name, row] : own_rows) {
     const auto found = other_rows.find(name);
     if (found == other_rows.end()) continue;
@@ -259,7 +279,7 @@ int main(int count, char** arguments) {
   if (count == 3 && std::strcmp(arguments[1], "--against") == 0)
     return compare(arguments[0], arguments[2]);
   std::printf("nanoseconds of processor time a pass, median; allocations of all steady frames\n");
-  std::printf("shape  passes     setup  compile     both    steady  allocs\n");
+  std::printf("shape  passes     setup  compile     both    steady   record  allocs\n");
   for (const Shape shape : {Shape::chain, Shape::random, Shape::sizes})
     for (const std::uint32_t passes : {10u, 100u, 1000u, 5000u}) measure(shape, passes);
   if (count == 2 && std::strcmp(arguments[1], "--rows") == 0) return 0;

@@ -1,5 +1,6 @@
 #include "mutate.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -17,7 +18,7 @@ class Mutator {
       drop_transition(i);
       narrow(i);
       change_layouts(i);
-      if (plan_.transitions[i].src_queue != plan_.transitions[i].dst_queue) skip_transfer(i);
+      add_bits(i);
     }
     for (std::uint32_t i = 0; i < plan_.batches.size(); ++i) drop_batch(i);
     for (std::uint32_t i = 0; i < plan_.placements.size(); ++i) {
@@ -26,6 +27,20 @@ class Mutator {
     }
     for (std::uint32_t i = 0; i < plan_.submissions.size(); ++i) drop_waits(i);
     for (std::uint32_t i = 0; i < plan_.finals.size(); ++i) misstate_history(i);
+    for (std::uint32_t i = 0; i < plan_.contents.size(); ++i) misstate_contents(i);
+    for (const PlannedPass& planned : plan_.passes) {
+      Plan mutant = plan_;
+      mutant.cull_reasons[planned.pass].cull_reason = CullReason::unread;
+      visit_("call a live pass unread", mutant);
+    }
+    for (std::uint32_t i = 0; i < plan_.heaps.size(); ++i) {
+      Plan mutant = plan_;
+      mutant.heaps[i].memory_types = 0;
+      visit_("allow no memory type", mutant);
+      mutant = plan_;
+      ++mutant.heaps[i].lower_bound;
+      visit_("misstate the lower bound", mutant);
+    }
   }
 
  private:
@@ -75,10 +90,53 @@ class Mutator {
     }
   }
 
-  void skip_transfer(std::uint32_t index) {
+  // Makes mutants of a barrier with an access that its stages lack, with a stage that its queue
+  // lacks, and with its layout change listed twice.
+  void add_bits(std::uint32_t index) {
+    const Transition& t = plan_.transitions[index];
     Plan mutant = plan_;
-    mutant.transitions[index].dst_queue = mutant.transitions[index].src_queue;
-    visit_("skip an ownership transfer", mutant);
+    const bool reads_indices = (t.dst_stages & (VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
+                                                VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)) != 0;
+    mutant.transitions[index].dst_access |= VK_ACCESS_2_INDEX_READ_BIT;
+    if (!reads_indices) visit_("add an access that the stages lack", mutant);
+    mutant = plan_;
+    mutant.transitions[index].src_stages |= VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    for (const PlannedPass& planned : plan_.passes)
+      if (planned.queue != QueueClass::graphics && planned.batch != kNone &&
+          index - plan_.batches[planned.batch].first < plan_.batches[planned.batch].count)
+        visit_("add a stage that the queue lacks", mutant);
+    if (t.resource == kNone) return;
+    mutant = plan_;
+    mutant.transitions.insert(mutant.transitions.begin() + index, t);
+    for (Batch& batch : mutant.batches)
+      if (index < batch.first)
+        ++batch.first;
+      else if (index < batch.first + batch.count)
+        ++batch.count;
+    visit_("list a layout change twice", mutant);
+  }
+
+  void misstate_contents(std::uint32_t index) {
+    const AccessRecord& access = graph_.accesses[index];
+    if (plan_.placements[access.resource].first == kNone || !is_live(index)) return;
+    const auto visit_flag = [&](std::uint8_t flag, const char* kind) {
+      Plan mutant = plan_;
+      mutant.contents[index] ^= flag;
+      visit_(kind, mutant);
+    };
+    const bool draws = (access.access & (VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                                         VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT)) != 0;
+    if (draws)
+      visit_flag(kHasContents,
+                 plan_.contents[index] & kHasContents ? "leave out a load" : "load nothing");
+    if (plan_.contents[index] & kIsNeeded) visit_flag(kIsNeeded, "leave out a store");
+  }
+
+  bool is_live(std::uint32_t access) const {
+    std::uint32_t pass = 0;
+    while (pass + 1 < graph_.passes.size() && graph_.passes[pass + 1].first_access <= access)
+      ++pass;
+    return plan_.cull_reasons[pass].is_live();
   }
 
   void drop_batch(std::uint32_t index) {
@@ -102,13 +160,10 @@ class Mutator {
   }
 
   bool is_used_at(std::uint32_t resource, std::uint32_t position) const {
-    const std::uint32_t pass = plan_.passes[position].pass;
-    const auto accesses = graph_.pass_accesses(pass);
-    for (std::size_t i = 0; i < accesses.size(); ++i)
-      if (accesses[i].resource == resource &&
-          plan_.live_accesses[graph_.passes[pass].first_access + i])
-        return true;
-    return false;
+    const auto accesses = graph_.pass_accesses(plan_.passes[position].pass);
+    return std::any_of(accesses.begin(), accesses.end(), [resource](const AccessRecord& access) {
+      return access.resource == resource;
+    });
   }
 
   // Makes mutants that move a resource to the memory of another one that is live at the same time,

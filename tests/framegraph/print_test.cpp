@@ -17,7 +17,7 @@ class Print : public testing::Test {
   void SetUp() override {
     declare_deferred_frame(graph_, 1920, 1080);
     (void)graph_.add_pass("nobody \"wants\" this");
-    plan_ = *compile(graph_);
+    plan_ = *compile(graph_.description());
   }
   Graph graph_;
   Plan plan_;

@@ -29,7 +29,7 @@ class Queues : public testing::Test {
                .final_state = state});
   }
   Plan compiled() {
-    const auto plan = compile(graph_, limits_);
+    const auto plan = compile(graph_.description(), limits_);
     EXPECT_TRUE(plan) << to_string(plan.error());
     const auto right = verify(graph_.description(), limits_, *plan);
     EXPECT_TRUE(right) << to_string(right.error());
@@ -91,29 +91,6 @@ TEST_F(Queues, ComputePassesThatReadImportsOfTheGraphicsQueueShareOneSubmission)
   EXPECT_EQ(plan.passes[0].submission, plan.passes[1].submission);
 }
 
-// A history that was last used on another queue is released by that queue, even in a frame in which
-// that queue runs no pass.
-TEST_F(Queues, ComputeQueueReleasesItsHistoryToGraphicsInAFrameWithoutComputePasses) {
-  const auto declare = [&](QueueClass queue) {
-    graph_.reset();
-    const TextureHistory history = graph_.create_texture_history("history", kDesc);
-    PassBuilder pass = graph_.add_pass("pass", queue);
-    if (queue == QueueClass::compute)
-      (void)pass.write(history.current, access::storage_write_compute, {}, Contents::discard);
-    else
-      pass.read(history.previous(), access::sampled_fragment);
-    pass.side_effect();
-  };
-  declare(QueueClass::compute);
-  graph_.leave_histories(compiled().finals);
-  declare(QueueClass::graphics);
-  const Plan plan = compiled();
-  ASSERT_FALSE(plan.submissions.empty());
-  EXPECT_EQ(plan.submissions[0].queue, QueueClass::compute);
-  EXPECT_EQ(plan.submissions[0].batch_count, 1u)
-      << "the release must be in a submission of the compute queue";
-}
-
 // In the second frame a pass of the compute queue updates one of the history's two mips. No pass
 // uses the other mip, which the compute queue owns too. The verifier must accept the plan.
 TEST_F(Queues, UpdatingAPartOfAHistoryOnTheQueueThatOwnsItGivesAVerifiedPlan) {
@@ -135,10 +112,9 @@ TEST_F(Queues, UpdatingAPartOfAHistoryOnTheQueueThatOwnsItGivesAVerifiedPlan) {
 // Particles are simulated on the compute queue while the scene is drawn on the graphics queue. The
 // two share no memory, so that neither queue waits for the previous frame of the other.
 TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForEachOthersPreviousFrame) {
-  BufferHistory particles = graph_.create_buffer_history("particles", {4096});
+  const TextureHistory particles = graph_.create_texture_history("particles", kDesc);
   PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);
-  particles.current =
-      simulate.write(particles.current, buffer_access::storage_write_compute, Contents::discard);
+  (void)simulate.write(particles.current, access::storage_write_compute, {}, Contents::discard);
   simulate.side_effect();
   PassBuilder draw = graph_.add_pass("draw");
   const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);
@@ -173,30 +149,26 @@ TEST_F(Queues, GraphicsQueueWaitsBeforeReusingMemoryThatComputeReadInThePrevious
 TEST_F(Queues, HistoryWrittenOnOneQueueAndReadOnAnotherIsValidInTheNextFrame) {
   for (const std::uint32_t family : {0u, 1u}) {
     limits_.queue_families[1] = family;
-    for (const bool persistent : {false, true}) {
-      const char* const name = persistent ? "persistent" : "history";
-      HistoryValidity validity = HistoryValidity::first_frame;
-      for (int frame = 0; frame < 2; ++frame) {
-        graph_.reset();
-        graph_.reset_history(frame == 0 ? name : "");
-        const TextureHistory history = persistent ? graph_.create_persistent_texture(name, kDesc)
-                                                  : graph_.create_texture_history(name, kDesc);
-        validity = history.validity;
-        PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
-        const Texture written = occlusion.write(history.current, access::storage_write_compute);
-        PassBuilder lighting = graph_.add_pass("lighting");
-        lighting.read(written, access::sampled_fragment);
-        lighting.side_effect();
-        Plan plan = compiled();
-        graph_.leave_histories(plan.finals);
-        ASSERT_FALSE(plan.finals.empty());
-        plan.finals[0].written = WriteCoverage::nothing;
-        EXPECT_FALSE(verify(graph_.description(), limits_, plan));
-        plan.finals.clear();
-        EXPECT_FALSE(verify(graph_.description(), limits_, plan));
-      }
-      EXPECT_EQ(validity, HistoryValidity::valid) << name << " in family " << family;
+    HistoryValidity validity = HistoryValidity::first_frame;
+    for (int frame = 0; frame < 2; ++frame) {
+      graph_.reset();
+      graph_.reset_history(frame == 0 ? "history" : "");
+      const TextureHistory history = graph_.create_texture_history("history", kDesc);
+      validity = history.validity;
+      PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
+      const Texture written = occlusion.write(history.current, access::storage_write_compute);
+      PassBuilder lighting = graph_.add_pass("lighting");
+      lighting.read(written, access::sampled_fragment);
+      lighting.side_effect();
+      Plan plan = compiled();
+      graph_.leave_histories(plan.finals);
+      ASSERT_FALSE(plan.finals.empty());
+      plan.finals[0].written = WriteCoverage::nothing;
+      EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+      plan.finals.clear();
+      EXPECT_FALSE(verify(graph_.description(), limits_, plan));
     }
+    EXPECT_EQ(validity, HistoryValidity::valid) << "in family " << family;
   }
 }
 
@@ -247,6 +219,55 @@ TEST_F(Queues, QueuesThatOnlyReadATextureDoNotWaitForEachOther) {
   const Plan plan = compiled();
   EXPECT_EQ(plan.submissions.size(), 3u);
   EXPECT_EQ(plan.waits.size(), 1u);
+}
+
+// Two passes on two queues read a depth attachment, in one other layout:
+//
+//   gbuffer (graphics) -- depth --> ao (compute) ------> light (graphics)
+//                           +-----> decals (graphics) ----^
+//
+// The graphics queue changes the layout after `gbuffer`, so that `decals` waits for no other queue.
+TEST_F(Queues, ReadersOfAnAttachmentOnTwoQueuesDoNotWaitForEachOther) {
+  for (const std::uint32_t family : {0u, 1u}) {
+    limits_.queue_families[1] = family;
+    for (const bool decals_first : {false, true}) {
+      graph_.reset();
+      PassBuilder gbuffer = graph_.add_pass("gbuffer");
+      const Texture depth =
+          gbuffer.write(graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, kDesc.extent, 2}),
+                        access::depth_attachment, {}, Contents::discard);
+      Texture occlusion;
+      Texture color;
+      const auto draw_decals = [&] {
+        PassBuilder decals = graph_.add_pass("decals");
+        decals.read(depth, access::depth_read_fragment, Range::mip(0));
+        color = decals.write(make("color"), access::color_attachment, {}, Contents::discard);
+      };
+      if (decals_first) draw_decals();
+      PassBuilder ao = graph_.add_pass("ao", QueueClass::compute);
+      ao.read(depth, access::depth_read_compute);
+      occlusion = ao.write(make("ao"), access::storage_write_compute, {}, Contents::discard);
+      if (!decals_first) draw_decals();
+      PassBuilder light = graph_.add_pass("light");
+      light.read(occlusion, access::sampled_fragment);
+      light.read(color, access::sampled_fragment);
+      light.side_effect();
+      Plan plan = compiled();
+      // Of the submissions [gbuffer] [ao] [decals] [light], the second and the last wait.
+      ASSERT_EQ(plan.submissions.size(), 4u);
+      for (const PlannedPass& planned : plan.passes) {
+        const std::string_view name = graph_.description().pass_name(planned.pass);
+        EXPECT_EQ(plan.submissions[planned.submission].wait_count,
+                  name == "ao" || name == "light" ? 1u : 0u)
+            << name;
+      }
+      EXPECT_EQ(plan.placements[depth.index].concurrent, family != 0);
+      ASSERT_NE(plan.submissions[0].end_batch, kNone);
+      EXPECT_EQ(plan.batches[plan.submissions[0].end_batch].count, 1u) << "one for both mips";
+      plan.submissions[0].end_batch = kNone;
+      EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+    }
+  }
 }
 
 }  // namespace

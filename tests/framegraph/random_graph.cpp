@@ -9,16 +9,16 @@ namespace {
 
 constexpr Access kReads[] = {access::sampled_compute, access::storage_read_compute,
                              access::sampled_fragment, access::transfer_source,
-                             access::sampled_general_compute};
+                             access::sampled_general(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT)};
 constexpr Access kWrites[] = {access::storage_write_compute, access::storage_read_write_compute,
                               access::color_attachment, access::transfer_destination,
                               access::clear};
 constexpr Access kBufferReads[] = {buffer_access::storage_read_compute,
-                                   buffer_access::uniform_graphics,
+                                   buffer_access::uniform(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT),
                                    buffer_access::vertex_buffer,
                                    buffer_access::transfer_source,
                                    buffer_access::indirect,
-                                   buffer_access::uniform_compute};
+                                   buffer_access::uniform(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT)};
 constexpr Access kBufferWrites[] = {buffer_access::storage_write_compute,
                                     buffer_access::storage_read_write_compute,
                                     buffer_access::transfer_destination, buffer_access::fill};
@@ -80,8 +80,6 @@ class Declarer {
                                      VK_FORMAT_R32_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM};
     desc.format = kFormats[dice_.roll(4)];
     desc.extent = Extent::absolute(side(), side());
-    if (dice_.chance(40) && !resources_.empty() && resources_[0].texture)
-      desc.extent = Extent::relative(resources_[0].handle, 1 + dice_.roll(3));
     if (dice_.chance(60)) {
       desc.extent = Extent::absolute(16 + side(), 16 + side());
       desc.mips = 1 + dice_.roll(4);
@@ -142,7 +140,6 @@ class Declarer {
   void set_any_states(Import& import, bool full, bool departs, bool texture) {
     if (full) import.initial_state = any_state(texture);
     if (departs) import.final_state = any_state(texture);
-    import.concurrent = dice_.chance(60);
   }
 
   void add_import() {
@@ -262,14 +259,13 @@ class Declarer {
     // An older slot is updated in place.
     if ((resource.old && !resource.written[0]) || resource.last_pass == index) return;
     resource.last_pass = index;
-    Contents contents = !resource.old && dice_.chance(80) ? Contents::discard : Contents::keep;
-    if (contents == Contents::keep && dice_.chance(80)) contents = Contents::accumulate;
-    const Need need = dice_.chance(40) ? Need::optional : Need::required;
+    const Contents contents =
+        !resource.old && dice_.chance(80) ? Contents::discard : Contents::keep;
     if (!resource.texture) {
       std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2});
       // A read-modify-write needs contents.
       if (way == 1 && !resource.written[0] && contents != Contents::discard) way = 0;
-      resource.buffer = pass.write(resource.buffer, kBufferWrites[way], contents, need);
+      resource.buffer = pass.write(resource.buffer, kBufferWrites[way], contents);
       resource.written[0] = true;
       return;
     }
@@ -291,7 +287,7 @@ class Declarer {
     if (way == 2 && drawn_in_ == index) way = 4;
     if (way == 2) drawn_in_ = index;
     if (way == 1 && !had_contents && contents != Contents::discard) way = 0;
-    resource.handle = pass.write(resource.handle, kWrites[way], range, contents, need);
+    resource.handle = pass.write(resource.handle, kWrites[way], range, contents);
   }
 
   Graph& graph_;

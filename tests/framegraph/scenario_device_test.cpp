@@ -220,95 +220,6 @@ TEST_F(Scenario, AttachmentsAreLoadedAndStoredOnlyIfContentsAreNeeded) {
   EXPECT_EQ(ops[3], (Ops{VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_NONE}));
 }
 
-// The pass clears the stencil of a texture. At the same time it samples the depth of the same
-// texture, which is attached read-only and keeps its contents.
-TEST_F(Scenario, DepthCanBeSampledWhileTheStencilOfTheSameTextureIsWritten) {
-  begin();
-  static constexpr VkClearValue kCleared{.depthStencil = {0.25f, 3}};
-  static constexpr VkClearValue kMarked{.depthStencil = {0.0f, 7}};
-  Texture depth = texture("depth", VK_FORMAT_D32_SFLOAT_S8_UINT);
-  Texture color = texture("color");
-  PassBuilder opaque = graph_.add_pass("opaque");
-  depth = opaque.write(depth, access::depth_attachment);
-  opaque.record([=](RecordContext& c) {
-    ASSERT_TRUE(c.begin_rendering({}, {depth, &kCleared}));
-    c.end_rendering();
-  });
-  PassBuilder decals = graph_.add_pass("decals");
-  decals.read(depth, access::depth_test | access::sampled_fragment, Range::depth());
-  depth = decals.write(depth, access::stencil_attachment, Range::stencil(), Contents::discard);
-  color = decals.write(color, access::color_attachment);
-  decals.record([=](RecordContext& c) {
-    EXPECT_NE(c.view(depth, Range::depth()), c.view(depth, Range::stencil()));
-    const Attachment target{color, &kClearRed};
-    ASSERT_TRUE(c.begin_rendering({&target, 1}, {depth, &kMarked}));
-    c.end_rendering();
-  });
-  copy_out(color, 0);
-  copy_out(depth, 1, 1, VK_IMAGE_ASPECT_DEPTH_BIT);
-  copy_out(depth, 2, 1, VK_IMAGE_ASPECT_STENCIL_BIT);
-  run();
-  EXPECT_EQ(word(0), kRed);
-  float kept = 0;
-  std::memcpy(&kept, static_cast<const float*>(host_.mapped) + 1, sizeof kept);
-  EXPECT_EQ(kept, 0.25f);
-  EXPECT_EQ(word(2) & 0xff, 7u);
-}
-
-// The texture is written in the first frame, read in later ones, and partly updated in the last
-// one.
-TEST_F(Scenario, PersistentTextureKeepsItsContentsFromFrameToFrame) {
-  for (std::uint32_t frame = 0; frame < 4; ++frame) {
-    begin();
-    const TextureHistory table = graph_.create_persistent_texture(
-        "table", {VK_FORMAT_R32_UINT, Extent::absolute(8, 8), 1, 2});
-    EXPECT_EQ(table.validity, frame == 0 ? HistoryValidity::first_frame : HistoryValidity::valid);
-    Texture current = table.current;
-    if (frame == 0 || frame == 2) {
-      const std::uint32_t first = frame == 0 ? 0 : 1;
-      PassBuilder pass = graph_.add_pass("write");
-      current = pass.write(current, access::clear, frame == 0 ? Range{} : Range::layer(1));
-      pass.record([=](RecordContext& c) {
-        clear_image(c, c.image(current), 100 + frame,
-                    {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, first, 2 - first});
-      });
-    }
-    // A pass that writes a persistent texture runs even if nothing reads it in that frame.
-    if (frame != 0 && frame != 2) copy_out(current, 0, 2);
-    run({frame % 2});
-    if (frame == 0 || frame == 2) continue;
-    EXPECT_EQ(word(0), 100u);
-    EXPECT_EQ(word(1), frame == 1 ? 100u : 102u);
-  }
-}
-
-// The buffer is filled in the first frame and read in the second.
-TEST_F(Scenario, PersistentBufferKeepsItsContentsFromFrameToFrame) {
-  for (std::uint32_t frame = 0; frame < 2; ++frame) {
-    begin();
-    const BufferHistory counter = graph_.create_persistent_buffer("counter", {4});
-    EXPECT_EQ(counter.validity, frame == 0 ? HistoryValidity::first_frame : HistoryValidity::valid);
-    if (frame == 0) {
-      PassBuilder pass = graph_.add_pass("fill");
-      const Buffer filled = pass.write(counter.current, buffer_access::fill);
-      pass.record([=](RecordContext& c) {
-        vkCmdFillBuffer(c.commands, c.buffer(filled), 0, VK_WHOLE_SIZE, 77);
-      });
-    } else {
-      out_ = graph_.import_buffer("host", Gpu::imported(host_));
-      PassBuilder pass = graph_.add_pass("copy out");
-      pass.read(counter.current, buffer_access::transfer_source);
-      out_ = pass.write(out_, buffer_access::transfer_destination);
-      pass.record([=, out = out_](RecordContext& c) {
-        const VkBufferCopy all{0, 0, 4};
-        vkCmdCopyBuffer(c.commands, c.buffer(counter.current), c.buffer(out), 1, &all);
-      });
-    }
-    run({frame});
-  }
-  EXPECT_EQ(word(0), 77u);
-}
-
 // A separate pass draws each face. The cube is then read through a cube view.
 TEST_F(Scenario, CubeShadowMapCanBeDrawnFaceByFaceAndReadThroughACubeView) {
   begin();
@@ -389,15 +300,12 @@ TEST_F(Scenario, FrameWithAsyncComputeWaitsForAndSignalsSemaphoresOfTheCaller) {
 // previous frame.
 TEST_F(Scenario, WorkOfTwoQueuesWithoutCommonResourcesOverlapsAcrossFrames) {
   several_queues_ = true;
-  const auto declare = [&](std::uint32_t frame, VkDeviceSize size) {
+  const auto declare = [&](std::uint32_t frame, std::uint32_t size) {
     begin();
-    BufferHistory particles = graph_.create_buffer_history("particles", {size});
-    PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);
-    particles.current = simulate.write(particles.current, buffer_access::fill, Contents::discard);
-    simulate.side_effect();
-    simulate.record([=, out = particles.current](RecordContext& c) {
-      vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, frame);
-    });
+    const TextureHistory particles =
+        graph_.create_texture_history("particles", {VK_FORMAT_R32_UINT, Extent::absolute(size, 1)});
+    graph_.output(
+        add_clear(graph_, particles.current, frame, Contents::discard, QueueClass::compute));
     Texture scene = texture("scene");
     PassBuilder draw = graph_.add_pass("draw");
     scene = draw.write(scene, access::color_attachment);
@@ -422,26 +330,6 @@ TEST_F(Scenario, WorkOfTwoQueuesWithoutCommonResourcesOverlapsAcrossFrames) {
       EXPECT_GT(waits, 0);
     }
   }
-}
-
-// The image is transferred from a queue family outside the device and back to it.
-TEST_F(Scenario, ImportOfAnotherQueueFamilyIsAcquiredFromThatFamilyAndReleasedBackToIt) {
-  ImportedTexture import;
-  import.desc = {VK_FORMAT_R32_UINT, Extent::absolute(8, 8)};
-  import.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  import.image = gpu_.make_image(import.desc, import.usage);
-  gpu_.change_layout(import.image, VK_IMAGE_LAYOUT_GENERAL);
-  import.initial_state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                          VK_IMAGE_LAYOUT_GENERAL};
-  import.final_state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
-                        VK_IMAGE_LAYOUT_GENERAL};
-  import.initial_family = import.final_family = VK_QUEUE_FAMILY_EXTERNAL;
-  begin();
-  copy_out(add_clear(graph_, graph_.import_texture("shared", import), 5));
-  const int transfers = failing::outside_transfers();
-  run();
-  EXPECT_EQ(word(0), 5u);
-  EXPECT_EQ(failing::outside_transfers() - transfers, 2);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class Validate : public testing::Test {
   }
   // Checks that compiling gives exactly this error, and that its sentence contains `text`.
   void expect(ErrorCode code, const char* text, const Limits& limits = {}) {
-    const auto plan = compile(graph_, limits);
+    const auto plan = compile(graph_.description(), limits);
     ASSERT_FALSE(plan);
     EXPECT_EQ(plan.error().size(), 1u) << to_string(plan.error());
     EXPECT_EQ(plan.error()[0].code, code) << plan.error()[0].message;
@@ -39,7 +39,7 @@ class Validate : public testing::Test {
 TEST_F(Validate, ValidGraphCompilesWithoutErrors) {
   const Texture texture = written("t");
   pass("reader").read(texture, access::sampled_compute);
-  EXPECT_TRUE(compile(graph_));
+  EXPECT_TRUE(compile(graph_.description()));
 }
 
 TEST_F(Validate, ReadModifyWriteOfUnwrittenContentsIsRefused) {
@@ -55,56 +55,7 @@ TEST_F(Validate, AttachmentsAndDiscardingWritesOfUnwrittenTexturesAreAllowed) {
   (void)pass("draw").write(drawn, access::color_attachment);
   const Texture stored = graph_.create_texture("stored", kDesc);
   (void)pass("update").write(stored, access::storage_read_write_compute, {}, Contents::discard);
-  EXPECT_TRUE(compile(graph_));
-}
-
-TEST_F(Validate, RelativeExtentIsTheBaseExtentTimesMultiplierOverDivisorRoundedUp) {
-  const Texture base = graph_.create_texture("base", {kDesc.format, Extent::absolute(100, 7)});
-  const auto size = [&](std::uint32_t divisor, std::uint32_t multiplier) {
-    const VkExtent3D extent = graph_.extent(
-        graph_.create_texture("t", {kDesc.format, Extent::relative(base, divisor, multiplier)}));
-    return std::pair{extent.width, extent.height};
-  };
-  EXPECT_EQ(size(3, 2), (std::pair{67u, 5u}));
-  EXPECT_EQ(size(1, 2), (std::pair{200u, 14u}));
-  EXPECT_EQ(size(1000, 1), (std::pair{1u, 1u}));
-  EXPECT_EQ(size(2, 0), (std::pair{0u, 0u}));
-}
-
-TEST_F(Validate, SidesOfARelativeExtentThatAreGivenAreNotRelative) {
-  const Texture base = graph_.create_texture("base", {kDesc.format, Extent::absolute(100, 8)});
-  Extent extent = Extent::relative(base, 2);
-  extent.depth = 16;
-  const VkExtent3D volume = graph_.extent(graph_.create_texture("t", {kDesc.format, extent}));
-  EXPECT_EQ(volume.width, 50u);
-  EXPECT_EQ(volume.height, 4u);
-  EXPECT_EQ(volume.depth, 16u);
-  extent.height = 3;
-  EXPECT_EQ(graph_.extent(graph_.create_texture("u", {kDesc.format, extent})).height, 3u);
-}
-
-// Tests a depth attachment with and without a later reader, on a device with lazily allocated
-// memory.
-TEST_F(Validate, AttachmentThatNobodyReadsLaterGetsTransientUsageOnDevicesWithLazyMemory) {
-  for (const bool read_later : {false, true}) {
-    graph_.reset();
-    Texture color = graph_.create_texture("color", kDesc);
-    Texture depth = graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, kDesc.extent});
-    PassBuilder draw = pass("draw");
-    color = draw.write(color, access::color_attachment);
-    depth = draw.write(depth, access::depth_attachment);
-    graph_.output(color);
-    if (read_later) pass("later").read(depth, access::depth_read_compute);
-    Limits limits;
-    limits.has_lazy_memory = true;
-    const auto plan = compile(graph_, limits);
-    ASSERT_TRUE(plan);
-    const auto is_transient = [&](Texture texture) {
-      return (plan->placements[texture.index].usage & VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT) != 0;
-    };
-    EXPECT_FALSE(is_transient(color));
-    EXPECT_EQ(is_transient(depth), !read_later);
-  }
+  EXPECT_TRUE(compile(graph_.description()));
 }
 
 TEST_F(Validate, LayerOrMipIndexAbove16BitsIsRefused) {
@@ -137,7 +88,7 @@ TEST_F(Validate, PassBuilderUsedAfterGraphResetIsRefused) {
   }
 }
 
-TEST_F(Validate, EmptyGraphIsValid) { EXPECT_TRUE(compile(graph_)); }
+TEST_F(Validate, EmptyGraphIsValid) { EXPECT_TRUE(compile(graph_.description())); }
 
 TEST_F(Validate, UseOfAnOutdatedHandleIsReportedWithItsVersionAndTheCurrentOne) {
   for (const bool writes : {false, true}) {
@@ -203,9 +154,10 @@ TEST_F(Validate, PassMayReadOneMipAndWriteAnotherMipOfTheSameTexture) {
   Texture texture = graph_.create_texture("t", desc);
   texture = pass("first").write(texture, access::storage_write_compute, Range::mip(0));
   PassBuilder both = pass("both");
-  both.read(texture, access::sampled_general_compute, Range::mip(0));
+  both.read(texture, access::sampled_general(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT),
+            Range::mip(0));
   (void)both.write(texture, access::storage_write_compute, Range::mip(1));
-  EXPECT_TRUE(compile(graph_));
+  EXPECT_TRUE(compile(graph_.description()));
 }
 
 TEST_F(Validate, TwoWritesOfOneSubresourceInAPassAreRefused) {
@@ -225,19 +177,6 @@ TEST_F(Validate, ImportWithoutTheVulkanUsageThatAPassNeedsIsRefused) {
   (void)pass("writer").write(texture, access::storage_write_compute);
   expect(ErrorCode::missing_usage,
          "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
-}
-
-TEST_F(Validate, HistoryWithoutTheVulkanUsageThatAPassNeedsIsRefused) {
-  Access addressed = buffer_access::storage_write_compute;
-  addressed.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-  BufferHistory history = graph_.create_buffer_history("particles", {64});
-  (void)pass("simulate").write(history.current, addressed);
-  expect(ErrorCode::missing_usage, "create it with SHADER_DEVICE_ADDRESS in BufferDesc::usage too");
-  graph_.reset();
-  history =
-      graph_.create_buffer_history("particles", {64, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT});
-  (void)pass("simulate").write(history.current, addressed);
-  EXPECT_TRUE(compile(graph_));
 }
 
 TEST_F(Validate, ImportWithoutAVulkanHandleIsRefused) {
@@ -262,37 +201,16 @@ TEST_F(Validate, AccessToMipsThatTheTextureDoesNotHaveIsRefused) {
   expect(ErrorCode::bad_range, "but it has 1 mips and 1 layers");
 }
 
-TEST_F(Validate, ImageAspectsThatTheFormatOrTheDeviceDoesNotSupportAreRefused) {
-  const Texture color = written("t");
-  pass("reader").read(color, access::sampled_compute, Range::stencil());
-  expect(ErrorCode::bad_range, "in an aspect that its format does not have");
-  graph_.reset();
-  Texture depth = graph_.create_texture("d", {VK_FORMAT_D24_UNORM_S8_UINT, Extent::absolute(8, 8)});
-  depth = pass("draw").write(depth, access::depth_attachment);
-  pass("reader").read(depth, access::sampled_fragment, Range::depth());
-  EXPECT_TRUE(compile(graph_));
-  Limits limits;
-  limits.separate_depth_stencil = false;
-  expect(ErrorCode::bad_range, "set DeviceHandles::separate_depth_stencil", limits);
-}
-
 TEST_F(Validate, ResourcesOfSizeZeroOrOverTheDeviceLimitsAreRefused) {
   (void)graph_.create_texture("none", {VK_FORMAT_R8_UNORM, Extent::absolute(0, 4)});
   (void)graph_.create_texture("huge", {VK_FORMAT_R8_UNORM, Extent::absolute(1 << 20, 4)});
   (void)graph_.create_texture("deep", {VK_FORMAT_R8_UNORM, Extent::absolute(4, 4), 9});
   (void)graph_.create_texture("formless", {VK_FORMAT_UNDEFINED, Extent::absolute(4, 4)});
   (void)graph_.create_buffer("empty", {0});
-  const auto plan = compile(graph_);
+  const auto plan = compile(graph_.description());
   ASSERT_FALSE(plan);
   ASSERT_EQ(plan.error().size(), 5u) << to_string(plan.error());
   for (const Error& error : plan.error()) EXPECT_EQ(error.code, ErrorCode::bad_description);
-}
-
-TEST_F(Validate, ExtentRelativeToATextureOfAnotherGraphIsRefused) {
-  Graph other;
-  const Texture foreign = other.create_texture("foreign", kDesc);
-  (void)graph_.create_texture("half", {VK_FORMAT_R8_UNORM, Extent::relative(foreign, 2)});
-  expect(ErrorCode::bad_description, "relative to a handle of another graph");
 }
 
 TEST_F(Validate, ReadingAHistoryThatNoPassWritesIsRefused) {
@@ -336,7 +254,7 @@ TEST_F(Validate, AllErrorsOfAGraphAreReportedByOneCompilation) {
   pass("one").read(Texture{}, access::sampled_compute);
   pass("two").read(graph_.create_texture("t", kDesc), access::sampled_compute);
   (void)graph_.create_buffer("empty", {0});
-  const auto plan = compile(graph_);
+  const auto plan = compile(graph_.description());
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().size(), 3u);
 }
@@ -363,7 +281,7 @@ TEST_F(Validate, DisjointLayersOfOneImageMayBeImportedUnderTwoNames) {
   (void)graph_.import_texture("first two", import);
   import.first_layer = 2;
   (void)graph_.import_texture("next two", import);
-  EXPECT_TRUE(compile(graph_));
+  EXPECT_TRUE(compile(graph_.description()));
   import.first_layer = 3;
   (void)graph_.import_texture("overlapping", import);
   expect(ErrorCode::bad_import,
@@ -372,8 +290,6 @@ TEST_F(Validate, DisjointLayersOfOneImageMayBeImportedUnderTwoNames) {
 
 // Write access bits of Vulkan extensions, each with a stage that supports it.
 constexpr Access kExtensionWrites[] = {
-    buffer_access::acceleration_structure_build,
-    buffer_access::build_scratch,
     {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT, VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT},
     {VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT,
      VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT}};
@@ -383,7 +299,7 @@ TEST_F(Validate, WriteAccessBitsOfVulkanExtensionsAreTreatedAsWrites) {
     graph_.reset();
     PassBuilder writer = pass("writer");
     (void)writer.write(graph_.create_buffer("b", {64}), access, Contents::discard);
-    EXPECT_TRUE(compile(graph_));
+    EXPECT_TRUE(compile(graph_.description()));
     graph_.reset();
     Buffer buffer = graph_.create_buffer("b", {64});
     buffer = pass("writer").write(buffer, buffer_access::fill, Contents::discard);
@@ -401,7 +317,7 @@ TEST_F(Validate, ImportWrittenByAVulkanExtensionStageGetsABarrierBeforeItsReader
               .usage = ~VkBufferUsageFlags{0},
               .initial_state = {access.stages, access.access, VK_IMAGE_LAYOUT_UNDEFINED}});
     pass("reader").read(buffer, buffer_access::storage_read_compute);
-    auto plan = compile(graph_);
+    auto plan = compile(graph_.description());
     ASSERT_TRUE(plan);
     ASSERT_EQ(plan->transitions.size(), 1u);
     EXPECT_EQ(plan->transitions[0].src_access, access.access & kWriteBits);
@@ -428,7 +344,7 @@ TEST_F(Validate, QueuesRefuseEachStageThatTheyCannotRun) {
     const Buffer buffer =
         pass("writer").write(graph_.create_buffer("b", {64}), buffer_access::storage_write_compute);
     pass("reader", queue).read(buffer, {stage, VK_ACCESS_2_MEMORY_READ_BIT});
-    return !compile(graph_);
+    return !compile(graph_.description());
   };
   for (const VkPipelineStageFlags2 stage : kGraphics) {
     EXPECT_FALSE(is_refused(stage, QueueClass::graphics)) << stage;
@@ -451,7 +367,7 @@ TEST_F(Validate, ImageAtTheDevicesLimitsIsAcceptedAndBeyondEachOfThemRefused) {
                      return *static_cast<const ImageLimits*>(context);
                    },
                    &allowed};
-  EXPECT_TRUE(compile(graph_, limits));
+  EXPECT_TRUE(compile(graph_.description(), limits));
   for (const auto& [change, text] :
        {std::pair<void (*)(ImageLimits&), const char*>{[](ImageLimits& l) { l.mips = 2; },
                                                        "at most 2 mips for it, not 3"},

@@ -174,15 +174,16 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
     VkExtent2D size;
     VkImageUsageFlags usage;
   };
-  for (const Target& target : {Target{view.depth, kDepthFormat, size, kDepthUsage},
-                               Target{view.normals, kNormalFormat, size, kColourUsage},
-                               Target{view.motion, kMotionFormat, size, kColourUsage},
-                               Target{view.visibility, kVisibilityFormat, size, kVisibilityUsage},
-                               Target{drawn.other.albedo, kAlbedoFormat, size, kColourUsage},
-                               Target{drawn.other.half_depth,
-                                      kDepthFormat,
-                                      {size.width / 2, size.height / 2},
-                                      kDepthUsage}}) {
+  for (const Target& target :
+       {Target{view.images[ALCOVE_IMAGE_DEPTH], kDepthFormat, size, kDepthUsage},
+        Target{view.images[ALCOVE_IMAGE_NORMALS], kNormalFormat, size, kColourUsage},
+        Target{view.images[ALCOVE_IMAGE_MOTION], kMotionFormat, size, kColourUsage},
+        Target{view.images[ALCOVE_IMAGE_VISIBILITY], kVisibilityFormat, size, kVisibilityUsage},
+        Target{drawn.other.albedo, kAlbedoFormat, size, kColourUsage},
+        Target{drawn.other.half_depth,
+               kDepthFormat,
+               {size.width / 2, size.height / 2},
+               kDepthUsage}}) {
     ALCOVE_TRY(auto texture, create_image(target.format, target.size, target.usage));
     target.image = texture;
   }
@@ -190,22 +191,22 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   drawn.other.half_depth.height = size.height;
   const auto report = gpu_.run([&](Graph& graph) -> Result<void> {
     (void)gbuffer_->add(graph, seen,
-                        {.depth = import(graph, view.depth, true),
-                         .normal = import(graph, view.normals, true),
+                        {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH], true),
+                         .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS], true),
                          .albedo = import(graph, drawn.other.albedo, true),
-                         .motion = import(graph, view.motion, true)});
+                         .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION], true)});
     if (course_.other_inputs)
       (void)gbuffer_->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
     return {};
   });
   if (!report) return Failure(report.error());
   view.struct_size = sizeof view;
-  view.camera = to_camera(now);
-  view.previous_camera = to_camera(before);
-  view.visibility.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  view.info.camera = to_camera(now);
+  view.info.previous_camera = to_camera(before);
+  view.images[ALCOVE_IMAGE_VISIBILITY].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
   const bool changes = (course_.cut || course_.resize) && frame == course_.change_at;
-  view.reset_history = changes ? VK_TRUE : VK_FALSE;
-  view.static_frames = course_.orbit != 0.0f || course_.jitter ? 0 : frame;
+  view.info.reset_history = changes ? VK_TRUE : VK_FALSE;
+  view.info.static_frames = course_.orbit != 0.0f || course_.jitter ? 0 : frame;
   drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false));
   auto done = course_.other_inputs ? create_other_inputs(drawn, frame) : Result<void>();
   frames_.push_back(drawn);
@@ -215,8 +216,8 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
 Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
-  const auto depths = read<float>(drawn.view.depth);
-  const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.normals);
+  const auto depths = read<float>(drawn.view.images[ALCOVE_IMAGE_DEPTH]);
+  const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.images[ALCOVE_IMAGE_NORMALS]);
   if (!depths || !halves) return Failure(depths ? halves.error() : depths.error());
   std::vector<float> linear, coarse;
   std::vector<glm::vec4> octahedral, in_view;
@@ -257,9 +258,9 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
     result.settings.steps = 2;
   }
   result.view = drawn(0).view;
-  result.view.id = next_id_;
+  result.view.info.id = next_id_;
   result.right = result.view;
-  result.view.motion = {};
+  result.view.images[ALCOVE_IMAGE_MOTION] = {};
   result.other = drawn(0).other;
   result.other_before = drawn(1).other;
   result.right_before = drawn(1).view;
@@ -294,9 +295,9 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
     const bool late = submit_late && i >= begin;
     if (late) described.frame.slot = 0;
     if (change && i >= begin) change(described);
-    ids.push_back(described.view.id);
-    visibility = frames_.at(i).view.visibility;
-    described.view.settings = &described.settings;
+    ids.push_back(described.view.info.id);
+    visibility = frames_.at(i).view.images[ALCOVE_IMAGE_VISIBILITY];
+    described.view.info.settings = &described.settings;
     described.frame.views = &described.view;
     const VkCommandBuffer commands = commands_.at(i % kSlots);
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};

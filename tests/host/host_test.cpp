@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 
+#include "cli/open_session.h"
 #include "model_maker.h"
 #include "scene.h"
 #include "temporary_folder.h"

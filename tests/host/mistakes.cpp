@@ -16,8 +16,8 @@ constexpr float kFar = 100.0f;
 // Applies a change to this frame's and to the last frame's camera.
 template <typename Change>
 void change_cameras(F& frame, const Change& change) {
-  change(frame.view.camera);
-  change(frame.view.previous_camera);
+  change(frame.view.info.camera);
+  change(frame.view.info.previous_camera);
 }
 
 // Makes depth `of_depth` times itself plus `of_w` times w, in each of the four columns.
@@ -55,8 +55,8 @@ void scale_jitter(F& frame, float x, float y) {
           base + (i == 0 ? x : y) * (camera.clip_from_view[8 + i] - base);
     }
   };
-  scale(frame.view.camera, frame.other.camera_without_jitter);
-  scale(frame.view.previous_camera, frame.other_before.camera_without_jitter);
+  scale(frame.view.info.camera, frame.other.camera_without_jitter);
+  scale(frame.view.info.previous_camera, frame.other_before.camera_without_jitter);
 }
 
 template <typename Change>
@@ -89,7 +89,9 @@ void multiply_by_view(AlcoveCamera& camera) {
 
 // Says that all images have another size than they have.
 void set_size(F& frame, std::uint32_t width, std::uint32_t height) {
-  for (AlcoveImage* image : {&frame.view.depth, &frame.view.normals, &frame.view.visibility}) {
+  for (AlcoveImage* image :
+       {&frame.view.images[ALCOVE_IMAGE_DEPTH], &frame.view.images[ALCOVE_IMAGE_NORMALS],
+        &frame.view.images[ALCOVE_IMAGE_VISIBILITY]}) {
     image->width = width;
     image->height = height;
   }
@@ -98,7 +100,7 @@ void set_size(F& frame, std::uint32_t width, std::uint32_t height) {
 // Dynamic resolution: the left part of the images is in use, whose width changes from frame to
 // frame, and the cameras are those of this part.
 void change_size(F& frame) {
-  const std::uint32_t whole = frame.view.depth.width;
+  const std::uint32_t whole = frame.view.images[ALCOVE_IMAGE_DEPTH].width;
   const auto crop = [&](AlcoveCamera& camera, std::uint32_t index) {
     const std::uint32_t width = whole - 8 * (index % 3);
     const float scale = static_cast<float>(whole) / static_cast<float>(width);
@@ -110,28 +112,31 @@ void change_size(F& frame) {
   };
   const std::uint32_t index = frame.frame.index;
   if (index > 0) {
-    frame.view.previous_width = crop(frame.view.previous_camera, index - 1);
-    frame.view.previous_height = frame.view.depth.height;
+    frame.view.info.previous_width = crop(frame.view.info.previous_camera, index - 1);
+    frame.view.info.previous_height = frame.view.images[ALCOVE_IMAGE_DEPTH].height;
   }
-  frame.view.largest_width = whole;
-  frame.view.largest_height = frame.view.depth.height;
-  set_size(frame, crop(frame.view.camera, index), frame.view.depth.height);
+  frame.view.info.largest_width = whole;
+  frame.view.info.largest_height = frame.view.images[ALCOVE_IMAGE_DEPTH].height;
+  set_size(frame, crop(frame.view.info.camera, index),
+           frame.view.images[ALCOVE_IMAGE_DEPTH].height);
 }
 
 void set_normals(F& frame, const AlcoveImage& image, AlcoveNormalEncoding encoding,
                  bool in_view_space = false) {
-  frame.view.normals = image;
-  frame.view.normal_encoding = encoding;
-  frame.view.normals_in_view_space = in_view_space ? VK_TRUE : VK_FALSE;
+  frame.view.images[ALCOVE_IMAGE_NORMALS] = image;
+  frame.view.info.normal_encoding = encoding;
+  frame.view.info.normals_in_view_space = in_view_space ? VK_TRUE : VK_FALSE;
 }
 
 // Gives motion vectors. With a scale of 1 they are right.
 void set_motion(F& frame, const AlcoveImage& image, float x, float y) {
-  frame.view.motion = image;
-  frame.view.motion_scale[0] = x;
-  frame.view.motion_scale[1] = y;
+  frame.view.images[ALCOVE_IMAGE_MOTION] = image;
+  frame.view.info.motion_scale[0] = x;
+  frame.view.info.motion_scale[1] = y;
 }
-void scale_motion(F& frame, float x, float y) { set_motion(frame, frame.right.motion, x, y); }
+void scale_motion(F& frame, float x, float y) {
+  set_motion(frame, frame.right.images[ALCOVE_IMAGE_MOTION], x, y);
+}
 
 }  // namespace
 
@@ -171,10 +176,11 @@ const std::vector<PlantedMistake>& planted_mistakes() {
          });
        }},
       {"projection with NaN", "not finite",
-       [](F& f) { f.view.camera.clip_from_view[0] = std::nanf(""); }},
-      {"linear depth", "not a linear depth", [](F& f) { f.view.depth = f.other.linear_depth; }},
+       [](F& f) { f.view.info.camera.clip_from_view[0] = std::nanf(""); }},
+      {"linear depth", "not a linear depth",
+       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.linear_depth; }},
       {"16-bit depth copied to 32 bits", "the steps of another format",
-       [](F& f) { f.view.depth = f.other.coarse_depth; }},
+       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.coarse_depth; }},
       // The view matrix.
       {"world_from_view instead of view_from_world", "only if it is inverted",
        [](F& f) { change_view_matrices(f, invert); }},
@@ -192,13 +198,13 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        }},
       {"camera one frame late", "are not of the same frame",
        [](F& f) {
-         f.view.camera = f.right_before.camera;
-         f.view.previous_camera = f.right_before_that.camera;
+         f.view.info.camera = f.right_before.info.camera;
+         f.view.info.previous_camera = f.right_before_that.info.camera;
        }},
       {"depth and normals one frame late", "are not of the same frame",
        [](F& f) {
-         f.view.depth = f.right_before.depth;
-         f.view.normals = f.right_before.normals;
+         f.view.images[ALCOVE_IMAGE_DEPTH] = f.right_before.images[ALCOVE_IMAGE_DEPTH];
+         f.view.images[ALCOVE_IMAGE_NORMALS] = f.right_before.images[ALCOVE_IMAGE_NORMALS];
        }},
       // Jitter.
       {"jitter of depth in neither camera", "clip_from_view lacks",
@@ -211,21 +217,21 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) { scale_jitter(f, 2.0f, 2.0f); }},
       {"jitter in pixels", "the jitter of camera.clip_from_view differs",
        [](F& f) {
-         scale_jitter(f, 0.5f * static_cast<float>(f.view.depth.width),
-                      0.5f * static_cast<float>(f.view.depth.height));
+         scale_jitter(f, 0.5f * static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].width),
+                      0.5f * static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].height));
        }},
       {"jitter in camera and not in previous_camera", "jitter included",
-       [](F& f) { f.view.previous_camera = f.other_before.camera_without_jitter; },
+       [](F& f) { f.view.info.previous_camera = f.other_before.camera_without_jitter; },
        "jitter_in_one"},
       // The frame before.
       {"previous_camera is always this frame's", "previous_camera is this frame's camera",
-       [](F& f) { f.view.previous_camera = f.view.camera; }, "previous_is_this"},
+       [](F& f) { f.view.info.previous_camera = f.view.info.camera; }, "previous_is_this"},
       {"previous_camera is always the first frame's", "previous_camera is not the camera",
-       [](F& f) { f.view.previous_camera = f.right_first.camera; }, "previous_is_first"},
+       [](F& f) { f.view.info.previous_camera = f.right_first.info.camera; }, "previous_is_first"},
       {"previous_camera is two frames old", "previous_camera is not the camera",
-       [](F& f) { f.view.previous_camera = f.right_before_that.camera; }},
+       [](F& f) { f.view.info.previous_camera = f.right_before_that.info.camera; }},
       {"previous_camera is inverted", "previous_camera is not the camera",
-       [](F& f) { invert(f.view.previous_camera.view_from_world); }},
+       [](F& f) { invert(f.view.info.previous_camera.view_from_world); }},
       {"AlcoveFrame::index stands still", "AlcoveFrame::index stays the same",
        [](F& f) { f.frame.index = 7; }, "index"},
       {"AlcoveFrame::index is that of the slot", "AlcoveFrame::index goes back",
@@ -235,28 +241,31 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"AlcoveFrame::index counts down", "AlcoveFrame::index goes back",
        [](F& f) { f.frame.index = 1000 - f.frame.index; }},
       {"static_frames is not 0 in motion", "static_frames is not 0",
-       [](F& f) { f.view.static_frames = 16 + f.frame.index; }, "static_frames"},
+       [](F& f) { f.view.info.static_frames = 16 + f.frame.index; }, "static_frames"},
       {"reset_history in every frame", "reset_history is set in every frame",
-       [](F& f) { f.view.reset_history = VK_TRUE; }, "reset_history"},
+       [](F& f) { f.view.info.reset_history = VK_TRUE; }, "reset_history"},
       {"slot recorded again before its frame has finished", "AlcoveFrame::slot was recorded again",
        nullptr, "slot"},
       {"a new id in every frame", "More views have a history",
-       [](F& f) { f.view.id = 1000 + 100 * f.view.id + f.frame.index; }},
+       [](F& f) { f.view.info.id = 1000 + 100 * f.view.info.id + f.frame.index; }},
       // Sizes.
       {"depth image of half the size that is said", "is smaller than",
-       [](F& f) { f.view.depth = f.other.half_depth; }, "half_size"},
+       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.half_depth; }, "half_size"},
       {"a size from before a resize", "only if the whole image is in use",
-       [](F& f) { set_size(f, f.view.depth.width * 3 / 4, f.view.depth.height * 3 / 4); }},
+       [](F& f) {
+         set_size(f, f.view.images[ALCOVE_IMAGE_DEPTH].width * 3 / 4,
+                  f.view.images[ALCOVE_IMAGE_DEPTH].height * 3 / 4);
+       }},
       {"a size that changes, without largest_width", "each change begins a new history",
        [](F& f) {
          change_size(f);
-         f.view.largest_width = f.view.largest_height = 0;
-         f.view.previous_width = f.view.previous_height = 0;
+         f.view.info.largest_width = f.view.info.largest_height = 0;
+         f.view.info.previous_width = f.view.info.previous_height = 0;
        }},
       {"a size that changes, without previous_width", "previous_width and previous_height",
        [](F& f) {
          change_size(f);
-         f.view.previous_width = f.view.previous_height = 0;
+         f.view.info.previous_width = f.view.info.previous_height = 0;
        }},
       {"radius in kilometres", "less than a pixel", [](F& f) { f.settings.radius *= 0.001f; },
        "small_radius"},
@@ -267,11 +276,11 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"radius in pixels", "more than twice the height", [](F& f) { f.settings.radius = 40.0f; }},
       // Normals.
       {"normals of world space declared to be of view space", "in the other space",
-       [](F& f) { f.view.normals_in_view_space = VK_TRUE; }, "normal_space"},
+       [](F& f) { f.view.info.normals_in_view_space = VK_TRUE; }, "normal_space"},
       {"normals of view space declared to be of world space", "in the other space",
        [](F& f) { set_normals(f, f.other.view_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ); }},
       {"signed normals declared to be packed", "decoded in another way",
-       [](F& f) { f.view.normal_encoding = ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ; },
+       [](F& f) { f.view.info.normal_encoding = ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ; },
        "normal_packing"},
       {"octahedral normals read as xyz", "decoded in another way",
        [](F& f) { set_normals(f, f.other.octahedral_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ); }},
@@ -280,11 +289,11 @@ const std::vector<PlantedMistake>& planted_mistakes() {
          set_normals(f, f.other.octahedral_normals, ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL);
        }},
       {"xyz read as octahedral normals", "decoded in another way",
-       [](F& f) { f.view.normal_encoding = ALCOVE_NORMAL_ENCODING_OCTAHEDRAL; }},
+       [](F& f) { f.view.info.normal_encoding = ALCOVE_NORMAL_ENCODING_OCTAHEDRAL; }},
       {"normals_forward_z for a camera along -Z", "the other sign of z",
        [](F& f) {
          set_normals(f, f.other.view_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, true);
-         f.view.normals_forward_z = VK_TRUE;
+         f.view.info.normals_forward_z = VK_TRUE;
        }},
       {"albedo given as normals", "under no reading",
        [](F& f) { set_normals(f, f.other.albedo, ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ); }},
@@ -295,8 +304,8 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) { scale_motion(f, 1.0f, -1.0f); }},
       {"motion vectors in pixels, declared to be in uv", "in another unit",
        [](F& f) {
-         scale_motion(f, static_cast<float>(f.view.depth.width),
-                      static_cast<float>(f.view.depth.height));
+         scale_motion(f, static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].width),
+                      static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].height));
        }},
       {"motion vectors in normalised device coordinates", "in another unit",
        [](F& f) { scale_motion(f, 2.0f, 2.0f); }},
@@ -304,8 +313,9 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) {
          scale_motion(f, 1.0f, 1.0f);
          for (std::size_t i = 0; i < 2; ++i)
-           f.view.motion_offset[i] = 0.5f * (f.view.previous_camera.clip_from_view[8 + i] -
-                                             f.view.camera.clip_from_view[8 + i]);
+           f.view.info.motion_offset[i] =
+               0.5f * (f.view.info.previous_camera.clip_from_view[8 + i] -
+                       f.view.info.camera.clip_from_view[8 + i]);
        }},
       {"motion vectors without the camera's motion", "motion vectors are 0",
        [](F& f) { scale_motion(f, 1e-6f, 1e-6f); }},
@@ -313,21 +323,23 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"struct_size is 0", "struct_size", [](F& f) { f.view.struct_size = 0; }},
       {"radius is 0", "radius", [](F& f) { f.settings.radius = 0.0f; }},
       {"tile_size is 3", "tile_size", [](F& f) { f.settings.tile_size = 3; }},
-      {"no depth", "has no image of depth", [](F& f) { f.view.depth = {}; }},
-      {"no output", "to write to", [](F& f) { f.view.visibility = {}; }},
+      {"no depth", "no image of depth", [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = {}; }},
+      {"no output", "to write to", [](F& f) { f.view.images[ALCOVE_IMAGE_VISIBILITY] = {}; }},
       {"slot beyond the frames in flight", "AlcoveFrame::slot is", [](F& f) { f.frame.slot = 5; }},
       {"normals of another size than depth", "make them equal",
-       [](F& f) { f.view.normals.width -= 1; }},
+       [](F& f) { f.view.images[ALCOVE_IMAGE_NORMALS].width -= 1; }},
       {"depth without a layout", "without contents",
-       [](F& f) { f.view.depth.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+       [](F& f) {
+         f.view.images[ALCOVE_IMAGE_DEPTH].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+       }},
       {"output without STORAGE", "VK_IMAGE_USAGE_STORAGE_BIT",
-       [](F& f) { f.view.visibility.usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
+       [](F& f) { f.view.images[ALCOVE_IMAGE_VISIBILITY].usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
       {"normals with four samples per pixel", "resolve it first",
-       [](F& f) { f.view.normals.samples = 4; }},
+       [](F& f) { f.view.images[ALCOVE_IMAGE_NORMALS].samples = 4; }},
       {"a size above the largest", "the largest size",
        [](F& f) {
-         f.view.largest_width = f.view.depth.width - 1;
-         f.view.largest_height = f.view.depth.height;
+         f.view.info.largest_width = f.view.images[ALCOVE_IMAGE_DEPTH].width - 1;
+         f.view.info.largest_height = f.view.images[ALCOVE_IMAGE_DEPTH].height;
        }},
   };
   return mistakes;
@@ -350,10 +362,10 @@ std::vector<RightCourse> right_courses(const EngineCourse& base) {
 Result<std::string> diagnose_right_frames(EngineRun& run) {
   const ChangeFrame ways[] = {{},
                               [](F& f) { scale_motion(f, 1.0f, 1.0f); },
-                              [](F& f) { f.view.normals = {}; },
+                              [](F& f) { f.view.images[ALCOVE_IMAGE_NORMALS] = {}; },
                               [](F& f) {
                                 change_size(f);
-                                f.view.static_frames = 0;
+                                f.view.info.static_frames = 0;
                               }};
   std::string said;
   for (const ChangeFrame& way : ways) {

@@ -52,15 +52,16 @@ void Renderer::record_occlusion(VkCommandBuffer commands, const CameraMatrices& 
   written.layout = VK_IMAGE_LAYOUT_UNDEFINED;
   AlcoveSettings settings{.struct_size = sizeof settings};
   alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, kRadius, &settings);
-  AlcoveView view{.struct_size = sizeof view, .settings = &settings};
-  view.normal_encoding = options_.float_normals ? ALCOVE_NORMAL_ENCODING_SIGNED_XYZ
-                                                : ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ;
-  view.static_frames = still_frames_;
-  alcoveConvertCamera(&camera.projection[0][0], &camera.view[0][0], 0, &view.camera);
-  alcoveConvertCamera(&previous_.projection[0][0], &previous_.view[0][0], 0, &view.previous_camera);
-  view.depth = describe(depth_, size_, depth, depth);
-  view.normals = describe(normals_, size_, read, read);
-  view.visibility = describe(visibility_, size_, written, read);
+  AlcoveView view{.struct_size = sizeof view, .info = {.settings = &settings}};
+  view.info.normal_encoding = options_.float_normals ? ALCOVE_NORMAL_ENCODING_SIGNED_XYZ
+                                                     : ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ;
+  view.info.static_frames = still_frames_;
+  alcoveConvertCamera(&camera.projection[0][0], &camera.view[0][0], 0, &view.info.camera);
+  alcoveConvertCamera(&previous_.projection[0][0], &previous_.view[0][0], 0,
+                      &view.info.previous_camera);
+  view.images[ALCOVE_IMAGE_DEPTH] = describe(depth_, size_, depth, depth);
+  view.images[ALCOVE_IMAGE_NORMALS] = describe(normals_, size_, read, read);
+  view.images[ALCOVE_IMAGE_VISIBILITY] = describe(visibility_, size_, written, read);
   AlcoveFrame frame{sizeof frame, frame_, frame_ % kSlots, 1, &view, VK_TRUE};
   const bool recorded = alcoveRecordFrame(alcove_, commands, &frame) == ALCOVE_SUCCESS;
   require(recorded, alcoveGetMessage(alcove_));

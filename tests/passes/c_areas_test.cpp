@@ -38,7 +38,7 @@ HostImage part_of(const HostImage& image, const AlcoveArea& area) {
 
 struct Case {
   const char* name;
-  Quality quality;
+  AlcoveQuality quality;
   void (*change)(HostView& view) = [](HostView&) {};
 };
 void PrintTo(const Case& of, std::ostream* out) { *out << of.name; }
@@ -49,7 +49,7 @@ class CAreas : public CInterface, public testing::WithParamInterface<Case> {
     HostView view = draw_view(width, height, scene);
     const OcclusionSettings defaults = view.settings;
     view.id = width;
-    view.settings = quality_settings(GetParam().quality, 1.5f);
+    view.settings = OcclusionSettings(GetParam().quality, 1.5f);
     view.settings.precision = defaults.precision;
     view.settings.roughness_channel = defaults.roughness_channel;
     GetParam().change(view);
@@ -83,28 +83,32 @@ void CAreas::run_sheet(bool band) {
       if (index == 1 || index == 2) from[i].view.view_from_world[12] += 0.03f;
       from[i].static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
       own[i] = create_view(from[i]);
-      if (band) own[i].read_area = {0, 0, own[i].depth.width, own[i].depth.height};
-      if (band) own[i].written_area = without_band(own[i].read_area);
+      if (band)
+        own[i].info.read_area = {0, 0, own[i].images[ALCOVE_IMAGE_DEPTH].width,
+                                 own[i].images[ALCOVE_IMAGE_DEPTH].height};
+      if (band) own[i].info.written_area = without_band(own[i].info.read_area);
     }
     run_frame(context(), own, index);
     engine().wait();
     for (std::size_t i = 0; i < 2; ++i) {
       const Placement& place = kPlacements.at(i);
       shared[i] = own[i];
-      shared[i].id += 1000;
-      shared[i].read_area = {place.x, place.y, own[i].depth.width, own[i].depth.height};
-      if (band) shared[i].written_area = without_band(shared[i].read_area);
-      shared[i].output_x = place.output_x;
-      shared[i].output_y = place.output_y;
+      shared[i].info.id += 1000;
+      shared[i].info.read_area = {place.x, place.y, own[i].images[ALCOVE_IMAGE_DEPTH].width,
+                                  own[i].images[ALCOVE_IMAGE_DEPTH].height};
+      if (band) shared[i].info.written_area = without_band(shared[i].info.read_area);
+      shared[i].info.output_x = place.output_x;
+      shared[i].info.output_y = place.output_y;
     }
     for (const Input& each : kInputs) {
       if ((from[0].*each.texels).texels.empty()) continue;
       HostImage sheet = placed_in(kSheet, from[0].*each.texels, kPlacements[0].x, kPlacements[0].y);
       place(sheet, from[1].*each.texels, kPlacements[1].x, kPlacements[1].y);
-      shared[0].*each.image = shared[1].*each.image = input(sheet);
+      shared[0].images[each.role] = shared[1].images[each.role] = input(sheet);
     }
     for (const Output& each : kOutputs)
-      shared[0].*each.image = shared[1].*each.image = create_poisoned(own[0].*each.image);
+      shared[0].images[each.role] = shared[1].images[each.role] =
+          create_poisoned(own[0].images[each.role]);
     run_frame(context(), shared, index);
     engine().wait();
     const Results found = read_results(shared[0]);
@@ -113,9 +117,10 @@ void CAreas::run_sheet(bool band) {
       SCOPED_TRACE("view " + std::to_string(i));
       const Results expected = read_results(own[i]);
       EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.95f);
-      const AlcoveArea written = band ? own[i].written_area : shared[i].read_area;
+      const AlcoveArea written = band ? own[i].info.written_area : shared[i].info.read_area;
       const AlcoveArea size{0, 0, written.width, written.height};
-      const AlcoveArea area{shared[i].output_x, shared[i].output_y, size.width, size.height};
+      const AlcoveArea area{shared[i].info.output_x, shared[i].info.output_y, size.width,
+                            size.height};
       for (const Output& each : kOutputs) {
         if ((expected.*each.texels).texels.empty()) continue;
         HostImage part = part_of(expected.*each.texels, size);
@@ -141,14 +146,14 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
     SCOPED_TRACE("frame " + std::to_string(index));
     from.static_frames = index;
     std::array<AlcoveView, 2> views{create_view(from), create_view(from)};
-    views[1].id = 1;
-    views[1].read_area = {0, 0, views[1].depth.width, views[1].depth.height};
-    views[1].written_area = without_band(views[1].read_area);
+    views[1].info.id = 1;
+    views[1].info.read_area = {0, 0, 37, 45};
+    views[1].info.written_area = without_band(views[1].info.read_area);
     run_frame(context(), views, index);
     engine().wait();
     const Results expected = read_results(views[0]);
     const Results found = read_results(views[1]);
-    const AlcoveArea& written = views[1].written_area;
+    const AlcoveArea& written = views[1].info.written_area;
     const AlcoveArea corner{0, 0, written.width, written.height};
     EXPECT_EQ(part_of(found.visibility, corner).texels,
               part_of(expected.visibility, written).texels);
@@ -160,22 +165,23 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
 
 INSTANTIATE_TEST_SUITE_P(
     Settings, CAreas,
-    testing::Values(Case{"Console", Quality::console, request_all_outputs},
-                    Case{"Medium", Quality::medium, request_all_outputs},
-                    Case{"High", Quality::high, request_all_outputs},
-                    Case{"VisibilityAlone", Quality::medium},
-                    Case{"WithoutNormals", Quality::low, [](HostView& view) { view.normals = {}; }},
-                    Case{"SpecularByTableWithoutNormals", Quality::medium,
+    testing::Values(Case{"Console", ALCOVE_QUALITY_CONSOLE, request_all_outputs},
+                    Case{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
+                    Case{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
+                    Case{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
+                    Case{"WithoutNormals", ALCOVE_QUALITY_LOW,
+                         [](HostView& view) { view.normals = {}; }},
+                    Case{"SpecularByTableWithoutNormals", ALCOVE_QUALITY_MEDIUM,
                          [](HostView& view) {
-                           view.settings.specular = Specular::table;
+                           view.settings.specular = ALCOVE_SPECULAR_TABLE;
                            view.settings.bent_normal = true;
                            view.normals = {};
                          }},
-                    Case{"SpecularByConeAlone", Quality::medium,
-                         [](HostView& view) { view.settings.specular = Specular::table; }},
-                    Case{"TwoDepthLayers", Quality::low,
+                    Case{"SpecularByTableAlone", ALCOVE_QUALITY_MEDIUM,
+                         [](HostView& view) { view.settings.specular = ALCOVE_SPECULAR_TABLE; }},
+                    Case{"TwoDepthLayers", ALCOVE_QUALITY_LOW,
                          [](HostView& view) { view.settings.depth_layers = 2; }},
-                    Case{"WithoutHistory", Quality::low,
+                    Case{"WithoutHistory", ALCOVE_QUALITY_LOW,
                          [](HostView& view) { view.settings.history_frames = 0; }}),
     [](const auto& of) { return std::string(of.param.name); });
 

@@ -2,6 +2,7 @@
 // each mistake on purpose.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 
@@ -34,9 +35,9 @@ std::string diagnose(const std::function<void(AlcoveFrame&, AlcoveView&)>& chang
     const auto at = [&](std::uint32_t frame) {
       return camera_at(speed * static_cast<float>(frame), 0.001f * static_cast<float>(frame % 7));
     };
-    AlcoveView view{.struct_size = sizeof view, .id = 3, .settings = &settings};
-    view.camera = at(i);
-    view.previous_camera = i == 0 ? AlcoveCamera{} : at(i - 1);
+    AlcoveView view{.struct_size = sizeof view, .info = {.id = 3, .settings = &settings}};
+    view.info.camera = at(i);
+    view.info.previous_camera = i == 0 ? AlcoveCamera{} : at(i - 1);
     AlcoveFrame frame{.struct_size = sizeof frame, .index = i, .view_count = 1, .views = &view};
     change(frame, view);
     finder.observe(frame);
@@ -50,7 +51,7 @@ TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
   // The following calls are correct as well: a reset of the history in every fifth frame, pairs of
   // frames with the same index, as for the two eyes of a stereo view, and a game that starts anew.
   EXPECT_EQ(diagnose([](AlcoveFrame& frame, AlcoveView& view) {
-              view.reset_history = frame.index % 5 == 0 ? VK_TRUE : VK_FALSE;
+              view.info.reset_history = frame.index % 5 == 0 ? VK_TRUE : VK_FALSE;
               frame.index = frame.index % 25 / 2;
             }),
             "");
@@ -63,7 +64,7 @@ TEST(CDiagnose, IndexMayStandStillIfNoiseIsStatic) {
     settings.static_noise = static_noise;
     return diagnose([&](AlcoveFrame& frame, AlcoveView& view) {
       frame.index = frame.index / 8 % 2;
-      view.settings = &settings;
+      view.info.settings = &settings;
     });
   };
   EXPECT_EQ(diagnose_noise(0, 1), "");
@@ -76,7 +77,7 @@ TEST(CDiagnose, IndexMayStandStillIfNoiseIsStatic) {
 TEST(CDiagnose, MistakeIsForgottenAfterItHasBeenMended) {
   const auto until = [](std::uint32_t end) {
     return [end](AlcoveFrame& frame, AlcoveView& view) {
-      view.previous_camera = frame.index < end ? view.camera : view.previous_camera;
+      view.info.previous_camera = frame.index < end ? view.info.camera : view.info.previous_camera;
     };
   };
   EXPECT_THAT(diagnose(until(40)), HasSubstr("View 3: previous_camera is this frame's camera"));
@@ -93,8 +94,8 @@ TEST(CDiagnose, ViewsThatAreDroppedOrHaveNoHistoryMayBeManyMore) {
     for (std::uint32_t i = 0; i < 100; ++i) {
       // A new view in every second frame, beside one that stays.
       const AlcoveView views[] = {
-          {.struct_size = sizeof(AlcoveView), .id = 0, .settings = &settings},
-          {.struct_size = sizeof(AlcoveView), .id = 1 + i / 2, .settings = &settings}};
+          {.struct_size = sizeof(AlcoveView), .info = {.id = 0, .settings = &settings}},
+          {.struct_size = sizeof(AlcoveView), .info = {.id = 1 + i / 2, .settings = &settings}}};
       warnings += finder.observe(
           {.struct_size = sizeof(AlcoveFrame), .index = i, .view_count = 2, .views = views});
       if (way == Way::drop && i % 2 == 1) finder.drop_view(1 + i / 2);
@@ -109,8 +110,8 @@ class CDiagnoseFrames : public CInterface {
   // Records ten equal frames of a view and returns the text of alcoveDiagnose.
   std::string diagnose(const HostView& from, bool discards = false) {
     AlcoveView view = create_view(from);
-    view.id = next_id_++;
-    view.previous_camera = view.camera;
+    view.info.id = next_id_++;
+    view.info.previous_camera = view.info.camera;
     for (std::uint32_t i = 0; i < 10; ++i) {
       AlcoveFrame frame = make_frame({&view, 1}, i);
       frame.diagnose_pixels = VK_TRUE;
@@ -120,7 +121,7 @@ class CDiagnoseFrames : public CInterface {
       }
     }
     engine().wait();
-    EXPECT_EQ(alcoveDropView(&context(), view.id), ALCOVE_SUCCESS);
+    EXPECT_EQ(alcoveDropView(&context(), view.info.id), ALCOVE_SUCCESS);
     return print_diagnosis(context());
   }
   static std::string print_diagnosis(AlcoveContext& context) {
@@ -138,8 +139,9 @@ TEST_F(CDiagnoseFrames, CorrectPixelsAreNotReportedAsMistakes) {
       SCOPED_TRACE(view.name + ", " + scene.name);
       HostView from = draw_view(96, 64, scene.scene, view);
       // A rotation that maps no axis of world space to an axis of view space.
-      from.view.view_from_world = {0.36f, 0.48f, -0.8f, 0.0f, -0.8f, 0.6f,  0.0f, 0.0f,
-                                   0.48f, 0.64f, 0.6f,  0.0f, 0.3f,  -1.0f, 2.0f, 1.0f};
+      constexpr float kTurned[16] = {0.36f, 0.48f, -0.8f, 0.0f, -0.8f, 0.6f,  0.0f, 0.0f,
+                                     0.48f, 0.64f, 0.6f,  0.0f, 0.3f,  -1.0f, 2.0f, 1.0f};
+      std::ranges::copy(kTurned, from.view.view_from_world);
       from.settings.steps = 2;
       from.motion = from.back_depth_ndc = from.second_depth_ndc = {};
       EXPECT_EQ(diagnose(from), "");

@@ -62,7 +62,7 @@ class CInputs : public CInterface {
   static HostView draw_inputs() {
     HostView view = draw_view(kWidth, kHeight);
     view.settings.bent_normal = true;
-    view.settings.specular = Specular::table;
+    view.settings.specular = ALCOVE_SPECULAR_TABLE;
     view.motion = {};
     return view;
   }
@@ -73,7 +73,7 @@ class CInputs : public CInterface {
       const HostView& from, std::uint32_t frames,
       const std::function<void(AlcoveView&)>& change = [](AlcoveView&) {}) {
     AlcoveView view = create_view(from);
-    view.id = next_id_++;
+    view.info.id = next_id_++;
     change(view);
     for (std::uint32_t i = 0; i < frames; ++i) run_frame(context(), {&view, 1}, i);
     engine().wait();
@@ -95,8 +95,8 @@ TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
     SCOPED_TRACE(static_cast<int>(encoding));
     view.normals = normals;
     const AlcoveNormalEncoding wanted = encoding;
-    expect_near(run_frames(view, 2, [&](AlcoveView& v) { v.normal_encoding = wanted; }), expected,
-                2e-3);
+    expect_near(run_frames(view, 2, [&](AlcoveView& v) { v.info.normal_encoding = wanted; }),
+                expected, 2e-3);
   }
 }
 
@@ -104,7 +104,7 @@ TEST_F(CInputs, NormalsOfACameraAlongPlusZAreMirroredOnInputAndBentNormalsOnOutp
   HostView view = draw_inputs();
   const Results expected = run_frames(view, 2);
   view.normals = mirrored(view.normals);
-  Results found = run_frames(view, 2, [](AlcoveView& v) { v.normals_forward_z = VK_TRUE; });
+  Results found = run_frames(view, 2, [](AlcoveView& v) { v.info.normals_forward_z = VK_TRUE; });
   found.bent_normal = mirrored(found.bent_normal);
   expect_near(found, expected, 1e-5);
 }
@@ -114,7 +114,7 @@ TEST_F(CInputs, NormalsOfACameraAlongPlusZAreMirroredOnInputAndBentNormalsOnOutp
 TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
   HostView moving = draw_view(kWidth, kHeight, step(0.31, 0.6));
   moving.settings.bent_normal = true;
-  moving.settings.estimator = Estimator::horizons;
+  moving.settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   moving.settings.radius = 1.5f;
   for (std::size_t i = 0; i < moving.motion.texels.size(); ++i)
     moving.motion.texels[i] = i % 2 == 0 ? 0.05f : -0.025f;
@@ -136,19 +136,19 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
     });
     expect_near(run_frames(changed, 3,
                            [&](AlcoveView& v) {
-                             std::ranges::copy(c.scale, v.motion_scale);
-                             std::ranges::copy(c.offset, v.motion_offset);
+                             std::ranges::copy(c.scale, v.info.motion_scale);
+                             std::ranges::copy(c.offset, v.info.motion_offset);
                            }),
                 expected, 1e-5);
   }
-  const Results wrong =
-      run_frames(moving, 3, [](AlcoveView& v) { v.motion_scale[0] = v.motion_scale[1] = -1.0f; });
+  const Results wrong = run_frames(
+      moving, 3, [](AlcoveView& v) { v.info.motion_scale[0] = v.info.motion_scale[1] = -1.0f; });
   EXPECT_GT(rms(wrong.visibility, expected.visibility), 1e-3) << "the sign makes no difference";
 }
 
 TEST_F(CInputs, PowerAndIntensityChangeOnlyTheWrittenVisibility) {
   HostView view = draw_inputs();
-  view.settings.specular = Specular::slices;
+  view.settings.specular = ALCOVE_SPECULAR_SLICES;
   const Results open = run_frames(view, 3);
   view.settings.power = 2.0f;
   view.settings.intensity = 0.75f;
@@ -174,8 +174,8 @@ TEST_F(CInputs, LayersOfAnArrayImageCanBeOutputsOfDifferentViews) {
   for (std::uint32_t eye = 0; eye < 2; ++eye) {
     from.at(eye).id = eye;
     views.at(eye) = create_view(from.at(eye));
-    views.at(eye).visibility = both;
-    views.at(eye).visibility.layer = eye;
+    views.at(eye).images[ALCOVE_IMAGE_VISIBILITY] = both;
+    views.at(eye).images[ALCOVE_IMAGE_VISIBILITY].layer = eye;
   }
   run_frame(context(), views, 0);
   constexpr std::size_t kTexels = 16UL * 12;
@@ -193,49 +193,51 @@ TEST_F(CInputs, LayersOfAnArrayImageCanBeOutputsOfDifferentViews) {
     std::vector<float> found(kTexels);
     std::memcpy(found.data(), &(*buffer)->bytes()[eye * kTexels * sizeof(float)],
                 kTexels * sizeof(float));
-    EXPECT_EQ(found, run_by_cpp(from.at(eye), 0).visibility.texels);
+    EXPECT_EQ(found, run_plainly(from.at(eye), 0).visibility.texels);
   }
 }
 
 TEST_F(CInputs, DepthImageInDepthFormatAndAttachmentLayoutIsAccepted) {
   const HostView from = draw_view(16, 12);
   AlcoveView view = create_view(from);
-  view.depth =
+  view.images[ALCOVE_IMAGE_DEPTH] =
       engine().make_image(VK_FORMAT_D32_SFLOAT, 16, 12,
                           VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                               VK_IMAGE_USAGE_TRANSFER_DST_BIT);
   const AlcoveState attached{VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
                              VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                              VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-  fill_image(view.depth, from.depth_ndc, attached);
-  view.depth.initial_state = attached;
-  view.depth.final_state = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
-                            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
-                            VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
-  view.visibility.final_state.layout = VK_IMAGE_LAYOUT_GENERAL;
-  expect_equal(run_view(view, 0), run_by_cpp(from, 0));
+  fill_image(view.images[ALCOVE_IMAGE_DEPTH], from.depth_ndc, attached);
+  view.images[ALCOVE_IMAGE_DEPTH].initial_state = attached;
+  view.images[ALCOVE_IMAGE_DEPTH].final_state = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
+                                                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                                                 VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
+  view.images[ALCOVE_IMAGE_VISIBILITY].final_state.layout = VK_IMAGE_LAYOUT_GENERAL;
+  expect_equal(run_view(view, 0), run_plainly(from, 0));
 }
 
 TEST_F(CInputs, OneImageMayBeGivenAsBothAlbedoAndRoughness) {
   HostView from = draw_view(16, 12);
   from.roughness = from.albedo;  // packed: roughness is its green
-  from.settings.specular = Specular::slices;
+  from.settings.specular = ALCOVE_SPECULAR_SLICES;
   from.multi_bounce = true;
   const AlcoveView view = create_view(from);
-  ASSERT_EQ(view.roughness.image, view.albedo.image);
-  expect_equal(run_view(view, 0), run_by_cpp(from, 0));
+  ASSERT_EQ(view.images[ALCOVE_IMAGE_ROUGHNESS].image, view.images[ALCOVE_IMAGE_ALBEDO].image);
+  expect_equal(run_view(view, 0), run_plainly(from, 0));
 }
 
 TEST_F(CInputs, ImageMayBeDestroyedAfterTheEngineCalledForgetImage) {
   HostView from = draw_view(16, 12);
   from.reset = true;
   AlcoveView view = create_view(from);
-  const Results expected = run_by_cpp(from, 0);
+  const Results expected = run_plainly(from, 0);
   for (std::uint32_t round = 0; round < 4; ++round) {
     expect_equal(run_view(view, 0), expected);
-    EXPECT_EQ(alcoveForgetImage(&context(), view.visibility.image), ALCOVE_SUCCESS);
-    engine().destroy_image(view.visibility);
-    view.visibility = output(view.visibility.format, 16, 12);
+    EXPECT_EQ(alcoveForgetImage(&context(), view.images[ALCOVE_IMAGE_VISIBILITY].image),
+              ALCOVE_SUCCESS);
+    engine().destroy_image(view.images[ALCOVE_IMAGE_VISIBILITY]);
+    view.images[ALCOVE_IMAGE_VISIBILITY] =
+        output(view.images[ALCOVE_IMAGE_VISIBILITY].format, 16, 12);
   }
 }
 

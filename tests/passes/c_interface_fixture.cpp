@@ -4,9 +4,6 @@
 #include <cstring>
 #include <limits>
 
-#include "alcove/passes/multi_bounce.h"
-#include "c/settings.h"
-
 namespace alcove::passes {
 namespace {
 
@@ -49,22 +46,7 @@ HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> 
   return image;
 }
 
-AlcoveCamera to_camera(const View& view) {
-  AlcoveCamera camera;
-  std::ranges::copy(view.clip_from_view, camera.clip_from_view);
-  std::ranges::copy(view.view_from_world, camera.view_from_world);
-  return camera;
-}
-
-VkBool32 to_bool32(bool value) { return value ? VK_TRUE : VK_FALSE; }
-
 }  // namespace
-
-void for_each_image(AlcoveView& view, const std::function<void(AlcoveImage&)>& change) {
-  for (const Input& each : kInputs) change(view.*each.image);
-  change(view.mask);
-  for (const Output& each : kOutputs) change(view.*each.image);
-}
 
 HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene,
                    const TestView& view) {
@@ -78,15 +60,14 @@ HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene
                  .second_depth_ndc = draw_second_layer(view, width, height, scene),
                  .albedo = uniform(width, height, {0.8f, 0.4f, 0.1f, 1.0f})};
   drawn.previous_view = drawn.view;
-  drawn.settings = quality_settings(Quality::medium, 0.5f);
   drawn.settings.roughness_channel = 1;
-  drawn.settings.precision = Precision::float32;
+  drawn.settings.precision = ALCOVE_PRECISION_FLOAT32;
   return drawn;
 }
 
 void request_all_outputs(HostView& view) {
   view.settings.visibility = view.settings.bent_normal = true;
-  view.settings.specular = Specular::slices;
+  view.settings.specular = ALCOVE_SPECULAR_SLICES;
   view.multi_bounce = true;
 }
 
@@ -145,6 +126,7 @@ void CInterface::SetUp() {
 
 void CInterface::TearDown() {
   if (engine_) engine_->wait();
+  plain_context_.reset();
   if (shared_context) {
     engine_->forget_images(*shared_context);
     for (const std::uint32_t id : ids_)
@@ -223,11 +205,11 @@ HostImage CInterface::read(const AlcoveImage& image) {
 
 Results CInterface::read_results(const AlcoveView& view) {
   const auto is_given = [&](const Output& each) {
-    return (view.*each.image).image != VK_NULL_HANDLE;
+    return view.images[each.role].image != VK_NULL_HANDLE;
   };
   run([&](Graph& graph) {
     for (const Output& each : kOutputs)
-      if (is_given(each)) read_back(graph, import_image(graph, view.*each.image));
+      if (is_given(each)) read_back(graph, import_image(graph, view.images[each.role]));
   });
   Results results;
   std::size_t next = 0;
@@ -237,31 +219,30 @@ Results CInterface::read_results(const AlcoveView& view) {
 }
 
 AlcoveView CInterface::create_view(const HostView& from) {
-  const AlcoveSettings& settings = settings_.emplace_back(from_settings(from.settings));
   AlcoveView view{.struct_size = sizeof(AlcoveView),
-                  .id = from.id,
-                  .reset_history = to_bool32(from.reset),
-                  .normals_in_view_space = to_bool32(from.normals_in_view_space),
-                  .static_frames = from.static_frames,
-                  .settings = &settings,
-                  .camera = to_camera(from.view),
-                  .previous_camera = to_camera(from.previous_view),
-                  .largest_width = from.largest_size.width,
-                  .largest_height = from.largest_size.height,
-                  .previous_width = from.previous_size.width,
-                  .previous_height = from.previous_size.height,
-                  .depth_format = from.depth_format};
-  for (const Input& each : kInputs) view.*each.image = input(from.*each.texels);
-  const bool bytes = from.settings.precision == Precision::unorm8;
+                  .info = {.id = from.id,
+                           .reset_history = from.reset ? 1u : 0u,
+                           .static_frames = from.static_frames,
+                           .settings = &settings_.emplace_back(from.settings),
+                           .camera = from.view,
+                           .previous_camera = from.previous_view,
+                           .largest_width = from.largest_size.width,
+                           .largest_height = from.largest_size.height,
+                           .previous_width = from.previous_size.width,
+                           .previous_height = from.previous_size.height,
+                           .depth_format = from.depth_format,
+                           .normals_in_view_space = from.normals_in_view_space ? 1u : 0u}};
+  for (const Input& each : kInputs) view.images[each.role] = input(from.*each.texels);
+  const bool bytes = from.settings.precision == ALCOVE_PRECISION_UNORM8;
   const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
   const VkFormat direction = bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
-  const auto wanted = [&](bool is_wanted, VkFormat format) {
-    return is_wanted ? output(format, from.depth_ndc.width, from.depth_ndc.height) : AlcoveImage{};
+  const auto request = [&](bool wanted, AlcoveImageRole role, VkFormat format) {
+    if (wanted) view.images[role] = output(format, from.depth_ndc.width, from.depth_ndc.height);
   };
-  view.visibility = wanted(from.settings.visibility, scalar);
-  view.bent_normal = wanted(from.settings.bent_normal, direction);
-  view.specular = wanted(from.settings.specular != Specular::none, scalar);
-  view.multi_bounce = wanted(from.multi_bounce, VK_FORMAT_R32G32B32A32_SFLOAT);
+  request(from.settings.visibility, ALCOVE_IMAGE_VISIBILITY, scalar);
+  request(from.settings.bent_normal, ALCOVE_IMAGE_BENT_NORMAL, direction);
+  request(from.settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR, scalar);
+  request(from.multi_bounce, ALCOVE_IMAGE_MULTI_BOUNCE, VK_FORMAT_R32G32B32A32_SFLOAT);
   return view;
 }
 
@@ -272,7 +253,8 @@ AlcoveResult CInterface::record(AlcoveContext& context, const AlcoveFrame& frame
     if (discards || result != ALCOVE_SUCCESS) throw_away(commands);
   });
   if (result == ALCOVE_SUCCESS)
-    for (const AlcoveView& view : std::span(frame.views, frame.view_count)) ids_.insert(view.id);
+    for (const AlcoveView& view : std::span(frame.views, frame.view_count))
+      ids_.insert(view.info.id);
   return result;
 }
 
@@ -295,8 +277,8 @@ Results CInterface::run_view(const AlcoveView& view, std::uint32_t index) {
   return read_results(view);
 }
 
-std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<const HostView> from,
-                                          std::uint32_t index) {
+std::vector<Results> CInterface::run_views(AlcoveContext& context, std::span<const HostView> from,
+                                           std::uint32_t index) {
   std::vector<AlcoveView> views(from.size());
   std::ranges::transform(from, views.begin(),
                          [&](const HostView& each) { return create_view(each); });
@@ -308,62 +290,9 @@ std::vector<Results> CInterface::run_by_c(AlcoveContext& context, std::span<cons
   return results;
 }
 
-Results CInterface::run_by_cpp(const HostView& from, std::uint32_t index) {
-  const std::string name = "by C++ " + std::to_string(from.id);
-  run([&](Graph& graph) {
-    if (from.reset) graph.reset_history(name);
-    const auto upload_of = [&](const HostImage& image) {
-      return image.texels.empty() ? Texture{} : upload(graph, image);
-    };
-    const Frame frame{.graph = graph,
-                      .kernels = gpu().kernels(),
-                      .view = from.view,
-                      .index = index,
-                      .previous_view = from.previous_view,
-                      .static_frames = from.reset ? 0 : from.static_frames,
-                      .largest_size = from.largest_size,
-                      .previous_size = from.reset ? VkExtent2D{} : from.previous_size};
-    OcclusionSettings settings = from.settings;
-    settings.visibility = settings.visibility || from.multi_bounce;
-    const auto outputs =
-        add_occlusion(frame,
-                      {.depth_ndc = upload_of(from.depth_ndc),
-                       .depth_format = from.depth_format,
-                       .normals = upload_of(from.normals),
-                       .normal_convention = {.in_view_space = from.normals_in_view_space},
-                       .motion = upload_of(from.motion),
-                       .roughness = upload_of(from.roughness),
-                       .back_depth_ndc = upload_of(from.back_depth_ndc),
-                       .second_depth_ndc = upload_of(from.second_depth_ndc)},
-                      settings, name);
-    ASSERT_TRUE(outputs) << outputs.error().message;
-    if (from.settings.visibility) read_back(graph, outputs->visibility);
-    if (from.settings.bent_normal) read_back(graph, outputs->bent_normal);
-    if (from.settings.specular != Specular::none) read_back(graph, outputs->specular);
-    if (from.multi_bounce) {
-      const auto light = add_multi_bounce(frame, {outputs->visibility, upload_of(from.albedo)},
-                                          Precision::float32);
-      ASSERT_TRUE(light) << light.error().message;
-      read_back(graph, *light);
-    }
-  });
-  std::size_t next = 0;
-  const auto take = [&](bool wanted) { return wanted ? result(next++) : HostImage{}; };
-  Results results;
-  results.visibility = take(from.settings.visibility);
-  results.bent_normal = take(from.settings.bent_normal);
-  results.specular = take(from.settings.specular != Specular::none);
-  results.multi_bounce = take(from.multi_bounce);
-  return results;
-}
-
-void CInterface::expect_same_both_ways(AlcoveContext& context, std::span<const HostView> views,
-                                       std::uint32_t index) {
-  const std::vector<Results> found = run_by_c(context, views, index);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    SCOPED_TRACE("view " + std::to_string(views[i].id));
-    expect_equal(found[i], run_by_cpp(views[i], index));
-  }
+Results CInterface::run_plainly(const HostView& view, std::uint32_t index) {
+  if (!plain_context_) plain_context_ = create_context();
+  return run_views(*plain_context_, {&view, 1}, index)[0];
 }
 
 }  // namespace alcove::passes

@@ -1,4 +1,4 @@
-// A fixture that runs the same frame by the C interface and by the C++ functions.
+// A fixture that runs frames by the C interface.
 #pragma once
 
 #include <array>
@@ -21,11 +21,11 @@ namespace alcove::passes {
 
 using Bytes = std::vector<std::byte>;
 
-// The inputs of a view in host memory, for both interfaces. An image without texels is not given.
+// The inputs of a view in host memory. An image without texels is not given.
 struct HostView {
   std::uint32_t id = 0;
-  View view;
-  View previous_view = view;
+  AlcoveCamera view{};
+  AlcoveCamera previous_view{};
   bool reset = false;
   std::uint32_t static_frames = 0;
   VkExtent2D largest_size{};
@@ -51,35 +51,31 @@ struct Results {
   HostImage multi_bounce;
 };
 
-// An image in host memory and the same image of an AlcoveView.
+// An image in host memory, and its role.
 struct Input {
   HostImage HostView::*texels;
-  AlcoveImage AlcoveView::*image;
+  AlcoveImageRole role;
 };
 struct Output {
   HostImage Results::*texels;
-  AlcoveImage AlcoveView::*image;
+  AlcoveImageRole role;
 };
-inline constexpr std::array kInputs{Input{&HostView::depth_ndc, &AlcoveView::depth},
-                                    Input{&HostView::normals, &AlcoveView::normals},
-                                    Input{&HostView::motion, &AlcoveView::motion},
-                                    Input{&HostView::roughness, &AlcoveView::roughness},
-                                    Input{&HostView::back_depth_ndc, &AlcoveView::back_depth},
-                                    Input{&HostView::second_depth_ndc, &AlcoveView::second_depth},
-                                    Input{&HostView::albedo, &AlcoveView::albedo}};
-inline constexpr std::array kOutputs{Output{&Results::visibility, &AlcoveView::visibility},
-                                     Output{&Results::bent_normal, &AlcoveView::bent_normal},
-                                     Output{&Results::specular, &AlcoveView::specular},
-                                     Output{&Results::multi_bounce, &AlcoveView::multi_bounce}};
-
-// Calls `change` with each image of a view.
-void for_each_image(AlcoveView& view, const std::function<void(AlcoveImage&)>& change);
+inline constexpr std::array kInputs{Input{&HostView::depth_ndc, ALCOVE_IMAGE_DEPTH},
+                                    Input{&HostView::normals, ALCOVE_IMAGE_NORMALS},
+                                    Input{&HostView::motion, ALCOVE_IMAGE_MOTION},
+                                    Input{&HostView::roughness, ALCOVE_IMAGE_ROUGHNESS},
+                                    Input{&HostView::back_depth_ndc, ALCOVE_IMAGE_BACK_DEPTH},
+                                    Input{&HostView::second_depth_ndc, ALCOVE_IMAGE_SECOND_DEPTH},
+                                    Input{&HostView::albedo, ALCOVE_IMAGE_ALBEDO}};
+inline constexpr std::array kOutputs{Output{&Results::visibility, ALCOVE_IMAGE_VISIBILITY},
+                                     Output{&Results::bent_normal, ALCOVE_IMAGE_BENT_NORMAL},
+                                     Output{&Results::specular, ALCOVE_IMAGE_SPECULAR},
+                                     Output{&Results::multi_bounce, ALCOVE_IMAGE_MULTI_BOUNCE}};
 
 // Draws a view of a scene with every input. Tests change its settings and its camera.
 HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene = ball_on_floor(),
                    const TestView& view = test_views()[2]);
-// Requests every output: specular occlusion by slices, and multi-bounce unless outputs have half
-// size.
+// Requests every output: specular occlusion by slices.
 void request_all_outputs(HostView& view);
 
 // Copies `contents` into `image`, from the pixel (x, y) on.
@@ -134,14 +130,10 @@ class CInterface : public PassTest {
   // Runs a frame of one view with the shared context, and returns its results.
   Results run_view(const AlcoveView& view, std::uint32_t index);
 
-  std::vector<Results> run_by_c(AlcoveContext& context, std::span<const HostView> views,
-                                std::uint32_t index);
-  // Runs the frame by the C++ functions and waits for it. The history belongs to the test and to
-  // the id of the view.
-  Results run_by_cpp(const HostView& view, std::uint32_t index);
-  // Runs the frame by both interfaces and expects equal results for each view.
-  void expect_same_both_ways(AlcoveContext& context, std::span<const HostView> views,
-                             std::uint32_t index);
+  std::vector<Results> run_views(AlcoveContext& context, std::span<const HostView> views,
+                                 std::uint32_t index);
+  // Runs a plain frame of one view with a context of its own, to compare with.
+  Results run_plainly(const HostView& view, std::uint32_t index);
 
   Engine& engine() { return *engine_; }
 
@@ -150,6 +142,7 @@ class CInterface : public PassTest {
  private:
   static Context shared_context;
   std::unique_ptr<Engine> engine_;
+  Context plain_context_;                // of run_plainly()
   std::deque<AlcoveSettings> settings_;  // of the views
   std::vector<std::pair<HostImage, AlcoveImage>> inputs_;
   std::set<std::uint32_t> ids_;  // of the recorded views

@@ -26,7 +26,7 @@ class CMask : public CInterface {
     view.motion = {};
     view.settings.radius = 1.0f;
     view.settings.bent_normal = true;
-    view.settings.specular = Specular::slices;
+    view.settings.specular = ALCOVE_SPECULAR_SLICES;
     return view;
   }
 
@@ -70,9 +70,9 @@ class CMask : public CInterface {
       from.view.view_from_world[12] = index < 4 ? 0.001f * static_cast<float>(index) : 0.003f;
       from.static_frames = index < 5 ? 0 : index - 4;
       AlcoveView view = create_view(from);
-      view.mask = mask;
-      view.not_receiving = not_receiving;
-      view.not_occluding = not_occluding;
+      view.images[ALCOVE_IMAGE_MASK] = mask;
+      view.info.not_receiving = not_receiving;
+      view.info.not_occluding = not_occluding;
       results = run_view(view, index);
     }
     return results;

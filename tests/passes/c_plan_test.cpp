@@ -10,8 +10,8 @@
 #include <set>
 #include <string>
 
+#include "alcove/alcove_work.h"
 #include "c_interface_fixture.h"
-#include "comma_locale.h"
 #include "framegraph/allocation_counter.h"
 #include "framegraph/failing_device.h"
 
@@ -24,7 +24,7 @@ using testing::Not;
 // Returns a view with the least work.
 HostView draw_least() {
   HostView view = draw_view(32, 24, groove(0.8));
-  view.settings.estimator = Estimator::horizons;
+  view.settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   view.settings.steps = 4;
   view.settings.history_frames = 0;
   view.motion = {};
@@ -35,7 +35,7 @@ class CPlan : public CInterface {
  protected:
   // Runs a frame and returns its memory.
   AlcoveMemory run_memory(AlcoveContext& context, const HostView& view) {
-    (void)run_by_c(context, {&view, 1}, index_++);
+    (void)run_views(context, {&view, 1}, index_++);
     return get_memory(context);
   }
 
@@ -73,15 +73,16 @@ TEST_F(CPlan, SingleRequestedOutputNeedsNoPassOrMemoryOfOtherOutputs) {
 // If only a part of an output image is written, the library must not begin with a transition from
 // VK_IMAGE_LAYOUT_UNDEFINED, because the driver may then discard the other pixels.
 TEST_F(CPlan, OutputImageWithContentsIsNotDiscardedByItsFirstLayoutTransition) {
-  for (const Specular specular : {Specular::slices, Specular::table}) {
+  for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
     HostView from = draw_least();
     request_all_outputs(from);
     from.settings.specular = specular;
     AlcoveView view = create_view(from);
     for (const bool has_contents : {false, true}) {
       for (const Output& each : kOutputs) {
-        (view.*each.image).initial_state = kResting;
-        if (!has_contents) (view.*each.image).initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        AlcoveState& state = view.images[each.role].initial_state;
+        state = kResting;
+        if (!has_contents) state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
       }
       run_frame(context(), {&view, 1}, 0);
       const std::string plan = print_plan(context());
@@ -116,9 +117,9 @@ TEST_F(CPlan, HistoryTakesMemoryOnlyForViewsThatHaveOne) {
 
   // A view that is recorded again after it was dropped begins a new history.
   EXPECT_EQ(alcoveDropView(context.get(), view.id), ALCOVE_SUCCESS);
-  const Results again = run_by_c(*context, {&view, 1}, 7)[0];
+  const Results again = run_views(*context, {&view, 1}, 7)[0];
   view.id = 77;
-  expect_equal(again, run_by_c(*context, {&view, 1}, 7)[0]);
+  expect_equal(again, run_views(*context, {&view, 1}, 7)[0]);
 }
 
 TEST_F(CPlan, FrameThatFailedToRecordHasNoMemoryReportAndNoPlan) {
@@ -129,93 +130,31 @@ TEST_F(CPlan, FrameThatFailedToRecordHasNoMemoryReportAndNoPlan) {
   EXPECT_EQ(print_plan(context()), "");
 }
 
-TEST_F(CPlan, EstimatedMemoryIsWithinFivePercentOfThatOfRecordedFrames) {
-  constexpr std::uint32_t kWidth = 256, kHeight = 128;
-  struct Case {
-    const char* name;
-    std::uint32_t outputs;
-    Specular specular;
-    std::uint32_t inputs;
-    Quality quality;
-    bool half_resolution = false;
-    bool history = true;
-  };
-  constexpr std::uint32_t kVisibility = ALCOVE_OUTPUT_VISIBILITY;
-  constexpr std::uint32_t kBent = kVisibility | ALCOVE_OUTPUT_BENT_NORMAL;
-  constexpr std::uint32_t kAll = kBent | ALCOVE_OUTPUT_SPECULAR;
-  constexpr std::uint32_t kNormals = ALCOVE_INPUT_NORMALS;
-  constexpr std::uint32_t kMask = ALCOVE_INPUT_MASK, kSamples = ALCOVE_INPUT_SAMPLES;
-  constexpr Specular kNone = Specular::none, kSlices = Specular::slices;
-  for (const Case& wanted :
-       {Case{"visibility", kVisibility, kNone, kNormals, Quality::medium},
-        Case{"from depth", kVisibility, kNone, 0, Quality::low},
-        Case{"bent", kBent, kNone, kNormals, Quality::medium},
-        Case{"all", kAll, kSlices, kNormals, Quality::low},
-        Case{"by table", ALCOVE_OUTPUT_SPECULAR, Specular::table, kNormals, Quality::low},
-        Case{"half resolution", kAll, kSlices, kNormals, Quality::medium, true},
-        Case{"console", kVisibility, kNone, kNormals, Quality::console, true},
-        Case{"no history", kVisibility, kNone, kNormals, Quality::reference, false, false},
-        Case{"half, no history", kAll, kSlices, kNormals, Quality::medium, true, false},
-        Case{"mask", kVisibility, kNone, kNormals | kMask, Quality::low},
-        Case{"samples", kVisibility, kNone, kSamples, Quality::low},
-        Case{"mask, samples, table", ALCOVE_OUTPUT_SPECULAR, Specular::table, kMask | kSamples,
-             Quality::low}}) {
-    SCOPED_TRACE(wanted.name);
-    HostView from = draw_view(kWidth, kHeight, {tilted_plane(20.0, 4.0)});
-    from.settings = quality_settings(wanted.quality, 0.5f);
-    from.settings.half_resolution = wanted.half_resolution;
-    from.settings.history_frames = wanted.history ? from.settings.history_frames : 0;
-    from.settings.slices = 1;
-    from.settings.steps = 4;
-    from.settings.visibility = (wanted.outputs & kVisibility) != 0;
-    from.settings.bent_normal = (wanted.outputs & ALCOVE_OUTPUT_BENT_NORMAL) != 0;
-    from.settings.specular = wanted.specular;
+// The loop of the guide.
+TEST_F(CPlan, SizesInTheListAreWithinFivePercentOfTheMemoryOfARecordedFrame) {
+  for (const AlcoveQuality quality : {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_MEDIUM}) {
+    HostView from = draw_view(256, 128, {tilted_plane(20.0, 4.0)});
+    from.settings = OcclusionSettings(quality);
+    from.settings.bent_normal = true;
+    from.settings.specular = ALCOVE_SPECULAR_SLICES;
     from.motion = from.back_depth_ndc = from.second_depth_ndc = {};
-    if ((wanted.inputs & kNormals) == 0) from.normals = {};
-    AlcoveView view = create_view(from);
-    if ((wanted.inputs & kMask) != 0) {
-      view.mask =
-          engine().make_image(VK_FORMAT_R8_UINT, kWidth, kHeight, VK_IMAGE_USAGE_SAMPLED_BIT);
-      view.not_occluding = 1;
+    const Context context = create_context();
+    const AlcoveMemory found = run_memory(*context, from);
+    const AlcoveView view = create_view(from);
+    AlcoveWorkInfo info{.struct_size = sizeof info, .view = view.info};
+    for (std::size_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
+      const AlcoveImage& image = view.images[role];
+      info.images[role] = {static_cast<std::uint32_t>(image.format), image.width, image.height};
     }
-    if ((wanted.inputs & kSamples) != 0) {
-      view.depth = engine().make_image(
-          VK_FORMAT_D32_SFLOAT, kWidth, kHeight,
-          VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 1,
-          VK_SAMPLE_COUNT_4_BIT);
-      view.depth.samples = 4;
-    }
-    run_frame(context(), {&view, 1}, 0);
-    engine().wait();
-    const AlcoveMemory found = get_memory(context());
-    EXPECT_EQ(alcoveDropView(&context(), view.id), ALCOVE_SUCCESS);
-    AlcoveMemory estimate{.struct_size = sizeof estimate};
-    ASSERT_EQ(alcoveEstimateMemory(view.settings, kWidth, kHeight, wanted.outputs, wanted.inputs,
-                                   &estimate),
-              ALCOVE_SUCCESS);
-    const auto about = [](std::uint64_t bytes) { return static_cast<double>(bytes); };
-    EXPECT_NEAR(about(found.history), about(estimate.history), 0.05 * about(estimate.history));
-    EXPECT_NEAR(about(found.transients_unshared), about(estimate.transients_unshared),
-                0.05 * about(estimate.transients_unshared));
-    EXPECT_LE(found.transients, estimate.transients + estimate.transients / 20);
+    const auto work = std::make_unique<AlcoveWork>();
+    ASSERT_EQ(alcoveDescribeWork(&info, work.get(), nullptr), ALCOVE_SUCCESS);
+    double transients = 0.0, history = 0.0;
+    for (const AlcoveWorkResource& resource : std::span(work->resources, work->resource_count))
+      (resource.kind == ALCOVE_RESOURCE_KIND_TRANSIENT ? transients : history) +=
+          static_cast<double>(resource.size);
+    EXPECT_NEAR(static_cast<double>(found.history), history, 0.05 * history);
+    EXPECT_NEAR(static_cast<double>(found.transients_unshared), transients, 0.05 * transients);
   }
-}
-
-TEST(CMemory, InvalidArgumentsOfTheMemoryEstimateAreErrors) {
-  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
-  AlcoveMemory memory{.struct_size = sizeof memory};
-  const auto estimate = [&](std::uint32_t width, std::uint32_t height, std::uint32_t outputs,
-                            std::uint32_t inputs) {
-    return alcoveEstimateMemory(&settings, width, height, outputs, inputs, &memory);
-  };
-  EXPECT_EQ(estimate(16, 16, 1, 1), ALCOVE_SUCCESS);
-  EXPECT_EQ(estimate(0, 16, 1, 1), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(estimate(16, 70000, 1, 1), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(estimate(16, 16, 0, 1), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(estimate(16, 16, 16, 1), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(estimate(16, 16, 1, 8), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(alcoveEstimateMemory(nullptr, 16, 16, 1, 1, &memory), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(alcoveEstimateMemory(&settings, 16, 16, 1, 1, nullptr), ALCOVE_ERROR_INVALID_INPUT);
 }
 
 TEST_F(CPlan, TimingsListThePassesOfEachViewOfAFinishedFrame) {
@@ -227,7 +166,7 @@ TEST_F(CPlan, TimingsListThePassesOfEachViewOfAFinishedFrame) {
   views[0].id = 4000000000u;
   views[1].id = 7;
   views[1].normals = {};  // needs no further pass
-  (void)run_by_c(*context, views, 0);
+  (void)run_views(*context, views, 0);
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
   EXPECT_EQ(count, 6u);
   std::array<AlcoveTiming, 16> timings{};
@@ -244,39 +183,6 @@ TEST_F(CPlan, TimingsListThePassesOfEachViewOfAFinishedFrame) {
   count = 1;
   EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, timings.data()), ALCOVE_SUCCESS);
   EXPECT_EQ(count, 1u);
-}
-
-std::string print_settings(const AlcoveSettings& settings) {
-  return print(
-      [&](char* text, std::size_t size) { return alcovePrintSettings(&settings, text, size); });
-}
-
-TEST(CSettings, SettingsOfEveryQualityCanBeFilledInAndPrinted) {
-  for (int quality = ALCOVE_QUALITY_CONSOLE; quality <= ALCOVE_QUALITY_REFERENCE; ++quality) {
-    const AlcoveSettings settings = get_settings(static_cast<AlcoveQuality>(quality), 2.5f);
-    const std::string text = print_settings(settings);
-    EXPECT_THAT(text, HasSubstr("radius = 2.5\n"));
-    EXPECT_THAT(text, HasSubstr("specular = slices\n"));
-    EXPECT_EQ(std::ranges::count(text, '\n'), 19);
-    char little[8];
-    EXPECT_EQ(alcovePrintSettings(&settings, little, sizeof little), text.size());
-    EXPECT_EQ(std::string(little), text.substr(0, 7));
-  }
-  EXPECT_EQ(alcoveGetVersion(), static_cast<std::uint32_t>(ALCOVE_VERSION));
-}
-
-// Each printed value reads back as the same number.
-TEST(CSettings, SettingValuesArePrintedShortAndExactInEveryLocale) {
-  const CommaLocale comma;
-  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.15f);
-  settings.thickness = 0.12345678f;
-  settings.hidden_occlusion = 1e-7f;
-  settings.power = 1.5f;
-  const std::string text = print_settings(settings);
-  EXPECT_THAT(text, testing::StartsWith("radius = 0.15\ntile_size = 4\n"));
-  for (const char* line :
-       {"\nthickness = 0.12345678\n", "\nhidden_occlusion = 1e-07\n", "\npower = 1.5\n"})
-    EXPECT_THAT(text, HasSubstr(line));
 }
 
 // The parameter is the number of frames in flight. With an odd number, each frame slot uses both
@@ -305,18 +211,15 @@ TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesN
   for (std::uint32_t i = 0; i < views.size(); ++i) {
     AlcoveView& view = views.at(i);
     view = {.struct_size = sizeof view,
-            .id = 4000000000u + i,
-            .settings = &settings,
-            .depth = make(VK_FORMAT_R32_SFLOAT),
-            .normals = make(VK_FORMAT_R16G16B16A16_SFLOAT),
-            .roughness = make(VK_FORMAT_R8_UNORM),
-            .albedo = make(VK_FORMAT_R8G8B8A8_UNORM),
-            .visibility = make(VK_FORMAT_R8_UNORM),
-            .bent_normal = make(VK_FORMAT_R8G8B8A8_SNORM),
-            .specular = make(VK_FORMAT_R8_UNORM),
-            .multi_bounce = make(VK_FORMAT_R8G8B8A8_UNORM)};
-    std::ranges::copy(test_views()[2].view.clip_from_view, view.camera.clip_from_view);
-    std::ranges::copy(kIdentity, view.camera.view_from_world);
+            .info = {.id = 4000000000u + i, .settings = &settings, .camera = test_views()[2].view}};
+    view.images[ALCOVE_IMAGE_DEPTH] = make(VK_FORMAT_R32_SFLOAT);
+    view.images[ALCOVE_IMAGE_NORMALS] = make(VK_FORMAT_R16G16B16A16_SFLOAT);
+    view.images[ALCOVE_IMAGE_ROUGHNESS] = make(VK_FORMAT_R8_UNORM);
+    view.images[ALCOVE_IMAGE_ALBEDO] = make(VK_FORMAT_R8G8B8A8_UNORM);
+    view.images[ALCOVE_IMAGE_VISIBILITY] = make(VK_FORMAT_R8_UNORM);
+    view.images[ALCOVE_IMAGE_BENT_NORMAL] = make(VK_FORMAT_R8G8B8A8_SNORM);
+    view.images[ALCOVE_IMAGE_SPECULAR] = make(VK_FORMAT_R8_UNORM);
+    view.images[ALCOVE_IMAGE_MULTI_BOUNCE] = make(VK_FORMAT_R8G8B8A8_UNORM);
   }
   AlcoveFrame frame = make_frame(views, 0);
   std::size_t steady = 0;
@@ -329,8 +232,8 @@ TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesN
     }
     frame.slot = frame.index % GetParam();
     for (AlcoveView& view : views) {
-      view.previous_camera = view.camera;
-      view.camera.view_from_world[12] = std::sin(static_cast<float>(frame.index));
+      view.info.previous_camera = view.info.camera;
+      view.info.camera.view_from_world[12] = std::sin(static_cast<float>(frame.index));
     }
     engine.wait();
     engine.submit(0, [&](VkCommandBuffer commands) {

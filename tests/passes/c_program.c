@@ -21,11 +21,11 @@ AlcoveResult run_c_program(const AlcoveContextInfo* info, const AlcoveCamera* ca
   if (result != ALCOVE_SUCCESS) return result;
   settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
 
-  view.settings = &settings;
-  view.camera = *camera;
-  view.previous_camera = *camera;
-  view.depth = *depth;
-  view.visibility = *visibility;
+  view.info.settings = &settings;
+  view.info.camera = *camera;
+  view.info.previous_camera = *camera;
+  view.images[ALCOVE_IMAGE_DEPTH] = *depth;
+  view.images[ALCOVE_IMAGE_VISIBILITY] = *visibility;
   frame.view_count = 1;
   frame.views = &view;
   result = alcoveRecordFrame(*context, commands, &frame);

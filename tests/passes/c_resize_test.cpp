@@ -9,7 +9,6 @@
 #include <iostream>
 #include <vector>
 
-#include "c/settings.h"
 #include "c_interface_fixture.h"
 #include "framegraph/failing_device.h"
 #include "gtao_scenes.h"
@@ -54,11 +53,11 @@ struct ViewState {
 // Returns the AlcoveView to record: `state.view` without the images that its kind leaves out.
 AlcoveView recorded_view(const ViewState& state) {
   AlcoveView view = state.view;
-  view.settings = &state.settings;
+  view.info.settings = &state.settings;
   for (std::size_t i = 0; i < kInputs.size(); ++i)
-    if ((state.kind.without_inputs >> i & 1) != 0) view.*kInputs.at(i).image = {};
+    if ((state.kind.without_inputs >> i & 1) != 0) view.images[kInputs.at(i).role] = {};
   for (std::size_t i = 0; i < kOutputs.size(); ++i)
-    if ((state.kind.without_outputs >> i & 1) != 0) view.*kOutputs.at(i).image = {};
+    if ((state.kind.without_outputs >> i & 1) != 0) view.images[kOutputs.at(i).role] = {};
   return view;
 }
 
@@ -123,11 +122,11 @@ void CResize::TearDown() {
 }
 
 Kind CResize::any_kind() {
-  OcclusionSettings settings = quality_settings(static_cast<Quality>(below(3)), 0.5f);
-  settings.estimator = static_cast<Estimator>(below(2));
-  settings.thickness_unit = static_cast<ThicknessUnit>(below(2));
+  OcclusionSettings settings(static_cast<AlcoveQuality>(below(3)));
+  settings.estimator = static_cast<AlcoveEstimator>(below(2));
+  settings.thickness_unit = static_cast<AlcoveThicknessUnit>(below(2));
   settings.depth_layers = 1 + below(2);
-  settings.specular = static_cast<Specular>(1 + below(2));
+  settings.specular = static_cast<AlcoveSpecular>(1 + below(2));
   settings.roughness_channel = below(2);
   return {settings, below(128) & kOptionalInputs, below(15)};  // never without all outputs
 }
@@ -139,39 +138,39 @@ void CResize::make_images(ViewState& state, VkExtent2D size) {
   HostView from = draw_view(size.width, size.height, state.scene, state.camera);
   from.id = state.id;
   request_all_outputs(from);
-  from.settings.precision = chance(3) ? Precision::unorm8 : Precision::float32;
+  from.settings.precision = chance(3) ? ALCOVE_PRECISION_UNORM8 : ALCOVE_PRECISION_FLOAT32;
   state.view = create_view(from);
   state.largest = size;
   // Half of the views use dynamic resolution. In the others, a change of the used part of the
   // images begins a new history.
   if (chance(2)) {
-    state.view.largest_width = size.width;
-    state.view.largest_height = size.height;
+    state.view.info.largest_width = size.width;
+    state.view.info.largest_height = size.height;
   }
 }
 
 void CResize::destroy_images(ViewState& state) {
   engine().wait();
-  for_each_image(state.view, [&](const AlcoveImage& image) {
-    if (image.image == VK_NULL_HANDLE) return;
+  for (const AlcoveImage& image : state.view.images) {
+    if (image.image == VK_NULL_HANDLE) continue;
     EXPECT_EQ(alcoveForgetImage(context_.get(), image.image), ALCOVE_SUCCESS);
     engine().destroy_image(image);
-  });
+  }
 }
 
 void CResize::use_part(ViewState& state, VkExtent2D size) {
   const HostView part = draw_view(size.width, size.height, state.scene, state.camera);
   for (const Input& each : kInputs) {
-    AlcoveImage whole = state.view.*each.image;
+    AlcoveImage whole = state.view.images[each.role];
     whole.width = state.largest.width;
     whole.height = state.largest.height;
     fill_image(whole, placed_in(state.largest, part.*each.texels));
   }
-  for_each_image(state.view, [size](AlcoveImage& image) {
+  for (AlcoveImage& image : state.view.images) {
     image.width = size.width;
     image.height = size.height;
-  });
-  state.view.read_area = {0, 0, size.width, size.height};
+  }
+  state.view.info.read_area = {0, 0, size.width, size.height};
 }
 
 void CResize::change_kind(ViewState& state) {
@@ -186,8 +185,8 @@ void CResize::change_numbers(ViewState& state) {
   settings.hidden_occlusion = random_.uniform(0.0f, 1.0f);
   settings.history_frames = chance(4) ? 0 : 1 + below(127);
   settings.roughness = random_.uniform(0.0f, 1.0f);
-  settings.precision = static_cast<Precision>(below(3));
-  state.settings = from_settings(settings);
+  settings.precision = static_cast<AlcovePrecision>(below(3));
+  state.settings = settings;
 }
 
 void CResize::show(ViewState& state) {
@@ -200,14 +199,15 @@ void CResize::show(ViewState& state) {
 void CResize::drop(ViewState& state) {
   state.is_shown = false;
   EXPECT_EQ(alcoveDropView(context_.get(), state.id), ALCOVE_SUCCESS);
-  state.view.previous_width = state.view.previous_height = state.view.static_frames = 0;
+  state.view.info.previous_width = state.view.info.previous_height = state.view.info.static_frames =
+      0;
 }
 
 // Changes a view at random in five of twelve cases. A view that changes has static_frames 0.
 void CResize::change(ViewState& state) {
   const std::uint32_t what = below(12);
   if (what > 4) return;
-  state.view.static_frames = 0;
+  state.view.info.static_frames = 0;
   if (what == 0 && state.is_shown && chance(2))
     drop(state);
   else if (what == 0)
@@ -219,17 +219,17 @@ void CResize::change(ViewState& state) {
   else if (what == 3)
     change_numbers(state);
   else
-    state.view.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
+    state.view.info.camera.view_from_world[12] += random_.uniform(-0.05f, 0.05f);
 }
 
 // Stores the camera and the size of this frame as the previous ones of the next frame.
 void remember(ViewState& state) {
-  state.view.previous_camera = state.view.camera;
-  if (state.view.largest_width != 0) {
-    state.view.previous_width = state.view.depth.width;
-    state.view.previous_height = state.view.depth.height;
+  state.view.info.previous_camera = state.view.info.camera;
+  if (state.view.info.largest_width != 0) {
+    state.view.info.previous_width = state.view.images[ALCOVE_IMAGE_DEPTH].width;
+    state.view.info.previous_height = state.view.images[ALCOVE_IMAGE_DEPTH].height;
   }
-  ++state.view.static_frames;
+  ++state.view.info.static_frames;
 }
 
 void CResize::draw_frame(std::span<ViewState> all, bool discards) {
@@ -299,10 +299,10 @@ AlcoveMemory CResize::rest() {
   AlcoveMemory memory{};
   // Frames with two specular models are recorded, so that the tables of their shaders are loaded
   // from the first call of this function on.
-  for (const Specular specular : {Specular::table, Specular::slices}) {
-    OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+  for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_TABLE, ALCOVE_SPECULAR_SLICES}) {
+    OcclusionSettings settings;
     settings.specular = specular;
-    resting_[0].settings = from_settings(settings);
+    resting_[0].settings = settings;
     for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) draw_frame(resting_, false);
     memory = get_memory(*context_);
   }

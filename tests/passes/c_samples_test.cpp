@@ -153,7 +153,7 @@ TEST_F(CSamples, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
   HostView from = draw_view(kSize.width, kSize.height, step(0.3, 0.6));
   request_all_outputs(from);
   from.settings.radius = 3.0f;
-  from.settings.specular = Specular::table;
+  from.settings.specular = ALCOVE_SPECULAR_TABLE;
   const TestCamera camera(from.view, kSize.width, kSize.height);
   const auto depth_at = [&](double distance) {
     return static_cast<float>(camera.project({0.0, 0.0, -distance}).z);
@@ -165,13 +165,13 @@ TEST_F(CSamples, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
     if (!normals) from.normals = {};
     for (const AlcoveArea& area : {AlcoveArea{}, AlcoveArea{4, 2, 30, 20}}) {
       std::array<AlcoveView, 2> views{create_view(from), create_view(from)};
-      views[0].depth = single;
-      views[1].depth = several;
-      views[1].id = 1;
+      views[0].images[ALCOVE_IMAGE_DEPTH] = single;
+      views[1].images[ALCOVE_IMAGE_DEPTH] = several;
+      views[1].info.id = 1;
       for (std::uint32_t index = 0; index < 3; ++index) {
         for (AlcoveView& view : views) {
-          view.read_area = area;
-          view.reset_history = index == 0 ? VK_TRUE : VK_FALSE;
+          view.info.read_area = area;
+          view.info.reset_history = index == 0 ? VK_TRUE : VK_FALSE;
         }
         run_frame(context(), views, index);
         engine().wait();

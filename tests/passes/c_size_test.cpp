@@ -19,21 +19,24 @@ TEST_F(CDynamicResolution, RenderingToAPartOfAnImageGivesTheSameResultAsAnImageO
   from.settings.radius = 2.0f;
   from.settings.depth_layers = 2;
   AlcoveView view = create_view(from);
-  for (const Input& each : kInputs) view.*each.image = input(placed_in(kLarger, from.*each.texels));
+  for (const Input& each : kInputs)
+    view.images[each.role] = input(placed_in(kLarger, from.*each.texels));
   for (const Output& each : kOutputs)
-    view.*each.image = output((view.*each.image).format, kLarger.width, kLarger.height);
-  for_each_image(view, [](AlcoveImage& image) {
+    view.images[each.role] = output(view.images[each.role].format, kLarger.width, kLarger.height);
+  for (AlcoveImage& image : view.images) {
+    if (image.width == 0) continue;
     image.width = 21;
     image.height = 14;
-  });
-  view.largest_width = kLarger.width;
-  view.largest_height = kLarger.height;
+  }
+  view.info.largest_width = kLarger.width;
+  view.info.largest_height = kLarger.height;
   for (std::uint32_t i = 0; i < 3; ++i) {
-    view.previous_camera = view.camera;
-    view.camera.view_from_world[12] = from.view.view_from_world[12] = 0.02f * static_cast<float>(i);
+    view.info.previous_camera = view.info.camera;
+    view.info.camera.view_from_world[12] = from.view.view_from_world[12] =
+        0.02f * static_cast<float>(i);
     const Results found = run_view(view, i);
     EXPECT_LT(std::ranges::min(found.visibility.texels), 0.9f);
-    expect_equal(found, run_by_cpp(from, i));
+    expect_equal(found, run_plainly(from, i));
     from.previous_view = from.view;
   }
 }
@@ -52,9 +55,9 @@ TEST_F(CDynamicResolution, HistoryKeepsAccumulatingWhileTheRenderedSizeChangesIn
   };
   HostView constant = draw_size(kSizes[0], false);
   Results expected;
-  for (std::uint32_t i = 0; i < 3 * kFrames; ++i) expected = run_by_cpp(constant, i);
+  for (std::uint32_t i = 0; i < 3 * kFrames; ++i) expected = run_plainly(constant, i);
   constant.id = 1;
-  const double fresh = rms(run_by_cpp(constant, kFrames - 1).visibility, expected.visibility);
+  const double fresh = rms(run_plainly(constant, kFrames - 1).visibility, expected.visibility);
   for (const bool motion : {false, true}) {
     Results found;
     VkDeviceSize history = 0;
@@ -64,8 +67,8 @@ TEST_F(CDynamicResolution, HistoryKeepsAccumulatingWhileTheRenderedSizeChangesIn
       from.largest_size = kSizes[2];
       from.previous_size = kSizes.at((i + kSizes.size() - 1) % kSizes.size());
       from.reset = i == 0;
-      found = run_by_c(*context, {&from, 1}, i)[0];
-      expect_equal(found, run_by_cpp(from, i));
+      found = run_views(*context, {&from, 1}, i)[0];
+      expect_equal(found, run_plainly(from, i));
       history = i == 0 ? get_memory(*context).history : history;
       EXPECT_EQ(get_memory(*context).history, history);
     }

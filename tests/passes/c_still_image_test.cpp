@@ -10,9 +10,9 @@ class CStillImage : public CInterface {
  protected:
   static HostView draw_still(std::uint32_t history_frames) {
     HostView view = draw_view(24, 16);
-    view.settings = quality_settings(Quality::low, 0.4f);
+    view.settings = OcclusionSettings(ALCOVE_QUALITY_LOW, 0.4f);
     view.settings.history_frames = history_frames;
-    view.settings.precision = Precision::float32;
+    view.settings.precision = ALCOVE_PRECISION_FLOAT32;
     view.motion = {};
     return view;
   }
@@ -27,18 +27,18 @@ class CStillImage : public CInterface {
   }
 };
 
-TEST_F(CStillImage, EqualsTheConvergedFramesOfTheCppInterface) {
+TEST_F(CStillImage, EqualsConvergedFramesThatTheEngineCounts) {
   HostView from = draw_still(32);
   from.settings.bent_normal = true;
   AlcoveView view = create_view(from);
-  const std::uint32_t frames = alcoveGetConvergedFrames(view.settings);
+  const std::uint32_t frames = alcoveGetConvergedFrames(view.info.settings);
   ASSERT_EQ(frames, 128u);
   run_still({&view, 1}, 0, frames - 1);
   Results expected;
   for (std::uint32_t i = 0; i < frames; ++i) {
     from.static_frames = i;
     from.reset = i == 0;
-    expected = run_by_cpp(from, i);
+    expected = run_plainly(from, i);
   }
   expect_equal(read_results(view), expected);
 }
@@ -46,7 +46,7 @@ TEST_F(CStillImage, EqualsTheConvergedFramesOfTheCppInterface) {
 TEST_F(CStillImage, ViewThatIsLeftOutOfFramesKeepsItsImageAndItsHistory) {
   // Only the second view is given the frames 8 to 11.
   std::array<AlcoveView, 2> views{create_view(draw_still(8)), create_view(draw_still(8))};
-  views[1].id = 1;
+  views[1].info.id = 1;
   run_still(views, 0, 7);
   const Results before = read_results(views[0]);
   run_still(std::span(views).last(1), 8, 11);
@@ -56,7 +56,7 @@ TEST_F(CStillImage, ViewThatIsLeftOutOfFramesKeepsItsImageAndItsHistory) {
   ASSERT_EQ(alcoveSetStillFrame(8, views.data()), ALCOVE_SUCCESS);
   run_frame(context(), std::span(views).first(1), 12);
   AlcoveView other = create_view(draw_still(8));
-  other.id = 2;
+  other.info.id = 2;
   run_still({&other, 1}, 0, 7);
   ASSERT_EQ(alcoveSetStillFrame(8, &other), ALCOVE_SUCCESS);
   run_frame(context(), {&other, 1}, 12);

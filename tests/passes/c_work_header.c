@@ -7,5 +7,7 @@
 
 /* The functions have C linkage. */
 AlcoveResult (*const describe_work)(const AlcoveWorkInfo*, AlcoveWork*, char*) = alcoveDescribeWork;
+AlcoveResult (*const list_pipelines)(const AlcoveWorkInfo*, uint32_t*, AlcoveWorkPipeline*,
+                                     char*) = alcoveListPipelines;
 size_t (*const print_work)(const AlcoveWork*, char*, size_t) = alcovePrintWork;
 AlcoveResult (*const get_shader)(const char*, AlcoveShader*) = alcoveGetShader;

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <utility>
 
-#include "alcove/passes/occlusion.h"
 #include "drawing.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -22,30 +21,30 @@ class DepthPrecision : public PassTest {
  protected:
   // Returns the visibility of the third frame with a depth buffer of `format`.
   HostImage visibility(const Drawing& drawing, VkFormat format, OcclusionSettings settings) {
-    settings.precision = Precision::float32;
+    settings.precision = ALCOVE_PRECISION_FLOAT32;
     for (std::uint32_t index = 0; index < 3; ++index) {
       run([&](framegraph::Graph& graph) {
         if (index == 0) graph.reset_histories();
-        const Frame frame{graph, gpu().kernels(), drawing.view, index};
-        const auto result = add_occlusion(frame,
-                                          {.depth_ndc = upload(graph, drawing.depth_ndc),
-                                           .depth_format = format,
-                                           .normals = upload(graph, drawing.normal_vs),
-                                           .normal_convention = {.in_view_space = true}},
-                                          settings);
-        ASSERT_TRUE(result) << result.error().message;
-        read_back(graph, result->visibility);
+        ViewTextures textures{upload(graph, drawing.depth_ndc), upload(graph, drawing.normal_vs)};
+        add_view_of(graph,
+                    {.camera = drawing.view,
+                     .previous_camera = drawing.view,
+                     .depth_format = static_cast<std::uint32_t>(format),
+                     .normals_in_view_space = 1},
+                    index, settings, textures);
+        read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
       });
     }
     return result();
   }
 
   void expect_open(const Drawing& drawing, VkFormat format, float radius) {
-    for (const Quality quality : {Quality::medium, Quality::high}) {
-      for (const Estimator estimator : {Estimator::connected, Estimator::horizons}) {
+    for (const AlcoveQuality quality : {ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH}) {
+      for (const AlcoveEstimator estimator :
+           {ALCOVE_ESTIMATOR_CONNECTED, ALCOVE_ESTIMATOR_HORIZONS}) {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", quality " << int(quality)
                                         << ", estimator " << int(estimator));
-        OcclusionSettings settings = quality_settings(quality, radius);
+        OcclusionSettings settings(quality, radius);
         settings.estimator = estimator;
         const HostImage image = visibility(drawing, format, settings);
         EXPECT_GE(*std::ranges::min_element(image.texels), 0.98f);
@@ -93,7 +92,7 @@ TEST_F(DepthPrecision, FloorIsUnoccludedInADeepOrthographicViewWithReversedDepth
 TEST_F(DepthPrecision, GrooveKeepsItsOcclusionWith16BitDepth) {
   const TestView view = perspective_view("", 1.2, 1.8, 0.1, 100.0, false);
   const Drawing exact = draw(view, kWidth, kHeight, groove(0.8));
-  const OcclusionSettings settings = quality_settings(Quality::high, 0.5f);
+  const OcclusionSettings settings(ALCOVE_QUALITY_HIGH, 0.5f);
   const HostImage expected = visibility(exact, VK_FORMAT_D32_SFLOAT, settings);
   const HostImage found =
       visibility(with_fixed_point_depth(exact, 65535.0), VK_FORMAT_D16_UNORM, settings);

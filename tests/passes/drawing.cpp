@@ -8,9 +8,9 @@
 namespace alcove::passes {
 namespace {
 
-glm::dmat4 in_double(const Matrix& matrix) {
+glm::dmat4 in_double(const float (&matrix)[16]) {
   glm::mat4 single;
-  std::memcpy(&single[0][0], matrix.data(), sizeof(single));
+  std::memcpy(&single[0][0], matrix, sizeof(single));
   return glm::dmat4(single);
 }
 
@@ -68,7 +68,7 @@ std::vector<Surface> box(const glm::dvec3& low, const glm::dvec3& high) {
   return faces;
 }
 
-TestCamera::TestCamera(const View& view, std::uint32_t width, std::uint32_t height)
+TestCamera::TestCamera(const AlcoveCamera& view, std::uint32_t width, std::uint32_t height)
     : clip_from_view_(in_double(view.clip_from_view)),
       view_from_clip_(glm::inverse(clip_from_view_)),
       width_(width),

@@ -42,7 +42,7 @@ std::vector<Surface> box(const glm::dvec3& low, const glm::dvec3& high);
 // A view over an image, in double precision.
 class TestCamera {
  public:
-  TestCamera(const View& view, std::uint32_t width, std::uint32_t height);
+  TestCamera(const AlcoveCamera& view, std::uint32_t width, std::uint32_t height);
 
   // Returns the ray through a point of the image, in pixels.
   Ray ray(double x, double y) const;
@@ -70,7 +70,7 @@ using Scene = std::vector<Surface>;
 std::optional<Hit> cast(const Scene& scene, const Ray& ray);
 
 struct Drawing {
-  View view;
+  AlcoveCamera view{};
   TestCamera camera;
   Scene scene;
   HostImage depth_ndc;

@@ -5,7 +5,7 @@
 #include <utility>
 
 // The includes of the example come first, as in the README.
-#include <alcove/passes/occlusion.h>
+#include <alcove/passes/graph.h>
 
 #include "c_interface_fixture.h"
 
@@ -18,14 +18,14 @@ struct Engine {
   framegraph::Graph graph;
   passes::Kernels kernels;
   framegraph::Executor executor;
-  passes::View view;
-  passes::View previous_view;
+  AlcoveSettings settings{};
+  AlcoveCamera camera{};
+  AlcoveCamera previous_camera{};
   std::uint32_t frame = 0;
   std::uint32_t slot = 0;
   framegraph::ImportedTexture depth;
   framegraph::ImportedTexture normals;
   framegraph::ImportedTexture visibility;
-  float radius = 0.5f;
 };
 
 // At the start, with the engine's device and two frames in flight, the engine calls
@@ -35,14 +35,15 @@ tl::expected<void, std::string> record_occlusion(Engine& engine, VkCommandBuffer
   framegraph::Graph& graph = engine.graph;
   graph.reset();
   engine.kernels.begin_frame(engine.slot);
-  const passes::Frame frame{graph, engine.kernels, engine.view, engine.frame, engine.previous_view};
-  const auto outputs = passes::add_occlusion(
-      frame,
-      {.depth_ndc = graph.import_texture("depth", engine.depth),
-       .normals = graph.import_texture("normals", engine.normals),
-       .into = {.visibility = graph.import_texture("visibility", engine.visibility)}},
-      passes::quality_settings(passes::Quality::medium, engine.radius));
-  if (!outputs) return tl::unexpected(outputs.error().message);
+  passes::ViewTextures textures{};
+  textures[ALCOVE_IMAGE_DEPTH] = graph.import_texture("depth", engine.depth);
+  textures[ALCOVE_IMAGE_NORMALS] = graph.import_texture("normals", engine.normals);
+  textures[ALCOVE_IMAGE_VISIBILITY] = graph.import_texture("visibility", engine.visibility);
+  const AlcoveViewInfo view{.settings = &engine.settings,
+                            .camera = engine.camera,
+                            .previous_camera = engine.previous_camera};
+  const auto added = passes::add_view(graph, engine.kernels, view, engine.frame, textures);
+  if (!added) return tl::unexpected(added.error().message);
   const auto report = engine.executor.record(graph, commands, {engine.slot});
   if (!report) return tl::unexpected(framegraph::to_string(report.error()));
   return {};
@@ -78,28 +79,29 @@ class Example : public passes::CInterface {
 
 TEST_F(Example, ReadmeExampleDrawsTheSameImageAsTheCInterface) {
   passes::HostView from = passes::draw_view(40, 30);
-  from.settings = passes::quality_settings(passes::Quality::medium, 0.5f);
+  from.settings.precision = ALCOVE_PRECISION_UNORM8;
   from.normals_in_view_space = false;
   from.motion = from.roughness = from.albedo = {};
   const std::unique_ptr<Engine> started = start();
   ASSERT_NE(started, nullptr);
   const AlcoveView images = create_view(from);
-  started->depth = import_of(images.depth);
-  started->normals = import_of(images.normals);
-  started->visibility = import_of(images.visibility);
+  started->settings = from.settings;
+  started->depth = import_of(images.images[ALCOVE_IMAGE_DEPTH]);
+  started->normals = import_of(images.images[ALCOVE_IMAGE_NORMALS]);
+  started->visibility = import_of(images.images[ALCOVE_IMAGE_VISIBILITY]);
   for (std::uint32_t i = 0; i < 4; ++i) {
     from.previous_view = from.view;
     from.view.view_from_world[12] = 0.02f * static_cast<float>(i);
-    started->view = from.view;
-    started->previous_view = from.previous_view;
+    started->camera = from.view;
+    started->previous_camera = from.previous_view;
     started->frame = i;
     started->slot = i % 2;
     engine().submit(started->slot, [&](VkCommandBuffer commands) {
       const auto recorded = record_occlusion(*started, commands);
       EXPECT_TRUE(recorded) << recorded.error();
     });
-    const passes::HostImage found = read(images.visibility);
-    EXPECT_EQ(found.texels, run_by_c(context(), {&from, 1}, i)[0].visibility.texels) << i;
+    const passes::HostImage found = read(images.images[ALCOVE_IMAGE_VISIBILITY]);
+    EXPECT_EQ(found.texels, run_views(context(), {&from, 1}, i)[0].visibility.texels) << i;
   }
   engine().wait();
 }

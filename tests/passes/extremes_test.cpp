@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 
@@ -22,17 +22,17 @@ constexpr std::uint32_t kHeight = 39;
 
 // Returns settings that compute visibility, bent normals and specular occlusion, and whose
 // pipelines compile quickly.
-OcclusionSettings everything(Quality quality, float radius) {
-  OcclusionSettings settings = quality_settings(quality, radius);
-  settings.estimator = Estimator::horizons;
+OcclusionSettings everything(AlcoveQuality quality, float radius) {
+  OcclusionSettings settings(quality, radius);
+  settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   settings.steps = 6;
   settings.bent_normal = true;
-  settings.specular = Specular::slices;
-  settings.precision = Precision::float32;
+  settings.specular = ALCOVE_SPECULAR_SLICES;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
-View moved_by(View view, double x) {
+AlcoveCamera moved_by(AlcoveCamera view, double x) {
   view.view_from_world[12] = static_cast<float>(x);
   return view;
 }
@@ -72,16 +72,16 @@ class Extremes : public PassTest {
 };
 
 TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
-  constexpr std::array<std::pair<Quality, bool>, 4> kCases{{{Quality::medium, false},
-                                                            {Quality::medium, true},
-                                                            {Quality::console, false},
-                                                            {Quality::console, true}}};
+  constexpr std::array<std::pair<AlcoveQuality, bool>, 4> kCases{{{ALCOVE_QUALITY_MEDIUM, false},
+                                                                  {ALCOVE_QUALITY_MEDIUM, true},
+                                                                  {ALCOVE_QUALITY_CONSOLE, false},
+                                                                  {ALCOVE_QUALITY_CONSOLE, true}}};
   for (const auto& [quality, orthographic] : kCases) {
     std::vector<Images> expected;
     for (const int exponent : {0, -30, 17, 30}) {
-      SCOPED_TRACE(testing::Message()
-                   << name_of(quality) << (orthographic ? ", orthographic, " : ", perspective, ")
-                   << "in units of 2^" << -exponent);
+      SCOPED_TRACE(testing::Message() << kQualityNames.at(quality)
+                                      << (orthographic ? ", orthographic, " : ", perspective, ")
+                                      << "in units of 2^" << -exponent);
       const double unit = std::ldexp(1.0, exponent);
       const TestView view =
           orthographic ? orthographic_view("", 3.0 * unit, 2.0 * unit, 0.125 * unit, 16.125 * unit)
@@ -101,7 +101,7 @@ TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
 // Tests near planes in front of the eye and behind it. Some engines place the near plane of an
 // orthographic view behind the eye.
 TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
-  const OcclusionSettings settings = everything(Quality::medium, 1.0f);
+  const OcclusionSettings settings = everything(ALCOVE_QUALITY_MEDIUM, 1.0f);
   for (const NamedScene& scene : gtao_scenes()) {
     std::vector<Images> expected;
     for (const double shift : {0.0, 4.125, 1024.0, -1024.0}) {
@@ -117,8 +117,8 @@ TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
 }
 
 TEST_F(Extremes, PlaneBehindTheEyeOfAnOrthographicViewDoesNotOccludeItself) {
-  OcclusionSettings settings = everything(Quality::medium, 1.0f);
-  settings.estimator = Estimator::connected;
+  OcclusionSettings settings = everything(ALCOVE_QUALITY_MEDIUM, 1.0f);
+  settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
   for (const double distance : {4.0, -4.0}) {
     SCOPED_TRACE(testing::Message() << "a plane at " << distance);
     const TestView view = orthographic_view("", 3.0, 2.0, -16.0, 16.0);
@@ -135,14 +135,12 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   const HostImage motion{kWidth, kHeight,
                          std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
-  const OcclusionSettings settings = everything(Quality::medium, 1.0f);
+  const OcclusionSettings settings = everything(ALCOVE_QUALITY_MEDIUM, 1.0f);
   const auto visibility_at = [&](double distance) {
     glm::dmat4 rotated = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
     rotated = glm::translate(rotated, distance * glm::dvec3(-1.0, -0.3, 0.8));
-    View far = view.view;
-    for (int i = 0; i < 16; ++i)
-      far.view_from_world.at(static_cast<std::size_t>(i)) =
-          static_cast<float>(rotated[i / 4][i % 4]);
+    AlcoveCamera far = view.view;
+    for (int i = 0; i < 16; ++i) far.view_from_world[i] = static_cast<float>(rotated[i / 4][i % 4]);
     HostImage visibility;
     for (std::uint32_t i = 0; i < 8; ++i)
       visibility = run_occlusion({.view = far,
@@ -164,7 +162,7 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
     const Drawing clean = draw(view, kWidth, kHeight, ball_on_floor());
     const HostImage smooth{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight, 0.4f),
                            1};
-    const OcclusionSettings settings = everything(Quality::high, 1.0f);
+    const OcclusionSettings settings = everything(ALCOVE_QUALITY_HIGH, 1.0f);
     // Renders several frames. Frame 1 has the value `wrong` in its normals or roughness.
     const auto frames = [&](float wrong, bool in_normals) {
       std::vector<Images> images;
@@ -219,8 +217,8 @@ TEST_F(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
       std::copy_n(&near.normal_vs.texels[std::size_t{i} * 4], 4,
                   &far.normal_vs.texels[std::size_t{i} * 4]);
     }
-    OcclusionSettings settings = everything(Quality::low, static_cast<float>(0.3 * distance));
-    settings.estimator = Estimator::connected;
+    OcclusionSettings settings = everything(ALCOVE_QUALITY_LOW, static_cast<float>(0.3 * distance));
+    settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
     settings.history_frames = 0;
     const Images images = render(far, settings);
     expect_sound(images);
@@ -236,8 +234,8 @@ TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
     std::vector<HostImage> largest;
     for (const float radius : {1e-30f, 1e-5f, 1e-3f, 1.0f, 1e6f, 1e12f, 1e30f, 3e38f}) {
       SCOPED_TRACE(testing::Message() << view.name << ", radius " << radius);
-      OcclusionSettings settings = everything(Quality::high, radius);
-      settings.estimator = Estimator::connected;
+      OcclusionSettings settings = everything(ALCOVE_QUALITY_HIGH, radius);
+      settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
       settings.history_frames = 0;
       const Images images = render(drawing, settings);
       expect_sound(images);
@@ -270,7 +268,7 @@ TEST_F(Extremes, PlaneIsUnoccludedAtTheNarrowestAndWidestFieldOfView) {
     for (const double tilt : {0.0, 60.0, 85.0}) {
       SCOPED_TRACE(testing::Message() << name << ", tilted " << tilt << " degrees");
       const Drawing drawing = draw(view, 96, 64, {tilted_plane(tilt, 4.0)});
-      OcclusionSettings settings = everything(Quality::reference, 0.5f);
+      OcclusionSettings settings = everything(ALCOVE_QUALITY_REFERENCE, 0.5f);
       settings.slices = 4;
       settings.steps = 16;
       for (std::uint32_t i = 0; i < 4; ++i) {
@@ -286,14 +284,14 @@ TEST_F(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
   constexpr std::array<VkExtent2D, 9> kSizes{
       {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};
   const TestView view = test_views()[2];
-  for (const Quality quality : {Quality::low, Quality::console}) {
+  for (const AlcoveQuality quality : {ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_CONSOLE}) {
     const OcclusionSettings settings = everything(quality, 1.0f);
     // The frame counter wraps around within these frames.
     std::uint32_t index = std::numeric_limits<std::uint32_t>::max() - 4;
     VkExtent2D previous = kSizes[0];
     for (const VkExtent2D size : kSizes) {
       SCOPED_TRACE(testing::Message()
-                   << name_of(quality) << ", " << size.width << " x " << size.height);
+                   << kQualityNames.at(quality) << ", " << size.width << " x " << size.height);
       const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
       const Images images = run_occlusion({.view = view.view,
                                            .depth_ndc = drawing.depth_ndc,

@@ -1,35 +1,44 @@
 // Tests of the controller of samples by simulation with injected times.
-#include "alcove/passes/fit_budget.h"
-
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
+
+#include "alcove/alcove.h"
 
 namespace alcove::passes {
 namespace {
 
-using testing::HasSubstr;
+constexpr AlcoveBudget kBudget{.struct_size = sizeof(AlcoveBudget),
+                               .target_ms = 2.0,
+                               .least_slices = 1,
+                               .most_slices = 2,
+                               .least_steps = 4,
+                               .most_steps = 16};
 
-constexpr Budget kBudget{
-    .target_ms = 2.0, .least_slices = 1, .most_slices = 2, .least_steps = 4, .most_steps = 16};
+AlcoveSettings settings_of(AlcoveQuality quality) {
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  EXPECT_EQ(alcoveGetSettings(quality, 1.0f, &settings), ALCOVE_SUCCESS);
+  return settings;
+}
 
 // A view whose time is `fixed_ms`, and `ms_per_work` times slices * (steps + 4), times the load of
 // the device.
 struct Simulation {
-  Budget budget = kBudget;
+  AlcoveBudget budget = kBudget;
   double fixed_ms = 0.5;
   double ms_per_work = 0.05;
   double scatter = 0.0;  // relative, uniform to both sides
   double load = 1.0;
-  OcclusionSettings settings = quality_settings(Quality::low, 1.0f);
+  AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
   std::mt19937 random{7};
   std::vector<double> times;
   int changes = 0;
 
-  double exact_ms(const OcclusionSettings& of) const {
+  double exact_ms(const AlcoveSettings& of) const {
     return load * (fixed_ms + ms_per_work * of.slices * (of.steps + 4));
   }
 
@@ -37,30 +46,43 @@ struct Simulation {
     for (int i = 0; i < frames; ++i) {
       std::uniform_real_distribution<double> around(1.0 - scatter, 1.0 + scatter);
       times.push_back(exact_ms(settings) * around(random));
-      const auto fitted = fit_budget(budget, times, settings);
-      ASSERT_TRUE(fitted) << fitted.error().message;
-      if (!(*fitted == settings)) {
-        settings = *fitted;
-        times.clear();
-        ++changes;
-      }
+      std::uint32_t changed = 0;
+      ASSERT_EQ(alcoveFitBudget(&budget, times.data(), static_cast<std::uint32_t>(times.size()),
+                                &settings, &changed),
+                ALCOVE_SUCCESS);
+      if (changed != 0) times.clear();
+      changes += static_cast<int>(changed);
     }
   }
 };
 
-bool is_largest(const OcclusionSettings& settings) {
+using Samples = std::pair<std::uint32_t, std::uint32_t>;  // slices and steps
+
+Samples samples_of(const AlcoveSettings& settings) { return {settings.slices, settings.steps}; }
+
+Samples fitted(const AlcoveBudget& budget, const std::vector<double>& times,
+               AlcoveSettings settings) {
+  std::uint32_t changed = 0;
+  EXPECT_EQ(alcoveFitBudget(&budget, times.data(), static_cast<std::uint32_t>(times.size()),
+                            &settings, &changed),
+            ALCOVE_SUCCESS);
+  return samples_of(settings);
+}
+
+bool is_largest(const AlcoveSettings& settings) {
   return settings.slices == kBudget.most_slices && settings.steps == kBudget.most_steps;
 }
-bool is_least(const OcclusionSettings& settings) {
+bool is_least(const AlcoveSettings& settings) {
   return settings.slices == kBudget.least_slices && settings.steps == kBudget.least_steps;
 }
 
 TEST(FitBudget, TargetIsApproachedFromBelowWhateverTheFixedShareOfTheTime) {
   for (const double fixed : {0.0, 0.2, 0.5, 0.8, 1.2}) {
     for (const double target : {1.0, 1.5, 2.0, 2.6}) {
-      for (const Quality begin : {Quality::console, Quality::low, Quality::medium}) {
+      for (const AlcoveQuality begin :
+           {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
         SCOPED_TRACE(testing::Message() << fixed << " ms fixed, target " << target);
-        Simulation view{.fixed_ms = fixed, .settings = quality_settings(begin, 1.0f)};
+        Simulation view{.fixed_ms = fixed, .settings = settings_of(begin)};
         view.budget.target_ms = target;
         view.run(600);
         const double reached = view.exact_ms(view.settings);
@@ -78,7 +100,7 @@ TEST(FitBudget, TimesThatScatterDoNotChangeTheSettingsBackAndForth) {
       SCOPED_TRACE(testing::Message() << "scatter " << scatter << ", seed " << seed);
       Simulation view{.scatter = scatter, .random = std::mt19937(seed)};
       view.run(400);
-      const OcclusionSettings settled = view.settings;
+      const AlcoveSettings settled = view.settings;
       view.changes = 0;
       view.run(1000);
       // A choice at the edge of what is expected to fit may still be raised once.
@@ -92,7 +114,7 @@ TEST(FitBudget, TimesThatScatterDoNotChangeTheSettingsBackAndForth) {
 TEST(FitBudget, SettingsFollowTheLoadOfTheDeviceAndReturn) {
   Simulation view{.scatter = 0.05};
   view.run(300);
-  const OcclusionSettings before = view.settings;
+  const AlcoveSettings before = view.settings;
   view.load = 1.8;
   view.changes = 0;
   view.run(150);
@@ -125,51 +147,59 @@ TEST(FitBudget, NumbersThatAreNoTimesDoNotCount) {
                                  -0.0,
                                  std::numeric_limits<double>::infinity(),
                                  -std::numeric_limits<double>::infinity()};
-  const OcclusionSettings settings = quality_settings(Quality::medium, 1.0f);
+  const AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
   std::vector<double> times;
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(*fit_budget(kBudget, times, settings), settings);
+    EXPECT_EQ(fitted(kBudget, times, settings), samples_of(settings));
     times.insert(times.end(), std::begin(kNoTimes), std::end(kNoTimes));
   }
   const std::vector<double> seven(7, 9.0);
-  EXPECT_EQ(*fit_budget(kBudget, seven, settings), settings) << "too few times";
+  EXPECT_EQ(fitted(kBudget, seven, settings), samples_of(settings)) << "too few times";
   const std::vector<double> right(8, 3.0);
   times.insert(times.end(), right.begin(), right.end());
   times.insert(times.end(), std::begin(kNoTimes), std::end(kNoTimes));
-  EXPECT_EQ(*fit_budget(kBudget, times, settings), *fit_budget(kBudget, right, settings));
-  EXPECT_NE(*fit_budget(kBudget, right, settings), settings);
+  EXPECT_EQ(fitted(kBudget, times, settings), fitted(kBudget, right, settings));
+  EXPECT_NE(fitted(kBudget, right, settings), samples_of(settings));
 }
 
-TEST(FitBudget, OnlySlicesAndStepsChangeAndStayWithinTheLimits) {
+TEST(FitBudget, SlicesAndStepsStayWithinTheLimits) {
   for (std::uint32_t most_slices = 1; most_slices <= 3; ++most_slices) {
     for (std::uint32_t steps = 2; steps <= 64; ++steps) {
-      OcclusionSettings settings = quality_settings(Quality::console, 0.3f);
+      AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
       settings.steps = steps;
       for (const double time : {1e-3, 1.0, 1.9, 2.1, 5.0, 1e6}) {
-        const Budget budget{2.0, 1, most_slices, 5, 20};
-        OcclusionSettings fitted = *fit_budget(budget, std::vector<double>(10, time), settings);
-        EXPECT_TRUE(fitted.slices >= 1 && fitted.slices <= most_slices) << fitted.slices;
-        EXPECT_TRUE(fitted.steps >= 5 && fitted.steps <= 20) << fitted.steps;
-        fitted.slices = settings.slices;
-        fitted.steps = settings.steps;
-        EXPECT_EQ(fitted, settings);
+        const AlcoveBudget budget{sizeof budget, 2.0, 1, most_slices, 5, 20};
+        const auto [slices, fitted_steps] = fitted(budget, std::vector<double>(10, time), settings);
+        EXPECT_TRUE(slices >= 1 && slices <= most_slices) << slices;
+        EXPECT_TRUE(fitted_steps >= 5 && fitted_steps <= 20) << fitted_steps;
       }
     }
   }
 }
 
-TEST(FitBudget, BudgetThatCannotBeUsedIsReported) {
-  const OcclusionSettings settings;
-  const auto said = [&](const Budget& budget) {
-    const auto fitted = fit_budget(budget, {}, settings);
-    return fitted ? std::string() : fitted.error().message;
+TEST(FitBudget, ArgumentsThatCannotBeUsedAreErrors) {
+  const auto fit = [](const AlcoveBudget& budget) {
+    AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
+    std::uint32_t changed = 0;
+    return alcoveFitBudget(&budget, nullptr, 0, &settings, &changed);
   };
+  constexpr std::uint32_t kSize = sizeof(AlcoveBudget);
+  EXPECT_EQ(fit({kSize, 1.0, 1, 2, 6, 12}), ALCOVE_SUCCESS);
   for (const double target : {0.0, -1.0, std::nan(""), HUGE_VAL})
-    EXPECT_THAT(said({.target_ms = target}), HasSubstr("target")) << target;
-  for (const Budget& budget :
-       {Budget{1.0, 0, 2, 6, 12}, Budget{1.0, 3, 2, 6, 12}, Budget{1.0, 1, 65, 6, 12},
-        Budget{1.0, 1, 2, 1, 12}, Budget{1.0, 1, 2, 13, 12}, Budget{1.0, 1, 2, 6, 65}})
-    EXPECT_THAT(said(budget), HasSubstr("limits"));
+    EXPECT_EQ(fit({kSize, target, 1, 2, 6, 12}), ALCOVE_ERROR_INVALID_INPUT) << target;
+  for (const AlcoveBudget& budget :
+       {AlcoveBudget{4, 1.0, 1, 2, 6, 12}, AlcoveBudget{kSize, 1.0, 0, 2, 6, 12},
+        AlcoveBudget{kSize, 1.0, 3, 2, 6, 12}, AlcoveBudget{kSize, 1.0, 1, 65, 6, 12},
+        AlcoveBudget{kSize, 1.0, 1, 2, 1, 12}, AlcoveBudget{kSize, 1.0, 1, 2, 13, 12},
+        AlcoveBudget{kSize, 1.0, 1, 2, 6, 65}})
+    EXPECT_EQ(fit(budget), ALCOVE_ERROR_INVALID_INPUT);
+  AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
+  std::uint32_t changed = 0;
+  const AlcoveResult error = ALCOVE_ERROR_INVALID_INPUT;
+  EXPECT_EQ(alcoveFitBudget(nullptr, nullptr, 0, &settings, &changed), error);
+  EXPECT_EQ(alcoveFitBudget(&kBudget, nullptr, 1, &settings, &changed), error);
+  EXPECT_EQ(alcoveFitBudget(&kBudget, nullptr, 0, nullptr, &changed), error);
+  EXPECT_EQ(alcoveFitBudget(&kBudget, nullptr, 0, &settings, nullptr), error);
 }
 
 }  // namespace

@@ -13,11 +13,12 @@ namespace {
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 48;
 
-OcclusionSettings all_outputs(Quality quality, Specular specular = Specular::slices) {
-  OcclusionSettings settings = quality_settings(quality, 0.5f);
+OcclusionSettings all_outputs(AlcoveQuality quality,
+                              AlcoveSpecular specular = ALCOVE_SPECULAR_SLICES) {
+  OcclusionSettings settings(quality, 0.5f);
   settings.bent_normal = true;
   settings.specular = specular;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
@@ -45,7 +46,7 @@ class NormalsOfAGBuffer : public PassTest {
 TEST_F(NormalsOfAGBuffer, UnoccludedPlaneStaysUnoccludedIfItsNormalsFaceAwayFromTheEye) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(60.0, 4.0)});
-    for (const Quality quality : {Quality::medium, Quality::reference}) {
+    for (const AlcoveQuality quality : {ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_REFERENCE}) {
       OcclusionSettings settings = all_outputs(quality);
       settings.slices = std::min(settings.slices, 4u);
       settings.steps = std::min(settings.steps, 16u);
@@ -60,8 +61,8 @@ TEST_F(NormalsOfAGBuffer, UnoccludedPlaneStaysUnoccludedIfItsNormalsFaceAwayFrom
 TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacingOnes) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
-  for (const Specular specular : {Specular::slices, Specular::table}) {
-    const OcclusionSettings settings = all_outputs(Quality::medium, specular);
+  for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
+    const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM, specular);
     const OcclusionImages found = third_frame(invert_normals(drawing), settings);
     const OcclusionImages expected = third_frame(drawing, settings);
     EXPECT_LT(rms(found.visibility, expected.visibility), 2e-3);
@@ -73,7 +74,7 @@ TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacing
 TEST_F(NormalsOfAGBuffer, ZeroAndNonFiniteNormalsAreReplacedByNormalsFromDepth) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(40.0, 4.0)});
-    const OcclusionSettings settings = all_outputs(Quality::medium);
+    const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM);
     for (const float missing : {0.0f, kNaN, kInfinity}) {
       for (const std::size_t stride : {std::size_t{1}, std::size_t{3}}) {
         SCOPED_TRACE(testing::Message() << view.name << ": " << missing << " every " << stride);
@@ -94,7 +95,7 @@ TEST_F(NormalsOfAGBuffer, NaNNormalsNextToTheSkyOrInTinyImagesGiveValidResults) 
   for (const auto& [width, height] : {std::pair{kWidth, kHeight}, {1u, 1u}, {1u, 7u}, {7u, 1u}}) {
     const Drawing drawing = draw(view, width, height, {post});
     const OcclusionImages images =
-        third_frame(replace_normals(drawing, kNaN, 1), all_outputs(Quality::medium));
+        third_frame(replace_normals(drawing, kNaN, 1), all_outputs(ALCOVE_QUALITY_MEDIUM));
     EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.97f)));
     for (const HostImage* image : {&images.bent_normal, &images.specular})
       EXPECT_TRUE(std::ranges::all_of(image->texels, [](float t) { return std::isfinite(t); }));

@@ -24,7 +24,7 @@ class GtaoInvariance : public PassTest {
 };
 
 // Returns settings with so many slices that there is no filter.
-OcclusionSettings unfiltered(Estimator estimator, float radius) {
+OcclusionSettings unfiltered(AlcoveEstimator estimator, float radius) {
   OcclusionSettings settings;
   settings.radius = radius;
   settings.tile_size = 1;
@@ -32,11 +32,11 @@ OcclusionSettings unfiltered(Estimator estimator, float radius) {
   settings.steps = 8;
   settings.estimator = estimator;
   settings.history_frames = 0;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
-constexpr std::array kEstimators{Estimator::horizons, Estimator::connected};
+constexpr std::array kEstimators{ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED};
 
 struct Difference {
   double mean = 0.0;
@@ -54,7 +54,7 @@ Difference difference(const HostImage& a, const HostImage& b) {
 }
 
 TEST_F(GtaoInvariance, VisibilityIsIndependentOfTheUnitOfLength) {
-  for (const Estimator estimator : kEstimators) {
+  for (const AlcoveEstimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView one = perspective_view("one", 1.2, 1.8, 0.1, kInfinity, true);
       const HostImage expected = visibility(one, scene.scene, unfiltered(estimator, 1.0f));
@@ -73,7 +73,7 @@ TEST_F(GtaoInvariance, VisibilityIsIndependentOfTheUnitOfLength) {
 }
 
 TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthBuffersGiveTheSameVisibility) {
-  for (const Estimator estimator : kEstimators) {
+  for (const AlcoveEstimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       const TestView reversed = perspective_view("", 1.2, 1.8, 0.5, kInfinity, true);
       const HostImage expected = visibility(reversed, scene.scene, unfiltered(estimator, 1.0f));
@@ -96,7 +96,7 @@ TEST_F(GtaoInvariance, OrthographicViewGivesTheVisibilityOfANarrowPerspectiveFro
   const TestView flat = orthographic_view("orthographic", 3.0, 2.0, 0.1, 20.0);
   const TestView narrow =
       perspective_view("narrow", (away + 4.0) / 3.0, (away + 4.0) / 2.0, away, kInfinity, true);
-  for (const Estimator estimator : kEstimators) {
+  for (const AlcoveEstimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(scene.name);
       const Scene moved = shifted(scene.scene, {0.0, 0.0, -away});
@@ -119,7 +119,7 @@ TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
       for (const std::uint32_t history : {0u, 8u}) {
         SCOPED_TRACE(testing::Message() << width << " x " << height << " by " << tile_size
                                         << ", history of " << history);
-        OcclusionSettings settings = unfiltered(Estimator::connected, 0.5f);
+        OcclusionSettings settings = unfiltered(ALCOVE_ESTIMATOR_CONNECTED, 0.5f);
         settings.slices = 1;
         settings.steps = 6;
         settings.tile_size = tile_size;
@@ -149,7 +149,7 @@ TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
 TEST_F(GtaoInvariance, AllTileSizesGiveTheSameMeanVisibilityInAGroove) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 64, 48, groove(0.8));
-  for (const Estimator estimator : kEstimators) {
+  for (const AlcoveEstimator estimator : kEstimators) {
     std::vector<double> means;
     for (const std::uint32_t tile_size : {1u, 2u, 4u}) {
       OcclusionSettings settings = unfiltered(estimator, 1.0f);
@@ -163,7 +163,7 @@ TEST_F(GtaoInvariance, AllTileSizesGiveTheSameMeanVisibilityInAGroove) {
 
 TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteResults) {
   const TestView view = test_views()[2];
-  for (const Estimator estimator : kEstimators) {
+  for (const AlcoveEstimator estimator : kEstimators) {
     OcclusionSettings settings = unfiltered(estimator, 0.5f);
     settings.bent_normal = true;
     settings.slices = 4;  // with a filter
@@ -201,13 +201,14 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
       drawing.depth_ndc.texels[i] = nonsense[(i * 2654435761u >> 7) % nonsense.size()];
       backs.texels[i] = nonsense[(i * 2246822519u >> 9) % nonsense.size()];
     }
-    for (const Estimator estimator : kEstimators) {
+    for (const AlcoveEstimator estimator : kEstimators) {
       for (const bool all_inputs : {false, true}) {
         OcclusionSettings settings = unfiltered(estimator, 0.5f);
         settings.bent_normal = true;
         settings.slices = 4;  // with a filter
         settings.history_frames = 8;
-        settings.thickness_unit = all_inputs ? ThicknessUnit::back_faces : ThicknessUnit::radius;
+        settings.thickness_unit =
+            all_inputs ? ALCOVE_THICKNESS_UNIT_BACK_FACES : ALCOVE_THICKNESS_UNIT_RADIUS;
         settings.depth_layers = all_inputs ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
           const OcclusionImages images =
@@ -232,17 +233,19 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
 TEST_F(GtaoInvariance, BothEyesOfAStereoFrameGetTheSameNoise) {
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, kWidth, kHeight, gtao_scenes().front().scene);
-  OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+  OcclusionSettings settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
   for (std::uint32_t index = 0; index < 4; ++index) {
     run([&](framegraph::Graph& graph) {
-      const Frame frame{graph, gpu().kernels(), view.view, index, view.view};
-      const OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
-                                   .normals = upload(graph, drawing.normal_vs),
-                                   .normal_convention = {.in_view_space = true}};
-      for (const std::string_view eye : {"left", "right"}) {
-        const auto outputs = add_occlusion(frame, inputs, settings, eye);
-        ASSERT_TRUE(outputs) << outputs.error().message;
-        read_back(graph, outputs->visibility);
+      const ViewTextures inputs{upload(graph, drawing.depth_ndc), upload(graph, drawing.normal_vs)};
+      for (const std::uint32_t eye : {0u, 1u}) {
+        ViewTextures textures = inputs;
+        add_view_of(graph,
+                    {.id = eye,
+                     .camera = view.view,
+                     .previous_camera = view.view,
+                     .normals_in_view_space = 1},
+                    index, settings, textures);
+        read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
       }
     });
     EXPECT_EQ(result(0).texels, result(1).texels);
@@ -254,9 +257,10 @@ TEST_F(GtaoInvariance, SkyIsUnoccludedAndDoesNotOcclude) {
     SCOPED_TRACE(view.name);
     Surface post = plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0});
     post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
-    for (const Estimator estimator : kEstimators) {
-      EXPECT_THAT(visibility(view, {post}, unfiltered(estimator, 1.0f)).texels,
-                  testing::Each(testing::Ge(estimator == Estimator::connected ? 0.97f : 0.996f)));
+    for (const AlcoveEstimator estimator : kEstimators) {
+      EXPECT_THAT(
+          visibility(view, {post}, unfiltered(estimator, 1.0f)).texels,
+          testing::Each(testing::Ge(estimator == ALCOVE_ESTIMATOR_CONNECTED ? 0.97f : 0.996f)));
     }
   }
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "drawing.h"
 
 namespace alcove::passes {
@@ -18,9 +18,9 @@ class GtaoPass : public PassTest {
   }
 };
 
-OcclusionSettings precise(Quality quality) {
-  OcclusionSettings settings = quality_settings(quality, 0.5f);
-  settings.precision = Precision::float32;
+OcclusionSettings precise(AlcoveQuality quality) {
+  OcclusionSettings settings(quality, 0.5f);
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
@@ -28,11 +28,12 @@ TEST_F(GtaoPass, UnoccludedPlaneHasVisibilityOneAtAnyTilt) {
   for (const TestView& view : test_views()) {
     for (const double degrees : {0.0, 30.0, 60.0, 75.0, 85.0}) {
       const Drawing drawing = draw(view, 96, 64, {tilted_plane(degrees, 4.0)});
-      for (const Quality quality :
-           {Quality::console, Quality::low, Quality::medium, Quality::high, Quality::reference}) {
-        SCOPED_TRACE(testing::Message()
-                     << view.name << " tilted " << degrees << " degrees, " << name_of(quality));
-        const std::uint32_t frames = quality == Quality::reference ? 1 : 4;
+      for (const AlcoveQuality quality :
+           {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH,
+            ALCOVE_QUALITY_REFERENCE}) {
+        SCOPED_TRACE(testing::Message() << view.name << " tilted " << degrees << " degrees, "
+                                        << kQualityNames.at(quality));
+        const std::uint32_t frames = quality == ALCOVE_QUALITY_REFERENCE ? 1 : 4;
         for (std::uint32_t index = 0; index < frames; ++index)
           EXPECT_GE(lowest(drawing, precise(quality), index), kLeast) << "in frame " << index;
       }

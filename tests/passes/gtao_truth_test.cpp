@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
 #include "reference_occlusion.h"
@@ -16,8 +16,8 @@ namespace {
 
 // Returns settings with which any estimator assumes infinitely thick occluders, so that its result
 // can be compared with that of the estimator `horizons`.
-OcclusionSettings exact(Estimator estimator, float radius) {
-  OcclusionSettings settings = quality_settings(Quality::reference, radius);
+OcclusionSettings exact(AlcoveEstimator estimator, float radius) {
+  OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
   settings.estimator = estimator;
   settings.hidden_occlusion = 1.0f;
   return settings;
@@ -31,7 +31,7 @@ struct Errors {
 class GtaoTruth : public PassTest {
  protected:
   // Returns the mean and the largest error of visibility over every 5th pixel of every 3rd row.
-  Errors errors_of(Estimator estimator, const TestView& view, const Scene& scene) {
+  Errors errors_of(AlcoveEstimator estimator, const TestView& view, const Scene& scene) {
     const float radius = 1.2f;
     const Drawing drawing = draw(view, 60, 40, scene);
     const HostImage visibility = render(drawing, exact(estimator, radius)).visibility;
@@ -84,7 +84,7 @@ TEST_F(GtaoTruth, EstimatorHorizonsAgreesWithBruteForceInEverySceneAndView) {
   for (const TestView& view : test_views()) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name);
-      const Errors errors = errors_of(Estimator::horizons, view, scene.scene);
+      const Errors errors = errors_of(ALCOVE_ESTIMATOR_HORIZONS, view, scene.scene);
       EXPECT_LT(errors.mean, 0.008);
       // The largest errors are at silhouettes, which lie between pixels, and at the ball's contact,
       // which is narrower than a pixel.
@@ -96,7 +96,7 @@ TEST_F(GtaoTruth, EstimatorHorizonsAgreesWithBruteForceInEverySceneAndView) {
 TEST_F(GtaoTruth, EstimatorConnectedAgreesWithBruteForceIfVolumeBehindOccludersIsSolid) {
   for (const NamedScene& scene : gtao_scenes()) {
     SCOPED_TRACE(scene.name);
-    const Errors errors = errors_of(Estimator::connected, test_views()[2], scene.scene);
+    const Errors errors = errors_of(ALCOVE_ESTIMATOR_CONNECTED, test_views()[2], scene.scene);
     EXPECT_LT(errors.mean, 0.02);
     // At the border of the image a share of the directions is excluded.
     EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.1);
@@ -108,8 +108,8 @@ TEST_F(GtaoTruth, VisibilityOfAFloorInFrontOfAPlatformMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
-  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
-    SCOPED_TRACE(name_of(estimator));
+  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+    SCOPED_TRACE(int{estimator});
     const auto images = render(drawing, exact(estimator, 8.0f));
     for (std::uint32_t x = 44; x < 62; ++x) {
       const double distance = (64 - x - 0.5) * 8.0 / 128;
@@ -125,8 +125,8 @@ TEST_F(GtaoTruth, UniformVisibilityInFrontOfAPlatformMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
-  OcclusionSettings settings = exact(Estimator::horizons, 8.0f);
-  settings.weighting = Weighting::uniform;
+  OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_HORIZONS, 8.0f);
+  settings.weighting = ALCOVE_WEIGHTING_UNIFORM;
   const auto images = render(drawing, settings);
   for (std::uint32_t x = 44; x < 62; ++x) {
     const double distance = (64 - x - 0.5) * 8.0 / 128;
@@ -143,8 +143,10 @@ TEST_F(GtaoTruth, VisibilityNearTheBottomOfAGrooveMatchesTheClosedForm) {
   for (const double half_angle : {0.5, std::numbers::pi / 4.0, 1.2}) {
     const Drawing drawing = draw(view, 128, 128, groove(half_angle, 9.0));
     const double expected = (1.0 - std::cos(2.0 * half_angle)) / 2.0;
-    for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
-      SCOPED_TRACE(testing::Message() << name_of(estimator) << ", half angle " << half_angle);
+    for (const AlcoveEstimator estimator :
+         {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+      SCOPED_TRACE(testing::Message()
+                   << "estimator " << estimator << ", half angle " << half_angle);
       const auto images = render(drawing, exact(estimator, 8.0f));
       for (const std::uint32_t x : {61u, 62u, 65u, 66u})
         EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.03);
@@ -163,7 +165,7 @@ TEST_F(GtaoTruth, LargerFractionOfTheVolumeBehindAWideOccluderIsSolidThanBehindA
         return p.x > 0.0 && p.x < slats * apart && std::fmod(p.x, apart) < width;
       };
       const auto beside = [&](float hidden_occlusion) {
-        OcclusionSettings settings = exact(Estimator::connected, 1.2f);
+        OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_CONNECTED, 1.2f);
         settings.thickness = 0.01f;  // small, so that a hidden volume remains behind the occluder
         settings.hidden_occlusion = hidden_occlusion;
         return visibility_beside(view, front, settings);
@@ -195,7 +197,7 @@ TEST_F(GtaoTruth, ThicknessSettingLargerThanTheVisibleWidthDarkensNothing) {
       Surface front = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
       const auto beside = [&](float thickness) {
-        OcclusionSettings settings = exact(Estimator::connected, 1.2f);
+        OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_CONNECTED, 1.2f);
         settings.steps = 8;
         settings.hidden_occlusion = 0.0f;
         settings.thickness = thickness;
@@ -213,8 +215,8 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
   const float radius = 1.0f;
-  for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
-    SCOPED_TRACE(name_of(estimator));
+  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+    SCOPED_TRACE(int{estimator});
     const auto images = render(drawing, exact(estimator, radius));
     for (std::uint32_t x = 0; x < 64; ++x) {
       // `across` is the distance along the floor to the platform's edge, and `distance` the
@@ -223,7 +225,7 @@ TEST_F(GtaoTruth, OccludersBeyondTheRadiusDoNotOcclude) {
       // 1.15 allows for that.
       const double across = (63.5 - x) * 8.0 / 128;
       const double distance = std::hypot(across, height);
-      if ((estimator == Estimator::connected ? across / 1.15 : distance) > radius)
+      if ((estimator == ALCOVE_ESTIMATOR_CONNECTED ? across / 1.15 : distance) > radius)
         EXPECT_GT(images.visibility.at(x, 64), 0.996) << "column " << x;
       else if (distance < 0.8 * radius) {
         EXPECT_LT(images.visibility.at(x, 64), 0.96) << "column " << x;
@@ -243,7 +245,7 @@ TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible)
     const TestView part_view = columns_of(view, kWhole, 0, kPart);
     const Drawing part = draw(part_view, kPart, kHeight, groove(0.8));
     // Returns the mean difference between the visibility of the part and that of the whole.
-    const auto difference = [&](Estimator estimator) {
+    const auto difference = [&](AlcoveEstimator estimator) {
       OcclusionSettings settings = exact(estimator, kRadius);
       settings.steps = 12;
       const HostImage truth = render(whole, settings).visibility;
@@ -255,8 +257,8 @@ TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible)
           sum += std::abs(found.at(x, y) - truth.at(x, y));
       return sum / count;
     };
-    EXPECT_GT(difference(Estimator::horizons), 0.05) << "horizons does not extrapolate";
-    EXPECT_LT(difference(Estimator::connected), 0.0115);
+    EXPECT_GT(difference(ALCOVE_ESTIMATOR_HORIZONS), 0.05) << "horizons does not extrapolate";
+    EXPECT_LT(difference(ALCOVE_ESTIMATOR_CONNECTED), 0.0115);
   }
 }
 
@@ -264,15 +266,16 @@ TEST_F(GtaoTruth, BentNormalsAgreeWithBruteForceInEveryScene) {
   const float radius = 1.2f;
   for (const TestView& view : {test_views()[2], test_views()[5]}) {
     for (const NamedScene& scene : gtao_scenes()) {
-      for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
-        SCOPED_TRACE(testing::Message()
-                     << scene.name << ", " << view.name << ", " << name_of(estimator));
+      for (const AlcoveEstimator estimator :
+           {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
+        SCOPED_TRACE(testing::Message() << scene.name << ", " << view.name << ", "
+                                        << "estimator " << estimator);
         const Drawing drawing = draw(view, 60, 40, scene.scene);
         OcclusionSettings settings = exact(estimator, radius);
         settings.bent_normal = true;
         const auto images = render(drawing, settings);
         EXPECT_LT(mean_bent_error(images.bent_normal, drawing, radius),
-                  estimator == Estimator::horizons ? 2.0 : 6.0);
+                  estimator == ALCOVE_ESTIMATOR_HORIZONS ? 2.0 : 6.0);
       }
     }
   }

@@ -1,5 +1,3 @@
-#include "alcove/passes/gtso.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "maths/make_projection.h"
 #include "maths/slice.h"
 #include "random_input.h"
+#include "single_passes.h"
 #include "views.h"
 
 namespace alcove::passes {
@@ -30,10 +29,10 @@ constexpr float kSky = 1e12f;
 
 OcclusionSettings settings_of(float roughness = 0.5f, std::uint32_t channel = 0) {
   OcclusionSettings settings;
-  settings.specular = Specular::table;
+  settings.specular = ALCOVE_SPECULAR_TABLE;
   settings.roughness = roughness;
   settings.roughness_channel = channel;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
@@ -68,32 +67,44 @@ Inputs random_inputs() {
   return inputs;
 }
 
-Texture add(const Frame& frame, const GtsoInputs& inputs, const OcclusionSettings& settings) {
-  const auto result = add_gtso(frame, inputs, settings);
-  EXPECT_TRUE(result) << result.error().message;
-  return result.value_or(Texture{});
-}
-
 class GtsoPass : public PassTest {
  protected:
-  void run_pass(const View& view, const Inputs& inputs) {
+  // Adds the pass with visibility and bent normals that were written before. The depth texture is
+  // linear. Returns its image.
+  Texture add(Graph& graph, const AlcoveCamera& camera, ViewTextures textures,
+              const OcclusionSettings& settings, bool normals_in_view_space = true) {
+    textures[ALCOVE_IMAGE_SPECULAR] = graph.create_texture(
+        "specular", {VK_FORMAT_R32_SFLOAT, sample::extent_of(graph, textures[ALCOVE_IMAGE_DEPTH])});
+    add_passes(
+        graph, gpu().kernels(),
+        {.settings = &settings,
+         .camera = camera,
+         .normals_in_view_space = normals_in_view_space ? 1u : 0u},
+        0, textures, [](GraphWork&, const ViewWork& view) {
+          describe_gtso(
+              view, {view.image(ALCOVE_IMAGE_VISIBILITY), view.image(ALCOVE_IMAGE_BENT_NORMAL), {}},
+              view.image(ALCOVE_IMAGE_DEPTH), view.image(ALCOVE_IMAGE_NORMALS));
+        });
+    return textures[ALCOVE_IMAGE_SPECULAR];
+  }
+  ViewTextures textures_of(Graph& graph, const Inputs& inputs) {
+    ViewTextures textures{upload(graph, inputs.depth), upload(graph, inputs.normals)};
+    textures[ALCOVE_IMAGE_VISIBILITY] = upload(graph, inputs.visibility);
+    textures[ALCOVE_IMAGE_BENT_NORMAL] = upload(graph, inputs.bent);
+    return textures;
+  }
+  void run_pass(const AlcoveCamera& view, const Inputs& inputs) {
     run([&](Graph& graph) {
-      const Frame frame{graph, gpu().kernels(), view, 0};
-      read_back(graph, add(frame,
-                           {.visibility = upload(graph, inputs.visibility),
-                            .bent_normal = upload(graph, inputs.bent),
-                            .normals = upload(graph, inputs.normals),
-                            .depth = upload(graph, inputs.depth),
-                            .roughness = upload(graph, inputs.surface),
-                            .normal_convention = {.in_view_space = true}},
-                           settings_of(0.5f, 3)));
+      ViewTextures textures = textures_of(graph, inputs);
+      textures[ALCOVE_IMAGE_ROUGHNESS] = upload(graph, inputs.surface);
+      read_back(graph, add(graph, view, textures, settings_of(0.5f, 3)));
     });
   }
 };
 
-maths::Projection projection_of(const View& view) {
+maths::Projection projection_of(const AlcoveCamera& view) {
   maths::mat4 clip_from_view;
-  std::memcpy(&clip_from_view[0][0], view.clip_from_view.data(), sizeof(clip_from_view));
+  std::memcpy(&clip_from_view[0][0], view.clip_from_view, sizeof(clip_from_view));
   return maths::make_projection(clip_from_view, kWidth, kHeight).value();
 }
 
@@ -178,15 +189,14 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
       const Drawing plane = draw(view, kWidth, kHeight, {tilted_plane(degrees, 4.0)});
       const Inputs open = open_inputs(plane);
       run([&](Graph& graph) {
-        const Frame frame{graph, gpu().kernels(), view.view, 0};
-        const auto depth = add_linear_depth(frame, upload(graph, plane.depth_ndc));
-        ASSERT_TRUE(depth) << depth.error().message;
-        const GtsoInputs inputs{.visibility = upload(graph, open.visibility),
-                                .bent_normal = upload(graph, open.bent),
-                                .normals = upload(graph, plane.normal_vs),
-                                .depth = *depth,
-                                .normal_convention = {.in_view_space = true}};
-        for (const float r : roughness) read_back(graph, add(frame, inputs, settings_of(r)));
+        const auto made =
+            add_surface(graph, gpu().kernels(), view.view, upload(graph, plane.depth_ndc));
+        ASSERT_TRUE(made) << made.error().message;
+        ViewTextures textures{made->linear_depth, upload(graph, plane.normal_vs)};
+        textures[ALCOVE_IMAGE_VISIBILITY] = upload(graph, open.visibility);
+        textures[ALCOVE_IMAGE_BENT_NORMAL] = upload(graph, open.bent);
+        for (const float r : roughness)
+          read_back(graph, add(graph, view.view, textures, settings_of(r)));
       });
       for (std::size_t image = 0; image < roughness.size(); ++image) {
         EXPECT_GE(lowest(result(image), plane), 0.99f)
@@ -198,19 +208,14 @@ TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
 
 TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   const Inputs inputs = random_inputs();
-  const auto with = [&](View view, bool in_view_space) {
+  const auto with = [&](AlcoveCamera view, bool in_view_space) {
     run([&](Graph& graph) {
-      read_back(graph, add({graph, gpu().kernels(), view, 0},
-                           {.visibility = upload(graph, inputs.visibility),
-                            .bent_normal = upload(graph, inputs.bent),
-                            .normals = upload(graph, inputs.normals),
-                            .depth = upload(graph, inputs.depth),
-                            .normal_convention = {.in_view_space = in_view_space}},
-                           settings_of(0.4f)));
+      read_back(graph,
+                add(graph, view, textures_of(graph, inputs), settings_of(0.4f), in_view_space));
     });
     return result();
   };
-  View view = test_views().front().view;
+  AlcoveCamera view = test_views().front().view;
   const HostImage in_view_space = with(view, true);
   EXPECT_EQ(in_view_space.texels, with(view, false).texels);
   // The camera is rotated by 180 degrees about the view axis.
@@ -222,15 +227,9 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
 TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
   const Inputs inputs = random_inputs();
   run([&](Graph& graph) {
-    const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
-    const Texture depth = upload(graph, inputs.depth);
-    (void)add(frame,
-              {.visibility = upload(graph, inputs.visibility),
-               .bent_normal = upload(graph, inputs.bent),
-               .normals = upload(graph, inputs.normals),
-               .depth = depth},
-              settings_of());
-    read_back(graph, depth);
+    const ViewTextures textures = textures_of(graph, inputs);
+    (void)add(graph, test_views().front().view, textures, settings_of());
+    read_back(graph, textures[ALCOVE_IMAGE_DEPTH]);
   });
   for (const framegraph::PassTiming& timing : gpu().timings())
     EXPECT_NE(timing.name, "specular occlusion");
@@ -241,32 +240,6 @@ TEST_F(GtsoPass, LookupTableIsCreatedWhenAPassReadsIt) {
   EXPECT_EQ(gpu().kernels().table_bytes(), 0u);
   run_pass(test_views().front().view, random_inputs());
   EXPECT_EQ(gpu().kernels().table_bytes(), maths::kGtsoEntries);
-}
-
-TEST_F(GtsoPass, InvalidInputOfTheSpecularOcclusionPassIsReportedByName) {
-  const Inputs inputs = random_inputs();
-  const HostImage small{2, 2, std::vector<float>(4), 1};
-  run([&](Graph& graph) {
-    const Frame frame{graph, gpu().kernels(), test_views().front().view, 0};
-    const GtsoInputs good{.visibility = upload(graph, inputs.visibility),
-                          .bent_normal = upload(graph, inputs.bent),
-                          .normals = upload(graph, inputs.normals),
-                          .depth = upload(graph, inputs.depth)};
-    GtsoInputs without_bent = good;
-    without_bent.bent_normal = {};
-    expect_error(add_gtso(frame, without_bent, settings_of()), "bent normals");
-    GtsoInputs unequal = good;
-    unequal.depth = upload(graph, small);
-    expect_error(add_gtso(frame, unequal, settings_of()), "2x2");
-    expect_error(add_gtso(frame, good, settings_of(std::numeric_limits<float>::quiet_NaN())),
-                 "0 to 1");
-    expect_error(add_gtso(frame, good, settings_of(1.5f)), "0 to 1");
-    expect_error(add_gtso(frame, good, settings_of(0.5f, 4)), "'roughness_channel' is 4");
-    OcclusionSettings other = settings_of();
-    other.specular = Specular::slices;
-    expect_error(add_gtso(frame, good, other), "slices; it must be table");
-    read_back(graph, add(frame, good, settings_of()));
-  });
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr float kRounding = 1e-3f;
 
 OcclusionSettings half_resolution(std::uint32_t history_frames) {
   OcclusionSettings settings = precise(history_frames);
-  settings.half_resolution = true;
+  settings.half_resolution = 1;
   return settings;
 }
 
@@ -145,11 +145,11 @@ TEST_F(HalfResolution, StaleHistoryTexelsOutsideTheRenderedPartOfAnImageAreNotRe
 TEST_F(HalfResolution, UnoccludedPlaneGetsItsNormalAndSpecularVisibilityOneAtHalfResolution) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, 33, 23, {tilted_plane(40.0, 4.0)});
-  OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
-  settings.precision = Precision::float32;
+  OcclusionSettings settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   settings.bent_normal = true;
-  settings.specular = Specular::slices;
-  settings.half_resolution = true;
+  settings.specular = ALCOVE_SPECULAR_SLICES;
+  settings.half_resolution = 1;
   for (const std::uint32_t history : {0u, 16u}) {
     settings.history_frames = history;
     for (std::uint32_t frame = 0; frame < 3; ++frame) {
@@ -167,21 +167,6 @@ TEST_F(HalfResolution, UnoccludedPlaneGetsItsNormalAndSpecularVisibilityOneAtHal
       }
     }
   }
-}
-
-TEST_F(HalfResolution, HalfResolutionWithTilesOfOnePixelIsRefused) {
-  framegraph::Graph graph;
-  const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
-  const auto depth = graph.create_texture(
-      "depth", {VK_FORMAT_R32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
-  const auto normals = graph.create_texture(
-      "normals", {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kWidth, kHeight)});
-  const auto raw = graph.create_texture(
-      "raw", {VK_FORMAT_R32G32_UINT, framegraph::Extent::absolute(kWidth, kHeight)});
-  expect_error(
-      add_reconstruct(frame, {{.depth_ndc = depth, .normals = normals}, {.raw_occlusion = raw}},
-                      half_resolution(0)),
-      "tile_size is 1");
 }
 
 }  // namespace

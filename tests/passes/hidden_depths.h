@@ -9,8 +9,8 @@ namespace alcove::passes {
 
 // Returns settings without hidden occlusion, so that only the given depths occlude.
 inline OcclusionSettings without_hidden_occlusion(float radius) {
-  OcclusionSettings settings = quality_settings(Quality::reference, radius);
-  settings.estimator = Estimator::connected;
+  OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
+  settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
   settings.slices = 16;
   settings.hidden_occlusion = 0.0f;
   return settings;

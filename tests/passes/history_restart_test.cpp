@@ -38,9 +38,9 @@ class HistoryRestart : public PassTest {
 };
 
 OcclusionSettings with_history(bool bent_normal) {
-  OcclusionSettings settings = quality_settings(Quality::medium, 0.5f);
+  OcclusionSettings settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
   settings.bent_normal = bent_normal;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 

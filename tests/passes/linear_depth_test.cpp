@@ -18,7 +18,7 @@ using framegraph::Graph;
 
 glm::dmat4 clip_from_view(const TestView& view) {
   glm::mat4 single;
-  std::memcpy(&single[0][0], view.view.clip_from_view.data(), sizeof(single));
+  std::memcpy(&single[0][0], view.view.clip_from_view, sizeof(single));
   return glm::dmat4(single);
 }
 
@@ -33,12 +33,11 @@ bool is_reversed(const glm::dmat4& m) { return m[2][2] * m[3][3] > m[3][2] * m[2
 class LinearDepth : public PassTest {
  protected:
   // Linear depth of `depth`, a depth buffer that the view's projection wrote.
-  HostImage linear_image(const View& view, const HostImage& depth) {
+  HostImage linear_image(const AlcoveCamera& view, const HostImage& depth) {
     run([&](Graph& graph) {
-      const Frame frame{graph, gpu().kernels(), view, 0};
-      const auto linear = add_linear_depth(frame, upload(graph, depth));
-      ASSERT_TRUE(linear) << linear.error().message;
-      read_back(graph, *linear);
+      const auto made = add_surface(graph, gpu().kernels(), view, upload(graph, depth));
+      ASSERT_TRUE(made) << made.error().message;
+      read_back(graph, made->linear_depth);
     });
     return result();
   }

@@ -16,14 +16,11 @@ double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 class NormalsFromDepth : public PassTest {
  protected:
-  HostImage normals(const View& view, const HostImage& depth_ndc) {
+  HostImage normals(const AlcoveCamera& view, const HostImage& depth_ndc) {
     run([&](Graph& graph) {
-      const Frame frame{graph, gpu().kernels(), view, 0};
-      const auto depth = add_linear_depth(frame, upload(graph, depth_ndc));
-      ASSERT_TRUE(depth) << depth.error().message;
-      const auto normals = add_normals(frame, *depth);
-      ASSERT_TRUE(normals) << normals.error().message;
-      read_back(graph, *normals);
+      const auto made = add_surface(graph, gpu().kernels(), view, upload(graph, depth_ndc));
+      ASSERT_TRUE(made) << made.error().message;
+      read_back(graph, made->normals);
     });
     return result();
   }

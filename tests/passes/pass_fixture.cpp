@@ -186,34 +186,32 @@ PassTest::OcclusionImages PassTest::render(const Drawing& drawing,
 PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& input,
                                                   const OcclusionSettings& settings) {
   run([&](Graph& graph) {
-    if (input.reset) graph.reset_histories();
-    const Frame frame{.graph = graph,
-                      .kernels = gpu().kernels(),
-                      .view = input.view,
-                      .index = input.index,
-                      .previous_view = input.previous_view,
-                      .largest_size = input.largest_size,
-                      .previous_size = input.previous_size};
-    const auto upload_of = [&](const HostImage* image) {
-      return image == nullptr ? Texture{} : upload(graph, *image);
-    };
-    const OcclusionInputs inputs{.depth_ndc = upload(graph, input.depth_ndc),
-                                 .normals = upload_of(input.normal_vs),
-                                 .normal_convention = {.in_view_space = true},
-                                 .motion = upload_of(input.motion),
-                                 .roughness = upload_of(input.roughness),
-                                 .back_depth_ndc = upload_of(input.back_depth_ndc),
-                                 .second_depth_ndc = upload_of(input.second_depth_ndc)};
-    const auto outputs = add_occlusion(frame, inputs, settings);
-    ASSERT_TRUE(outputs) << outputs.error().message;
-    read_back(graph, outputs->visibility);
-    if (settings.bent_normal) read_back(graph, outputs->bent_normal);
-    if (settings.specular != Specular::none) read_back(graph, outputs->specular);
+    const AlcoveViewInfo info{.reset_history = input.reset ? 1u : 0u,
+                              .camera = input.view,
+                              .previous_camera = input.previous_view,
+                              .largest_width = input.largest_size.width,
+                              .largest_height = input.largest_size.height,
+                              .previous_width = input.previous_size.width,
+                              .previous_height = input.previous_size.height,
+                              .normals_in_view_space = 1};
+    ViewTextures textures{};
+    textures[ALCOVE_IMAGE_DEPTH] = upload(graph, input.depth_ndc);
+    for (const auto& [role, image] : {std::pair{ALCOVE_IMAGE_NORMALS, input.normal_vs},
+                                      {ALCOVE_IMAGE_MOTION, input.motion},
+                                      {ALCOVE_IMAGE_ROUGHNESS, input.roughness},
+                                      {ALCOVE_IMAGE_BACK_DEPTH, input.back_depth_ndc},
+                                      {ALCOVE_IMAGE_SECOND_DEPTH, input.second_depth_ndc}})
+      if (image != nullptr) textures[role] = upload(graph, *image);
+    add_view_of(graph, info, input.index, settings, textures);
+    for (const auto role :
+         {ALCOVE_IMAGE_VISIBILITY, ALCOVE_IMAGE_BENT_NORMAL, ALCOVE_IMAGE_SPECULAR})
+      if (textures[role]) read_back(graph, textures[role]);
   });
   OcclusionImages images;
   if (!results_.empty()) images.visibility = results_[0];
   if (settings.bent_normal && results_.size() > 1) images.bent_normal = results_[1];
-  if (settings.specular != Specular::none && results_.size() > 1) images.specular = results_.back();
+  if (settings.specular != ALCOVE_SPECULAR_NONE && results_.size() > 1)
+    images.specular = results_.back();
   return images;
 }
 

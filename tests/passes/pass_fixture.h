@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 
 namespace alcove::passes {
+
+using sample::OcclusionSettings;
 
 // A float image in host memory, row by row from the top.
 struct HostImage {
@@ -80,19 +82,19 @@ class PassTest : public testing::Test {
   // Runs the frame that `declare` declares. Fails the test if it cannot be run.
   void run(const std::function<void(framegraph::Graph&)>& declare);
 
-  // Runs add_occlusion() for frame `frame.index` and returns its images.
+  // Runs add_view() for frame `frame.index` and returns its images.
   struct OcclusionFrame {
-    View view;
+    AlcoveCamera view{};
     const HostImage& depth_ndc;
     const HostImage* normal_vs = nullptr;  // null: from depth
     const HostImage* motion = nullptr;     // null: none
-    View previous_view = view;
+    AlcoveCamera previous_view = view;
     std::uint32_t index = 0;
     bool reset = false;                         // resets the history first
     const HostImage* back_depth_ndc = nullptr;  // null: none
     const HostImage* second_depth_ndc = nullptr;
     const HostImage* roughness = nullptr;
-    VkExtent2D previous_size{};  // Frame::previous_size; the next is Frame::largest_size
+    VkExtent2D previous_size{};
     VkExtent2D largest_size{};
   };
   struct OcclusionImages {
@@ -100,6 +102,13 @@ class PassTest : public testing::Test {
     HostImage bent_normal;  // empty if not requested, as is specular
     HostImage specular;
   };
+  // Adds the occlusion of a view to a graph. Fails the test if it is refused.
+  void add_view_of(framegraph::Graph& graph, const AlcoveViewInfo& view, std::uint32_t index,
+                   const OcclusionSettings& settings, ViewTextures& textures) {
+    const auto added =
+        sample::add_occlusion(graph, gpu().kernels(), view, index, settings, textures);
+    ASSERT_TRUE(added) << added.error().message;
+  }
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
   // Runs frame `index` of a drawing with its normals. Frame 0 resets the history first.
   OcclusionImages render(const Drawing& drawing, const OcclusionSettings& settings,

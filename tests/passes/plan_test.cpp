@@ -22,11 +22,10 @@ struct InputImages {
   bool roughness = false;
 };
 
-// The outputs of add_occlusion() that the frame reads.
+// The outputs that the frame reads.
 struct OutputChoice {
   bool visibility = true;
   bool bent_normal = false;
-  bool linear_depth = false;
   bool specular = false;
 };
 
@@ -42,6 +41,8 @@ void expect_same(const FramePlan& a, const FramePlan& b) {
 
 class OcclusionPlan : public PassTest {
  protected:
+  const AlcoveViewInfo view_{.camera = test_views()[2].view, .normals_in_view_space = 1};
+
   void SetUp() override { open_gpu(); }
 
   FramePlan plan(const OcclusionSettings& settings, OutputChoice choice = {},
@@ -49,23 +50,19 @@ class OcclusionPlan : public PassTest {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
     FramePlan found;
     run([&](Graph& graph) {
-      const Frame frame{graph, gpu().kernels(), test_views()[2].view, 0};
-      OcclusionInputs inputs{.depth_ndc = upload(graph, drawing.depth_ndc),
-                             .normal_convention = {.in_view_space = true}};
-      if (images.normals) inputs.normals = upload(graph, drawing.normal_vs);
-      if (images.motion) inputs.motion = upload(graph, uniform_image(2, 0.0f));
+      ViewTextures textures{upload(graph, drawing.depth_ndc)};
+      if (images.normals) textures[ALCOVE_IMAGE_NORMALS] = upload(graph, drawing.normal_vs);
+      if (images.motion) textures[ALCOVE_IMAGE_MOTION] = upload(graph, uniform_image(2, 0.0f));
       if (images.hidden_depths) {
-        inputs.back_depth_ndc = upload(graph, drawing.depth_ndc);
-        inputs.second_depth_ndc = upload(graph, drawing.depth_ndc);
+        textures[ALCOVE_IMAGE_BACK_DEPTH] = upload(graph, drawing.depth_ndc);
+        textures[ALCOVE_IMAGE_SECOND_DEPTH] = upload(graph, drawing.depth_ndc);
       }
-      if (images.roughness) inputs.roughness = upload(graph, uniform_image(4, 0.5f));
-      const auto outputs = add_occlusion(frame, inputs, settings);
-      ASSERT_TRUE(outputs) << outputs.error().message;
-      if (choice.visibility) read_back(graph, outputs->visibility);
-      if (choice.bent_normal) read_back(graph, outputs->bent_normal);
-      if (choice.linear_depth) read_back(graph, outputs->linear_depth);
-      EXPECT_EQ(bool(outputs->specular), settings.specular != Specular::none);
-      if (choice.specular) read_back(graph, outputs->specular);
+      if (images.roughness)
+        textures[ALCOVE_IMAGE_ROUGHNESS] = upload(graph, uniform_image(4, 0.5f));
+      add_view_of(graph, view_, 0, settings, textures);
+      if (choice.visibility) read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
+      if (choice.bent_normal) read_back(graph, textures[ALCOVE_IMAGE_BENT_NORMAL]);
+      if (choice.specular) read_back(graph, textures[ALCOVE_IMAGE_SPECULAR]);
       found = plan_frame(graph);
     });
     return found;
@@ -75,7 +72,7 @@ class OcclusionPlan : public PassTest {
 OcclusionSettings least() {
   OcclusionSettings settings;
   settings.tile_size = 1;
-  settings.estimator = Estimator::horizons;
+  settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   settings.steps = 4;
   settings.history_frames = 0;
   return settings;
@@ -125,10 +122,10 @@ TEST_F(OcclusionPlan, MotionVectorsAreNotReadIfHistoryIsOff) {
   EXPECT_EQ(plan(history, {}, moving).uploads, 3u);
 }
 
-// Estimator horizons assumes infinitely thick occluders, which already cover hidden surfaces.
+// AlcoveEstimator horizons assumes infinitely thick occluders, which already cover hidden surfaces.
 TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsReadThem) {
   constexpr void (*kReads[])(OcclusionSettings&) = {
-      [](OcclusionSettings& s) { s.thickness_unit = ThicknessUnit::back_faces; },
+      [](OcclusionSettings& s) { s.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; },
       [](OcclusionSettings& s) { s.depth_layers = 2; }};
   for (const auto read : kReads) {
     const FramePlan horizons = plan(least());
@@ -139,7 +136,7 @@ TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsR
     EXPECT_EQ(gpu().kernels().pipeline_count(), first_pipelines);
 
     settings = least();
-    settings.estimator = Estimator::connected;
+    settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
     const FramePlan connected = plan(settings);
     const std::size_t pipelines = gpu().kernels().pipeline_count();
     expect_same(plan(settings, {}, {.hidden_depths = true}), connected);
@@ -156,23 +153,24 @@ TEST_F(OcclusionPlan, SpecularOcclusionAddsMemoryAndPassesOnlyWhenItIsOnAndRead)
   settings.roughness = 0.2f;  // no pass reads it
   EXPECT_EQ(plan(settings).bytes, without.bytes);
 
-  settings.specular = Specular::slices;
+  settings.specular = ALCOVE_SPECULAR_SLICES;
   const FramePlan by_slices = plan(settings, {.specular = true});
   EXPECT_EQ(by_slices.passes, without.passes);
   EXPECT_THAT(by_slices.transients, Contains("specular occlusion"));
   EXPECT_THAT(by_slices.transients, Not(Contains("bent normal")));
 
-  settings.specular = Specular::table;
+  settings.specular = ALCOVE_SPECULAR_TABLE;
   EXPECT_THAT(plan(settings, {.specular = true}).transients, Contains("bent normal"));
   const FramePlan unread = plan(settings);
   EXPECT_THAT(unread.passes, Not(Contains("specular occlusion")));
 }
 
 TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsRead) {
-  for (const Specular specular : {Specular::none, Specular::slices, Specular::table}) {
+  for (const AlcoveSpecular specular :
+       {ALCOVE_SPECULAR_NONE, ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
     OcclusionSettings settings = least();
     settings.specular = specular;
-    const bool read = specular != Specular::none;
+    const bool read = specular != ALCOVE_SPECULAR_NONE;
     (void)plan(settings, {.specular = read});
     (void)plan(settings, {.specular = read}, {.roughness = true});
     const std::size_t pipelines = gpu().kernels().pipeline_count();
@@ -182,22 +180,9 @@ TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsR
     (void)plan(settings, {.specular = read}, {.roughness = true});
     // With specular occlusion from slices, the passes gtao and reconstruct both read the roughness.
     // Each gets another pipeline for another channel.
-    const std::size_t readers = !read ? 0 : specular == Specular::slices ? 2 : 1;
+    const std::size_t readers = !read ? 0 : specular == ALCOVE_SPECULAR_SLICES ? 2 : 1;
     EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + readers);
   }
-}
-
-TEST_F(OcclusionPlan, LinearDepthPassRunsOnlyIfItsResultIsRead) {
-  const FramePlan without = plan(least());
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
-  OcclusionSettings asked = least();
-  asked.linear_depth = true;
-  EXPECT_EQ(plan(asked).passes, without.passes) << "if nobody reads linear depth, no pass is added";
-  EXPECT_THAT(plan(asked, {.linear_depth = true}).passes, Contains("linear depth"));
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1);
-  OcclusionSettings by_model = least();
-  by_model.specular = Specular::table;
-  EXPECT_THAT(plan(by_model, {.specular = true}).passes, Contains("linear depth"));
 }
 
 TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
@@ -207,52 +192,7 @@ TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
 }
 
 TEST_F(OcclusionPlan, OutputsThatNobodyReadsAreCulledWithTheirPasses) {
-  const FramePlan depth_only =
-      plan(least(), {.visibility = false, .linear_depth = true}, {.normals = false});
-  EXPECT_THAT(depth_only.passes, ElementsAre("linear depth"));
-  EXPECT_THAT(depth_only.transients, ElementsAre("linear depth"));
   EXPECT_THAT(plan(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
-}
-
-// The frame is prepared in a separate graph that is never recorded.
-TEST_F(OcclusionPlan, FramesOfAPreparedViewCreateNoPipelineInAnyStateOfTheHistory) {
-  const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
-  OcclusionSettings settings = least();
-  settings.history_frames = 8;
-  const View view = test_views()[2].view;
-  View other = view;
-  other.view_from_world[12] = 0.1f;
-  const auto add = [&](const Frame& frame) {
-    const auto outputs = add_occlusion(frame,
-                                       {.depth_ndc = upload(frame.graph, drawing.depth_ndc),
-                                        .normals = upload(frame.graph, drawing.normal_vs),
-                                        .normal_convention = {.in_view_space = true},
-                                        .motion = upload(frame.graph, uniform_image(2, 0.0f))},
-                                       settings);
-    ASSERT_TRUE(outputs) << outputs.error().message;
-    frame.graph.output(outputs->visibility);
-  };
-  Graph unrecorded;
-  Frame prepared{unrecorded, gpu().kernels(), view};
-  prepared.prepare = true;
-  add(prepared);
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
-  EXPECT_EQ(pipelines, 1u + 3u)
-      << "reconstruct for a first frame, for a moving and for a static view";
-  struct Case {
-    const View& previous_view;
-    std::uint32_t static_frames;
-    bool cut = false;
-  };
-  const Case cases[] = {{view, 0}, {other, 0}, {view, 1}, {view, 16}, {view, 0, true}, {view, 0}};
-  for (std::uint32_t index = 0; index < std::size(cases); ++index) {
-    run([&](Graph& graph) {
-      if (cases[index].cut) graph.reset_histories();
-      add({graph, gpu().kernels(), view, index, cases[index].previous_view,
-           cases[index].static_frames});
-    });
-    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines) << index;
-  }
 }
 
 TEST_F(OcclusionPlan, ChangedRadiusCreatesNoNewPipeline) {

@@ -8,6 +8,7 @@
 
 #include "maths/quantised_normal.h"
 #include "maths/raw_occlusion.h"
+#include "single_passes.h"
 #include "work/interleave_offset.h"
 #include "work/view_parameters.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 // Packs the raw occlusion as the pass gtao stores it, with the depth and the normal of the traced
 // pixel of each tile.
-HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
+HostImage packed_raw_occlusion(const AlcoveCamera& view, const Drawing& drawing,
                                const HostImage& raw_occlusion, std::uint32_t tile_size,
                                std::uint32_t index) {
   const HostImage& depth = drawing.depth_ndc;
@@ -45,42 +46,57 @@ HostImage packed_raw_occlusion(const View& view, const Drawing& drawing,
   return packed;
 }
 
-// Returns the texels of R16_UNORM, two in the bits of each float.
-HostImage with_16_bits(const HostImage& depth) {
-  std::vector<std::uint16_t> values;
-  for (const float texel : depth.texels)
-    values.push_back(static_cast<std::uint16_t>(std::lround(texel * 65535.0f)));
-  HostImage packed{depth.width, depth.height, std::vector<float>((values.size() + 1) / 2), 1};
-  std::memcpy(packed.texels.data(), values.data(), values.size() * sizeof(values[0]));
-  return packed;
+// Returns the depths that a buffer of 16 bits would hold.
+HostImage with_16_bits(HostImage depth) {
+  for (float& texel : depth.texels) texel = std::round(texel * 65535.0f) / 65535.0f;
+  return depth;
 }
 
 }  // namespace
 
 HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& settings) {
   run([&](framegraph::Graph& graph) {
-    if (input.reset) graph.reset_history("occlusion");
-    Frame frame{graph,       gpu().kernels(),     input.view,
-                input.index, input.previous_view, input.static_frames};
-    frame.previous_size = input.previous_size;
-    frame.largest_size = input.largest_size;
-    ReconstructInputs inputs{
-        {.depth_ndc = input.coarse_depth ? upload(graph, with_16_bits(input.drawing.depth_ndc),
-                                                  VK_FORMAT_R16_UNORM)
-                                         : upload(graph, input.drawing.depth_ndc),
-         .normals = upload(graph, input.drawing.normal_vs),
-         .normal_convention = {.in_view_space = true}},
-        {.raw_occlusion =
-             upload(graph,
-                    packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion,
-                                         input.tile_size, input.index),
-                    VK_FORMAT_R32G32_UINT),
-         .tile_size = input.tile_size,
-         .slices = input.slices}};
-    if (input.motion != nullptr) inputs.motion = upload(graph, *input.motion);
-    const auto outputs = add_reconstruct(frame, inputs, settings);
-    ASSERT_TRUE(outputs) << outputs.error().message;
-    read_back(graph, outputs->visibility);
+    OcclusionSettings used = settings;
+    used.tile_size = input.tile_size;
+    used.slices = input.slices;
+    if (input.reset) graph.reset_history("view 0");
+    const AlcoveViewInfo info{.reset_history = input.reset ? 1u : 0u,
+                              .static_frames = input.static_frames,
+                              .settings = &used,
+                              .camera = input.view,
+                              .previous_camera = input.previous_view,
+                              .largest_width = input.largest_size.width,
+                              .largest_height = input.largest_size.height,
+                              .previous_width = input.previous_size.width,
+                              .previous_height = input.previous_size.height,
+                              .depth_format = static_cast<std::uint32_t>(
+                                  input.coarse_depth ? VK_FORMAT_D16_UNORM : VK_FORMAT_UNDEFINED),
+                              .normals_in_view_space = 1};
+    ViewTextures textures{};
+    textures[ALCOVE_IMAGE_DEPTH] =
+        upload(graph, input.coarse_depth ? with_16_bits(input.drawing.depth_ndc)
+                                         : input.drawing.depth_ndc);
+    textures[ALCOVE_IMAGE_NORMALS] = upload(graph, input.drawing.normal_vs);
+    if (input.motion != nullptr) textures[ALCOVE_IMAGE_MOTION] = upload(graph, *input.motion);
+    textures[ALCOVE_IMAGE_VISIBILITY] = graph.create_texture(
+        "visibility",
+        {VK_FORMAT_R32_SFLOAT, sample::extent_of(graph, textures[ALCOVE_IMAGE_DEPTH])});
+    const framegraph::Texture raw =
+        upload(graph,
+               packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion, input.tile_size,
+                                    input.index),
+               VK_FORMAT_R32G32_UINT);
+    add_passes(graph, gpu().kernels(), info, input.index, textures,
+               [&](GraphWork& work, const ViewWork& view) {
+                 const framegraph::Texture listed = work.list().add(
+                     ALCOVE_RESOURCE_KIND_INPUT, "raw occlusion", VK_FORMAT_R32G32_UINT,
+                     {input.raw_occlusion.width, input.raw_occlusion.height});
+                 work.texture(listed) = raw;
+                 const auto described = describe_reconstruct(view, view.image(ALCOVE_IMAGE_DEPTH),
+                                                             {.sums = listed, .bent = {}});
+                 ASSERT_TRUE(described) << described.error().message;
+               });
+    read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
   });
   return result();
 }
@@ -98,7 +114,7 @@ HostImage Reconstruct::no_motion() {
 OcclusionSettings precise(std::uint32_t history_frames) {
   OcclusionSettings settings;
   settings.history_frames = history_frames;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <random>
 
-#include "alcove/passes/reconstruct.h"
 #include "drawing.h"
 #include "pass_fixture.h"
 
@@ -18,17 +17,17 @@ class Reconstruct : public PassTest {
   struct Input {
     const Drawing& drawing;
     const HostImage& raw_occlusion;  // two channels, one texel per tile
-    View view = drawing.view;
+    AlcoveCamera view = drawing.view;
     std::uint32_t tile_size = 1;
     std::uint32_t slices = 1;
     const HostImage* motion = nullptr;
-    View previous_view = view;
+    AlcoveCamera previous_view = view;
     std::uint32_t index = 0;
     bool reset = index == 0;
     std::uint32_t static_frames = 0;
-    bool coarse_depth = false;   // the depth buffer has 16 bits instead of floats
-    VkExtent2D previous_size{};  // Frame::previous_size
-    VkExtent2D largest_size{};   // Frame::largest_size
+    bool coarse_depth = false;  // the depth buffer has 16 bits instead of floats
+    VkExtent2D previous_size{};
+    VkExtent2D largest_size{};
   };
 
   // Returns visibility.

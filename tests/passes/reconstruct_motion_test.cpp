@@ -21,7 +21,7 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
   const Drawing first = draw(view, kWidth, kHeight, before);
   // The scene is static. In the view space of the moved camera it is shifted to the left by `leap`.
   const Drawing second = draw(view, kWidth, kHeight, step(0.3 - leap, 1.5, 5.0));
-  View moved = view.view;
+  AlcoveCamera moved = view.view;
   moved.view_from_world[12] = static_cast<float>(-leap);
 
   const HostImage dark = constant_raw_occlusion(kWidth, kHeight, 0.1f);
@@ -78,11 +78,11 @@ TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
   view.view.clip_from_view[0] *= zoom;
   view.view.clip_from_view[5] *= zoom;
   const double creep = 0.05 / zoom;  // a third of a pixel
-  View before = view.view;
+  AlcoveCamera before = view.view;
   HostImage found;
   HostImage raw_occlusion;
   for (std::uint32_t frame = 0; frame < 12; ++frame) {
-    View now = view.view;
+    AlcoveCamera now = view.view;
     now.view_from_world[12] = static_cast<float>(-creep * frame);
     const Drawing drawing = draw(view, kWidth, kHeight, groove(0.8, 4.5, -creep * frame));
     raw_occlusion = raw_occlusion_of(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y) {
@@ -114,22 +114,21 @@ TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
 // accumulated bent normals must rotate with the camera: their mean must be that of frames without a
 // history.
 TEST_F(Reconstruct, AccumulatedBentNormalsRotateWithTheCamera) {
-  OcclusionSettings settings = quality_settings(Quality::high, 4.0f);
+  OcclusionSettings settings(ALCOVE_QUALITY_HIGH, 4.0f);
   settings.slices = 3;  // two leave too much noise in a frame without history
   settings.bent_normal = true;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   // Returns the mean bent normal of the left wall in the last frame. The right wall is left out,
   // because its errors would cancel those of the left one.
   const auto mean_bent_normal = [&] {
     glm::dvec3 sum(0.0);
-    View before;
+    AlcoveCamera before;
     for (std::uint32_t frame = 0; frame < 8; ++frame) {
       TestView now = test_views()[2];
       const glm::dmat4 rotation =
           glm::rotate(glm::dmat4(1.0), 0.05 * frame - 0.2, glm::dvec3(0.0, 1.0, 0.0));
       for (int i = 0; i < 16; ++i) {
-        now.view.view_from_world.at(static_cast<std::size_t>(i)) =
-            static_cast<float>(rotation[i / 4][i % 4]);
+        now.view.view_from_world[i] = static_cast<float>(rotation[i / 4][i % 4]);
       }
       const glm::dmat3 view_from_world(rotation);
       const auto wall = [&](const glm::dvec3& normal_ws) {

@@ -229,7 +229,7 @@ TEST_F(Reconstruct, NormalsOfAPlaneAreReadOnlyIfTheDepthBufferIsTooCoarseForItsT
         raw_occlusion_of(kWidth / 4, kHeight / 4, [](std::uint32_t x, std::uint32_t y) {
           return 0.3f + 0.1f * static_cast<float>((3 * x + y) % 5);
         });
-    View before = view.view;
+    AlcoveCamera before = view.view;
     before.view_from_world[12] += 1e-6f;
     const auto last_frame = [&](const Drawing& last, bool coarse) {
       HostImage found;

@@ -62,24 +62,22 @@ double median_microseconds(const sample::VulkanDevice& device, bool library_alon
     return engine.make_image(format, 16, 16,
                              VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
   };
-  AlcoveView view{.struct_size = sizeof view,
-                  .settings = &settings,
-                  .depth = make(VK_FORMAT_R32_SFLOAT),
-                  .normals = make(VK_FORMAT_R16G16B16A16_SFLOAT),
-                  .visibility = make(VK_FORMAT_R8_UNORM)};
+  AlcoveView view{.struct_size = sizeof view, .info = {.settings = &settings}};
+  view.images[ALCOVE_IMAGE_DEPTH] = make(VK_FORMAT_R32_SFLOAT);
+  view.images[ALCOVE_IMAGE_NORMALS] = make(VK_FORMAT_R16G16B16A16_SFLOAT);
+  view.images[ALCOVE_IMAGE_VISIBILITY] = make(VK_FORMAT_R8_UNORM);
   if (all_outputs) {
-    view.bent_normal = make(VK_FORMAT_R8G8B8A8_SNORM);
-    view.specular = make(VK_FORMAT_R8_UNORM);
+    view.images[ALCOVE_IMAGE_BENT_NORMAL] = make(VK_FORMAT_R8G8B8A8_SNORM);
+    view.images[ALCOVE_IMAGE_SPECULAR] = make(VK_FORMAT_R8_UNORM);
   }
-  std::ranges::copy(test_views()[2].view.clip_from_view, view.camera.clip_from_view);
-  std::ranges::copy(kIdentity, view.camera.view_from_world);
+  view.info.camera = test_views()[2].view;
   AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
   std::vector<double> times;
   bool good = true;
   for (frame.index = 0; good && frame.index < 2000; ++frame.index) {
     frame.slot = frame.index % Engine::kSlots;
-    view.previous_camera = view.camera;
-    view.camera.view_from_world[12] = 0.01f * static_cast<float>(frame.index % 100);
+    view.info.previous_camera = view.info.camera;
+    view.info.camera.view_from_world[12] = 0.01f * static_cast<float>(frame.index % 100);
     engine.submit(frame.slot, [&](VkCommandBuffer commands) {
       const auto begin = std::chrono::steady_clock::now();
       good = alcoveRecordFrame(context.get(), commands, &frame) == ALCOVE_SUCCESS;

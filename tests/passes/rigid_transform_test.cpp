@@ -61,12 +61,9 @@ glm::mat<4, 4, Number> inverse_of(const glm::mat<4, 4, Number>& m) {
   return adjugate * (Number(1) / determinant);
 }
 
-Matrix to_matrix(const glm::mat4& m) {
-  Matrix result;
-  for (std::size_t i = 0; i < 16; ++i)
-    result[i] = m[static_cast<int>(i / 4)][static_cast<int>(i % 4)];
-  return result;
-}
+using Matrix = const float (&)[16];
+
+Matrix to_matrix(const glm::mat4& m) { return reinterpret_cast<Matrix>(m); }
 
 // Returns a random camera pose: a rotation, in half of the cases mirrored, and a translation.
 glm::dmat4 random_pose(RandomInput& random, float far) {
@@ -78,7 +75,7 @@ glm::dmat4 random_pose(RandomInput& random, float far) {
 }
 
 void expect_accepted(const glm::mat4& view_from_world, const glm::dmat4& exact) {
-  const Matrix input = to_matrix(view_from_world);
+  Matrix input = to_matrix(view_from_world);
   ASSERT_TRUE(is_rigid(input));
   const maths::dmat4 rigid = to_rigid(input);
   for (int column = 0; column < 4; ++column) ASSERT_EQ(rigid[column][3], column == 3 ? 1.0 : 0.0);
@@ -137,7 +134,7 @@ TEST(RigidTransform, ScaledTransposedAndNonFiniteViewMatricesAreRefused) {
 }
 
 TEST(RigidTransform, ExactlyRigidMatricesAreNotChanged) {
-  Matrix exact = kIdentity;
+  float exact[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   exact[12] = 1e6f;
   exact[13] = -0.3f;
   EXPECT_EQ(maths::mat4(to_rigid(exact)), to_mat4(exact));
@@ -148,13 +145,13 @@ TEST(TransposedProjection, OnlyRowMajorProjectionsAreDetectedAsTransposed) {
   // -1, like the factor from z to w, m[11]. The matrix must not be taken for a transposed one, even
   // if rounding errors have changed m[11].
   for (const float w_from_z : {-1.0f, -0.9999999f, -1.0000002f}) {
-    Matrix m{};
+    float m[16]{};
     m[0] = m[5] = 1.0f;
     m[10] = m[14] = -1.0f;
     m[11] = w_from_z;
     EXPECT_FALSE(is_transposed(m)) << w_from_z;
   }
-  Matrix transposed{};
+  float transposed[16]{};
   transposed[0] = transposed[5] = 1.0f;
   transposed[11] = 0.1f;
   transposed[14] = -0.9999999f;

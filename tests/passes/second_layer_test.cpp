@@ -105,7 +105,7 @@ TEST_F(SecondDepthLayer, EstimatorHorizonsIgnoresTheSecondDepthLayer) {
   const TestView view = test_views().front();
   const Drawing drawing = draw(view, 60, 40, scene);
   OcclusionSettings settings = exact(1.2f);
-  settings.estimator = Estimator::horizons;
+  settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   const HostImage second = draw_second_layer(view, 60, 40, scene);
   EXPECT_EQ(visibility(drawing, second, of_layers(settings, 2)).texels,
             visibility(drawing, second, settings).texels);

@@ -1,136 +1,106 @@
-// Tests the defaults and ranges of the settings, and validate().
+// Tests the table of settings, and that settings are checked, printed and read with it.
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <set>
 #include <string>
-#include <type_traits>
 
+#include "alcove/alcove.h"
 #include "alcove/passes/setting_table.h"
+#include "comma_locale.h"
 
 namespace alcove::passes {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::StartsWith;
+using Kind = SettingInfo::Kind;
 
-static_assert(std::is_aggregate_v<OcclusionSettings>);
-
-TEST(Settings, DefaultSettingsAreThoseOfTheMediumPreset) {
-  const OcclusionSettings settings;
-  EXPECT_EQ(settings, quality_settings(Quality::medium, settings.radius));
-  EXPECT_EQ(settings.slices, 2u);
-  EXPECT_EQ(settings.steps, 12u);
-  EXPECT_EQ(settings.tile_size, 4u);
-  EXPECT_EQ(settings.history_frames, 32u);
+AlcoveSettings preset(AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM) {
+  AlcoveSettings settings{.struct_size = sizeof settings};
+  EXPECT_EQ(alcoveGetSettings(quality, 0.7f, &settings), ALCOVE_SUCCESS);
+  return settings;
 }
 
-TEST(Settings, EveryPresetIsValidAndOnlyTheReferenceHasHorizonsAndNoFilter) {
-  for (std::size_t i = 0; i < kNames<Quality>.size(); ++i) {
-    const auto quality = static_cast<Quality>(i);
-    const OcclusionSettings settings = quality_settings(quality, 1.0f);
-    EXPECT_TRUE(validate(settings)) << name_of(quality);
-    const bool reference = quality == Quality::reference;
-    EXPECT_EQ(settings.estimator == Estimator::horizons, reference);
-    EXPECT_EQ(filter_radius(settings), reference ? 0u : 2u);
+std::string printed(const AlcoveSettings& settings) {
+  std::string text(alcovePrintSettings(&settings, nullptr, 0) + 1, '\0');
+  text.resize(alcovePrintSettings(&settings, text.data(), text.size()));
+  return text;
+}
+
+// Reads `text` and returns the message, or an empty text if it was read.
+std::string read(const std::string& text, AlcoveSettings& settings) {
+  char message[ALCOVE_MAX_MESSAGE];
+  const AlcoveResult result = alcoveReadSettings(text.data(), text.size(), &settings, message);
+  EXPECT_EQ(result == ALCOVE_SUCCESS, message[0] == '\0');
+  return message;
+}
+
+TEST(Settings, TableHasUniqueNamesSentencesOfHelpAndSliders) {
+  std::set<std::string> names;
+  for (const SettingInfo& info : setting_table()) {
+    EXPECT_TRUE(names.insert(info.name).second) << info.name;
+    EXPECT_THAT(info.help, EndsWith("."));
+    if (info.kind != Kind::real || !std::isinf(info.range.maximum)) continue;
+    EXPECT_TRUE(info.range.contains(info.slider.minimum)) << info.name;
+    EXPECT_LT(info.slider.minimum, info.slider.maximum) << info.name;
+    EXPECT_TRUE(std::isfinite(info.slider.maximum)) << info.name;
   }
 }
 
-TEST(Settings, SettingNamesAreUniqueAndHelpTextsAreSentences) {
-  std::set<std::string> names;
-  const OcclusionSettings settings;
-  for_each_setting(settings, [&](const SettingInfo& info, const auto&) {
-    EXPECT_TRUE(names.insert(info.name).second) << info.name;
-    EXPECT_THAT(info.help, testing::EndsWith("."));
-  });
+TEST(Settings, EveryPresetIsAccepted) {
+  for (std::size_t i = 0; i < kQualityNames.size(); ++i)
+    EXPECT_TRUE(validate(preset(static_cast<AlcoveQuality>(i)))) << kQualityNames[i];
 }
 
-// Returns the error of validate() if the setting `name` has `value`, or an empty text if it is
-// accepted.
+// Returns the error of validate() if a setting has `value`, or an empty text if it is accepted.
 template <typename Value>
-std::string error_of(const std::string& name, Value value) {
-  OcclusionSettings settings;
-  for_each_setting(settings, [&](const SettingInfo& info, auto& field) {
-    if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>, Value>) {
-      if (info.name == name) field = value;
-    }
-  });
+std::string error_of(const SettingInfo& info, Value value) {
+  AlcoveSettings settings = preset();
+  set_setting(settings, info, value);
   const auto good = validate(settings);
   return good ? "" : good.error().message;
 }
 
 template <typename Value>
-void expect_accepted(const SettingInfo& info, Value value) {
-  EXPECT_EQ(error_of(info.name, value), "") << info.name << " = " << value;
-}
-
-template <typename Value>
-void expect_refused(const SettingInfo& info, Value value) {
-  const std::string said = error_of(info.name, value);
-  EXPECT_THAT(said, testing::StartsWith("The setting '" + std::string(info.name) + "' is "));
-  EXPECT_THAT(said, HasSubstr("; it must be " + info.range.text() + "."));
+void expect_refused(const SettingInfo& info, Value value, const std::string& allowed) {
+  const std::string said = error_of(info, value);
+  EXPECT_THAT(said, StartsWith("The setting '" + std::string(info.name) + "' is "));
+  EXPECT_THAT(said, HasSubstr("; it must be " + allowed + "."));
 }
 
 TEST(Settings, ValidationEnforcesExactlyTheStatedRangeOfEachSetting) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  int numbers = 0;
-  const OcclusionSettings settings;
-  for_each_setting(settings, [&](const SettingInfo& info, const auto& field) {
-    using Value = std::remove_cvref_t<decltype(field)>;
-    const float minimum = info.range.minimum;
-    const float maximum = info.range.maximum;
-    if constexpr (std::is_same_v<Value, float>) {
-      ++numbers;
-      if (info.range.above_minimum) {
-        expect_refused(info, minimum);
-        expect_accepted(info, std::nextafter(minimum, kInfinity));
-      } else {
-        expect_accepted(info, minimum);
-      }
-      expect_refused(info, std::nextafter(minimum, -kInfinity));
-      expect_refused(info, kInfinity);
-      expect_refused(info, std::numeric_limits<float>::quiet_NaN());
-      if (std::isinf(maximum)) {
-        expect_accepted(info, std::numeric_limits<float>::max());
-      } else {
-        expect_accepted(info, maximum);
-        expect_refused(info, std::nextafter(maximum, kInfinity));
-      }
-    } else if constexpr (std::is_same_v<Value, std::uint32_t>) {
-      ++numbers;
+  for (const SettingInfo& info : setting_table()) {
+    SCOPED_TRACE(info.name);
+    const auto& [minimum, maximum, above, power_of_two] = info.range;
+    const std::string range = info.range.text();
+    if (info.kind == Kind::real) {
+      const float least = above ? std::nextafter(minimum, kInfinity) : minimum;
+      const float most = std::isinf(maximum) ? std::numeric_limits<float>::max() : maximum;
+      for (const float good : {least, most}) EXPECT_EQ(error_of(info, good), "");
+      for (const float bad : {std::nextafter(least, -kInfinity), std::nextafter(most, kInfinity),
+                              std::numeric_limits<float>::quiet_NaN()})
+        expect_refused(info, bad, range);
+    } else if (info.kind == Kind::whole) {
       const auto least = static_cast<std::uint32_t>(minimum);
       const auto most = static_cast<std::uint32_t>(maximum);
-      expect_accepted(info, least);
-      expect_accepted(info, most);
-      if (least > 0) expect_refused(info, least - 1);
-      expect_refused(info, most + 1);
-      expect_refused(info, ~0u);
-      for (std::uint32_t value = least; info.range.power_of_two && value <= most; ++value) {
-        const bool is_power = (value & (value - 1)) == 0;
-        is_power ? expect_accepted(info, value) : expect_refused(info, value);
-      }
-    } else if constexpr (std::is_enum_v<Value>) {
-      const std::size_t count = kNames<Value>.size();
-      EXPECT_EQ(error_of(info.name, static_cast<Value>(count - 1)), "") << info.name;
-      const std::string said = error_of(info.name, static_cast<Value>(count));
-      EXPECT_THAT(said, testing::StartsWith("The setting '" + std::string(info.name) + "' is "));
-      EXPECT_THAT(said, HasSubstr(names_text<Value>()));
+      for (std::uint32_t value = least; value <= most; ++value)
+        if (!power_of_two || (value & (value - 1)) == 0)
+          EXPECT_EQ(error_of(info, value), "");
+        else
+          expect_refused(info, value, range);
+      if (least > 0) expect_refused(info, least - 1, range);
+      for (const std::uint32_t bad : {most + 1, ~0u}) expect_refused(info, bad, range);
+    } else if (info.choices.front() != "false") {  // every number is a bool of C
+      const auto count = static_cast<std::uint32_t>(info.choices.size());
+      EXPECT_EQ(error_of(info, count - 1), "");
+      expect_refused(info, count, allowed_text(info));
     }
-  });
-  EXPECT_EQ(numbers, 12);
-}
-
-TEST(Settings, SliderRangesContainOnlyAcceptedValues) {
-  const OcclusionSettings settings;
-  for_each_setting(settings, [&](const SettingInfo& info, const auto& field) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, float>) {
-      if (std::isinf(info.range.maximum)) {
-        EXPECT_TRUE(info.range.contains(info.slider.minimum)) << info.name;
-        EXPECT_LT(info.slider.minimum, info.slider.maximum) << info.name;
-        EXPECT_TRUE(std::isfinite(info.slider.maximum)) << info.name;
-      }
-    }
-  });
+  }
 }
 
 TEST(Settings, RangeTextsStateMinimumAndMaximumInWords) {
@@ -139,6 +109,101 @@ TEST(Settings, RangeTextsStateMinimumAndMaximumInWords) {
   EXPECT_EQ((SettingRange{.above_minimum = true}).text(), "above 0 and finite");
   EXPECT_EQ((SettingRange{}).text(), "at least 0 and finite");
   EXPECT_EQ((SettingRange{.maximum = 16, .above_minimum = true}).text(), "above 0 and at most 16");
+}
+
+// Each printed value reads back as the same number.
+TEST(Settings, EverySettingIsPrintedShortAndReadBackInEveryLocale) {
+  const CommaLocale comma;
+  AlcoveSettings wanted = preset(ALCOVE_QUALITY_ULTRA);
+  wanted.thickness = 0.12345678f;
+  wanted.hidden_occlusion = 1e-7f;
+  for (const SettingInfo& info : setting_table()) {
+    SCOPED_TRACE(info.name);
+    if (info.kind == Kind::choice)
+      set_setting(wanted, info, static_cast<std::uint32_t>(info.choices.size()) - 1);
+    AlcoveSettings found = preset(ALCOVE_QUALITY_LOW);
+    EXPECT_EQ(read(printed(wanted), found), "");
+    EXPECT_EQ(std::memcmp(&found, &wanted, sizeof found), 0);
+  }
+  const std::string text = printed(wanted);
+  EXPECT_THAT(text, StartsWith("radius = 0.7\ntile_size = 2\n"));
+  for (const char* line : {"\nthickness = 0.12345678\n", "\nhidden_occlusion = 1e-07\n"})
+    EXPECT_THAT(text, HasSubstr(line));
+  char little[8];
+  EXPECT_EQ(alcovePrintSettings(&wanted, little, sizeof little), text.size());
+  EXPECT_EQ(std::string(little), text.substr(0, 7));
+}
+
+TEST(Settings, OnlyNamedSettingsAreChanged) {
+  AlcoveSettings found = preset(), expected = preset();
+  EXPECT_EQ(read("", found), "");
+  EXPECT_EQ(read("\n  steps=9 \r\n\n\tstatic_noise = 1", found), "");
+  expected.steps = 9;
+  expected.static_noise = 1;
+  EXPECT_EQ(printed(found), printed(expected));
+}
+
+TEST(Settings, TextThatCannotBeReadIsReportedInASentenceAndChangesNothing) {
+  const struct {
+    std::string text;
+    const char* part;
+  } cases[] = {
+      {"steps", "'steps' of the settings is not of the form 'name = value'"},
+      {"{\"settings\": {}}", "not of the form"},
+      {"step = 9", "There is no setting 'step'"},
+      {std::string(5000, '\x01') + "=9", "There is no setting '????"},
+      {"steps = 1", "'steps' is 1; it must be a whole number, 2 to 64"},
+      {"steps = -9", "'steps' is -9"},
+      {"steps = 9.5", "'steps' is 9.5"},
+      {"steps = 99999999999999999999", "'steps' is 99999999999999999999"},
+      {"tile_size = 3", "1, 2, 4 or 8"},
+      {"thickness = nan", "'thickness' is nan"},
+      {"thickness = 1e99", "'thickness' is 1e99"},
+      {"estimator = magic", "horizons or connected"},
+      {"half_resolution = 1", "false or true"},
+      {"slices = 3\ntile_size = 1\nhalf_resolution = 1", "tile_size of 1"},
+  };
+  for (const auto& [text, part] : cases) {
+    AlcoveSettings found = preset();
+    const std::string said = read(text, found);
+    EXPECT_THAT(said, HasSubstr(part));
+    EXPECT_THAT(said, EndsWith("."));
+    EXPECT_EQ(printed(found), printed(preset()));
+  }
+  std::mt19937 random(7);
+  for (int i = 0; i < 2000; ++i) {
+    std::string text = printed(preset(ALCOVE_QUALITY_CONSOLE));
+    for (int change = 0; change < 3; ++change)
+      text[random() % text.size()] = static_cast<char>(random());
+    AlcoveSettings found = preset();
+    if (!read(text, found).empty()) {
+      EXPECT_EQ(printed(found), printed(preset()));
+    }
+  }
+}
+
+TEST(Settings, MissingArgumentsAndUnknownSizesAreErrors) {
+  AlcoveSettings settings = preset();
+  char message[ALCOVE_MAX_MESSAGE];
+  EXPECT_EQ(alcoveReadSettings(nullptr, 0, &settings, message), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(message, HasSubstr("no text"));
+  EXPECT_EQ(alcoveReadSettings("", 0, nullptr, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  for (const float radius : {0.0f, -1.0f, std::nanf(""), HUGE_VALF})
+    EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, radius, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(kQualityNames.size()), 1.0f, &settings),
+            ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_EQ(printed(settings), printed(preset()));
+  settings.struct_size = 12;
+  EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
+  EXPECT_THAT(read("", settings), HasSubstr("AlcoveSettings::struct_size is 12"));
+  for (const AlcoveSettings* bad : {static_cast<const AlcoveSettings*>(&settings),
+                                    static_cast<const AlcoveSettings*>(nullptr)}) {
+    char text[64] = "before";
+    EXPECT_EQ(alcovePrintSettings(bad, text, sizeof text), 0u);
+    EXPECT_STREQ(text, "");
+    EXPECT_EQ(alcoveGetConvergedFrames(bad), 0u);
+  }
 }
 
 }  // namespace

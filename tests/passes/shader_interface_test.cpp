@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/work.h"
 #include "vulkan/descriptor_sets.h"
 #include "work/shader_table.h"
+#include "work/work_list.h"
 
 namespace alcove::passes {
 namespace {
@@ -97,8 +97,8 @@ class DispatchByName : public testing::Test {
     const auto image = list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8});
     std::vector<NamedTexture> images;
     for (const std::string_view name : names) images.push_back({name, image});
-    return list.dispatch(
-        {.shader = shader, .constants = constants, .images = images, .size = {8, 8, 1}});
+    list.dispatch({.shader = shader, .constants = constants, .images = images, .size = {8, 8, 1}});
+    return list.result();
   }
   tl::expected<void, Error> add_gtso(const std::vector<NamedConstant>& constants) {
     return add(Shader::gtso, constants,
@@ -145,10 +145,10 @@ TEST_F(DispatchByName, ListThatIsFullIsAnError) {
   while (list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8})) {
   }
   EXPECT_EQ(work_->resource_count, std::uint32_t{ALCOVE_MAX_WORK_RESOURCES});
-  const View perspective{.clip_from_view = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0}};
-  const auto depth = describe_linear_depth(list, {.view = perspective}, {0});
-  ASSERT_FALSE(depth);
-  EXPECT_THAT(depth.error().message,
+  const NamedTexture images[] = {{"depth_ndc_image", {0}}, {"linear_depth_image", {}}};
+  list.dispatch({.shader = Shader::linear_depth, .images = images, .size = {8, 8, 1}});
+  ASSERT_FALSE(list.result());
+  EXPECT_THAT(list.result().error().message,
               HasSubstr("'linear_depth_image', for which its pass gives no"));
 }
 

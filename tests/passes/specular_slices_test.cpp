@@ -14,11 +14,11 @@ namespace {
 using SpecularOcclusionFromSlices = PassTest;
 using glm::dvec3;
 
-OcclusionSettings settings_of(Quality quality, float radius, float roughness) {
-  OcclusionSettings settings = quality_settings(quality, radius);
-  settings.specular = Specular::slices;
+OcclusionSettings settings_of(AlcoveQuality quality, float radius, float roughness) {
+  OcclusionSettings settings(quality, radius);
+  settings.specular = ALCOVE_SPECULAR_SLICES;
   settings.roughness = roughness;
-  settings.precision = Precision::float32;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
@@ -72,12 +72,13 @@ TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTh
   for (const TestView& view : {test_views().front(), test_views().back()}) {
     for (const NamedScene& scene : {gtao_scenes()[0], gtao_scenes()[1]}) {
       const Drawing drawing = draw(view, 60, 40, scene.scene);
-      for (const Estimator estimator : {Estimator::horizons, Estimator::connected}) {
+      for (const AlcoveEstimator estimator :
+           {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
         for (const float roughness : {0.15f, 0.3f, 0.6f, 1.0f}) {
           SCOPED_TRACE(testing::Message()
                        << scene.name << ", " << view.name << ", roughness " << roughness
-                       << (estimator == Estimator::connected ? ", connected" : ", horizons"));
-          OcclusionSettings settings = settings_of(Quality::reference, radius, roughness);
+                       << (estimator == ALCOVE_ESTIMATOR_CONNECTED ? ", connected" : ", horizons"));
+          OcclusionSettings settings = settings_of(ALCOVE_QUALITY_REFERENCE, radius, roughness);
           settings.estimator = estimator;
           settings.hidden_occlusion = 1.0f;
           const auto images = render(drawing, settings);
@@ -93,7 +94,7 @@ TEST_F(SpecularOcclusionFromSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
     for (const double degrees : {0.0, 60.0, 85.0}) {
       const Drawing plane = draw(view, 64, 48, {tilted_plane(degrees, 4.0)});
       for (const float roughness : {0.0f, 0.3f, 1.0f}) {
-        for (const Quality quality : {Quality::low, Quality::medium}) {
+        for (const AlcoveQuality quality : {ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
           for (std::uint32_t index = 0; index < 2; ++index) {
             SCOPED_TRACE(testing::Message() << view.name << " tilted " << degrees << ", roughness "
                                             << roughness << ", frame " << index);
@@ -114,7 +115,8 @@ TEST_F(SpecularOcclusionFromSlices, ErrorOfNarrowSpecularLobesDecreasesOverAccum
   const Drawing drawing = draw(view, 60, 40, groove(0.8));
   double first = 0.0, last = 0.0;
   for (std::uint32_t index = 0; index < 32; ++index) {
-    const auto images = render(drawing, settings_of(Quality::medium, radius, roughness), index);
+    const auto images =
+        render(drawing, settings_of(ALCOVE_QUALITY_MEDIUM, radius, roughness), index);
     last = mean_error(images.specular, drawing, radius, roughness);
     first = index == 0 ? last : first;
   }

@@ -17,20 +17,20 @@ class StaticNoise : public PassTest {
   Drawing drawing_ = draw(test_views()[2], 70, 45, ball_on_floor());
 };
 
-OcclusionSettings all_outputs(Quality quality) {
-  OcclusionSettings settings = quality_settings(quality, 0.6f);
+OcclusionSettings all_outputs(AlcoveQuality quality) {
+  OcclusionSettings settings(quality, 0.6f);
   settings.bent_normal = true;
-  settings.specular = Specular::slices;
-  settings.precision = Precision::float32;
+  settings.specular = ALCOVE_SPECULAR_SLICES;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
   return settings;
 }
 
 TEST_F(StaticNoise, FramesWithoutHistoryAreIdentical) {
-  for (const Quality quality : {Quality::console, Quality::high}) {
+  for (const AlcoveQuality quality : {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_HIGH}) {
     SCOPED_TRACE(static_cast<int>(quality));
     OcclusionSettings settings = all_outputs(quality);
     settings.history_frames = 0;
-    settings.static_noise = true;
+    settings.static_noise = 1;
     const OcclusionImages first = images(0, settings);
     for (const std::uint32_t index : {1u, 2u, 7u, 0xffffffffu}) {
       const OcclusionImages next = images(index, settings);
@@ -38,13 +38,13 @@ TEST_F(StaticNoise, FramesWithoutHistoryAreIdentical) {
       EXPECT_EQ(next.bent_normal.texels, first.bent_normal.texels) << index;
       EXPECT_EQ(next.specular.texels, first.specular.texels) << index;
     }
-    settings.static_noise = false;
+    settings.static_noise = 0;
     EXPECT_NE(images(2, settings).visibility.texels, images(3, settings).visibility.texels);
   }
 }
 
 TEST_F(StaticNoise, HasNoEffectWithAHistory) {
-  OcclusionSettings settings = all_outputs(Quality::low);
+  OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_LOW);
   HostImage last[2];
   for (const bool static_noise : {false, true}) {
     settings.static_noise = static_noise;

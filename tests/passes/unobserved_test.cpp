@@ -18,9 +18,9 @@ class UnobservedDirectionsPass : public PassTest {
   // If the volume behind occluders counts as solid, the estimator `connected` differs from
   // `horizons` by little more than the directions that it excludes.
   HostImage visibility(const TestView& view, const Drawing& drawing,
-                       Estimator estimator = Estimator::connected, float radius = kRadius,
-                       const HostImage* second_layer = nullptr) {
-    OcclusionSettings settings = quality_settings(Quality::reference, radius);
+                       AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED,
+                       float radius = kRadius, const HostImage* second_layer = nullptr) {
+    OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
     settings.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
     settings.depth_layers = second_layer == nullptr ? 1 : 2;
@@ -84,12 +84,12 @@ TEST_F(UnobservedDirectionsPass,
     SCOPED_TRACE(view.name);
     const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()));
     const Drawing drawing = draw(view, kWidth, kHeight, covered_trench());
-    const auto error = [&](Estimator estimator) {
+    const auto error = [&](AlcoveEstimator estimator) {
       return mean_difference(visibility(view, drawing, estimator), truth, kWidth / 2 - 2,
                              kWidth / 2);
     };
-    EXPECT_GT(error(Estimator::horizons), 0.1);
-    EXPECT_LT(3.0 * error(Estimator::connected), error(Estimator::horizons));
+    EXPECT_GT(error(ALCOVE_ESTIMATOR_HORIZONS), 0.1);
+    EXPECT_LT(3.0 * error(ALCOVE_ESTIMATOR_CONNECTED), error(ALCOVE_ESTIMATOR_HORIZONS));
   }
 }
 
@@ -100,12 +100,12 @@ TEST_F(UnobservedDirectionsPass, ExcludingDirectionsBeyondTheImageBorderReducesT
     constexpr std::uint32_t kSeen = kWidth / 2 + 2;
     const TestView part_view = columns_of(view, kWidth, 0, kSeen);
     const Drawing drawing = draw(part_view, kSeen, kHeight, trench());
-    const auto error = [&](Estimator estimator) {
+    const auto error = [&](AlcoveEstimator estimator) {
       return mean_difference(visibility(part_view, drawing, estimator), truth, kWidth / 2 - 2,
                              kWidth / 2);
     };
-    EXPECT_GT(error(Estimator::horizons), 0.1);
-    EXPECT_LT(error(Estimator::connected), 0.8 * error(Estimator::horizons));
+    EXPECT_GT(error(ALCOVE_ESTIMATOR_HORIZONS), 0.1);
+    EXPECT_LT(error(ALCOVE_ESTIMATOR_CONNECTED), 0.8 * error(ALCOVE_ESTIMATOR_HORIZONS));
   }
 }
 
@@ -116,8 +116,9 @@ TEST_F(UnobservedDirectionsPass, FewDirectionsAreExcludedIfTheRadiusIsWiderThanT
     SCOPED_TRACE(view.name);
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
     const auto left_out = [&](float radius) {
-      return mean_difference(visibility(view, drawing, Estimator::connected, radius),
-                             visibility(view, drawing, Estimator::horizons, radius), 0, kWidth);
+      return mean_difference(visibility(view, drawing, ALCOVE_ESTIMATOR_CONNECTED, radius),
+                             visibility(view, drawing, ALCOVE_ESTIMATOR_HORIZONS, radius), 0,
+                             kWidth);
     };
     EXPECT_GT(left_out(1.5f), 0.002) << "the directions that the ball hides must be excluded";
     EXPECT_LT(left_out(3.0f), 0.02);
@@ -151,7 +152,7 @@ TEST_F(UnobservedDirectionsPass,
       int open = 0;
       const Drawing drawing = draw(view, 60, 40, {tilted_plane(tilt, 4.5), plate(0.1)});
       const HostImage image = visibility(view, drawing);
-      const HostImage without = visibility(view, drawing, Estimator::horizons);
+      const HostImage without = visibility(view, drawing, ALCOVE_ESTIMATOR_HORIZONS);
       for (std::size_t i = 0; i < image.texels.size(); ++i) {
         if (without.texels[i] > 0.999f) {
           EXPECT_GT(image.texels[i], 1.0f - 4.0f * (1.0f - without.texels[i]) - 1e-3f) << i;
@@ -168,8 +169,8 @@ TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExc
   const Drawing drawing = draw(view, kWidth, kHeight, covered_trench());
   const HostImage second = draw_second_layer(view, kWidth, kHeight, covered_trench());
   const auto excluded = [&](const HostImage* layer) {
-    return mean_difference(visibility(view, drawing, Estimator::connected, kRadius, layer),
-                           visibility(view, drawing, Estimator::horizons), kWidth / 2 - 4,
+    return mean_difference(visibility(view, drawing, ALCOVE_ESTIMATOR_CONNECTED, kRadius, layer),
+                           visibility(view, drawing, ALCOVE_ESTIMATOR_HORIZONS), kWidth / 2 - 4,
                            kWidth / 2);
   };
   EXPECT_GT(excluded(nullptr), 0.05);

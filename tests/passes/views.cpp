@@ -9,10 +9,11 @@
 namespace alcove::passes {
 namespace {
 
-View view_of(const glm::dmat4& clip_from_view) {
-  View view;
-  const glm::mat4 single(clip_from_view);
-  std::memcpy(view.clip_from_view.data(), &single, sizeof(single));
+AlcoveCamera view_of(const glm::dmat4& clip_from_view) {
+  AlcoveCamera view;
+  const glm::mat4 single(clip_from_view), identity(1.0f);
+  std::memcpy(view.clip_from_view, &single, sizeof(single));
+  std::memcpy(view.view_from_world, &identity, sizeof(identity));
   return view;
 }
 

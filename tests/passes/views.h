@@ -10,7 +10,7 @@ namespace alcove::passes {
 
 struct TestView {
   std::string name;
-  View view;
+  AlcoveCamera view{};
   bool orthographic = false;
 };
 

@@ -42,25 +42,30 @@ TEST(CVulkan12, FramesRunOnAVulkan12DeviceWithTheSynchronization2Extension) {
     const Context context(made);
     AlcoveSettings settings{.struct_size = sizeof settings};
     ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings), ALCOVE_SUCCESS);
-    AlcoveView view{.struct_size = sizeof view, .settings = &settings};
-    std::ranges::copy(test_views()[2].view.clip_from_view, view.camera.clip_from_view);
-    std::ranges::copy(test_views()[2].view.view_from_world, view.camera.view_from_world);
-    view.previous_camera = view.camera;
-    view.depth = device.make_image(VK_FORMAT_R32_SFLOAT, 24, 16,
-                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    view.depth.initial_state = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL};
-    view.depth.final_state = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, 0, VK_IMAGE_LAYOUT_GENERAL};
-    view.visibility = device.make_image(
+    AlcoveView view{.struct_size = sizeof view, .info = {.settings = &settings}};
+    std::ranges::copy(test_views()[2].view.clip_from_view, view.info.camera.clip_from_view);
+    std::ranges::copy(test_views()[2].view.view_from_world, view.info.camera.view_from_world);
+    view.info.previous_camera = view.info.camera;
+    view.images[ALCOVE_IMAGE_DEPTH] = device.make_image(
+        VK_FORMAT_R32_SFLOAT, 24, 16, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    view.images[ALCOVE_IMAGE_DEPTH].initial_state = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                                     VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                                     VK_IMAGE_LAYOUT_GENERAL};
+    view.images[ALCOVE_IMAGE_DEPTH].final_state = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, 0,
+                                                   VK_IMAGE_LAYOUT_GENERAL};
+    view.images[ALCOVE_IMAGE_VISIBILITY] = device.make_image(
         VK_FORMAT_R8_UNORM, 24, 16, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
-    view.visibility.final_state = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                   VK_ACCESS_2_TRANSFER_READ_BIT,
-                                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
-    view.bent_normal =
+    view.images[ALCOVE_IMAGE_VISIBILITY].final_state = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                                        VK_ACCESS_2_TRANSFER_READ_BIT,
+                                                        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+    view.images[ALCOVE_IMAGE_BENT_NORMAL] =
         device.make_image(VK_FORMAT_R8G8B8A8_SNORM, 24, 16, VK_IMAGE_USAGE_STORAGE_BIT);
-    view.bent_normal.final_state = {VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_GENERAL};
-    view.specular = device.make_image(VK_FORMAT_R8_UNORM, 24, 16, VK_IMAGE_USAGE_STORAGE_BIT);
-    view.specular.final_state = view.bent_normal.final_state;
+    view.images[ALCOVE_IMAGE_BENT_NORMAL].final_state = {VK_PIPELINE_STAGE_2_NONE, 0,
+                                                         VK_IMAGE_LAYOUT_GENERAL};
+    view.images[ALCOVE_IMAGE_SPECULAR] =
+        device.make_image(VK_FORMAT_R8_UNORM, 24, 16, VK_IMAGE_USAGE_STORAGE_BIT);
+    view.images[ALCOVE_IMAGE_SPECULAR].final_state =
+        view.images[ALCOVE_IMAGE_BENT_NORMAL].final_state;
     AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
     EXPECT_EQ(alcovePrepareFrame(context.get(), &frame), ALCOVE_SUCCESS)
         << alcoveGetMessage(context.get());
@@ -70,13 +75,14 @@ TEST(CVulkan12, FramesRunOnAVulkan12DeviceWithTheSynchronization2Extension) {
         const VkImageMemoryBarrier barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
                                            .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
                                            .newLayout = VK_IMAGE_LAYOUT_GENERAL,
-                                           .image = view.depth.image,
+                                           .image = view.images[ALCOVE_IMAGE_DEPTH].image,
                                            .subresourceRange = all};
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
                              VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1,
                              &barrier);
         const VkClearColorValue plane{{0.5f}};
-        vkCmdClearColorImage(commands, view.depth.image, VK_IMAGE_LAYOUT_GENERAL, &plane, 1, &all);
+        vkCmdClearColorImage(commands, view.images[ALCOVE_IMAGE_DEPTH].image,
+                             VK_IMAGE_LAYOUT_GENERAL, &plane, 1, &all);
         EXPECT_EQ(alcoveRecordFrame(context.get(), commands, &frame), ALCOVE_SUCCESS)
             << alcoveGetMessage(context.get());
       });
@@ -84,7 +90,8 @@ TEST(CVulkan12, FramesRunOnAVulkan12DeviceWithTheSynchronization2Extension) {
     std::uint32_t count = 0;
     EXPECT_EQ(alcoveGetTimings(context.get(), 0, &count, nullptr), ALCOVE_SUCCESS);
     EXPECT_EQ(count, 2u);  // gtao and reconstruct
-    EXPECT_THAT(device.read(view.visibility, 1), Each(255)) << "a plane is unoccluded";
+    EXPECT_THAT(device.read(view.images[ALCOVE_IMAGE_VISIBILITY], 1), Each(255))
+        << "a plane is unoccluded";
   }
   EXPECT_EQ(device.messages(), "");
 }

@@ -16,45 +16,21 @@ namespace {
 using testing::HasSubstr;
 
 AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const AlcoveWork* previous) {
-  const auto image = [](const AlcoveImage& of) {
-    return AlcoveWorkImage{static_cast<std::uint32_t>(of.format), of.width, of.height};
-  };
-  return {.struct_size = sizeof(AlcoveWorkInfo),
-          .settings = view.settings,
-          .camera = view.camera,
-          .previous = view.reset_history != VK_FALSE ? nullptr : previous,
-          .index = index,
-          .static_frames = view.static_frames,
-          .largest_width = view.largest_width,
-          .largest_height = view.largest_height,
-          .normals_in_view_space = view.normals_in_view_space,
-          .normal_encoding = view.normal_encoding,
-          .normals_forward_z = view.normals_forward_z,
-          .read_area = view.read_area,
-          .written_area = view.written_area,
-          .output_x = view.output_x,
-          .output_y = view.output_y,
-          .depth = image(view.depth),
-          .depth_format = static_cast<std::uint32_t>(view.depth_format),
-          .normals = image(view.normals),
-          .motion = image(view.motion),
-          .roughness = image(view.roughness),
-          .back_depth = image(view.back_depth),
-          .second_depth = image(view.second_depth),
-          .albedo = image(view.albedo),
-          .mask = image(view.mask),
-          .not_receiving = view.not_receiving,
-          .not_occluding = view.not_occluding,
-          .visibility = image(view.visibility),
-          .bent_normal = image(view.bent_normal),
-          .specular = image(view.specular),
-          .multi_bounce = image(view.multi_bounce)};
+  AlcoveWorkInfo info{.struct_size = sizeof(AlcoveWorkInfo),
+                      .view = view.info,
+                      .previous = previous,
+                      .index = index};
+  for (std::size_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
+    const AlcoveImage& image = view.images[role];
+    info.images[role] = {static_cast<std::uint32_t>(image.format), image.width, image.height};
+  }
+  return info;
 }
 
 // A setting of the comparison.
 struct Case {
   const char* name;
-  Quality quality;
+  AlcoveQuality quality;
   void (*change)(HostView& view) = [](HostView&) {};
   bool area_and_mask = false;
 };
@@ -66,16 +42,15 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
   // Executes the list of `view` with outputs of its own.
   Results execute(AlcoveView view, std::uint32_t index) {
     for (const Output& each : kOutputs) {
-      AlcoveImage& image = view.*each.image;
+      AlcoveImage& image = view.images[each.role];
       if (image.image != VK_NULL_HANDLE) image = output(image.format, image.width, image.height);
     }
     const AlcoveWorkInfo info = info_of(view, index, index > 0 ? work_.get() : nullptr);
     char message[ALCOVE_MAX_MESSAGE];
     EXPECT_EQ(alcoveDescribeWork(&info, work_.get(), message), ALCOVE_SUCCESS) << message;
     std::vector<VkImage> host;
-    for_each_image(view, [&](const AlcoveImage& image) {
+    for (const AlcoveImage& image : view.images)
       if (image.image != VK_NULL_HANDLE) host.push_back(image.image);
-    });
     engine().submit(0,
                     [&](VkCommandBuffer commands) { executor_->record(commands, *work_, host); });
     engine().wait();
@@ -109,7 +84,7 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
 TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
   HostView from = draw_view(37, 26, groove(0.8));
   const OcclusionSettings defaults = from.settings;
-  from.settings = quality_settings(GetParam().quality, 0.5f);
+  from.settings = OcclusionSettings(GetParam().quality, 0.5f);
   from.settings.roughness_channel = defaults.roughness_channel;
   GetParam().change(from);
   // A first frame, frames in motion, and frames without motion up to a converged one.
@@ -120,10 +95,11 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
     from.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
     AlcoveView view = create_view(from);
     if (GetParam().area_and_mask) {
-      view.read_area = {0, 0, view.depth.width, view.depth.height};
-      view.mask = create_mask();
-      view.not_receiving = 1;
-      view.not_occluding = 2;
+      const AlcoveImage& depth = view.images[ALCOVE_IMAGE_DEPTH];
+      view.info.read_area = {0, 0, depth.width, depth.height};
+      view.images[ALCOVE_IMAGE_MASK] = create_mask();
+      view.info.not_receiving = 1;
+      view.info.not_occluding = 2;
     }
     const Results expected = run_view(view, index);
     expect_equal(execute(view, index), expected);
@@ -133,48 +109,49 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
 
 INSTANTIATE_TEST_SUITE_P(
     Settings, WorkExecution,
-    testing::Values(Case{"Console", Quality::console, request_all_outputs},
-                    Case{"Low", Quality::low, request_all_outputs},
-                    Case{"Medium", Quality::medium, request_all_outputs},
-                    Case{"High", Quality::high, request_all_outputs},
-                    Case{"Ultra", Quality::ultra, request_all_outputs},
-                    Case{"Reference", Quality::reference, request_all_outputs},
-                    Case{"VisibilityAlone", Quality::medium},
-                    Case{"ConsoleVisibilityAlone", Quality::console},
-                    Case{"DepthCopiedFrom16Bits", Quality::medium,
+    testing::Values(Case{"Console", ALCOVE_QUALITY_CONSOLE, request_all_outputs},
+                    Case{"Low", ALCOVE_QUALITY_LOW, request_all_outputs},
+                    Case{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
+                    Case{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
+                    Case{"Ultra", ALCOVE_QUALITY_ULTRA, request_all_outputs},
+                    Case{"Reference", ALCOVE_QUALITY_REFERENCE, request_all_outputs},
+                    Case{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
+                    Case{"ConsoleVisibilityAlone", ALCOVE_QUALITY_CONSOLE},
+                    Case{"DepthCopiedFrom16Bits", ALCOVE_QUALITY_MEDIUM,
                          [](HostView& view) { view.depth_format = VK_FORMAT_D16_UNORM; }},
-                    Case{"BentNormalAlone", Quality::medium,
+                    Case{"BentNormalAlone", ALCOVE_QUALITY_MEDIUM,
                          [](HostView& view) {
                            view.settings.visibility = false;
                            view.settings.bent_normal = true;
                          }},
-                    Case{"MultiBounceAlone", Quality::low,
+                    Case{"MultiBounceAlone", ALCOVE_QUALITY_LOW,
                          [](HostView& view) {
                            view.settings.visibility = false;
                            view.multi_bounce = true;
                          }},
-                    Case{"SpecularByTableWithoutNormals", Quality::medium,
+                    Case{"SpecularByTableWithoutNormals", ALCOVE_QUALITY_MEDIUM,
                          [](HostView& view) {
-                           view.settings.specular = Specular::table;
+                           view.settings.specular = ALCOVE_SPECULAR_TABLE;
                            view.normals = {};
                          }},
-                    Case{"SpecularByConeAtHalfResolution", Quality::low,
+                    Case{"SpecularByTableAtHalfResolution", ALCOVE_QUALITY_LOW,
                          [](HostView& view) {
-                           view.settings.specular = Specular::table;
-                           view.settings.half_resolution = true;
+                           view.settings.specular = ALCOVE_SPECULAR_TABLE;
+                           view.settings.half_resolution = 1;
                          }},
-                    Case{"TwoDepthLayers", Quality::high,
+                    Case{"TwoDepthLayers", ALCOVE_QUALITY_HIGH,
                          [](HostView& view) {
                            request_all_outputs(view);
                            view.settings.depth_layers = 2;
                            view.motion = {};
                          }},
-                    Case{"AreaAndMask", Quality::medium, request_all_outputs, true},
-                    Case{"HalfResolutionAreaAndMask", Quality::console, request_all_outputs, true},
-                    Case{"HalfResolutionWithoutHistory", Quality::low,
+                    Case{"AreaAndMask", ALCOVE_QUALITY_MEDIUM, request_all_outputs, true},
+                    Case{"HalfResolutionAreaAndMask", ALCOVE_QUALITY_CONSOLE, request_all_outputs,
+                         true},
+                    Case{"HalfResolutionWithoutHistory", ALCOVE_QUALITY_LOW,
                          [](HostView& view) {
                            request_all_outputs(view);
-                           view.settings.half_resolution = true;
+                           view.settings.half_resolution = 1;
                            view.settings.history_frames = 0;
                          }}),
     [](const auto& of) { return std::string(of.param.name); });
@@ -190,9 +167,11 @@ class WorkOfView : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings_), ALCOVE_SUCCESS);
-    info_.settings = &settings_;
-    std::ranges::copy(test_views()[2].view.clip_from_view, info_.camera.clip_from_view);
-    std::ranges::copy(kIdentity, info_.camera.view_from_world);
+    info_.view.settings = &settings_;
+    info_.view.camera = test_views()[2].view;
+    image(ALCOVE_IMAGE_DEPTH) = {VK_FORMAT_D32_SFLOAT, 64, 48};
+    image(ALCOVE_IMAGE_NORMALS) = {VK_FORMAT_R16G16B16A16_SFLOAT, 64, 48};
+    image(ALCOVE_IMAGE_VISIBILITY) = {VK_FORMAT_R8_UNORM, 64, 48};
   }
   Description describe() const {
     Description made;
@@ -203,10 +182,9 @@ class WorkOfView : public testing::Test {
   }
 
   AlcoveSettings settings_{.struct_size = sizeof(AlcoveSettings)};
-  AlcoveWorkInfo info_{.struct_size = sizeof(AlcoveWorkInfo),
-                       .depth = {VK_FORMAT_D32_SFLOAT, 64, 48},
-                       .normals = {VK_FORMAT_R16G16B16A16_SFLOAT, 64, 48},
-                       .visibility = {VK_FORMAT_R8_UNORM, 64, 48}};
+  AlcoveWorkImage& image(AlcoveImageRole role) { return info_.images[role]; }
+
+  AlcoveWorkInfo info_{.struct_size = sizeof(AlcoveWorkInfo)};
 };
 
 TEST_F(WorkOfView, TransientsLiveFromTheDispatchThatWritesThemToTheLastThatReadsThem) {
@@ -227,20 +205,77 @@ TEST_F(WorkOfView, HistoryContinuesOnlyFromAListWithTheSameHistories) {
   EXPECT_EQ(first.work->history_valid, 0u);
   info_.previous = first.work.get();
   EXPECT_EQ(describe().work->history_valid, 1u);
-  info_.bent_normal = {VK_FORMAT_R8G8B8A8_SNORM, 64, 48};
+  image(ALCOVE_IMAGE_BENT_NORMAL) = {VK_FORMAT_R8G8B8A8_SNORM, 64, 48};
   EXPECT_EQ(describe().work->history_valid, 0u) << "the bent normals have no history yet";
-  info_.bent_normal = {};
-  for (AlcoveWorkImage* image : {&info_.depth, &info_.normals, &info_.visibility})
-    image->width = 60;
-  info_.largest_width = 64;
-  info_.largest_height = 48;
+  image(ALCOVE_IMAGE_BENT_NORMAL) = {};
+  for (AlcoveWorkImage& image : info_.images) image.width = std::min(image.width, 60u);
+  info_.view.largest_width = 64;
+  info_.view.largest_height = 48;
   EXPECT_EQ(describe().work->history_valid, 1u) << "the largest size is that of the list";
-  info_.largest_width = info_.largest_height = 0;
-  EXPECT_NE(describe().result, ALCOVE_SUCCESS) << "the previous size is above the largest";
+  info_.view.largest_width = info_.view.largest_height = 0;
+  EXPECT_EQ(describe().result, ALCOVE_SUCCESS) << "a window was made smaller";
+  EXPECT_EQ(describe().work->history_valid, 0u);
+}
+
+TEST_F(WorkOfView, ListThatWasNeverFilledIsRefusedAsThePreviousOne) {
+  const auto previous = std::make_unique<AlcoveWork>();
+  previous->history_count = 1;
+  previous->histories[0].current = 1000000;
+  info_.previous = previous.get();
+  EXPECT_THAT(describe().message, HasSubstr("not a list that alcoveDescribeWork has filled"));
+}
+
+// Describes first, moving, static and converged frames, with the histories of the list before and
+// without.
+TEST_F(WorkOfView, EveryPipelineOfEveryFrameIsListed) {
+  const auto is_listed = [&](const AlcoveWorkDispatch& dispatch) {
+    std::array<AlcoveWorkPipeline, ALCOVE_MAX_WORK_PIPELINES> listed{};
+    std::uint32_t count = listed.size();
+    EXPECT_EQ(alcoveListPipelines(&info_, &count, listed.data(), nullptr), ALCOVE_SUCCESS);
+    return std::any_of(listed.begin(), listed.begin() + count, [&](const auto& pipeline) {
+      return std::string_view(pipeline.shader) == dispatch.shader &&
+             std::ranges::equal(std::span(pipeline.constants).first(pipeline.constant_count),
+                                std::span(dispatch.constants).first(dispatch.constant_count), {},
+                                &AlcoveWorkConstant::value, &AlcoveWorkConstant::value);
+    });
+  };
+  const auto with_all_images = [&] {
+    for (const auto& [role, format] : {std::pair{ALCOVE_IMAGE_MOTION, VK_FORMAT_R16G16_SFLOAT},
+                                       {ALCOVE_IMAGE_ALBEDO, VK_FORMAT_R8G8B8A8_UNORM},
+                                       {ALCOVE_IMAGE_MASK, VK_FORMAT_R8_UINT},
+                                       {ALCOVE_IMAGE_BENT_NORMAL, VK_FORMAT_R8G8B8A8_SNORM},
+                                       {ALCOVE_IMAGE_SPECULAR, VK_FORMAT_R8_UNORM},
+                                       {ALCOVE_IMAGE_MULTI_BOUNCE, VK_FORMAT_R8G8B8A8_UNORM}})
+      image(role) = {static_cast<std::uint32_t>(format), 64, 48};
+    image(ALCOVE_IMAGE_DEPTH).samples = 4;
+    info_.view.not_receiving = 1;
+  };
+  for (const bool all : {false, true}) {
+    if (all) with_all_images();
+    for (const AlcoveQuality quality : {ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_MEDIUM}) {
+      settings_ = get_settings(quality, 0.5f);
+      for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
+        settings_.specular = specular;
+        info_.previous = nullptr;
+        Description last = describe();
+        for (std::uint32_t frame = 0; frame < 24; ++frame) {
+          SCOPED_TRACE(frame);
+          ASSERT_EQ(last.result, ALCOVE_SUCCESS) << last.message;
+          for (std::uint32_t i = 0; i < last.work->dispatch_count; ++i)
+            EXPECT_TRUE(is_listed(last.work->dispatches[i])) << last.work->dispatches[i].label;
+          info_.previous = frame == 5 ? nullptr : last.work.get();
+          info_.view.static_frames = frame < 6 ? 0 : frame - 5;
+          if (frame < 3) info_.view.camera.view_from_world[12] += 0.1f;
+          Description next = describe();
+          last = std::move(next);
+        }
+      }
+    }
+  }
 }
 
 TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime) {
-  info_.specular = info_.visibility;
+  image(ALCOVE_IMAGE_SPECULAR) = image(ALCOVE_IMAGE_VISIBILITY);
   settings_.specular = ALCOVE_SPECULAR_TABLE;
   const Description made = describe();
   ASSERT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
@@ -270,12 +305,14 @@ TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime)
 TEST_F(WorkOfView, ImageThatADispatchWritesIsBoundOnceAndVisibilityNeedsAtMostFourStorageImages) {
   for (std::uint32_t choice = 0; choice < 32; ++choice) {
     const auto chosen = [&](std::uint32_t bit, VkFormat format) {
-      return (choice & bit) != 0 ? AlcoveWorkImage{format, 64, 48} : AlcoveWorkImage{};
+      return (choice & bit) != 0 ? AlcoveWorkImage{static_cast<std::uint32_t>(format), 64, 48}
+                                 : AlcoveWorkImage{};
     };
-    info_.visibility = chosen(1, VK_FORMAT_R8_UNORM);
-    info_.bent_normal = chosen(2, VK_FORMAT_R8G8B8A8_SNORM);
-    info_.specular = chosen(4, VK_FORMAT_R8_UNORM);
-    settings_.half_resolution = choice & 8;
+    image(ALCOVE_IMAGE_VISIBILITY) = chosen(1, VK_FORMAT_R8_UNORM);
+    image(ALCOVE_IMAGE_BENT_NORMAL) = chosen(2, VK_FORMAT_R8G8B8A8_SNORM);
+    image(ALCOVE_IMAGE_SPECULAR) = chosen(4, VK_FORMAT_R8_UNORM);
+    settings_.specular = ALCOVE_SPECULAR_SLICES;
+    settings_.half_resolution = (choice & 8) != 0 ? 1 : 0;
     settings_.history_frames = (choice & 16) != 0 ? 32 : 0;
     const Description made = describe();
     if ((choice & 7) == 0) continue;  // a view without an output is an error
@@ -292,20 +329,22 @@ TEST_F(WorkOfView, ImageThatADispatchWritesIsBoundOnceAndVisibilityNeedsAtMostFo
         EXPECT_EQ(bindings[binding.resource], 1u) << binding.name;
         ++written;
       }
-      if ((choice & 7) == 1) EXPECT_LE(written, 4u);
+      if ((choice & 7) == 1) {
+        EXPECT_LE(written, 4u);
+      }
     }
   }
 }
 
 TEST_F(WorkOfView, InvalidInputIsASentence) {
-  info_.depth.format = 0;
+  image(ALCOVE_IMAGE_DEPTH).format = 0;
   EXPECT_THAT(describe().message, HasSubstr("no image of depth"));
-  info_.depth = {VK_FORMAT_R8G8B8A8_UNORM, 64, 48};
-  EXPECT_THAT(describe().message, HasSubstr("the image of depth has the format"));
-  info_.depth = {VK_FORMAT_D32_SFLOAT, 63, 48};
+  image(ALCOVE_IMAGE_DEPTH) = {VK_FORMAT_R8G8B8A8_UNORM, 64, 48};
+  EXPECT_THAT(describe().message, HasSubstr("The image of depth has the format"));
+  image(ALCOVE_IMAGE_DEPTH) = {VK_FORMAT_D32_SFLOAT, 63, 48};
   EXPECT_THAT(describe().message, HasSubstr("make them equal"));
-  info_.depth = {VK_FORMAT_D32_SFLOAT, 64, 48};
-  info_.camera.clip_from_view[0] = std::numeric_limits<float>::quiet_NaN();
+  image(ALCOVE_IMAGE_DEPTH) = {VK_FORMAT_D32_SFLOAT, 64, 48};
+  info_.view.camera.clip_from_view[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT(describe().message, HasSubstr("The view"));
   info_.struct_size = 3;
   EXPECT_THAT(describe().message, HasSubstr("AlcoveWorkInfo::struct_size"));

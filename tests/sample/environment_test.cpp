@@ -1,5 +1,9 @@
 #include "scene/environment.h"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,6 +69,56 @@ TEST_F(EnvironmentFile, EnvironmentMapsInExrFormatAreRead) {
   EXPECT_EQ(exr->at(0, 0), glm::vec3(0.5f, 1.0f, 2.0f));
   EXPECT_EQ(exr->at(3, 1), glm::vec3(0.0f, 0.0f, 65504.0f)) << "NaN and negative radiance is 0";
   EXPECT_EQ(exr->at(5, 1), glm::vec3(65504.0f)) << "the largest 16-bit float";
+  std::string note;
+  ASSERT_TRUE(
+      load_environment(folder_.path / "a.exr", [&](const std::string& text) { note = text; }));
+  EXPECT_THAT(note, HasSubstr("clipped"));
+}
+
+// Writes an image of ones in channels of these names, with these windows.
+void write_windows(const std::filesystem::path& file, const Imath::Box2i& display,
+                   const Imath::Box2i& data, const std::vector<const char*>& names) {
+  Imf::Header header(display, data);
+  const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
+  const std::vector<float> ones(static_cast<size_t>(width) * static_cast<size_t>(height), 1.0f);
+  Imf::FrameBuffer frame;
+  for (const char* name : names) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    frame.insert(name, Imf::Slice::Make(Imf::FLOAT, ones.data(), data));
+  }
+  Imf::OutputFile output(file.string().c_str(), header);
+  output.setFrameBuffer(frame);
+  output.writePixels(height);
+}
+
+TEST_F(EnvironmentFile, DataWindowIsPlacedInTheDisplayWindow) {
+  const std::filesystem::path file = folder_.path / "window.exr";
+  const auto image_of = [&](const Imath::Box2i& data) {
+    write_windows(file, {{0, 0}, {7, 3}}, data, {"R", "G", "B"});
+    return load_environment(file);
+  };
+  for (const Imath::Box2i& data : {Imath::Box2i{{2, 1}, {5, 2}}, {{2, -7}, {90, 2}}}) {
+    const auto image = image_of(data);
+    ASSERT_TRUE(image) << image.error();
+    ASSERT_EQ(image->width, 8u);
+    ASSERT_EQ(image->height, 4u);
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 8; ++x)
+        EXPECT_EQ(image->at(uint32_t(x), uint32_t(y)).x,
+                  data.intersects(Imath::V2i(x, y)) ? 1.0f : 0.0f);
+  }
+  EXPECT_THAT(image_of({{20, 0}, {30, 3}}).error(), HasSubstr("no pixels in its display window"));
+}
+
+TEST_F(EnvironmentFile, RefusalNamesARemedy) {
+  write_windows(folder_.path / "z.exr", {{0, 0}, {7, 3}}, {{0, 0}, {7, 3}}, {"G", "Z"});
+  EXPECT_THAT(load_environment(folder_.path / "z.exr").error(),
+              HasSubstr("no channels R, G and B, but G, Z; save it with these three"));
+  EXPECT_THAT(load("a.hdr", "#?RADIANCE\n").error(),
+              HasSubstr("Radiance HDR (convert it to OpenEXR)"));
+  EXPECT_THAT(load("a.exr", "version https://git-lfs").error(), HasSubstr("git lfs pull"));
+  EXPECT_THAT(load_environment("https://example.org/a.exr").error(),
+              HasSubstr("download the file"));
 }
 
 TEST_F(EnvironmentFile, LargeEnvironmentMapsAreReducedByAveragingPixels) {

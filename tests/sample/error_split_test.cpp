@@ -13,8 +13,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-
 class ErrorSplitTest : public GpuTest {
  protected:
   // Splits the error of `settings` in the scene's first camera.
@@ -41,7 +39,7 @@ class ErrorSplitTest : public GpuTest {
 };
 
 OcclusionSettings medium_settings(float radius) {
-  return passes::quality_settings(passes::Quality::medium, radius);
+  return OcclusionSettings(ALCOVE_QUALITY_MEDIUM, radius);
 }
 
 Scene scene_of(SceneBuilder& builder, const Camera& camera) {

@@ -25,7 +25,7 @@ std::uint32_t view_count() {
 
 struct ExtremeView {
   Camera camera;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
 };
 
 class Generator {
@@ -50,10 +50,10 @@ class Generator {
     if (!camera.orthographic && pick({0.0f, 1.0f, 2.0f}) == 0.0f) camera.far_plane = INFINITY;
     camera.reversed_z = pick({0.0f, 1.0f}) == 1.0f;
     camera.offset_ndc = pick({0.0f, 0.0f, 0.7f}) * glm::vec2(vector(-1.0f, 1.0f));
-    const auto quality = static_cast<passes::Quality>(random_() % 4);
-    view.settings = passes::quality_settings(quality, pick({1e-5f, 0.05f, 0.5f, 50.0f, 1e6f}));
+    const auto quality = static_cast<AlcoveQuality>(random_() % 4);
+    view.settings = OcclusionSettings(quality, pick({1e-5f, 0.05f, 0.5f, 50.0f, 1e6f}));
     view.settings.bent_normal = true;
-    view.settings.specular = passes::Specular::slices;
+    view.settings.specular = ALCOVE_SPECULAR_SLICES;
     return view;
   }
 
@@ -83,13 +83,8 @@ TEST(ExtremeViews, OutputsOfRandomExtremeViewsAreFiniteAndInRange) {
   for (std::uint32_t seed = 1; seed <= view_count(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const ExtremeView view = Generator(seed).next(scene);
-    const CameraMatrices matrices = camera_matrices(view.camera, size.width, size.height);
     const IndirectRequest light{.roughness = {0.3f}};
-    const FrameRequest request{.view = {.view_from_world = matrices.view_from_world,
-                                        .clip_from_view = matrices.clip_from_view,
-                                        .previous_view_from_world = matrices.view_from_world,
-                                        .previous_clip_from_view = matrices.clip_from_view,
-                                        .reversed_z = view.camera.reversed_z},
+    const FrameRequest request{.view = gbuffer_view(view.camera, view.camera, size),
                                .occlusion = view.settings,
                                .light = &light};
     const auto images = (*renderer)->draw_and_read(request);

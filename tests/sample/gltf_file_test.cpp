@@ -57,6 +57,32 @@ TEST(GltfFile, ErrorForAMissingFileNamesTheFile) {
   const auto scene = load_gltf("no/such/scene.glb");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error(), "cannot read no/such/scene.glb: there is no such file");
+  EXPECT_THAT(load_gltf("https://example.org/a.glb").error(), HasSubstr("download the file"));
+  EXPECT_THAT(load_gltf("file:///a.glb").error(), HasSubstr("the path without file://"));
+}
+
+TEST(GltfFile, FilesOfOtherKindsAreNamedWithARemedy) {
+  const std::pair<std::string, const char*> files[] = {
+      {"version https://git-lfs.github.com/spec/v1\noid sha256:0", "git lfs pull"},
+      {"\n<!DOCTYPE html><html></html>", "is a web page in place of the file (download"},
+      {"<HTML>", "is a web page"},
+      {std::string("\xff\xfe{\0", 4), "is UTF-16 text (save it as UTF-8)"},
+      {std::string("{\0\"\0", 4), "is UTF-16 text"},
+      {"Kaydara FBX Binary  ", "is Autodesk FBX (convert it to glTF 2.0"},
+      {"PK\3\4", "a .usdz (unpack it first"},
+      {"# Blender 4.0\nmtllib a.mtl\nv 0 0 0", "is Wavefront OBJ"},
+      {"v 0 0 0", "is Wavefront OBJ"},
+      {"hello", "its JSON cannot be read at byte 1; export it as glTF 2.0 again"},
+  };
+  for (const auto& [text, sentence] : files)
+    EXPECT_THAT(refusal(text_bytes(text)), HasSubstr(sentence));
+  // A repository without its large files has pointers in place of buffers and images.
+  GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
+  const std::string pointer = "data:,version%20https://git-lfs.github.com/spec/v1";
+  maker.json["images"] = {{{"uri", pointer}}};
+  EXPECT_THAT(parsed(maker.gltf()).warnings, testing::Contains(HasSubstr("is a Git LFS pointer")));
+  maker.json["buffers"] = {{{"byteLength", maker.bytes.size()}, {"uri", pointer}}};
+  EXPECT_THAT(refusal(text_bytes(maker.json.dump())), HasSubstr("is a Git LFS pointer"));
 }
 
 TEST(GltfFile, OnlyGltfVersionTwoIsRead) {
@@ -66,6 +92,8 @@ TEST(GltfFile, OnlyGltfVersionTwoIsRead) {
     EXPECT_THAT(refusal(maker.gltf()), HasSubstr("glTF " + std::string(version)));
     EXPECT_THAT(refusal(maker.glb()), HasSubstr("glTF " + std::string(version)));
   }
+  maker.json["asset"]["version"] = 1.0;
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("glTF 1.0"));
   maker.json["asset"]["version"] = "2.1";
   parsed(maker.gltf());
   std::vector<uint8_t> glb = maker.glb();

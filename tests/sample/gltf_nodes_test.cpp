@@ -182,6 +182,35 @@ TEST(GltfMorph, TargetsAreAppliedBeforeSkins) {
   EXPECT_EQ(corners(parsed(maker.gltf()))[1], glm::vec3(1, 0, 20));
 }
 
+TEST(GltfNodes, NodeThatTheSceneReachesTwiceIsDrawnOnceWithANote) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["nodes"] = {{{"mesh", 0}}, {{"children", {0}}, {"translation", {9, 0, 0}}}};
+  maker.json["scenes"][0]["nodes"] = {0};  // the parent is not in the scene
+  EXPECT_EQ(corners(parsed(maker.gltf()))[1], glm::vec3(1, 0, 0));
+  EXPECT_THAT(parsed(maker.gltf()).warnings, IsEmpty());
+  const auto expect_once = [&] {
+    const Scene scene = parsed(maker.gltf());
+    EXPECT_EQ(triangle_count(scene), 1u);
+    EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("drawn once")));
+  };
+  maker.json["scenes"][0]["nodes"] = {1, 0};
+  expect_once();
+  maker.json["scenes"][0]["nodes"] = {0, 0};
+  expect_once();
+  maker.json["nodes"][0]["children"] = {0};
+  expect_once();
+}
+
+TEST(GltfCompression, ViewThatCannotBeDecompressedIsReplacedByItsFallback) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"] = {
+      {"buffer", 0}, {"byteOffset", 0},      {"byteLength", 36}, {"byteStride", 12},
+      {"count", 3},  {"mode", "ATTRIBUTES"}, {"filter", "COLOR"}};
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(corners(scene)[1], glm::vec3(1, 0, 0));
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("fallback")));
+}
+
 // A quad whose positions and indices are compressed. The positions are 16-bit, normalised.
 TEST(GltfCompression, MeshoptViewsAreDecompressed) {
   GltfMaker maker = GltfMaker::triangle();

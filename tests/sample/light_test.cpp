@@ -55,11 +55,11 @@ TEST_F(LightTest, UnoccludedLightAgreesWithTheIntegralOfTheBrdfOverTheSky) {
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     const IndirectRequest light{{roughness}, sky, true};
     FrameRequest request{.view = {matrices.view_from_world, matrices.clip_from_view},
-                         .occlusion = passes::quality_settings(passes::Quality::low, 0.2f),
+                         .occlusion = OcclusionSettings(ALCOVE_QUALITY_LOW, 0.2f),
                          .light = &light};
     request.view.reversed_z = camera.reversed_z;
     request.occlusion.bent_normal = true;
-    request.occlusion.specular = passes::Specular::slices;
+    request.occlusion.specular = ALCOVE_SPECULAR_SLICES;
     const FrameImages images = renderer->draw_and_read(request).value();
     double squares = 0.0, sum = 0.0;
     for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/open_session.h"
-#include "cli/options.h"
 #include "gltf_maker.h"
 #include "support/glm.h"
 #include "temporary_folder.h"
@@ -118,44 +116,5 @@ class ModelMaker {
 
   GltfMaker gltf;
 };
-
-// Renders a file as `alcove render` does, at 160x90 under the validation layers. Any message fails
-// the test.
-inline tl::expected<Rendering, std::string> draw_file(const std::string& file, Options options) {
-  options.scene = file;
-  options.view.width = 160;
-  options.view.height = 90;
-  options.validation = true;
-  auto rendering = render(options);
-  EXPECT_TRUE(rendering) << rendering.error();
-  return rendering;
-}
-
-inline tl::expected<Rendering, std::string> draw_file(const std::string& file) {
-  const Options plain;
-  return draw_file(file, plain);
-}
-
-// Fractions of the pixels of a picture, by their contents.
-struct Shares {
-  double sky = 0.0;       // pixels without a surface, of all
-  double occluded = 0.0;  // pixels with a visibility below .9, of those with a surface
-  double least = 1.0;     // the smallest visibility of a surface
-};
-inline Shares shares_of(const Rendering& rendering) {
-  Shares shares;
-  double surfaces = 0.0;
-  const Image<float> depth = linear_depth(rendering);
-  for (size_t i = 0; i < depth.pixels.size(); ++i) {
-    if (std::isinf(depth.pixels[i])) continue;
-    const float visibility = rendering.images.visibility.pixels[i];
-    ++surfaces;
-    if (visibility < 0.9f) ++shares.occluded;
-    shares.least = std::min<double>(shares.least, visibility);
-  }
-  shares.sky = 1.0 - surfaces / static_cast<double>(depth.pixels.size());
-  shares.occluded /= std::max(surfaces, 1.0);
-  return shares;
-}
 
 }  // namespace alcove::sample

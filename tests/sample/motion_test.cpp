@@ -14,7 +14,7 @@ class Motion : public GpuTest {
  protected:
   static MotionSetup setup() {
     const float radius = default_radius(builtin_scene());
-    return {.occlusion = passes::quality_settings(passes::Quality::medium, radius),
+    return {.occlusion = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, radius),
             .view = {.width = 240, .height = 135, .normals = NormalSource::geometric},
             .truth = {.spp = 64, .use_cache = false}};
   }
@@ -34,17 +34,16 @@ class Motion : public GpuTest {
 };
 
 TEST_F(Motion, CameraMotionIncreasesTheErrorByLessThan15Percent) {
-  for (const MotionKind kind : {MotionKind::orbit, MotionKind::dolly, MotionKind::strafe}) {
+  for (const MotionKind kind : {MotionKind::orbit, MotionKind::dolly}) {
     SCOPED_TRACE(name_of(kind));
     const MotionReport report = run(kind);
-    EXPECT_GT(report.speed.mean, 0.2);
+    EXPECT_GT(report.speed, 0.2);
     EXPECT_GT(report[MotionError::all].static_camera, 0.01);
     EXPECT_LT(report[MotionError::all].ratio(), 1.15);
-    // The column uncovers many pixels; the other paths uncover thin lines along silhouettes.
-    EXPECT_GT(report[MotionError::uncovered].pixels, kind == MotionKind::strafe ? 500u : 50u);
+    EXPECT_GT(report[MotionError::uncovered].pixels, 50u);
     EXPECT_LT(report[MotionError::uncovered].ratio(), 1.5);
-    EXPECT_GT(report[MotionError::bent_normals].static_camera, 1.0) << "degrees";
-    EXPECT_LT(report[MotionError::bent_normals].ratio(), 1.15);
+    EXPECT_GT(report.static_bent_normal_degrees, 1.0);
+    EXPECT_LT(report.bent_normal_degrees, 1.15 * report.static_bent_normal_degrees);
     EXPECT_LT(report.flicker.ratio(), 0.5);
   }
 }

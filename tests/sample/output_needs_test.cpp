@@ -33,8 +33,8 @@ struct View {
   // The sentences, with outputs that take a quarter more time.
   std::vector<std::string> needs() const {
     const auto found = output_needs(scene, seen, truths, [](const auto& change) -> Result<double> {
-      passes::OcclusionSettings settings;
-      const passes::OcclusionSettings before;
+      OcclusionSettings settings;
+      const OcclusionSettings before;
       change(settings);
       return settings == before ? 0.0 : 0.25;
     });

@@ -42,12 +42,8 @@ class QuadTest : public GpuTest {
                    NormalSource normals = NormalSource::shading) {
     auto renderer = FrameRenderer::create(gpu(), scene, {size, size}, normals);
     EXPECT_TRUE(renderer) << renderer.error();
-    const CameraMatrices matrices = camera_matrices(camera, size, size);
-    const FrameRequest request{.view = {.view_from_world = matrices.view_from_world,
-                                        .clip_from_view = matrices.clip_from_view,
-                                        .previous_view_from_world = matrices.view_from_world,
-                                        .previous_clip_from_view = matrices.clip_from_view},
-                               .occlusion = passes::quality_settings(passes::Quality::low, 0.2f)};
+    const FrameRequest request{.view = gbuffer_view(camera, camera, {size, size}),
+                               .occlusion = OcclusionSettings(ALCOVE_QUALITY_LOW, 0.2f)};
     auto images = (*renderer)->draw_and_read(request);
     EXPECT_TRUE(images) << images.error();
     return images ? std::move(*images) : FrameImages{};

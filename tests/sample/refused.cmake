@@ -1,6 +1,5 @@
 # Checks that `alcove ARGUMENTS` ends with status STATUS (default 1) and prints one sentence on stderr that
-# begins with SENTENCE. ALCOVE: the program; LAUNCHER: an optional command that starts it; ABSENT: an
-# optional path that must not exist afterwards.
+# begins with SENTENCE. ALCOVE: the program; LAUNCHER: an optional command that starts it.
 if(NOT DEFINED STATUS)
   set(STATUS 1)
 endif()
@@ -12,7 +11,4 @@ if(NOT status EQUAL ${STATUS})
 endif()
 if(NOT error MATCHES "^alcove: ${SENTENCE}[^\n]*\n$" OR output)
   message(FATAL_ERROR "Not the sentence that was expected: ${output}${error}")
-endif()
-if(DEFINED ABSENT AND EXISTS ${ABSENT})
-  message(FATAL_ERROR "${ABSENT} was left behind.")
 endif()

@@ -108,10 +108,8 @@ TEST_F(ViewerWindowTest, ShownVisibilityEqualsThatOfTheOffscreenRenderer) {
   const auto renderer =
       FrameRenderer::create(**gpu, view_->scene(), size, options_.occlusion.normals);
   ASSERT_TRUE(renderer) << renderer.error();
-  const CameraMatrices matrices = camera_matrices(state.camera, size.width, size.height);
   FrameRequest request;
-  request.view = {matrices.view_from_world, matrices.clip_from_view, matrices.view_from_world,
-                  matrices.clip_from_view, state.camera.reversed_z};
+  request.view = gbuffer_view(state.camera, state.camera, size);
   request.occlusion = state.settings;
   const auto images = (*renderer)->draw_and_read(request);
   ASSERT_TRUE(images) << images.error();
@@ -146,10 +144,10 @@ TEST_F(ViewerWindowTest, InvalidSettingIsReportedAndAnImageStaysVisible) {
 TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDepthLayer) {
   ViewState& state = view_->state();
   state.saved = state.settings;
-  state.saved.thickness_unit = passes::ThicknessUnit::back_faces;
+  state.saved.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   state.comparison = Comparison::saved;
   state.settings.depth_layers = 2;
-  state.settings.specular = passes::Specular::table;
+  state.settings.specular = ALCOVE_SPECULAR_TABLE;
   draw(3);
   EXPECT_EQ(view_->facts().refusal, "");
 }
@@ -175,15 +173,14 @@ TEST_F(ViewerWindowTest, PassTimesAndMemoryOfTheFrameAreReported) {
 TEST_F(ViewerWindowTest, SlicesAndStepsAreFittedToATime) {
   view_->state().settings.radius = 0.01f;
   view_->state().fits_budget = true;
-  const passes::Budget limits;
   view_->state().target_ms = 1e-6f;
   draw(20);
-  EXPECT_EQ(view_->state().settings.slices, limits.least_slices);
-  EXPECT_EQ(view_->state().settings.steps, limits.least_steps);
+  EXPECT_EQ(view_->state().settings.slices, 1u);
+  EXPECT_EQ(view_->state().settings.steps, 6u);
   view_->state().target_ms = 1e9f;
   draw(20);
-  EXPECT_EQ(view_->state().settings.slices, limits.most_slices);
-  EXPECT_EQ(view_->state().settings.steps, limits.most_steps);
+  EXPECT_EQ(view_->state().settings.slices, 2u);
+  EXPECT_EQ(view_->state().settings.steps, 12u);
   EXPECT_EQ(view_->facts().refusal, "");
 }
 

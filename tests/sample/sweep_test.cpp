@@ -14,11 +14,9 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-
 TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
-  for (const passes::Quality quality : presets()) {
-    const OcclusionSettings base = passes::quality_settings(quality, 0.5f);
+  for (const AlcoveQuality quality : presets()) {
+    const OcclusionSettings base = OcclusionSettings(quality, 0.5f);
     const std::vector<Variant> ways = preset_sweep(base);
     EXPECT_GE(ways.size(), 16u);
     std::vector<OcclusionSettings> seen;
@@ -26,10 +24,10 @@ TEST(PresetSweep, SweepContainsEachPresetOnceAndNoDuplicateSettings) {
       EXPECT_EQ(std::ranges::count(seen, way.settings), 0) << way.name;
       seen.push_back(way.settings);
     }
-    for (const passes::Quality preset : presets()) {
-      OcclusionSettings settings = passes::quality_settings(preset, base.radius);
+    for (const AlcoveQuality preset : presets()) {
+      OcclusionSettings settings(preset, base.radius);
       settings.depth_layers = std::max(settings.depth_layers, base.depth_layers);
-      EXPECT_EQ(std::ranges::count(seen, settings), 1) << passes::name_of(preset);
+      EXPECT_EQ(std::ranges::count(seen, settings), 1) << passes::kQualityNames.at(preset);
     }
   }
 }
@@ -50,9 +48,9 @@ TEST(PresetSweep, SweepContainsHalfResolutionWithSeveralTileSizesAndSteps) {
 }
 
 TEST(PresetSweep, SweepChangesOnlyNumbersOfSamplesHalfResolutionAndDepthLayers) {
-  OcclusionSettings base = passes::quality_settings(passes::Quality::medium, 2.0f);
+  OcclusionSettings base = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, 2.0f);
   base.history_frames = 0;
-  base.estimator = passes::Estimator::horizons;
+  base.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   base.hidden_occlusion = 0.1f;
   for (const Variant& way : preset_sweep(base)) {
     OcclusionSettings settings = way.settings;

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "evaluate/errors.h"
-#include "reference/ray_scene.h"
 #include "reference/surface_points.h"
 #include "reference/truth.h"
 #include "render/frame_renderer.h"

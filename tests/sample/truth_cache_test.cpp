@@ -86,19 +86,6 @@ TEST(TruthCache, NamedPipeInPlaceOfACacheEntryIsTreatedAsAbsentAndReplaced) {
   EXPECT_TRUE(cache.read(key_of(1), values.size()));
 }
 
-TEST(TruthCache, TemporaryCacheFilesOfAKilledRunAreRemoved) {
-  const TemporaryFolder folder;
-  const std::filesystem::path killed = folder.path / "0123.truth.part77";
-  const std::filesystem::path running = folder.path / "4567.truth.part88";
-  std::ofstream(killed) << "half";
-  std::ofstream(running) << "half";
-  std::filesystem::last_write_time(
-      killed, std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
-  const TruthCache cache(folder.path);
-  EXPECT_FALSE(std::filesystem::exists(killed));
-  EXPECT_TRUE(std::filesystem::exists(running)) << "another program may be writing it";
-}
-
 TEST(TruthCache, WritingACacheEntryLeavesNoTemporaryFiles) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);

@@ -36,44 +36,14 @@ TEST(WholeFile, TemporaryFilesOfAnHourAgoAreRemovedAndNoOthers) {
   EXPECT_EQ(folder.files(), 2);
 }
 
-TEST(OutputFolder, OutputFolderWithoutWritePermissionIsRefused) {
-  if (!std::filesystem::exists("/proc/self")) return;  // not Linux
-  const auto made = OutputFolder::create("/proc/self");
-  ASSERT_FALSE(made);
-  EXPECT_THAT(made.error(), testing::HasSubstr("/proc/self"));
-}
-
-TEST(OutputFolder, FileInPlaceOfTheOutputFolderIsRefused) {
+TEST(WholeFile, FileInPlaceOfAFolderIsRefused) {
   const TemporaryFolder folder;
   std::ofstream(folder.path / "a") << "a file";
   for (const char* name : {"a", "a/b"}) {
-    const auto made = OutputFolder::create(folder.path / name);
+    const auto made = create_folder(folder.path / name);
     ASSERT_FALSE(made);
     EXPECT_THAT(made.error(), testing::HasSubstr("could not be created"));
   }
-}
-
-TEST(OutputFolder, OutputFoldersThatWereCreatedAndStayedEmptyAreRemoved) {
-  const TemporaryFolder folder;
-  std::filesystem::create_directory(folder.path / "old");
-  {
-    const auto made = OutputFolder::create(folder.path / "old" / "new" / "deep");
-    ASSERT_TRUE(made) << made.error();
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path / "old" / "new" / "deep"));
-  }
-  EXPECT_TRUE(std::filesystem::exists(folder.path / "old"));
-  EXPECT_FALSE(std::filesystem::exists(folder.path / "old" / "new"));
-}
-
-TEST(OutputFolder, OutputFoldersWithFilesAndThoseThatExistedBeforeAreKept) {
-  const TemporaryFolder folder;
-  {
-    const auto made = OutputFolder::create(folder.path / "new" / "deep");
-    ASSERT_TRUE(write_text(folder.path / "new" / "deep" / "a", "text"));
-    const auto existing = OutputFolder::create(folder.path);
-    ASSERT_TRUE(existing);
-  }
-  EXPECT_TRUE(std::filesystem::exists(folder.path / "new" / "deep" / "a"));
 }
 
 }  // namespace

@@ -9,29 +9,29 @@ void Replay::check_access(std::uint32_t position, std::uint32_t access_index) {
   const AccessRecord& access = graph_.accesses[access_index];
   const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
   take_memory(access.resource);
+  constexpr Accesses kDrawn = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
+                              VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                              VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+                              VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
   bool fresh = false;
+  bool has_contents = false;
   std::size_t expected = first_expected_[access_index];
   for_each_sub(access.resource, access.range, [&](Sub& sub) {
     fresh |= sub.fresh;
-    check_state(access, sub, queue);
+    has_contents |= expected_[expected] != kGarbage;
+    if (access.kind() == ResourceKind::texture && sub.layout != access.layout)
+      fail(name(access.resource) + " is in layout " + std::to_string(sub.layout) + ", needed is " +
+           std::to_string(access.layout));
     if (access.flags & kWrite)
       check_write(access, expected_[expected++], sub, queue);
     else
       check_read(access, expected_[expected++], sub, queue);
   });
+  has_contents = has_contents && !(access.flags & kDiscard) && (access.access & kDrawn) != 0;
+  if (has_contents != ((plan_.contents[access_index] & kHasContents) != 0))
+    fail("the pass " + std::string(has_contents ? "does not load" : "loads nothing from") + " " +
+         name(access.resource));
   if (fresh) check_former(access, queue);
-}
-
-void Replay::check_state(const AccessRecord& access, const Sub& sub, std::uint8_t queue) {
-  const ResourceRecord& record = graph_.resources[access.resource];
-  if (record.kind == ResourceKind::texture && sub.layout != access.layout)
-    fail(name(access.resource) + " is in layout " + std::to_string(sub.layout) + ", needed is " +
-         std::to_string(access.layout));
-  if (sub.released) fail(name(access.resource) + " is used between release and acquire");
-  // A buffer whose contents are discarded can be used by any queue family.
-  const bool taken = record.kind == ResourceKind::buffer && (access.flags & kDiscard);
-  if (!taken && sub.family != kNone && sub.family != family(queue))
-    fail(name(access.resource) + " is used by a queue family that does not own it");
 }
 
 void Replay::check_read(const AccessRecord& access, std::uint32_t expected, const Sub& sub,
@@ -48,25 +48,14 @@ void Replay::check_read(const AccessRecord& access, std::uint32_t expected, cons
       fail("the read of " + name(access.resource) + " comes after its write, but cannot see it");
 }
 
-// Returns whether the access continues a series of writes that are not ordered among themselves.
-bool Replay::continues(const Sub& sub, const AccessRecord& access, std::uint8_t queue) const {
-  if (sub.series == kNone || !(access.flags & kUnordered) || !sub.last.reads.empty() ||
-      sub.last.writes.back().queue != queue)
-    return false;
-  const AccessRecord& before = graph_.accesses[sub.series];
-  return before.stages == access.stages && before.access == access.access &&
-         before.layout == access.layout;
-}
-
 void Replay::check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
                          std::uint8_t queue) {
-  const History& before = continues(sub, access, queue) ? sub.before_series : sub.last;
-  for (const Operation& read : before.reads)
+  for (const Operation& read : sub.last.reads)
     if (!order_.is_ordered(read, queue, access.stages))
       fail("the write of " + name(access.resource) + " overtakes a read");
   // The earlier write must be visible even if the reads of it are ordered before this write: they
   // may have read only a part of what the two write.
-  for (const Operation& write : before.writes)
+  for (const Operation& write : sub.last.writes)
     if (!order_.is_available(write, queue, access.stages) ||
         !order_.is_visible(write, queue, access.stages, access.access))
       fail("the write of " + name(access.resource) + " overtakes a write, or cannot see it");
@@ -99,8 +88,7 @@ void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
   const AccessRecord& access = graph_.accesses[access_index];
   const auto queue = static_cast<std::uint8_t>(plan_.passes[position].queue);
   const Accesses accesses = expand_accesses(access.access);
-  Operation operation{Operation::Kind::access,      queue, order_.now(),
-                      expand_stages(access.stages), 0,     0};
+  Operation operation{false, queue, order_.now(), expand_stages(access.stages), 0, 0};
   resources_[access.resource].used = true;
   if (access.flags & kWrite) operation.writes = accesses & ~reads_of(accesses);
   for_each_sub(access.resource, access.range, [&](Sub& sub) {
@@ -111,14 +99,6 @@ void Replay::apply_access(std::uint32_t position, std::uint32_t access_index) {
     }
     sub.content = access_index;
     sub.written = true;
-    sub.family = owner(access.resource, queue);
-    if (continues(sub, access, queue)) {
-      sub.last.writes.push_back(operation);
-      sub.series = access_index;
-      return;
-    }
-    if (access.flags & kUnordered) sub.before_series = sub.last;
-    sub.series = access.flags & kUnordered ? access_index : kNone;
     sub.last.reads.clear();
     sub.last.writes.assign(1, operation);
   });
@@ -131,38 +111,34 @@ void Replay::end_frame() {
     if (record.origin != Origin::imported) continue;
     const ExternalRecord& external = graph_.externals[record.external];
     if (external.has_final_state) check_final_state(r);
-    for (const Sub& sub : resources_[r].subs)
-      if (external.has_contents &&
-          (sub.released || (sub.family != kNone && sub.family != family(0))))
-        fail(name(r) + " is left with another queue family than it came with");
   }
-  for (const OutputRecord& output : graph_.outputs) {
-    const auto& subs = resources_[output.resource].subs;
-    for (std::size_t i = 0; i < subs.size(); ++i) {
-      const std::uint32_t expected = last_[output.resource][i];
-      if (expected == kGarbage) continue;
-      if (subs[i].content != expected || subs[i].spoiled)
-        fail("output " + name(output.resource) + " does not hold what was written for it");
-    }
-  }
-  for (const FinalState& final : plan_.finals) check_final(final);
+  for (const OutputRecord& output : graph_.outputs)
+    if (!holds(output.resource))
+      fail("output " + name(output.resource) + " does not hold what was written for it");
   check_histories();
   for (std::uint8_t queue = 0; queue < kQueueClasses; ++queue)
     order_.signal(queue, end_signal(queue));
+}
+
+// Returns whether a resource has the contents that the declaration has written to it.
+bool Replay::holds(std::uint32_t resource) const {
+  const std::vector<Sub>& subs = resources_[resource].subs;
+  for (std::size_t i = 0; i < subs.size(); ++i) {
+    const std::uint32_t expected = last_[resource][i];
+    if (expected != kGarbage && (subs[i].content != expected || subs[i].spoiled)) return false;
+  }
+  return true;
 }
 
 void Replay::check_final_state(std::uint32_t resource) {
   const ResourceRecord& record = graph_.resources[resource];
   const State& final_state = graph_.externals[record.external].final_state;
   const auto queue = static_cast<std::uint8_t>(QueueClass::graphics);
-  for (std::size_t i = 0; i < resources_[resource].subs.size(); ++i) {
-    const Sub& sub = resources_[resource].subs[i];
-    const std::uint32_t expected = last_[resource][i];
+  if (!holds(resource)) fail(name(resource) + " does not leave with what was written for it");
+  for (const Sub& sub : resources_[resource].subs) {
     if (record.kind == ResourceKind::texture && sub.layout != final_state.layout)
       fail(name(resource) + " is left in layout " + std::to_string(sub.layout) +
            ", its final_state is " + std::to_string(final_state.layout));
-    if (expected != kGarbage && (sub.content != expected || sub.spoiled))
-      fail(name(resource) + " does not leave with what was written for it");
     for (const Operation& read : sub.last.reads) {
       // Work after the frame waits only for the stages of the final state. Reads in other stages
       // must therefore be ordered before them.
@@ -185,21 +161,20 @@ void Replay::check_final_state(std::uint32_t resource) {
 void Replay::check_histories() {
   std::vector<std::uint32_t> finals(resources_.size(), 0);
   for (const FinalState& final : plan_.finals) {
-    if (final.resource >= resources_.size()) return;
+    if (final.resource >= resources_.size())
+      return fail("the final state of a resource that was not declared");
+    check_final(final);
     ++finals[final.resource];
     const auto& subs = resources_[final.resource].subs;
-    const auto written = static_cast<std::size_t>(
-        std::count_if(subs.begin(), subs.end(), [](const Sub& sub) { return sub.written; }));
-    const WriteCoverage state = written == 0             ? WriteCoverage::nothing
-                                : written == subs.size() ? WriteCoverage::whole
-                                                         : WriteCoverage::part;
-    if (final.written != state)
+    const auto written =
+        std::count_if(subs.begin(), subs.end(), [](const Sub& s) { return s.written; });
+    const bool whole = static_cast<std::size_t>(written) == subs.size();
+    if (final.written != (written == 0 ? WriteCoverage::nothing
+                          : whole      ? WriteCoverage::whole
+                                       : WriteCoverage::part))
       fail(name(final.resource) + " is said to be written in another part than it is");
-    for (std::size_t i = 0; i < subs.size(); ++i) {
-      const std::uint32_t expected = last_[final.resource][i];
-      if (expected != kGarbage && (subs[i].content != expected || subs[i].spoiled))
-        fail(name(final.resource) + " does not hold what was written for the next frame");
-    }
+    if (!holds(final.resource))
+      fail(name(final.resource) + " does not hold what was written for the next frame");
   }
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const bool used = graph_.resources[r].origin == Origin::history && resources_[r].used;
@@ -209,55 +184,45 @@ void Replay::check_histories() {
 }
 
 // Checks that each history ends the frame in the state that the plan names, because the next frame
-// starts from that state.
+// starts from that state, and that all work on it is ordered before the end of the frame on the
+// queue that the plan names, because the next frame waits for that queue only.
 void Replay::check_final(const FinalState& final) {
-  if (final.resource >= resources_.size()) {
-    fail("the final state of a resource that was not declared");
-    return;
-  }
   const Stages stages = expand_stages(final.state.stages);
+  const auto queue = static_cast<std::uint8_t>(final.queue);
+  const auto check_order = [&](const Operation& operation) {
+    if (operation.queue != queue &&
+        !order_.is_ordered(operation, queue, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT))
+      fail(name(final.resource) + " is left on a queue that does not wait for its last use");
+  };
   for (const Sub& sub : resources_[final.resource].subs) {
-    if (graph_.resources[final.resource].kind == ResourceKind::texture &&
-        sub.layout != final.state.layout)
+    if (sub.layout != final.state.layout)
       fail(name(final.resource) + " is said to be left in another layout than it is");
     for (const Operation& read : sub.last.reads) {
-      if (read.queue == static_cast<std::uint8_t>(final.queue) && (read.stages & ~stages) != 0)
+      if (read.queue == queue && (read.stages & ~stages) != 0)
         fail(name(final.resource) + " is read by a stage not told of");
-      check_final_order(final, read);
+      check_order(read);
     }
-    for (const Operation& write : sub.last.writes) check_final_order(final, write);
-    check_final_writes(final, sub);
-    if (sub.family != kNone && sub.family != family(static_cast<std::uint8_t>(final.queue)))
-      fail(name(final.resource) + " is said to be owned by another queue than it is");
+    for (const Operation& write : sub.last.writes) {
+      check_order(write);
+      check_final_write(final, write, !sub.last.reads.empty());
+    }
   }
 }
 
-// Checks that all work on a history is ordered before the end of the frame on the queue that the
-// plan names for the history, because the next frame waits for that queue only.
-void Replay::check_final_order(const FinalState& final, const Operation& operation) {
-  const auto queue = static_cast<std::uint8_t>(final.queue);
-  if (operation.queue != queue &&
-      !order_.is_ordered(operation, queue, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT))
-    fail(name(final.resource) + " is left on a queue that does not wait for its last use");
-}
-
-void Replay::check_final_writes(const FinalState& final, const Sub& sub) {
+void Replay::check_final_write(const FinalState& final, const Operation& write, bool is_read) {
   const Stages stages = expand_stages(final.state.stages);
   const Accesses accesses = expand_accesses(final.state.access);
   const auto queue = static_cast<std::uint8_t>(final.queue);
-  for (const Operation& write : sub.last.writes) {
-    if (is_write(accesses)) {
-      const bool told = write.kind != Operation::Kind::access || write.queue != queue ||
-                        ((write.stages & ~stages) == 0 && (write.writes & ~accesses) == 0);
-      if (sub.last.reads.empty() && !told)
-        fail(name(final.resource) + " is written in a way not told of");
-    } else if (stages != 0) {
-      const bool seen = accesses == 0
-                            ? order_.is_before_any(write, queue, final.state.stages)
-                            : order_.is_available(write, queue, final.state.stages) &&
-                                  order_.is_visible(write, queue, final.state.stages, accesses);
-      if (!seen) fail(name(final.resource) + " is said to be seen by what does not see it");
-    }
+  if (is_write(accesses)) {
+    const bool told = is_read || write.is_change || write.queue != queue ||
+                      ((write.stages & ~stages) == 0 && (write.writes & ~accesses) == 0);
+    if (!told) fail(name(final.resource) + " is written in a way not told of");
+  } else if (stages != 0) {
+    const bool seen = accesses == 0
+                          ? order_.is_before_any(write, queue, final.state.stages)
+                          : order_.is_available(write, queue, final.state.stages) &&
+                                order_.is_visible(write, queue, final.state.stages, accesses);
+    if (!seen) fail(name(final.resource) + " is said to be seen by what does not see it");
   }
 }
 

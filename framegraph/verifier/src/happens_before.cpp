@@ -23,8 +23,12 @@ constexpr Stages kGraphics =
     VK_PIPELINE_STAGE_2_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
 constexpr Stages kCommands = kGraphics | kTransfer | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
                              VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR |
-                             VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR |
-                             VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_COPY_BIT_KHR;
+                             VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+// Stages of any queue.
+constexpr Stages kAnyQueue =
+    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
+    VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT |
+    VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
 constexpr Stages kMeta =
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT |
     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT |
@@ -34,23 +38,39 @@ constexpr Stages kMeta =
 constexpr Accesses kWrites =
     VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
-    VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR |
-    VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT |
+    VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT |
     VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT;
 constexpr Accesses kReads =
     VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT |
     VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
-    VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
-    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
-    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
-    VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR |
-    VK_ACCESS_2_SHADER_BINDING_TABLE_READ_BIT_KHR |
+    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+    VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+    VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT |
     VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_READ_BIT_EXT |
     VK_ACCESS_2_CONDITIONAL_RENDERING_READ_BIT_EXT |
     VK_ACCESS_2_FRAGMENT_SHADING_RATE_ATTACHMENT_READ_BIT_KHR;
 
 // Returns the lowest bit of a mask, or 0 if no bit is set.
 constexpr std::uint64_t lowest(std::uint64_t mask) { return mask & (~mask + 1); }
+
+// Accesses and the stages that can make them ("Supported access types" of the specification).
+constexpr struct {
+  Accesses accesses;
+  Stages stages;
+} kSupported[] = {
+    {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT},
+    {VK_ACCESS_2_INDEX_READ_BIT, VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT},
+    {VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT, VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT},
+    {VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
+         VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+     kPreRasterization | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
+         VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR},
+    {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT},
+    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT},
+    {VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT, kTransfer},
+    {VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT}};
 
 }  // namespace
 
@@ -78,6 +98,19 @@ bool is_write(Accesses accesses) { return (expand_accesses(accesses) & kWrites) 
 
 Accesses reads_of(Accesses accesses) { return expand_accesses(accesses) & kReads; }
 
+bool supports(QueueClass queue, Stages stages) {
+  constexpr Stages kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+                              VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT;
+  if (queue == QueueClass::graphics) return true;
+  return (stages & ~(queue == QueueClass::compute ? kAnyQueue | kCompute : kAnyQueue)) == 0;
+}
+
+bool supports(Stages stages, Accesses accesses) {
+  return std::all_of(std::begin(kSupported), std::end(kSupported), [&](const auto& row) {
+    return (accesses & row.accesses) == 0 || (expand_stages(stages) & row.stages) != 0;
+  });
+}
+
 Barrier barrier_of(const Transition& t, QueueClass queue) {
   return {static_cast<std::uint8_t>(queue), expand_stages(t.src_stages),
           expand_accesses(t.src_access),    expand_stages(t.dst_stages),
@@ -87,11 +120,11 @@ Barrier barrier_of(const Transition& t, QueueClass queue) {
 void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
   if (signals_.size() <= submission) signals_.resize(submission + 1);
   signals_[submission] = steps_.size();
-  steps_.push_back({Step::Kind::signal, queue, 0, 0, {}});
+  steps_.push_back({Step::Kind::signal, queue, 0, {}});
 }
 
-void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission, Stages stages) {
-  steps_.push_back({Step::Kind::wait, queue, expand_stages(stages), signals_[submission], {}});
+void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission) {
+  steps_.push_back({Step::Kind::wait, queue, signals_[submission], {}});
 }
 
 bool HappensBefore::Part::is_before(const Barrier& barrier) const {
@@ -136,7 +169,7 @@ void HappensBefore::follow(std::size_t from, Reach& reach) const {
       if (step.queue == reach.queue || reach.ordered[step.queue] != 0) signals.push_back(i);
     } else if (step.kind == Step::Kind::wait) {
       if (std::find(signals.begin(), signals.end(), step.signal) != signals.end())
-        reach.add({step.queue, 0, 0, step.stages, ~Accesses{0}, true}, true);
+        reach.add({step.queue, 0, 0, kCommands, ~Accesses{0}, true}, true);
     } else {
       const Part before = reach;
       for (const Barrier& barrier : step.barriers)
@@ -150,12 +183,12 @@ template <typename Function>
 bool HappensBefore::all_parts(const Operation& operation, const Function& f) const {
   const auto holds = [&](Stages stage, Accesses write) {
     Reach reach{{operation.queue, stage, write}, {}};
-    if (operation.kind == Operation::Kind::change)
+    if (operation.is_change)
       reach.add({operation.queue, 0, 0, operation.stages, operation.seen_by, true}, true);
     follow(operation.time, reach);
     return f(reach);
   };
-  if (operation.kind != Operation::Kind::access) return holds(operation.stages, 0);
+  if (operation.is_change) return holds(operation.stages, 0);
   for (Stages stages = operation.stages; stages != 0; stages &= stages - 1) {
     Accesses writes = operation.writes;
     do {

@@ -23,15 +23,14 @@ Stages expand_stages(Stages stages);
 Accesses expand_accesses(Accesses accesses);
 bool is_write(Accesses accesses);
 Accesses reads_of(Accesses accesses);
+// Return whether a queue can run these stages, and whether the stages can make each of the
+// accesses.
+bool supports(QueueClass queue, Stages stages);
+bool supports(Stages stages, Accesses accesses);
 
 // One access of a command to a subresource, or the effect of a barrier on it.
 struct Operation {
-  enum class Kind : std::uint8_t {
-    access,
-    change,   // a layout change; it happens before any command of `stages`, its second scope
-    release,  // an ownership release; only the signal of its submission comes after it
-  };
-  Kind kind = Kind::access;
+  bool is_change = false;  // a layout change: it happens before any command of `stages`
   std::uint8_t queue = 0;
   std::size_t time = 0;  // HappensBefore::now()
   Stages stages = 0;     // expanded by expand_stages()
@@ -57,12 +56,12 @@ class HappensBefore {
   std::size_t now() const { return steps_.size(); }
   // Applies the barriers of one command. They are not ordered among each other.
   void apply(const std::vector<Barrier>& barriers) {
-    steps_.push_back({Step::Kind::barriers, 0, 0, 0, barriers});
+    steps_.push_back({Step::Kind::barriers, 0, 0, barriers});
   }
   // signal() records the signal of a submission, numbered from 0. wait() makes a queue wait for the
   // last signal of that number.
   void signal(std::uint8_t queue, std::uint32_t submission);
-  void wait(std::uint8_t queue, std::uint32_t submission, Stages stages);
+  void wait(std::uint8_t queue, std::uint32_t submission);
 
   // is_before() returns whether the operation is ordered before the barrier's second scope.
   // is_available_by() returns whether its writes are also available there, if the barrier's memory
@@ -86,12 +85,11 @@ class HappensBefore {
     enum class Kind : std::uint8_t { barriers, signal, wait };
     Kind kind = Kind::barriers;
     std::uint8_t queue = 0;
-    Stages stages = 0;       // that wait
     std::size_t signal = 0;  // the step that a wait waits for
     std::vector<Barrier> barriers;
   };
   // A part of an operation, and what comes after it. A part is one stage of an access with one of
-  // its writes, or without one. A layout change or a release has one part.
+  // its writes, or without one. A layout change has one part.
   struct Part {
     std::uint8_t queue = 0;
     Stages source = 0;   // barriers over these stages wait for the part directly

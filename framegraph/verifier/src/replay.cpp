@@ -1,6 +1,7 @@
 #include "replay.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace alcove::framegraph::verifier {
 
@@ -8,11 +9,12 @@ void Replay::run() {
   resources_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
-    resources_[r].subs.resize(
-        record.kind == ResourceKind::texture ? record.mips * record.layers * record.planes : 1);
+    resources_[r].subs.resize(record.kind == ResourceKind::texture ? record.mips * record.layers
+                                                                   : 1);
   }
   memory_.resize(plan_.heaps.size());
   find_expected();
+  check_stores();
   for (int frame = 0; frame < 2 && errors_.empty(); ++frame) {
     begin_frame(frame == 0);
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) submission(s);
@@ -29,16 +31,49 @@ void Replay::find_expected() {
     const bool full = external != kNone && graph_.externals[external].has_contents;
     last_[r].assign(resources_[r].subs.size(), full ? kInitial : kGarbage);
   }
-  for (std::uint32_t i = 0; i < graph_.accesses.size(); ++i) {
-    const AccessRecord& access = graph_.accesses[i];
-    first_expected_.push_back(expected_.size());
-    for_each_sub(access.resource, access.range, [&](Sub& sub) {
-      std::uint32_t& there =
-          last_[access.resource]
-               [static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
-      expected_.push_back(there);
-      if (access.flags & kWrite) there = plan_.live_accesses[i] ? i : kMissing;
-    });
+  for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
+    for (const AccessRecord& access : graph_.pass_accesses(pass)) {
+      const auto index = static_cast<std::uint32_t>(first_expected_.size());
+      first_expected_.push_back(expected_.size());
+      for_each_sub(access.resource, access.range, [&](Sub& sub) {
+        std::uint32_t& there =
+            last_[access.resource]
+                 [static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
+        expected_.push_back(there);
+        if (access.flags & kWrite) there = plan_.cull_reasons[pass].is_live() ? index : kMissing;
+      });
+    }
+  }
+}
+
+// Checks that the plan calls each write needed whose result a pass that runs reads, or somebody
+// after the frame. Goes through the declaration backwards and follows which contents are needed.
+void Replay::check_stores() {
+  std::vector<std::vector<bool>> needed(resources_.size());
+  for (std::uint32_t r = 0; r < resources_.size(); ++r)
+    needed[r].assign(resources_[r].subs.size(), graph_.resources[r].origin != Origin::transient);
+  for (const OutputRecord& output : graph_.outputs)
+    needed[output.resource].assign(needed[output.resource].size(), true);
+  auto pass = static_cast<std::uint32_t>(graph_.passes.size());
+  while (pass-- > 0) {
+    if (!plan_.cull_reasons[pass].is_live()) continue;
+    for (const AccessRecord& access : graph_.pass_accesses(pass)) {
+      const auto index = static_cast<std::size_t>(&access - graph_.accesses.data());
+      bool is_needed = false;
+      for_each_sub(access.resource, access.range, [&](Sub& sub) {
+        auto there =
+            needed[access.resource]
+                  [static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
+        is_needed = is_needed || there;
+        if (access.flags & kDiscard)
+          there = false;
+        else if (reads_of(access.access) != 0)
+          there = true;
+      });
+      if ((access.flags & kWrite) && is_needed && !(plan_.contents[index] & kIsNeeded))
+        fail("what pass '" + std::string(graph_.pass_name(pass)) + "' writes to " +
+             name(access.resource) + " is not stored, but needed");
+    }
   }
 }
 
@@ -52,17 +87,14 @@ void Replay::begin_frame(bool first) {
     resources_[r].used = false;
     for (Sub& sub : resources_[r].subs) {
       sub.content = kGarbage;
-      sub.spoiled = sub.released = sub.written = false;
-      sub.family = sub.series = kNone;
+      sub.spoiled = sub.written = false;
       if (record.external == kNone) continue;
       const ExternalRecord& external = graph_.externals[record.external];
       const auto queue = static_cast<std::uint8_t>(external.queue);
       sub.last = {};
       apply_initial_state(sub, queue, external.initial_state);
       sub.layout = external.initial_state.layout;
-      if (!external.has_contents) continue;
-      sub.content = kInitial;
-      sub.family = owner(r, queue);
+      if (external.has_contents) sub.content = kInitial;
     }
   }
 }
@@ -71,64 +103,65 @@ void Replay::begin_frame(bool first) {
 // the read accesses of the initial state and to nothing else. An initial state without access bits
 // only names stages: later work must wait for all of them, and no write is visible yet.
 void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state) {
-  using Kind = Operation::Kind;
   const Stages stages = expand_stages(initial_state.stages);
   const Accesses accesses = expand_accesses(initial_state.access);
   const std::size_t time = order_.now();
   if (is_write(accesses)) {
     const Accesses writes = accesses & ~reads_of(accesses);
-    if (stages != 0) sub.last.writes.push_back({Kind::access, queue, time, stages, writes, 0});
+    if (stages != 0) sub.last.writes.push_back({false, queue, time, stages, writes, 0});
     return;
   }
   // Creates one operation for each stage.
   for (Stages left = accesses == 0 ? stages : 0; left != 0; left &= left - 1)
-    sub.last.writes.push_back({Kind::change, queue, time, left & (~left + 1), 0, 0});
-  if (accesses != 0) sub.last.writes.push_back({Kind::change, queue, time, stages, 0, accesses});
-  if (stages != 0) sub.last.reads.push_back({Kind::access, queue, time, stages, 0, 0});
+    sub.last.writes.push_back({true, queue, time, left & (~left + 1), 0, 0});
+  if (accesses != 0) sub.last.writes.push_back({true, queue, time, stages, 0, accesses});
+  if (stages != 0) sub.last.reads.push_back({false, queue, time, stages, 0, 0});
 }
 
 void Replay::submission(std::uint32_t index) {
   const Submission& submission = plan_.submissions[index];
   const auto queue = static_cast<std::uint8_t>(submission.queue);
   for (std::uint8_t other = 0; other < kQueueClasses && !first_frame_; ++other)
-    if ((submission.frame_before & (1u << other)) != 0)
-      order_.wait(queue, end_signal(other), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+    if ((submission.frame_before & (1u << other)) != 0) order_.wait(queue, end_signal(other));
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
-    const Wait& wait_for = plan_.waits[submission.first_wait + w];
-    order_.wait(queue, wait_for.submission, wait_for.stages);
+    order_.wait(queue, plan_.waits[submission.first_wait + w].submission);
   }
   for (std::uint32_t p = 0; p < submission.pass_count; ++p) {
     const PlannedPass& planned = plan_.passes[submission.first_pass + p];
     where_ = std::string("before pass '").append(graph_.pass_name(planned.pass)).append("'");
-    batches(planned.first_batch, planned.batch_count, submission.queue);
+    batch(planned.batch, submission.queue);
     where_ = std::string("in pass '").append(graph_.pass_name(planned.pass)).append("'");
     pass(submission.first_pass + p);
   }
   where_ = "after the last pass";
-  batches(submission.first_batch, submission.batch_count, submission.queue);
+  batch(submission.end_batch, submission.queue);
+  if (index == plan_.final_submission) batch(plan_.final_batch, submission.queue);
   order_.signal(queue, index);
 }
 
-// Applies the barriers of several batches. The barriers of one batch are not ordered among each
-// other, so that all of them are checked before any takes effect.
-void Replay::batches(std::uint32_t first, std::uint32_t count, QueueClass queue) {
-  for (std::uint32_t b = first; b < first + count; ++b) {
-    const Batch& batch = plan_.batches[b];
-    barriers_.clear();
-    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
-      const Transition& t = plan_.transitions[i];
-      barriers_.push_back(barrier_of(t, queue));
-      if (t.resource == kNone) continue;
-      take_memory(t.resource);
-      for_each_sub(t.resource, t.range, [&](Sub& sub) {
-        check_order_of_change(t.resource, barriers_.back(), sub);
-        check_state_of_change(t, sub, static_cast<std::uint8_t>(queue));
-      });
-    }
-    order_.apply(barriers_);
-    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i)
-      if (plan_.transitions[i].resource != kNone) change(plan_.transitions[i], queue);
+// Applies the barriers of a batch. They are not ordered among each other, so that all of them are
+// checked before any takes effect.
+void Replay::batch(std::uint32_t index, QueueClass queue) {
+  if (index == kNone) return;
+  const Batch& batch = plan_.batches[index];
+  barriers_.clear();
+  for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+    const Transition& t = plan_.transitions[i];
+    barriers_.push_back(barrier_of(t, queue));
+    if (!supports(queue, t.src_stages | t.dst_stages))
+      fail("a barrier has a stage that its queue cannot run");
+    if (!supports(t.src_stages, t.src_access) || !supports(t.dst_stages, t.dst_access))
+      fail("a barrier has an access that none of its stages can make");
+    if (t.resource == kNone) continue;
+    take_memory(t.resource);
+    for_each_sub(t.resource, t.range, [&](Sub& sub) {
+      check_order_of_change(t.resource, barriers_.back(), sub);
+      check_layout_of_change(t, sub);
+    });
   }
+  order_.apply(barriers_);
+  for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i)
+    if (plan_.transitions[i].resource != kNone) change(plan_.transitions[i], queue);
 }
 
 // Checks that every earlier use of the subresource, and of the bytes that it occupies, is ordered
@@ -152,47 +185,21 @@ void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrie
   }
 }
 
-// Checks that the subresource has the old layout and the queue family that the barrier names.
-void Replay::check_state_of_change(const Transition& t, const Sub& sub, std::uint8_t queue) {
-  const bool transfer = family(static_cast<std::uint8_t>(t.src_queue)) !=
-                        family(static_cast<std::uint8_t>(t.dst_queue));
-  const bool acquires = transfer && queue == static_cast<std::uint8_t>(t.dst_queue);
-  const bool texture = graph_.resources[t.resource].kind == ResourceKind::texture;
-  if (texture && t.old_layout != VK_IMAGE_LAYOUT_UNDEFINED && t.old_layout != sub.layout)
+void Replay::check_layout_of_change(const Transition& t, Sub& sub) {
+  if (std::exchange(sub.changed, order_.now() + 1) == order_.now() + 1)
+    fail("one command changes the layout of " + name(t.resource) + " twice");
+  if (t.old_layout != VK_IMAGE_LAYOUT_UNDEFINED && t.old_layout != sub.layout)
     fail("a change of " + name(t.resource) + " expects layout " + std::to_string(t.old_layout) +
          ", but it is in " + std::to_string(sub.layout));
-  if (acquires && (!sub.released || sub.released_to != family(queue) ||
-                   (texture && sub.released_layout != t.new_layout)))
-    fail(name(t.resource) + " is acquired by a queue family to which it was not released so");
-  if (!acquires && sub.released) fail(name(t.resource) + " is used between release and acquire");
-  if (!transfer && sub.family != kNone && sub.family != family(queue) &&
-      t.old_layout != VK_IMAGE_LAYOUT_UNDEFINED)
-    fail(name(t.resource) + " is changed by a queue family that does not own it");
 }
 
 void Replay::change(const Transition& t, QueueClass on) {
-  using Kind = Operation::Kind;
   const Barrier barrier = barrier_of(t, on);
-  const std::uint32_t src = family(static_cast<std::uint8_t>(t.src_queue));
-  const std::uint32_t dst = family(static_cast<std::uint8_t>(t.dst_queue));
-  const bool releases = src != dst && on == t.src_queue;
   const std::size_t time = order_.now();
   for_each_sub(t.resource, t.range, [&](Sub& sub) {
     sub.last = {};
-    sub.series = kNone;
     sub.fresh = false;
-    if (releases) {
-      sub.last.writes.push_back({Kind::release, barrier.queue, time, ~Stages{0}, 0, 0});
-      sub.released = true;
-      sub.released_to = dst;
-      sub.released_layout = t.new_layout;
-      return;
-    }
-    sub.last.writes.push_back(
-        {Kind::change, barrier.queue, time, barrier.dst, 0, barrier.dst_access});
-    sub.released = false;
-    sub.family = owner(t.resource, barrier.queue);
-    if (graph_.resources[t.resource].kind != ResourceKind::texture) return;
+    sub.last.writes.push_back({true, barrier.queue, time, barrier.dst, 0, barrier.dst_access});
     if (t.old_layout == VK_IMAGE_LAYOUT_UNDEFINED) sub.content = kGarbage;
     sub.layout = t.new_layout;
   });
@@ -250,10 +257,8 @@ void Replay::pass(std::uint32_t position) {
   const std::uint32_t pass = plan_.passes[position].pass;
   const std::uint32_t first = graph_.passes[pass].first_access;
   const auto count = static_cast<std::uint32_t>(graph_.pass_accesses(pass).size());
-  for (std::uint32_t i = first; i < first + count; ++i)
-    if (plan_.live_accesses[i]) check_access(position, i);
-  for (std::uint32_t i = first; i < first + count; ++i)
-    if (plan_.live_accesses[i]) apply_access(position, i);
+  for (std::uint32_t i = first; i < first + count; ++i) check_access(position, i);
+  for (std::uint32_t i = first; i < first + count; ++i) apply_access(position, i);
 }
 
 void Replay::fail(const std::string& what) {

@@ -18,25 +18,18 @@ inline constexpr std::uint32_t kMissing = kNone - 2;  // the expected writer doe
 
 // The last operations on a subresource.
 struct History {
-  std::vector<Operation> writes;  // the last write or layout change; several if unordered
+  std::vector<Operation> writes;  // the last write or layout change; several if before the frame
   std::vector<Operation> reads;   // the reads after those writes
 };
 
 struct Sub {
   History last;
-  // The index of the last access of a series of unordered writes (Contents::accumulate), or kNone,
-  // and the operations before that series.
-  std::uint32_t series = kNone;
-  History before_series;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t content = kGarbage;
-  bool spoiled = false;          // a partial write was made over wrong contents
-  bool fresh = false;            // it was not used after the resource took its memory
-  bool written = false;          // a pass of this frame wrote it
-  std::uint32_t family = kNone;  // the owning queue family; kNone if any family may take it
-  bool released = false;         // it was released to `released_to` and not yet acquired
-  std::uint32_t released_to = kNone;
-  VkImageLayout released_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  bool spoiled = false;     // a partial write was made over wrong contents
+  bool fresh = false;       // it was not used after the resource took its memory
+  bool written = false;     // a pass of this frame wrote it
+  std::size_t changed = 0;  // the time of its last layout change
 };
 
 class Replay {
@@ -55,7 +48,7 @@ class Replay {
     bool operator==(const Former&) const = default;
   };
   struct Resource {
-    // The subresource of a mip, layer and plane is at (plane * layers + layer) * mips + mip.
+    // The subresource of a mip and layer is at layer * mips + mip.
     std::vector<Sub> subs;
     bool has_memory = false;
     bool used = false;  // by a pass of this frame
@@ -77,10 +70,11 @@ class Replay {
   void begin_frame(bool first);
   void apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state);
   void submission(std::uint32_t index);
-  void batches(std::uint32_t first, std::uint32_t count, QueueClass queue);
+  void batch(std::uint32_t index, QueueClass queue);
   void change(const Transition& transition, QueueClass queue);
   void check_order_of_change(std::uint32_t resource, const Barrier& barrier, const Sub& sub);
-  void check_state_of_change(const Transition& transition, const Sub& sub, std::uint8_t queue);
+  void check_layout_of_change(const Transition& transition, Sub& sub);
+  void check_stores();
   void take_memory(std::uint32_t resource);
   void keep_former(Resource& taker, std::uint32_t resource);
   void pass(std::uint32_t position);
@@ -91,16 +85,14 @@ class Replay {
                   std::uint8_t queue);
   void check_write(const AccessRecord& access, std::uint32_t expected, Sub& sub,
                    std::uint8_t queue);
-  void check_state(const AccessRecord& access, const Sub& sub, std::uint8_t queue);
   void check_former(const AccessRecord& access, std::uint8_t queue);
-  bool continues(const Sub& sub, const AccessRecord& access, std::uint8_t queue) const;
   void apply_access(std::uint32_t position, std::uint32_t access_index);
   void end_frame();
+  bool holds(std::uint32_t resource) const;
   void check_final_state(std::uint32_t resource);
   void check_histories();
   void check_final(const FinalState& final);
-  void check_final_order(const FinalState& final, const Operation& operation);
-  void check_final_writes(const FinalState& final, const Sub& sub);
+  void check_final_write(const FinalState& final, const Operation& write, bool is_read);
 
   template <typename Function>
   void for_each_sub(std::uint32_t resource, const Range& range, Function&& f) {
@@ -110,23 +102,12 @@ class Replay {
       f(subs[0]);
       return;
     }
-    const bool both = record.planes == 2 && range.aspects == 0;
-    const std::uint32_t from = range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT ? 1 : 0;
-    for (std::uint32_t plane = from; plane < from + (both ? 2 : 1); ++plane) {
-      for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i)
-        for (std::uint32_t mip = 0; mip < range.mips; ++mip)
-          f(subs[(plane * record.layers + i) * record.mips + range.base_mip + mip]);
-    }
-  }
-  // Returns the owner of a subresource after a queue has written it: kNone if any family may use
-  // it.
-  std::uint32_t owner(std::uint32_t resource, std::uint8_t queue) const {
-    const std::uint32_t external = graph_.resources[resource].external;
-    return external != kNone && graph_.externals[external].concurrent ? kNone : family(queue);
+    for (std::uint32_t i = range.base_layer; i < range.base_layer + range.layers; ++i)
+      for (std::uint32_t mip = 0; mip < range.mips; ++mip)
+        f(subs[i * record.mips + range.base_mip + mip]);
   }
   void fail(const std::string& what);
   std::string name(std::uint32_t resource) const;
-  std::uint32_t family(std::uint8_t queue) const { return limits_.queue_families[queue]; }
 
   const GraphDescription& graph_;
   const Limits& limits_;

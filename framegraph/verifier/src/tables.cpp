@@ -15,7 +15,7 @@ class Tables {
 
   bool run() {
     if (plan_.placements.size() != graph_.resources.size() ||
-        plan_.live_accesses.size() != graph_.accesses.size() ||
+        plan_.contents.size() != graph_.accesses.size() ||
         plan_.cull_reasons.size() != graph_.passes.size()) {
       fail("the plan is of another graph: its tables have other sizes");
       return false;
@@ -38,35 +38,30 @@ class Tables {
     return std::string("'").append(graph_.resource_name(resource)).append("'");
   }
 
+  std::uint32_t family(std::uint32_t position) const {
+    return limits_.queue_families[static_cast<std::size_t>(plan_.passes[position].queue)];
+  }
+
   void check_passes() {
     std::vector<std::uint32_t> seen(graph_.passes.size(), 0);
+    std::uint32_t next[kQueueClasses] = {};
     for (const PlannedPass& planned : plan_.passes) {
-      if (planned.pass >= graph_.passes.size()) {
-        fail("the plan runs a pass that was not declared");
-        return;
-      }
+      if (planned.pass >= graph_.passes.size())
+        return fail("the plan runs a pass that was not declared");
       if (seen[planned.pass]++) fail("the plan runs a pass twice");
       const auto queue = static_cast<std::size_t>(planned.queue);
       if (queue >= kQueueClasses || (queue != 0 && limits_.queue_families[queue] == kNone))
-        fail("a pass runs on a queue that the device does not have");
-    }
-    std::uint32_t last_effect[kQueueClasses] = {};
-    for (const PlannedPass& planned : plan_.passes) {
-      if (!(graph_.passes[planned.pass].flags & kSideEffect)) continue;
-      std::uint32_t& last = last_effect[static_cast<std::size_t>(planned.queue)];
-      if (planned.pass < last) fail("passes with side effects run in another order than declared");
-      last = planned.pass;
+        return fail("a pass runs on a queue that the device does not have");
+      if (planned.pass < std::exchange(next[queue], planned.pass))
+        fail("passes of a queue run in another order than declared");
     }
     for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
       if ((graph_.passes[pass].flags & kSideEffect) && !seen[pass])
         fail(std::string("pass '").append(graph_.pass_name(pass)) +
              "' has a side effect but was culled");
-      const std::uint32_t first = graph_.passes[pass].first_access;
-      for (std::uint32_t i = 0; i < graph_.pass_accesses(pass).size(); ++i) {
-        const bool must = seen[pass] && !(graph_.accesses[first + i].flags & kOptional);
-        if (must != (plan_.live_accesses[first + i] != 0) && (must || !seen[pass]))
-          fail("an access is live where its pass is not, or the reverse");
-      }
+      if (plan_.cull_reasons[pass].is_live() != (seen[pass] != 0))
+        fail(std::string("pass '").append(graph_.pass_name(pass)) +
+             "' runs and is said to be culled, or the reverse");
     }
   }
 
@@ -75,18 +70,14 @@ class Tables {
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) {
       const Submission& submission = plan_.submissions[s];
       if (submission.first_pass != next ||
-          submission.pass_count > plan_.passes.size() - submission.first_pass) {
-        fail("submissions do not cover the passes in order");
-        return;
-      }
+          submission.pass_count > plan_.passes.size() - submission.first_pass)
+        return fail("submissions do not cover the passes in order");
       next += submission.pass_count;
       for (std::uint32_t p = submission.first_pass; p < next; ++p)
         if (plan_.passes[p].queue != submission.queue)
           fail("a pass is submitted to another queue than it was planned for");
-      if (submission.first_wait + submission.wait_count > plan_.waits.size()) {
-        fail("a submission's waits are out of range");
-        return;
-      }
+      if (submission.first_wait + submission.wait_count > plan_.waits.size())
+        return fail("a submission's waits are out of range");
       for (std::uint32_t w = 0; w < submission.wait_count; ++w)
         if (plan_.waits[submission.first_wait + w].submission >= s)
           fail("a submission waits for itself or a later one: it would hang");
@@ -103,20 +94,18 @@ class Tables {
       if (batch.count > plan_.transitions.size() ||
           batch.first > plan_.transitions.size() - batch.count)
         fail("a batch's transitions are out of range");
-    const auto check = [this](std::uint32_t first, std::uint32_t count) {
-      if (count > plan_.batches.size() || first > plan_.batches.size() - count)
-        fail("batches are out of range");
+    const auto check = [this](std::uint32_t batch) {
+      if (batch != kNone && batch >= plan_.batches.size()) fail("a batch is out of range");
     };
-    for (const PlannedPass& planned : plan_.passes) check(planned.first_batch, planned.batch_count);
-    for (const Submission& s : plan_.submissions) check(s.first_batch, s.batch_count);
+    for (const PlannedPass& planned : plan_.passes) check(planned.batch);
+    for (const Submission& s : plan_.submissions) check(s.end_batch);
+    check(plan_.final_batch);
     for (const Transition& t : plan_.transitions) {
       if (t.resource == kNone) continue;
-      if (t.resource >= graph_.resources.size()) {
-        fail("a transition is of a resource that was not declared");
-        return;
-      }
+      if (t.resource >= graph_.resources.size())
+        return fail("a transition is of a resource that was not declared");
       const ResourceRecord& r = graph_.resources[t.resource];
-      if (r.kind == ResourceKind::texture &&
+      if (r.kind != ResourceKind::texture ||
           (t.range.mips == 0 || t.range.layers == 0 || t.range.base_mip + t.range.mips > r.mips ||
            t.range.base_layer + t.range.layers > r.layers))
         fail("a transition of " + name(t.resource) + " is out of its mips or layers");
@@ -125,17 +114,16 @@ class Tables {
 
   void check_lifetimes() {
     for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
-      const std::uint32_t pass = plan_.passes[position].pass;
-      const std::uint32_t first = graph_.passes[pass].first_access;
-      for (std::uint32_t i = 0; i < graph_.pass_accesses(pass).size(); ++i) {
-        if (!plan_.live_accesses[first + i]) continue;
-        const AccessRecord& access = graph_.accesses[first + i];
+      for (const AccessRecord& access : graph_.pass_accesses(plan_.passes[position].pass)) {
         const Placement& placement = plan_.placements[access.resource];
         if (placement.first == kNone || position < placement.first || position > placement.last)
           fail(name(access.resource) + " is used at position " + std::to_string(position) +
                ", outside its lifetime");
         if (access.usage & ~placement.usage)
           fail(name(access.resource) + " is made without a usage that a pass needs");
+        if (placement.first < plan_.passes.size() && !placement.concurrent &&
+            family(position) != family(placement.first))
+          fail(name(access.resource) + " is made for one of the queue families that use it");
       }
     }
     for (const OutputRecord& output : graph_.outputs) {
@@ -154,15 +142,13 @@ class Tables {
       return;
     }
     const MemoryRequirements needed =
-        limits_.memory.query
-            ? limits_.memory.query(limits_.memory.context, graph_.resources[r], placement.usage)
-            : estimate_requirements(graph_.resources[r]);
+        limits_.memory(graph_.resources[r], placement.usage, placement.concurrent);
     if (placement.offset % needed.alignment != 0) fail(name(r) + " is not aligned");
     if (placement.size < needed.size) fail(name(r) + " has too few bytes");
     const Heap& heap = plan_.heaps[placement.heap];
     if (placement.size > heap.size || placement.offset > heap.size - placement.size)
       fail(name(r) + " reaches beyond its heap");
-    if (heap.memory_types & ~needed.memory_types)
+    if (heap.memory_types == 0 || heap.memory_types & ~needed.memory_types)
       fail(name(r) + " lies in a heap whose memory types it does not allow");
   }
 
@@ -183,16 +169,25 @@ class Tables {
       return placements[a].last < placements[b].last;
     });
     std::vector<std::set<std::pair<VkDeviceSize, std::uint32_t>>> live(plan_.heaps.size());
+    std::vector<VkDeviceSize> bytes(plan_.heaps.size());
+    std::vector<VkDeviceSize> most(plan_.heaps.size());
     std::size_t ended = 0;
     for (const std::uint32_t r : order) {
-      for (; placements[ending[ended]].last < placements[r].first; ++ended)
-        live[placements[ending[ended]].heap].erase(
-            {placements[ending[ended]].offset, ending[ended]});
-      auto& there = live[placements[r].heap];
+      for (; placements[ending[ended]].last < placements[r].first; ++ended) {
+        const Placement& end = placements[ending[ended]];
+        live[end.heap].erase({end.offset, ending[ended]});
+        bytes[end.heap] -= end.size;
+      }
+      const std::uint32_t heap = placements[r].heap;
+      most[heap] = std::max(most[heap], bytes[heap] += placements[r].size);
+      auto& there = live[heap];
       const auto at = there.insert({placements[r].offset, r}).first;
       if (at != there.begin()) check_neighbours(std::prev(at)->second, r);
       if (std::next(at) != there.end()) check_neighbours(r, std::next(at)->second);
     }
+    for (std::size_t heap = 0; heap < most.size(); ++heap)
+      if (plan_.heaps[heap].lower_bound != most[heap])
+        fail("the lower bound of a heap is not the most bytes that are live at once");
   }
 
   void check_neighbours(std::uint32_t a, std::uint32_t b) {

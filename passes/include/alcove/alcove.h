@@ -33,11 +33,10 @@
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
 
-#include "alcove/alcove_camera.h"
 #include "alcove/alcove_diagnose.h"
 #include "alcove/alcove_memory.h"
 #include "alcove/alcove_result.h"
-#include "alcove/alcove_settings.h"
+#include "alcove/alcove_view.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -89,13 +88,8 @@ typedef struct AlcoveContextInfo {
   // destroys an object. Null selects the driver's own allocator. The library's own host memory, a
   // few kilobytes, comes from malloc and operator new.
   const VkAllocationCallbacks* allocation_callbacks;
-  // The sources of device memory. Images come from `memory_block`, if its `memory` is not null. If
-  // there is no block or it is full, they come from `memory_functions`, if given. A full block
-  // without functions fails the frame with ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY. If neither is given,
-  // all memory comes from vkAllocateMemory. If only a block is given, the parameters that the host
-  // writes (80 KiB per frame in flight) come from vkAllocateMemory.
+  // The source of device memory. If it is not given, memory comes from vkAllocateMemory.
   AlcoveMemoryFunctions memory_functions;
-  AlcoveMemoryBlock memory_block;
   AlcoveLog log;
 } AlcoveContextInfo;
 
@@ -130,20 +124,18 @@ typedef struct AlcoveImage {
   // view and keeps it; call alcoveForgetImage before you destroy the image.
   VkImageView view;
   VkFormat format;
-  // The size in pixels. All inputs of a view must have the same size. Outputs have it too, except
-  // with areas (AlcoveView::read_area). With dynamic resolution (AlcoveView::largest_width) it may
-  // be the size of the part in use, which then begins at the top left corner. An output keeps its
-  // contents outside of the part that is written, unless its initial layout is
-  // VK_IMAGE_LAYOUT_UNDEFINED.
+  // The size in pixels. With dynamic resolution (AlcoveViewInfo::largest_width) it may be the size
+  // of the part in use, which then begins at the top left corner. An output keeps its contents
+  // outside of the part that is written, unless its initial layout is VK_IMAGE_LAYOUT_UNDEFINED.
   uint32_t width;
   uint32_t height;
   uint32_t layer;  // of an array image, such as one layer for each eye
   // The usage with which the image was created. Inputs need SAMPLED, outputs need STORAGE.
-  // Visibility also needs SAMPLED if multi-bounce or specular occlusion by TABLE or CONE is
-  // computed. Bent normals need SAMPLED for TABLE and CONE.
+  // Visibility also needs SAMPLED if multi-bounce or specular occlusion by TABLE is computed. Bent
+  // normals need SAMPLED for TABLE.
   VkImageUsageFlags usage;
-  // The number of samples per pixel with which the image was created; 0 means 1. Of
-  // AlcoveView::depth with several samples, a pass copies sample 0, because an average of several
+  // The number of samples per pixel with which the image was created; 0 means 1. Of depth with
+  // several samples, a pass copies sample 0, because an average of several
   // surfaces lies on none of them; this takes 4 bytes per pixel of transient memory. Other images
   // must have one sample: the engine must resolve normals to sample 0 first, with a shader that
   // reads it.
@@ -159,127 +151,12 @@ typedef struct AlcoveImage {
   AlcoveState final_state;
 } AlcoveImage;
 
-// One view of a frame, such as an eye or a part of a split screen. Each view has images, layers of
-// images, or areas of images (read_area), of its own. An output without an image is not computed,
-// and costs no pass and no memory.
+// One view of a frame. Each view has images, layers of images, or areas of images (read_area), of
+// its own. Its history is kept until alcoveDropView.
 typedef struct AlcoveView {
   uint32_t struct_size;
-  // The number that identifies the view, different from those of the frame's other views. Each id
-  // has its own history, which is kept until alcoveDropView.
-  uint32_t id;
-  // Whether the view begins a new history, for example after a camera cut. A change of size begins
-  // a new history in any case, unless the size stays within largest_width and largest_height.
-  VkBool32 reset_history;
-  VkBool32 normals_in_view_space;  // else in world space
-  AlcoveNormalEncoding normal_encoding;
-  // Whether normals in view space have a z axis that points away from the eye, as in engines whose
-  // camera looks along +Z. Bent normals are then written with the same axis.
-  VkBool32 normals_forward_z;
-  // The number of consecutive frames, up to and including this one, whose image is exactly that of
-  // the frame before. It is 0 if this frame differs from the previous one, or if the engine does
-  // not know. It must start again at 0 after reset_history and when the size, the settings or the
-  // outputs change. If it is at least 1, `motion` is not read. If it is at least 16, the history
-  // averages up to 127 frames.
-  uint32_t static_frames;
-  const AlcoveSettings* settings;
-  AlcoveCamera camera;
-  // The camera with which this id was last recorded. It is not read, and may be zero, in the first
-  // frame of an id, with reset_history, if history_frames is 0, and by alcovePrepareFrame.
-  AlcoveCamera previous_camera;
-  // The largest size of the depth image, or of read_area, for dynamic resolution. The history has
-  // room for this size, and continues while the size changes within it. Zero means the current
-  // size; a change of size then begins a new history. A change of the largest size always does.
-  uint32_t largest_width;
-  uint32_t largest_height;
-  // The size of the depth image, or of read_area, when this id was last recorded. Zero means the
-  // current size. Not read with reset_history, nor if history_frames is 0.
-  uint32_t previous_width;
-  uint32_t previous_height;
-
-  // Areas, for several views in one image (split screen, stereo side by side, viewports of an
-  // editor) and for a guard band. If all of these fields are 0, images are read and written as a
-  // whole, which takes up to 5 % less time (alcove cost --area).
-  //
-  // The area of the inputs that is read. The cameras describe it, and uv and sizes of motion
-  // vectors refer to it. Pixels outside of it are not read. Zeros mean the whole images.
-  AlcoveArea read_area;
-  // The area for which results are computed, in pixels of the inputs, within read_area. Zeros mean
-  // read_area. If it is smaller, the rest of read_area is a guard band: occluders in it are found,
-  // and occlusion does not fade towards the border of the picture. The guard band is not traced,
-  // apart from its innermost tiles. Set reset_history when the distances between the borders of the
-  // two areas change.
-  AlcoveArea written_area;
-  // The position of the results in the output images, whose other pixels are not written.
-  uint32_t output_x;
-  uint32_t output_y;
-
-  // Inputs.
-  //
-  // The depth buffer, as clip_from_view gives depths, in any depth format or R32_SFLOAT. Required.
-  //
-  // Samples within one depth step of the tangent plane do not occlude. A depth step is the distance
-  // in scene units between two successive depths that the format can store. At the distance z it is
-  // about z^2 / near * 6e-8 for floats that are not reversed, z * 1.2e-7 for reversed floats, and
-  // z^2 / near / 65535 for 16 bits. While the step grows from a quarter of the radius to the
-  // radius, occlusion fades, and beyond that the visibility is 1, because the depth buffer then
-  // holds no detail of that size. If distant occlusion is missing, reverse the depth or move the
-  // near plane away from the eye.
-  AlcoveImage depth;
-  // The format in which the depths were first stored, if `depth` is a copy in another format.
-  // UNDEFINED means the format of `depth`. [VK_FORMAT_UNDEFINED]
-  VkFormat depth_format;
-  // The unit normals of the surfaces, encoded as normal_encoding says. Without an image, normals
-  // are computed from depth, and bent normals are in view space.
-  //
-  // A normal that faces away from the eye by more than 14 degrees is flipped, so that double-sided
-  // surfaces may have either sign. A normal that faces away by less is either flipped or rotated
-  // until it is perpendicular to the view direction; the normal from depth decides which. A normal
-  // that is zero or not finite is replaced by the normal from depth.
-  AlcoveImage normals;
-  // Motion vectors: how far each surface moved on the image, in x and y of a signed format. Without
-  // an image, only the camera is assumed to move. With an image, occluders may move too, and the
-  // history is replaced where it differs from the last few frames. Leave the image out if nothing
-  // but the camera moves.
-  //
-  // motion_scale * vector + motion_offset must be the uv of a surface in this frame's image minus
-  // its uv in the previous frame's image, with y down and with the jitter of both cameras. The
-  // scale is 1 / size for vectors in pixels, 0.5 for vectors in normalised device coordinates (with
-  // Vulkan's y down), and negative for vectors that point from this frame to the previous one. A
-  // scale of zeros means 1 and 1. If the vectors were drawn without jitter, the offset is this
-  // frame's jitter minus the previous frame's, in uv.
-  AlcoveImage motion;
-  float motion_scale[2];
-  float motion_offset[2];
-  AlcoveImage roughness;  // perceptual, [0,1]; without an image, AlcoveSettings::roughness
-  // The depth of the nearest back faces: the scene drawn like `depth`, but with front faces culled.
-  // Required with ALCOVE_THICKNESS_UNIT_BACK_FACES, and not read otherwise.
-  AlcoveImage back_depth;
-  // The second depth layer: the scene drawn like `depth`, but with back faces culled and without
-  // the fragments that are not behind `depth` by at least a thousandth of their distance. Required
-  // if depth_layers is 2, and not read otherwise.
-  AlcoveImage second_depth;
-  AlcoveImage albedo;  // linear RGB, [0,1], for multi_bounce
-  // A mask of surfaces, R8_UNORM or R8_UINT, for example for emissive or unlit surfaces, for water
-  // that is drawn into depth, and for weapons in the hand of the player. Without an image there is
-  // no mask. With one, a pass copies depth twice, which takes 8 bytes per pixel of transient
-  // memory.
-  AlcoveImage mask;
-  // Surfaces with one of these bits do not receive occlusion: their visibility and specular
-  // occlusion are 1, and their bent normal is the normal (without an image of normals, the
-  // direction to the eye). The filter and the history do not mix them with other surfaces.
-  uint32_t not_receiving;
-  // Surfaces with one of these bits do not occlude. Depth does not tell what lies behind them;
-  // these directions count as unobserved, like those behind a distant foreground.
-  uint32_t not_occluding;
-
-  // Outputs, in any format with enough channels that the device can store to. The sky (pixels whose
-  // depth is at the far plane or is NaN) gets the visibility 1, and its bent normal is the normal.
-  AlcoveImage visibility;  // one channel, [0,1], 1 is open; R8_UNORM is enough
-  // The mean visible direction: a unit vector in the space of the normals, in three signed
-  // channels. R8G8B8A8_SNORM is enough.
-  AlcoveImage bent_normal;
-  AlcoveImage specular;      // one channel, [0,1]: multiplies specular probe light
-  AlcoveImage multi_bounce;  // three channels, [0,1]: visibility with light reflected by occluders
+  AlcoveViewInfo info;
+  AlcoveImage images[ALCOVE_IMAGE_COUNT];  // by AlcoveImageRole
 } AlcoveView;
 
 typedef struct AlcoveFrame {
@@ -324,7 +201,7 @@ AlcoveResult alcovePrepareFrame(AlcoveContext* context, const AlcoveFrame* frame
 // barriers concern the library's own memory only, except that a frame which differs from the
 // previous one begins with a full barrier. One image may serve as several inputs if it is described
 // in the same way each time. An output must not serve as anything else, except as an output of
-// another view, if both have areas (AlcoveView::read_area).
+// another view, if both have areas (AlcoveViewInfo::read_area).
 //
 // If the call returns one of these errors, nothing is recorded: a null pointer, a size that is zero
 // or above the largest, an unknown enum value, a number that is out of range or not finite, a

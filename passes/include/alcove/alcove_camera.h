@@ -65,7 +65,7 @@ typedef enum AlcoveCameraConvention {
 // Fills `camera` with an engine's matrices of 16 floats each. `conventions` is any combination of
 // AlcoveCameraConvention, 0 for none. Returns ALCOVE_ERROR_INVALID_INPUT if a pointer is null or a
 // bit is unknown. The values of the matrices are checked when a frame is recorded. If the camera
-// looks along +Z and normals are in view space, set AlcoveView::normals_forward_z too.
+// looks along +Z and normals are in view space, set AlcoveViewInfo::normals_forward_z too.
 AlcoveResult alcoveConvertCamera(const float* clip_from_view, const float* view_from_world,
                                  uint32_t conventions, AlcoveCamera* camera);
 

@@ -14,7 +14,7 @@ extern "C" {
 // The time that the device took for a pass.
 typedef struct AlcoveTiming {
   char pass[ALCOVE_MAX_NAME];
-  uint32_t view;  // AlcoveView::id
+  uint32_t view;  // AlcoveViewInfo::id
   double milliseconds;
 } AlcoveTiming;
 

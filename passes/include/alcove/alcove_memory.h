@@ -1,5 +1,5 @@
-// Device memory: the sources that the engine gives to a context, and the amounts that frames take.
-// Included by alcove.h.
+// Device memory: the allocator that the engine gives to a context, and the amounts that frames
+// take. Included by alcove.h.
 #ifndef ALCOVE_ALCOVE_MEMORY_H_
 #define ALCOVE_ALCOVE_MEMORY_H_
 
@@ -10,8 +10,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-struct AlcoveSettings;  // alcove_settings.h
 
 // When the contents of device memory are needed.
 typedef enum AlcoveMemoryLifetime {
@@ -52,17 +50,6 @@ typedef struct AlcoveMemoryFunctions {
   void* user;
 } AlcoveMemoryFunctions;
 
-// Memory that the engine has allocated for the images of one context. It must be device-local, in a
-// memory type that the images allow (usually every device-local one). alcoveEstimateMemory says how
-// much memory frames take. A change of size needs room for the old and the new images at the same
-// time.
-typedef struct AlcoveMemoryBlock {
-  VkDeviceMemory memory;
-  VkDeviceSize offset;   // the first byte that may be used
-  VkDeviceSize size;     // bytes from there on
-  uint32_t memory_type;  // index of the memory type that the block was allocated from
-} AlcoveMemoryBlock;
-
 // The bytes of device memory of the last recorded frame. All are zero before the first frame, and
 // after a frame that failed or was discarded. `transients` is the memory that this frame uses. The
 // context holds as much as the largest frame so far has used, which `allocated` counts.
@@ -76,33 +63,6 @@ typedef struct AlcoveMemory {
 
 // Fills `memory`, whose struct_size must be set.
 AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory);
-
-// The outputs of a view, as bits to be combined.
-typedef enum AlcoveOutput {
-  ALCOVE_OUTPUT_VISIBILITY = 1,
-  ALCOVE_OUTPUT_BENT_NORMAL = 2,
-  ALCOVE_OUTPUT_SPECULAR = 4,
-  ALCOVE_OUTPUT_MULTI_BOUNCE = 8,
-  ALCOVE_OUTPUT_MAX_ENUM = 0x7fffffff
-} AlcoveOutput;
-
-// The inputs of a view that its memory depends on, as bits to be combined.
-typedef enum AlcoveInput {
-  ALCOVE_INPUT_NORMALS = 1,  // AlcoveView::normals has an image
-  ALCOVE_INPUT_MASK = 2,     // AlcoveView::mask has an image: depth is copied twice
-  ALCOVE_INPUT_SAMPLES = 4,  // AlcoveView::depth has several samples per pixel: depth is copied
-  ALCOVE_INPUT_MAX_ENUM = 0x7fffffff
-} AlcoveInput;
-
-// Fills `memory`, whose struct_size must be set, with the bytes that one view of width x height
-// pixels takes. It needs no context and no frame. `outputs` is a combination of AlcoveOutput, and
-// `inputs` one of AlcoveInput. The bytes are those of the texels; drivers round each image up.
-// `transients` and `transients_unshared` are both what the view needs if no images share memory; a
-// recorded frame may need less. `allocated` is the sum of transients and history. Returns
-// ALCOVE_ERROR_INVALID_INPUT if an argument is invalid; there is no message.
-AlcoveResult alcoveEstimateMemory(const struct AlcoveSettings* settings, uint32_t width,
-                                  uint32_t height, uint32_t outputs, uint32_t inputs,
-                                  AlcoveMemory* memory);
 
 #ifdef __cplusplus
 }

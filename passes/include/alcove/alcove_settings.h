@@ -27,7 +27,7 @@ typedef enum AlcoveQuality {
   ALCOVE_QUALITY_MEDIUM = 2,   // LOW with two slices and more steps; the preset to begin with
   ALCOVE_QUALITY_HIGH = 3,     // traces one of 2x2 pixels in each frame
   // HIGH with 10 steps in each of two depth layers. A view without the image
-  // AlcoveView::second_depth then fails with a sentence; set depth_layers to 1, or choose HIGH.
+  // ALCOVE_IMAGE_SECOND_DEPTH then fails with a sentence; set depth_layers to 1, or choose HIGH.
   ALCOVE_QUALITY_ULTRA = 4,
   ALCOVE_QUALITY_REFERENCE = 5,  // traces every pixel: a static image to compare with
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
@@ -59,36 +59,23 @@ typedef enum AlcoveWeighting {
 typedef enum AlcoveThicknessUnit {
   // AlcoveSettings::thickness, in radii.
   ALCOVE_THICKNESS_UNIT_RADIUS = 0,
-  // The back faces in AlcoveView::back_depth, at which occluders end. At pixels without a back face
+  // The back faces in ALCOVE_IMAGE_BACK_DEPTH, at which occluders end. At pixels without a back
+  // face
   // the thickness is that of RADIUS.
   ALCOVE_THICKNESS_UNIT_BACK_FACES = 1,
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
 } AlcoveThicknessUnit;
 
-// How specular occlusion is computed, if AlcoveView::specular has an image.
+// How specular occlusion is computed, if a view has the image ALCOVE_IMAGE_SPECULAR.
 typedef enum AlcoveSpecular {
+  ALCOVE_SPECULAR_NONE = 0,  // not at all: a view with that image is refused
   // Integrates the GGX lobe over the slices that visibility is computed from: the most exact.
   ALCOVE_SPECULAR_SLICES = 1,
   // The GGX lobe within a cone around the bent normal, by a table of 54 KiB. Visibility and the
-  // bent
-  // normal are then computed too.
+  // bent normal are then computed too.
   ALCOVE_SPECULAR_TABLE = 2,
   ALCOVE_SPECULAR_MAX_ENUM = 0x7fffffff
 } AlcoveSpecular;
-
-// How AlcoveView::normals holds normals. The decoded vectors may have any length but 0.
-typedef enum AlcoveNormalEncoding {
-  // xyz in a signed or float format of at least 3 channels.
-  ALCOVE_NORMAL_ENCODING_SIGNED_XYZ = 0,
-  // The components x, y and z packed into [0,1] as 0.5 + 0.5 * normal, in any format of at least 3
-  // channels, such as A2B10G10R10_UNORM or R8G8B8A8_UNORM.
-  ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ = 1,
-  // The octahedral map (Cigolle et al. 2014) in xy of a signed or float format.
-  ALCOVE_NORMAL_ENCODING_OCTAHEDRAL = 2,
-  // The octahedral map packed into [0,1], in any format of at least 2 channels.
-  ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL = 3,
-  ALCOVE_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
-} AlcoveNormalEncoding;
 
 // The precision of intermediate results that have no image of the engine. Images have their own.
 typedef enum AlcovePrecision {
@@ -144,9 +131,9 @@ typedef struct AlcoveSettings {
   // along depth edges. This takes less time and less memory for the history, and has a larger
   // error. It needs a tile_size of at least 2. [0, but 1 for CONSOLE]
   uint32_t half_resolution;
-  AlcoveSpecular specular;     // read if AlcoveView::specular is given [SLICES]
-  float roughness;             // perceptual, 0 to 1, for pixels without AlcoveView::roughness [0.5]
-  uint32_t roughness_channel;  // the channel of AlcoveView::roughness, 0 to 3 [0]
+  AlcoveSpecular specular;     // read if ALCOVE_IMAGE_SPECULAR is given [SLICES]
+  float roughness;             // perceptual, 0 to 1, without ALCOVE_IMAGE_ROUGHNESS [0.5]
+  uint32_t roughness_channel;  // the channel of ALCOVE_IMAGE_ROUGHNESS, 0 to 3 [0]
   AlcovePrecision precision;   // of intermediate results [UNORM8]
   // The passes write the visibility 1 - intensity * (1 - visibility^power), clamped to [0,1]. If
   // both values are 1, visibility is unchanged and the shaders skip the computation. Multi-bounce
@@ -166,17 +153,15 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
 // 0 if the settings are invalid. `text` may be null if `size` is 0.
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
 
-// Changes the settings that a text names. `text` holds `length` bytes of JSON, as in the file that
-// `alcove recommend --out` writes: an object whose member "settings" is an object of names, as
-// alcovePrintSettings writes them, and values. `settings` must have been filled before, for example
-// by alcoveGetSettings with the scene's radius, which that file does not contain. Names of outputs
-// ("bent_normal") are ignored, because the images of a view select outputs, and so is a `specular`
-// of "none". Reads no file and allocates nothing that grows with the text.
+// Changes the settings that a text names. `text` holds `length` bytes: lines of `name = value`, as
+// alcovePrintSettings and `alcove recommend --out` write them. Empty lines are skipped. `settings`
+// must have been filled before, for example by alcoveGetSettings. Reads no file and allocates
+// nothing that grows with the text.
 //
-// If the text is no such JSON, is longer than 65536 bytes, or has an unknown name or a value that
-// the setting does not allow, nothing is changed and ALCOVE_ERROR_INVALID_INPUT is returned. If
-// `message` is not null, it must have room for ALCOVE_MAX_MESSAGE bytes, and receives a sentence,
-// or an empty text if there is no error.
+// If a line has another form, an unknown name or a value that the setting does not allow, nothing
+// is changed and ALCOVE_ERROR_INVALID_INPUT is returned. If `message` is not null, it must have
+// room for ALCOVE_MAX_MESSAGE bytes, and receives a sentence, or an empty text if there is no
+// error.
 AlcoveResult alcoveReadSettings(const char* text, size_t length, AlcoveSettings* settings,
                                 char* message);
 

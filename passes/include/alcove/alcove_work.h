@@ -14,9 +14,8 @@
 #ifndef ALCOVE_ALCOVE_WORK_H_
 #define ALCOVE_ALCOVE_WORK_H_
 
-#include "alcove/alcove_camera.h"
 #include "alcove/alcove_result.h"
-#include "alcove/alcove_settings.h"
+#include "alcove/alcove_view.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,7 +38,8 @@ extern "C" {
 //    77 R16G16_UNORM                                  109 R32G32B32A32_SFLOAT
 //
 // Depth buffers are D16_UNORM (124), X8_D24_UNORM (125), D32_SFLOAT (126), D24_UNORM_S8_UINT (129)
-// or D32_SFLOAT_S8_UINT (130). Images of the engine may have any format that AlcoveView allows.
+// or D32_SFLOAT_S8_UINT (130). Images of the engine may have any format that AlcoveImageRole
+// allows.
 
 typedef enum AlcoveResourceKind {
   ALCOVE_RESOURCE_KIND_INPUT = 0,      // an image of the engine that is read
@@ -74,13 +74,14 @@ typedef enum AlcoveWorkUsage {
   ALCOVE_WORK_USAGE_MAX_ENUM = 0x7fffffff
 } AlcoveWorkUsage;
 
+// Every image has one mip and one layer.
 typedef struct AlcoveWorkResource {
   const char* name;  // static; histories have the same name in both slots
   AlcoveResourceKind kind;
+  uint32_t role;    // of an input or output: its AlcoveImageRole; else ALCOVE_WORK_NONE
   uint32_t format;  // the number of its VkFormat; 0 for a table
   uint32_t width;   // in texels
   uint32_t height;
-  uint32_t mip_count;
   uint32_t samples;  // per pixel: 1, except for depth of the engine; 0 for a table
   uint32_t usage;    // a combination of AlcoveWorkUsage
   // The indices of the first and the last dispatch that bind the resource. Transients whose ranges
@@ -101,8 +102,6 @@ typedef struct AlcoveWorkBinding {
   AlcoveBindingType type;
   uint32_t access;    // a combination of AlcoveWorkAccess, as the shader declares it
   uint32_t resource;  // index of the resource; ALCOVE_WORK_NONE for PARAMETERS and SAMPLER
-  uint32_t mip;       // the first mip that is bound, and the number of mips
-  uint32_t mip_count;
 } AlcoveWorkBinding;
 
 typedef struct AlcoveWorkConstant {
@@ -149,8 +148,7 @@ typedef struct AlcoveWork {
   AlcoveWorkDispatch dispatches[ALCOVE_MAX_WORK_DISPATCHES];
 } AlcoveWork;
 
-// An image of the engine. All images of a view have the size of the depth image, except outputs
-// with areas. A format of 0 means that there is no image.
+// An image of the engine. A format of 0 means that there is no image.
 typedef struct AlcoveWorkImage {
   uint32_t format;  // the number of its VkFormat
   uint32_t width;   // in pixels
@@ -158,53 +156,42 @@ typedef struct AlcoveWorkImage {
   uint32_t samples;  // per pixel; 0 means 1
 } AlcoveWorkImage;
 
-// Everything that the work of a view depends on. The fields that AlcoveView (alcove.h) has too are
-// described there.
+// Everything that the work of a view depends on.
 typedef struct AlcoveWorkInfo {
   uint32_t struct_size;
-  const AlcoveSettings* settings;
-  AlcoveCamera camera;
+  // The view. Its id is not read. Its previous camera and size are those of `previous`.
+  AlcoveViewInfo view;
   // The list of the last frame of this view that was executed, whose histories were kept, or null:
-  // in the first frame, after a cut, and if the histories were dropped. Its camera, its size and
-  // its histories are read.
+  // in the first frame, and if the histories were dropped. Its camera, its size and its histories
+  // are read.
   const AlcoveWork* previous;
-  uint32_t index;  // the number of the frame, as AlcoveFrame::index
-  uint32_t static_frames;
-  uint32_t largest_width;  // zero: those of the depth image
-  uint32_t largest_height;
-  uint32_t normals_in_view_space;
-  AlcoveNormalEncoding normal_encoding;
-  uint32_t normals_forward_z;
-  float motion_scale[2];
-  float motion_offset[2];
-  AlcoveArea read_area;
-  AlcoveArea written_area;
-  uint32_t output_x;
-  uint32_t output_y;
-  AlcoveWorkImage depth;
-  uint32_t depth_format;  // the number of its VkFormat; 0: that of `depth`
-  AlcoveWorkImage normals;
-  AlcoveWorkImage motion;
-  AlcoveWorkImage roughness;
-  AlcoveWorkImage back_depth;
-  AlcoveWorkImage second_depth;
-  AlcoveWorkImage albedo;
-  AlcoveWorkImage mask;
-  uint32_t not_receiving;
-  uint32_t not_occluding;
-  AlcoveWorkImage visibility;
-  AlcoveWorkImage bent_normal;
-  AlcoveWorkImage specular;
-  AlcoveWorkImage multi_bounce;
+  uint32_t index;                              // the number of the frame, as AlcoveFrame::index
+  AlcoveWorkImage images[ALCOVE_IMAGE_COUNT];  // by AlcoveImageRole
 } AlcoveWorkInfo;
 
 // Fills `work` with the work of a view. `work` may be info->previous, which is read first. If
 // `message` is not null, it must have room for ALCOVE_MAX_MESSAGE bytes, and receives the sentence
 // of the error. Errors: those of alcoveRecordFrame that concern settings, cameras, sizes and
-// formats. Resources are named "depth", "normals", "motion vectors", "roughness", "back-face
-// depth", "second depth", "albedo", "mask", "visibility", "bent normals", "specular occlusion" and
-// "multi-bounce" if they are images of the engine, in this order and without those that are absent.
+// formats.
 AlcoveResult alcoveDescribeWork(const AlcoveWorkInfo* info, AlcoveWork* work, char* message);
+
+// A pipeline that work needs: a shader and the values of all of its specialisation constants.
+typedef struct AlcoveWorkPipeline {
+  const char* shader;  // as in AlcoveWorkDispatch
+  uint32_t constant_count;
+  AlcoveWorkConstant constants[ALCOVE_MAX_WORK_CONSTANTS];
+} AlcoveWorkPipeline;
+
+// Fills `pipelines` with all pipelines that frames of a view with these settings, images and areas
+// and this kind of projection (perspective or not, reversed or not, with a finite far plane or not)
+// can need: a first frame, frames in motion, static and converged ones. `previous`, `index`,
+// cameras of earlier frames and the static_frames of the view make no difference. If `pipelines` is
+// null, *count becomes their number, at most ALCOVE_MAX_WORK_PIPELINES. Otherwise *count is the
+// number that `pipelines` has room for, and becomes the number written. Errors and `message` are as
+// for alcoveDescribeWork.
+#define ALCOVE_MAX_WORK_PIPELINES 16
+AlcoveResult alcoveListPipelines(const AlcoveWorkInfo* info, uint32_t* count,
+                                 AlcoveWorkPipeline* pipelines, char* message);
 
 // Writes a list as text that people can read. Writes and returns as alcovePrintSettings does.
 size_t alcovePrintWork(const AlcoveWork* work, char* text, size_t size);

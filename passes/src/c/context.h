@@ -12,7 +12,7 @@
 #include "alcove/passes/kernels.h"
 #include "c/failure.h"
 #include "c/host.h"
-#include "c/images.h"
+#include "c/view.h"
 #include "diagnose/mistake_finder.h"
 #include "diagnose/pixel_observer.h"
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <new>
 #include <string>
 #include <string_view>
@@ -70,11 +71,20 @@ AlcoveResult guarded(Message& message, const Call& call) {
 #endif
 }
 
+// Runs `call`. `message` is null or has room for ALCOVE_MAX_MESSAGE bytes; it becomes empty if the
+// call succeeds.
+template <typename Call>
+AlcoveResult guarded(char* message, const Call& call) {
+  Message said{};
+  const AlcoveResult result = guarded(said, call);
+  if (message != nullptr) std::memcpy(message, said.data(), said.size());
+  return result;
+}
+
 // Runs `call` without a place for its message.
 template <typename Call>
 AlcoveResult guarded(const Call& call) {
-  Message unused{};
-  return guarded(unused, call);
+  return guarded(static_cast<char*>(nullptr), call);
 }
 
 }  // namespace alcove::passes

@@ -8,7 +8,6 @@
 
 #include "alcove/alcove.h"
 #include "alcove/framegraph/compile.h"
-#include "alcove/passes/reconstruct.h"
 #include "c/context.h"
 #include "c/view.h"
 
@@ -46,8 +45,8 @@ Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
     if (auto right = passes::check_size(view.struct_size, sizeof view, "AlcoveView"); !right)
       return right;
     for (std::uint32_t before = 0; before < i; ++before) {
-      if (frame->views[before].id == view.id) {
-        return invalid("Two views of the frame have the id " + std::to_string(view.id) +
+      if (frame->views[before].info.id == view.info.id) {
+        return invalid("Two views of the frame have the id " + std::to_string(view.info.id) +
                        "; give each its own.");
       }
     }
@@ -62,7 +61,7 @@ void confirm_last_frame(AlcoveContext& context) {
   context.may_discard = false;
   const ViewPasses& passes = context.passes_of_views[context.slot];
   for (std::uint32_t i = 0; i < passes.count; ++i)
-    passes::drop_reconstruct_history(context.graph, passes::ViewName(passes.views[i].id));
+    passes::drop_view(context.graph, passes.views[i].id);
 }
 
 // The declaration of a frame. Its changes of histories are undone if it is not recorded.
@@ -87,7 +86,7 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
     auto added = passes::add_view(graph, context.kernels, context.images, view, frame, prepare,
                                   inspects ? &context.pixels : nullptr);
     if (!added) return tl::unexpected(std::move(added.error()));
-    passes.views[passes.count++] = {view.id,
+    passes.views[passes.count++] = {view.info.id,
                                     static_cast<std::uint32_t>(graph.description().passes.size())};
   }
   return passes;
@@ -164,7 +163,7 @@ AlcoveResult alcoveDropView(AlcoveContext* context, uint32_t id) {
     // dropped. Its plan can still be printed.
     confirm_last_frame(*context);
     context->graph.histories().end_frame();
-    passes::drop_reconstruct_history(context->graph, passes::ViewName(id));
+    passes::drop_view(context->graph, id);
     context->finder.drop_view(id);
     return {};
   });
@@ -175,4 +174,17 @@ AlcoveResult alcoveForgetImage(AlcoveContext* context, VkImage image) {
     context->executor.forget(image);
     return {};
   });
+}
+
+AlcoveResult alcoveSetStillFrame(uint32_t number, AlcoveView* view) {
+  if (view == nullptr || view->struct_size != sizeof *view) return ALCOVE_ERROR_INVALID_INPUT;
+  AlcoveViewInfo& info = view->info;
+  info.reset_history = number == 0 ? 1 : 0;
+  info.static_frames = number;
+  info.previous_camera = info.camera;
+  const AlcoveImage& depth = view->images[ALCOVE_IMAGE_DEPTH];
+  const bool whole = info.read_area.width == 0;
+  info.previous_width = whole ? depth.width : info.read_area.width;
+  info.previous_height = whole ? depth.height : info.read_area.height;
+  return ALCOVE_SUCCESS;
 }

@@ -10,32 +10,16 @@ tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info) {
     return invalid(
         "AlcoveContextInfo::memory_functions has only one of allocate and free; give both.");
   }
-  const AlcoveMemoryBlock& block = info.memory_block;
-  if (block.memory == VK_NULL_HANDLE) return {};
-  if (block.size == 0) return invalid("AlcoveContextInfo::memory_block has a size of 0 bytes.");
-  const auto get_memory = reinterpret_cast<PFN_vkGetPhysicalDeviceMemoryProperties>(
-      info.get_instance_proc_addr(info.instance, "vkGetPhysicalDeviceMemoryProperties"));
-  VkPhysicalDeviceMemoryProperties properties{};
-  get_memory(info.physical_device, &properties);
-  if (block.memory_type >= properties.memoryTypeCount) {
-    return invalid("AlcoveContextInfo::memory_block has the memory type " +
-                   std::to_string(block.memory_type) + ", but the device has " +
-                   std::to_string(properties.memoryTypeCount) + " of them.");
-  }
   return {};
 }
 
 HostAdapter::HostAdapter(const AlcoveContextInfo& info)
-    : callbacks_(info.allocation_callbacks),
-      memory_(info.memory_functions),
-      block_(info.memory_block),
-      log_(info.log) {}
+    : callbacks_(info.allocation_callbacks), memory_(info.memory_functions), log_(info.log) {}
 
 framegraph::HostServices HostAdapter::services() {
   framegraph::HostServices services;
   services.allocation_callbacks = callbacks_;
   if (memory_.allocate != nullptr) services.memory = {&allocate, &free, this};
-  services.block = {block_.memory, block_.offset, block_.size, block_.memory_type};
   if (log_.write != nullptr) services.log = {&write, this};
   return services;
 }

@@ -7,7 +7,7 @@
 
 namespace alcove::passes {
 
-// Returns an error if the allocators of AlcoveContextInfo are incomplete.
+// Returns an error if only one of the memory functions is given.
 [[nodiscard]] tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info);
 
 // Calls the engine's allocators and log from the hooks of the C++ libraries. The object must not
@@ -30,7 +30,6 @@ class HostAdapter {
 
   const VkAllocationCallbacks* callbacks_;
   AlcoveMemoryFunctions memory_;
-  AlcoveMemoryBlock block_;
   AlcoveLog log_;
 };
 

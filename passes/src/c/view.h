@@ -1,53 +1,42 @@
-// Converts a view of the C interface, and adds its passes.
+// Imports the images of a view, and adds its passes.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include "alcove/alcove.h"
-#include "alcove/passes/frame.h"
+#include "alcove/passes/graph.h"
 #include "c/failure.h"
-#include "c/images.h"
-#include "work/view_work.h"
 
 namespace alcove::passes {
 
-// The name of a view's history. The text is stored in the object, because a frame that repeats the
-// previous one must not allocate memory.
-class ViewName {
+// The images of one frame. An image that serves as several inputs becomes one texture of the graph.
+class ImageTable {
  public:
-  explicit ViewName(std::uint32_t id);
-  operator std::string_view() const { return text_.data(); }
+  void reset() { count_ = 0; }
+
+  // Checks and imports an image of a view. Returns a null texture if there is no image.
+  [[nodiscard]] tl::expected<framegraph::Texture, Failure> import(framegraph::Graph& graph,
+                                                                  const AlcoveView& view,
+                                                                  std::uint32_t role);
 
  private:
-  std::array<char, 16> text_{};  // "view 4294967295"
+  struct Entry {
+    AlcoveImage image;
+    framegraph::Texture texture;
+    bool output = false;
+    std::uint32_t view = 0;  // the id of the last view that has it
+  };
+  std::array<Entry, std::size_t{ALCOVE_MAX_VIEWS} * ALCOVE_IMAGE_COUNT> entries_;
+  std::size_t count_ = 0;
 };
-
-// Returns the beginning of a sentence about the view, such as "View 3".
-[[nodiscard]] std::string view_name(const AlcoveView& view);
-
-// Copies the matrices. The passes check them.
-[[nodiscard]] View to_view(const AlcoveCamera& camera);
-
-// Makes a texture of an image of a view, or a null texture if there is no image.
-struct ImageImporter {
-  tl::expected<framegraph::Texture, Failure> (*import)(void* user, const ImageRole& role,
-                                                       const AlcoveImage& image,
-                                                       const AlcoveView& view);
-  void* user;
-};
-
-// The inputs of a view, and its settings with the outputs that it has images for.
-struct ViewSetup {
-  ViewInputs inputs;
-  OcclusionSettings settings;
-};
-
-// Checks a view and imports its images.
-[[nodiscard]] tl::expected<ViewSetup, Failure> set_up(const AlcoveView& view,
-                                                      const ImageImporter& importer);
 
 class PixelObserver;
 
-// Adds the passes of `view` to the graph. `prepare` is stored in Frame::prepare. If `observer` is
-// not null, it adds a pass that samples the view's pixels for the frame slot AlcoveFrame::slot.
+// Adds the passes of `view` to the graph, or with `prepare` only creates their pipelines. If
+// `observer` is not null, it adds a pass that samples the view's pixels for the frame slot
+// AlcoveFrame::slot.
 [[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
                                                    ImageTable& images, const AlcoveView& view,
                                                    const AlcoveFrame& frame, bool prepare,

@@ -286,9 +286,9 @@ class Inspector {
     consider(Mistake::normal_space, reading);
     for (const bool other_space : {false, true}) {
       reading.normals.in_view_space = given_.normals.in_view_space != other_space;
-      for (const NormalEncoding encoding :
-           {NormalEncoding::signed_xyz, NormalEncoding::unsigned_xyz, NormalEncoding::octahedral,
-            NormalEncoding::unsigned_octahedral}) {
+      for (const AlcoveNormalEncoding encoding :
+           {ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ,
+            ALCOVE_NORMAL_ENCODING_OCTAHEDRAL, ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL}) {
         reading.normals.encoding = encoding;
         if (encoding != given_.normals.encoding) consider(Mistake::normal_encoding, reading);
       }

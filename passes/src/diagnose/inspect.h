@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "alcove/passes/frame.h"
-#include "alcove/passes/reconstruct.h"
+#include "work/view_parameters.h"
 
 namespace alcove::passes {
 
@@ -85,7 +84,7 @@ struct PixelSample {
 // A frame of a view as the engine describes it, and its samples. They lie on the grid of
 // inspect.comp, row by row.
 struct InspectedFrame {
-  View view;
+  AlcoveCamera camera{};
   VkExtent2D size{};        // of the part of the images that is in use
   VkExtent2D depth_size{};  // of the whole images, as the device reports them
   VkExtent2D normals_size{};

@@ -96,8 +96,10 @@ constexpr std::array<const char*, kMistakes> kSentences{
 };
 
 VkExtent2D read_size(const AlcoveView& view) {
-  return view.read_area.width > 0 ? VkExtent2D{view.read_area.width, view.read_area.height}
-                                  : VkExtent2D{view.depth.width, view.depth.height};
+  return view.info.read_area.width > 0
+             ? VkExtent2D{view.info.read_area.width, view.info.read_area.height}
+             : VkExtent2D{view.images[ALCOVE_IMAGE_DEPTH].width,
+                          view.images[ALCOVE_IMAGE_DEPTH].height};
 }
 
 bool is_reported(Mistake mistake, std::uint32_t seen) {
@@ -109,7 +111,8 @@ bool is_reported(Mistake mistake, std::uint32_t seen) {
 }  // namespace
 
 const char* const MistakeFinder::kTooManyViews =
-    "More views have a history than an engine could mean; give a view the same AlcoveView::id in "
+    "More views have a history than an engine could mean; give a view the same AlcoveViewInfo::id "
+    "in "
     "every frame, and call alcoveDropView for one that is no longer drawn.";
 
 MistakeFinder::View* MistakeFinder::find(std::uint32_t id) {
@@ -123,9 +126,9 @@ MistakeFinder::View& MistakeFinder::create(const AlcoveView& given) {
   View& place = *std::ranges::min_element(views_, {}, [](const View& view) {
     return view.used ? std::uint64_t{view.last_frame} + 1 : 0;
   });
-  is_new_ |= given.settings->history_frames > 0;
+  is_new_ |= given.info.settings->history_frames > 0;
   too_many_views_ |= is_new_ && place.used && place.has_history;
-  place = {.used = true, .id = given.id};
+  place = {.used = true, .id = given.info.id};
   return place;
 }
 
@@ -139,27 +142,28 @@ void MistakeFinder::drop_view(std::uint32_t id) {
 
 Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::uint32_t index) {
   Findings result;
-  const bool reset = given.reset_history != VK_FALSE;
-  const bool reads_index = given.settings->static_noise == 0 || given.settings->history_frames > 0;
+  const bool reset = given.info.reset_history != VK_FALSE;
+  const bool reads_index =
+      given.info.settings->static_noise == 0 || given.info.settings->history_frames > 0;
   result.set(Mistake::index_repeats, reads_index && index == view.index);
   result.set(Mistake::index_goes_back, reads_index && index < view.index);
   result.set(Mistake::history_reset, reset);
-  if (reset || given.settings->history_frames == 0) return result;
-  if (!same(given.camera, view.camera)) {
-    const bool is_last = same(given.previous_camera, view.camera);
-    const bool is_this = same(given.previous_camera, given.camera);
+  if (reset || given.info.settings->history_frames == 0) return result;
+  if (!same(given.info.camera, view.camera)) {
+    const bool is_last = same(given.info.previous_camera, view.camera);
+    const bool is_this = same(given.info.previous_camera, given.info.camera);
     const bool other_projection =
-        same(given.previous_camera.view_from_world, view.camera.view_from_world);
+        same(given.info.previous_camera.view_from_world, view.camera.view_from_world);
     result.set(Mistake::previous_is_this, is_this);
     result.set(Mistake::projection_is_another, !is_last && !is_this && other_projection);
     result.set(Mistake::previous_is_another, !is_last && !is_this && !other_projection);
-    result.set(Mistake::static_in_motion, given.static_frames > 0);
+    result.set(Mistake::static_in_motion, given.info.static_frames > 0);
   }
   const VkExtent2D size = read_size(given);
   const bool resized = size.width != view.size.width || size.height != view.size.height;
-  if (resized && given.largest_width > 0) {
-    result.set(Mistake::previous_size_is_wrong, given.previous_width != view.size.width ||
-                                                    given.previous_height != view.size.height);
+  if (resized && given.info.largest_width > 0) {
+    result.set(Mistake::previous_size_is_wrong, given.info.previous_width != view.size.width ||
+                                                    given.info.previous_height != view.size.height);
   }
   return result;
 }
@@ -168,15 +172,15 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
   ++frames_;
   is_new_ = false;
   for (const AlcoveView& given : std::span(frame.views, frame.view_count)) {
-    View* view = find(given.id);
+    View* view = find(given.info.id);
     if (view == nullptr)
       view = &create(given);
     else
-      observe(given.id, judge(*view, given, frame.index));
+      observe(given.info.id, judge(*view, given, frame.index));
     view->last_frame = frames_;
-    view->has_history = given.settings->history_frames > 0;
+    view->has_history = given.info.settings->history_frames > 0;
     view->index = frame.index;
-    view->camera = given.camera;
+    view->camera = given.info.camera;
     view->size = read_size(given);
   }
   new_views_ = static_cast<std::uint8_t>(new_views_ << 1 | (is_new_ ? 1 : 0));

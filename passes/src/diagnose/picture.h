@@ -55,10 +55,10 @@ class Picture {
  public:
   explicit Picture(const InspectedFrame& of)
       : frame(of),
-        clip_from_view(to_mat4(of.view.clip_from_view)),
+        clip_from_view(to_mat4(of.camera.clip_from_view)),
         view_from_clip(maths::inverse(clip_from_view)),
-        view_from_world(to_rigid(of.view.view_from_world)),
-        perspective(of.view.clip_from_view[15] == 0.0f) {
+        view_from_world(to_rigid(of.camera.view_from_world)),
+        perspective(of.camera.clip_from_view[15] == 0.0f) {
     gradients.reserve(of.samples.size());
     for (const PixelSample& sample : of.samples) gradients.push_back(gradient(sample));
   }

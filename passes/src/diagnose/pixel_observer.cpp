@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "inspect_parameters.h"
-#include "work/view_parameters.h"
+#include "work/view_work.h"
 
 namespace alcove::passes {
 namespace {
@@ -25,8 +25,10 @@ constexpr std::size_t kFrames = 3;  // that inspect() compares
 
 }  // namespace
 
-tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveView& view,
-                                             const OcclusionInputs& inputs, std::uint32_t slot) {
+tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Kernels& kernels,
+                                             const AlcoveView& view, const ViewTextures& inputs,
+                                             std::uint32_t slot) {
+  const AlcoveViewInfo& info = view.info;
   Pending& pending = pending_.at(slot);
   if (!pending.buffer) {
     auto made = HostBuffer::create(vk_, device_, kBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
@@ -34,32 +36,31 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
       return tl::unexpected(Error{"The buffer for pixels could not be created.", made.error()});
     pending.buffer = std::move(*made);
   }
-  const auto kernel = frame.kernels.get(Shader::inspect);
+  const auto kernel = kernels.get(Shader::inspect);
   if (!kernel) return tl::unexpected(kernel.error());
-  const Texture depth = inputs.depth_ndc, normals = inputs.normals;
-  const Texture motion = view.static_frames == 0 ? inputs.motion : Texture{};
-  const AlcoveArea& read = frame.areas.read;
-  const bool in_part = view.read_area.width > 0;
-  const VkExtent2D size = read.width > 0 ? VkExtent2D{read.width, read.height}
-                                         : VkExtent2D{view.depth.width, view.depth.height};
+  const Texture depth = inputs[ALCOVE_IMAGE_DEPTH], normals = inputs[ALCOVE_IMAGE_NORMALS];
+  const Texture motion = info.static_frames == 0 ? inputs[ALCOVE_IMAGE_MOTION] : Texture{};
+  const AlcoveImage& image = view.images[ALCOVE_IMAGE_DEPTH];
+  const AlcoveArea read = read_area(info, {image.width, image.height});
+  const VkExtent2D size =
+      read.width > 0 ? VkExtent2D{read.width, read.height} : VkExtent2D{image.width, image.height};
   pending.declared = true;
   pending.serial = serial_;
-  pending.id = view.id;
+  pending.id = info.id;
   pending.frame = {
-      .view = frame.view,
+      .camera = info.camera,
       .size = size,
-      .depth_format = view.depth.format,
+      .depth_format = image.format,
       .has_normals = bool(normals),
       .has_motion = bool(motion),
-      .normals = inputs.normal_convention,
-      .motion = inputs.motion_convention,
-      .radius = view.settings->radius,
-      .is_static = view.static_frames > 0,
-      .continues_history = view.reset_history == VK_FALSE && view.settings->history_frames > 0,
-      .has_largest_size = view.largest_width > 0,
-      .has_area = in_part,
+      .normals = normals_of(info, bool(normals)),
+      .motion = motion_of(info),
+      .radius = info.settings->radius,
+      .is_static = info.static_frames > 0,
+      .continues_history = info.reset_history == 0 && info.settings->history_frames > 0,
+      .has_largest_size = info.largest_width > 0,
+      .has_area = info.read_area.width > 0,
       .samples = {}};
-  framegraph::Graph& graph = frame.graph;
   Texture samples = graph.create_texture(
       "samples",
       {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kInspectColumns, kTexelRows)});
@@ -71,7 +72,7 @@ tl::expected<void, Error> PixelObserver::add(const Frame& frame, const AlcoveVie
                            framegraph::Contents::discard);
   const maths::InspectParameters parameters{
       {read.x, read.y}, {size.width, size.height}, normals ? 1u : 0u, motion ? 1u : 0u};
-  sampling.record([&kernels = frame.kernels, kernel = *kernel, depth, normals, motion, samples,
+  sampling.record([&kernels, kernel = *kernel, depth, normals, motion, samples,
                    parameters](RecordContext& context) {
     const std::array views{context.view(depth), context.view(normals ? normals : depth),
                            context.view(motion ? motion : depth), context.view(samples)};

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "alcove/alcove.h"
-#include "alcove/passes/occlusion.h"
+#include "alcove/passes/graph.h"
 #include "diagnose/mistake_finder.h"
 #include "vulkan/host_buffer.h"
 
@@ -24,8 +24,9 @@ class PixelObserver {
   // `finder` what they show. If that frame has not finished on the device, its slot is reused.
   void collect(std::uint32_t slot, MistakeFinder& finder);
   // Adds the passes that sample a view. Its samples are read only if recorded() is called.
-  [[nodiscard]] tl::expected<void, Error> add(const Frame& frame, const AlcoveView& view,
-                                              const OcclusionInputs& inputs, std::uint32_t slot);
+  [[nodiscard]] tl::expected<void, Error> add(framegraph::Graph& graph, Kernels& kernels,
+                                              const AlcoveView& view, const ViewTextures& inputs,
+                                              std::uint32_t slot);
   void recorded(std::uint32_t slot) { pending_.at(slot).recorded = pending_.at(slot).declared; }
   void discarded(std::uint32_t slot) { pending_.at(slot).recorded = false; }
 

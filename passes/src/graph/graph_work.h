@@ -2,71 +2,59 @@
 #pragma once
 
 #include <array>
-#include <memory_resource>
-#include <string>
 #include <string_view>
 
-#include "alcove/passes/work.h"
+#include "alcove/passes/graph.h"
+#include "work/view_work.h"
 
 namespace alcove::passes {
 
-// Assumptions about the histories of a list.
-enum class Histories : std::uint8_t {
-  of_graph,   // the graph's histories are declared, and it knows whether they are valid
-  moving,     // valid, and the camera has moved
-  unchanged,  // valid, and nothing has moved
-};
-
 // A list of work whose resources are textures of a graph. A description fills list(); add() then
-// creates the transients and adds a pass for each dispatch.
+// creates the transients and adds a pass for each dispatch. The list is that of the kernels
+// (Kernels::scratch), so only one object may exist at a time.
 class GraphWork {
  public:
-  // `history_name` is the name of the view's histories in the graph. Without a name, the list must
-  // have no histories.
-  GraphWork(const Frame& frame, std::string_view history_name, Histories histories);
+  GraphWork(framegraph::Graph& graph, Kernels& kernels, std::uint32_t view_id);
   GraphWork(const GraphWork&) = delete;
   GraphWork& operator=(const GraphWork&) = delete;
 
   WorkList& list() { return list_; }
-  const WorkFrame& frame() const { return work_frame_; }
+  // The texture of the graph for a resource of the list. Those of the engine are set before add().
+  framegraph::Texture& texture(framegraph::Texture listed) { return textures_.at(listed.index); }
 
-  // Returns the handle in the list of a texture of the graph. Null stays null.
-  framegraph::Texture import(framegraph::Texture texture);
-  // Returns the texture of the graph for a handle of the list, after add().
-  framegraph::Texture texture(framegraph::Texture listed) const;
+  // Creates the pipelines of all dispatches, and adds the dispatches to the graph.
+  [[nodiscard]] tl::expected<void, Error> add();
 
-  // Creates the pipelines of all dispatches.
-  [[nodiscard]] tl::expected<void, Error> create_pipelines();
-  // Adds all dispatches to the graph. Call create_pipelines() first.
-  void add();
+  // Resets the histories that the list does not have: they will be out of date when they are wanted
+  // again.
+  void reset_other_histories();
 
  private:
   bool declare_history(HistoryRole role, const WorkList::History& history);
   void add(const AlcoveWorkDispatch& dispatch, Kernel kernel);
   void declare_accesses(framegraph::PassBuilder& pass, const AlcoveWorkDispatch& dispatch);
 
-  const Frame& frame_;
-  std::string_view history_name_;
-  Histories histories_;
-  WorkFrame work_frame_;
-  AlcoveWork work_;
+  framegraph::Graph& graph_;
+  Kernels& kernels_;
+  std::uint32_t view_id_;
   WorkList list_;
   std::array<framegraph::Texture, ALCOVE_MAX_WORK_RESOURCES> textures_;  // parallel to resources
-  std::array<Kernel, ALCOVE_MAX_WORK_DISPATCHES> kernels_;
-  std::array<bool, ALCOVE_MAX_WORK_HISTORIES> declared_{};  // by HistoryRole
+  std::array<bool, ALCOVE_MAX_WORK_HISTORIES> declared_{};               // by HistoryRole
 };
 
-// The name of a history in the graph. The text is stored in the object, so that a frame that
+// Describes a view with textures of a graph.
+[[nodiscard]] AlcoveWorkInfo work_info(const framegraph::Graph& graph, const AlcoveViewInfo& info,
+                                       std::uint32_t index, const ViewTextures& textures);
+
+// The name of a view's history in the graph. The text is stored in the object, so that a frame that
 // repeats an earlier one allocates no memory.
 class HistoryName {
  public:
-  HistoryName(std::string_view view, HistoryRole role);
-  operator std::string_view() const { return text_; }
+  HistoryName(std::uint32_t view_id, HistoryRole role);
+  operator std::string_view() const { return text_.data(); }
 
  private:
-  std::array<std::byte, 128> room_;
-  std::pmr::monotonic_buffer_resource memory_{room_.data(), room_.size()};
-  std::pmr::string text_{&memory_};
+  std::array<char, 32> text_{};  // "view 4294967295 bent normal"
 };
 
 inline constexpr std::array kHistoryRoles{HistoryRole::visibility, HistoryRole::depth,

@@ -50,6 +50,7 @@ struct Kernels::State {
   std::array<ShaderObjects, kShaderCount> shaders;
   std::vector<Pipeline> pipelines;
   std::unique_ptr<DescriptorSets> sets;
+  AlcoveWork work;
 
   VkDevice device() const { return handles.device; }
   const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
@@ -288,6 +289,8 @@ void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
                                1, &set, 0, nullptr);
   s.vk.vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
 }
+
+AlcoveWork& Kernels::scratch() { return state_->work; }
 
 std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }
 

@@ -3,8 +3,9 @@
 
 #include <cstdint>
 
-#include "alcove/passes/work.h"
 #include "maths/normal_encoding.h"
+#include "work/view_parameters.h"
+#include "work/view_work.h"
 
 namespace alcove::passes {
 
@@ -24,18 +25,11 @@ namespace alcove::passes {
   return texture.index != framegraph::kNone ? texture : instead;
 }
 
-// Returns the texture that the caller gave for a result, or a new transient if it gave none.
-[[nodiscard]] inline framegraph::Texture given_or_added(WorkList& list, framegraph::Texture given,
-                                                        const char* name, VkFormat format,
-                                                        VkExtent2D size) {
-  return given ? given : list.add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, format, size);
-}
-
 // Returns `texture`, or a new one of one texel that the shader does not write. What a shader can
 // write must not be bound twice.
-[[nodiscard]] inline framegraph::Texture or_unused(WorkList& list, framegraph::Texture texture,
-                                                   VkFormat format) {
-  return given_or_added(list, texture, "unused output", format, {1, 1});
+[[nodiscard]] inline framegraph::Texture or_unused(const ViewWork& view,
+                                                   framegraph::Texture texture, VkFormat format) {
+  return texture ? texture : view.list.add_transient("unused output", format, {1, 1});
 }
 
 // Returns the variant of a shader with bent normals and with a GGX lobe. In the enum the shader is
@@ -44,16 +38,34 @@ namespace alcove::passes {
   return static_cast<Shader>(static_cast<int>(shader) + (bent ? 1 : 0) + (specular ? 2 : 0));
 }
 
-// Returns the format in which a depth texture was first stored: `given`, or that of the texture.
-[[nodiscard]] inline VkFormat stored_format(const WorkList& list, framegraph::Texture depth,
-                                            VkFormat given) {
-  return given != VK_FORMAT_UNDEFINED ? given : list.format(depth);
+// Returns the image of a role, or a new transient if there is none.
+[[nodiscard]] inline framegraph::Texture image_or_transient(const ViewWork& view,
+                                                            AlcoveImageRole role, const char* name,
+                                                            VkFormat format) {
+  if (const framegraph::Texture given = view.image(role)) return given;
+  return view.list.add_transient(
+      name, format,
+      {view.info.output_x + view.written.width, view.info.output_y + view.written.height});
 }
 
-// Returns the value of the specialisation constant kNormalEncoding for normals that may be null.
-[[nodiscard]] inline std::uint32_t encoding_of(framegraph::Texture normals,
-                                               NormalEncoding encoding) {
-  return normals ? static_cast<std::uint32_t>(encoding) : maths::kNoNormals;
+// Returns the value of the specialisation constant kNormalEncoding.
+[[nodiscard]] inline std::uint32_t encoding_of(const ViewWork& view) {
+  return view.image(ALCOVE_IMAGE_NORMALS) ? static_cast<std::uint32_t>(view.info.normal_encoding)
+                                          : maths::kNoNormals;
+}
+
+[[nodiscard]] inline NormalConvention normals_of(const ViewWork& view) {
+  return normals_of(view.info, bool(view.image(ALCOVE_IMAGE_NORMALS)));
+}
+
+// Sets the members `area` and `written` of a shader's parameters.
+template <typename Parameters>
+void set_areas(Parameters& parameters, const ViewWork& view) {
+  const AlcoveArea& written = view.written;
+  const AlcoveArea& read = view.read;
+  parameters.area = maths::uvec4(read.x, read.y, read.width, read.height);
+  parameters.written = maths::uvec4(written.x, written.y, written.x + written.width - 1,
+                                    written.y + written.height - 1);
 }
 
 }  // namespace alcove::passes

@@ -1,10 +1,10 @@
-// The number that selects the noise of a frame, and the pixel of each tile that is traced.
+// The pixel of each tile that is traced in a frame, and static noise.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-#include "alcove/passes/settings.h"
+#include "alcove/alcove_settings.h"
 
 namespace alcove::passes {
 
@@ -29,11 +29,11 @@ struct InterleaveOffset {
   return offset;
 }
 
-// Returns the number that selects the noise of a frame. Static noise is that of frame 1, which
-// traces the pixel beside the centre of each tile.
-[[nodiscard]] constexpr std::uint32_t noise_index(const OcclusionSettings& settings,
-                                                  std::uint32_t frame) {
-  return has_static_noise(settings) ? 1 : frame;
+// Returns whether all frames have the same noise. It is that of frame kStaticNoise, which traces
+// the pixel beside the centre of each tile.
+[[nodiscard]] constexpr bool has_static_noise(const AlcoveSettings& settings) {
+  return settings.static_noise != 0 && settings.history_frames == 0;
 }
+inline constexpr std::uint32_t kStaticNoise = 1;
 
 }  // namespace alcove::passes

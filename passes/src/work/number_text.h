@@ -1,8 +1,10 @@
-// Formats numbers for the sentences of the library.
+// Numbers for the sentences of the library.
 #pragma once
 
 #include <array>
 #include <charconv>
+#include <cstdint>
+#include <cstring>
 #include <string>
 
 #include <vulkan/vulkan_core.h>
@@ -15,6 +17,16 @@ namespace alcove::passes {
   std::array<char, 16> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   return {text.data(), end};
+}
+
+// Returns the bits of an enum that C code wrote. Reading a value that the enum does not have would
+// be undefined behaviour in C++.
+template <typename Enum>
+[[nodiscard]] std::uint32_t number_of(const Enum& value) {
+  std::uint32_t number = 0;
+  static_assert(sizeof value == sizeof number);
+  std::memcpy(&number, &value, sizeof number);
+  return number;
 }
 
 [[nodiscard]] inline std::string size_text(VkExtent2D size) {

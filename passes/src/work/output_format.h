@@ -1,15 +1,19 @@
 // The formats of results for each precision.
 #pragma once
 
-#include "alcove/passes/frame.h"
+#include <vulkan/vulkan_core.h>
+
+#include <cstdint>
+
+#include "alcove/alcove_settings.h"
 
 namespace alcove::passes {
 
-[[nodiscard]] inline VkFormat scalar_format(Precision precision) {
+[[nodiscard]] inline VkFormat scalar_format(AlcovePrecision precision) {
   switch (precision) {
-    case Precision::unorm8:
+    case ALCOVE_PRECISION_UNORM8:
       return VK_FORMAT_R8_UNORM;
-    case Precision::float16:
+    case ALCOVE_PRECISION_FLOAT16:
       return VK_FORMAT_R16_SFLOAT;
     default:
       return VK_FORMAT_R32_SFLOAT;
@@ -17,11 +21,11 @@ namespace alcove::passes {
 }
 
 // Returns the format of colours from 0 to 1.
-[[nodiscard]] inline VkFormat colour_format(Precision precision) {
+[[nodiscard]] inline VkFormat colour_format(AlcovePrecision precision) {
   switch (precision) {
-    case Precision::unorm8:
+    case ALCOVE_PRECISION_UNORM8:
       return VK_FORMAT_R8G8B8A8_UNORM;
-    case Precision::float16:
+    case ALCOVE_PRECISION_FLOAT16:
       return VK_FORMAT_R16G16B16A16_SFLOAT;
     default:
       return VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -29,8 +33,8 @@ namespace alcove::passes {
 }
 
 // Returns the format of unit vectors.
-[[nodiscard]] inline VkFormat direction_format(Precision precision) {
-  return precision == Precision::unorm8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
+[[nodiscard]] inline VkFormat direction_format(AlcovePrecision precision) {
+  return precision == ALCOVE_PRECISION_UNORM8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
 }
 
 // Returns the format of the raw occlusion that add_gtao() writes: two 32-bit words, or four if it

@@ -1,9 +1,9 @@
 #include <array>
 #include <string>
 
-#include "alcove/passes/work.h"
 #include "work/format_name.h"
 #include "work/shader_table.h"
+#include "work/work_list.h"
 
 namespace alcove::passes {
 namespace {
@@ -33,7 +33,6 @@ void print(Text& to, const AlcoveWorkResource& resource) {
     to << ", " << format_name(static_cast<VkFormat>(resource.format)) << ", "
        << std::uint64_t{resource.width} << "x" << std::uint64_t{resource.height};
   }
-  if (resource.mip_count > 1) to << ", " << std::uint64_t{resource.mip_count} << " mips";
   if (resource.size > 0) to << ", " << resource.size << " bytes";
   if (resource.first_dispatch == ALCOVE_WORK_NONE) {
     to << ", not used\n";

@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "maths/slice_line.h"
-#include "work/areas.h"
+#include "work/bindings.h"
 #include "work/interleave_offset.h"
-#include "work/view_parameters.h"
 
 namespace alcove::passes {
 namespace {
@@ -111,13 +110,12 @@ maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& vie
 // needed less the more slices each of them has. A static image averages ever more frames, which
 // make the samples of neighbours dispensable. Fitted to error and grain of `alcove compare --frames
 // 8`, 24 and 32, with and without --orbit.
-float near_sharpness(const WorkFrame& frame, const ReconstructInputs& inputs, float texel) {
-  const bool is_static = frame.view == frame.previous_view && !inputs.motion;
+float near_sharpness(const ViewWork& view, bool is_static, float texel) {
   if (!is_static) {
     const float one_slice = texel > 1.0f ? 1.0f : 1.3f;
-    return inputs.raw_occlusion.slices > 1 ? 1.7f : one_slice;
+    return view.settings.slices > 1 ? 1.7f : one_slice;
   }
-  const auto frames = static_cast<float>(frame.static_frames);
+  const auto frames = static_cast<float>(view.static_frames);
   return std::lerp(0.8f, 2.2f, std::clamp((frames - 8.0f) / 16.0f, 0.0f, 1.0f));
 }
 
@@ -127,19 +125,19 @@ float near_sharpness(const WorkFrame& frame, const ReconstructInputs& inputs, fl
 // window stays wider. With one slice, whose noise is large, it then widens more between centres: a
 // surface that moves over the image meets other directions in each frame than the pattern has
 // prepared for one pixel. Fitted to error and grain (`alcove compare --orbit 0.4`).
-maths::vec2 smallest_window(const RawOcclusionTextures& raw_occlusion, float texel) {
-  const bool wide = static_cast<float>(raw_occlusion.tile_size) > 2.0f * texel;
+maths::vec2 smallest_window(const AlcoveSettings& settings, float texel) {
+  const bool wide = static_cast<float>(settings.tile_size) > 2.0f * texel;
   const float own = wide ? 1.45f : 0.58f;
-  const float between = wide && raw_occlusion.slices == 1 ? 10.4f : 2.6f;
+  const float between = wide && settings.slices == 1 ? 10.4f : 2.6f;
   return 8.0f * texel * texel * maths::vec2(own * own, between);
 }
 
 // Returns the width of the filter's window in pixels for a frame without history: wide if there are
 // few slices, and with many slices hardly wider than a tile. Fitted to the error of first frames
 // (`alcove compare --frames 1`).
-float window_px(const RawOcclusionTextures& raw_occlusion) {
-  const float few = 1.1f / std::sqrt(static_cast<float>(raw_occlusion.slices));
-  return static_cast<float>(raw_occlusion.tile_size) * std::max(few, 0.55f);
+float window_px(const AlcoveSettings& settings) {
+  const float few = 1.1f / std::sqrt(static_cast<float>(settings.slices));
+  return static_cast<float>(settings.tile_size) * std::max(few, 0.55f);
 }
 
 // The second difference of depth, in units of the tolerance, up to which a tangent plane is
@@ -162,19 +160,22 @@ constexpr float kFilterTolerancePx = 1.5f;
 
 }  // namespace
 
-maths::ReconstructParameters reconstruct_parameters(
-    const WorkFrame& frame, const maths::Projection& projection, const maths::Projection& previous,
-    const ReconstructInputs& inputs, const OcclusionSettings& settings, VkFormat depth_format) {
+maths::ReconstructParameters reconstruct_parameters(const ViewWork& view,
+                                                    const PreviousFrame& from) {
+  const AlcoveViewInfo& info = view.info;
+  const AlcoveSettings& settings = view.settings;
+  const maths::Projection& projection = view.projection;
+  const maths::Projection& previous = from.projection;
   const maths::mat4 from_pixel = view_from_pixel(projection);
   // This matrix is computed in double, because the translations nearly cancel if the camera is far
   // from the origin.
-  const maths::dmat4 to_previous = to_rigid(frame.previous_view.view_from_world) *
-                                   maths::inverse(to_rigid(frame.view.view_from_world));
-  const maths::mat4 to_view = view_from_normal(frame.view, inputs.normal_convention);
+  const maths::dmat4 to_previous =
+      to_rigid(from.camera.view_from_world) * maths::inverse(to_rigid(info.camera.view_from_world));
+  const maths::mat4 to_view = view_from_normal(info.camera, normals_of(view));
   maths::ReconstructParameters parameters{};
   const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
       maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
-  const float texel = settings.half_resolution ? 2.0f : 1.0f;
+  const float texel = settings.half_resolution != 0 ? 2.0f : 1.0f;
   // From pixels to texels, from the centre of the first one.
   const maths::vec4 x = previous_from_pixel[0] / texel - 0.5f * previous_from_pixel[3];
   const maths::vec4 y = previous_from_pixel[1] / texel - 0.5f * previous_from_pixel[3];
@@ -188,17 +189,15 @@ maths::ReconstructParameters reconstruct_parameters(
   parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
                                  projection.uv_to_slope.w);
   // More slices reduce the distance from the tangent plane that is tolerated.
-  parameters.tolerance = std::sqrt(static_cast<float>(inputs.raw_occlusion.slices)) /
+  parameters.tolerance = std::sqrt(static_cast<float>(settings.slices)) /
                          (kFilterTolerancePx * std::abs(maths::ray_per_px(projection).y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   // The distances between the borders of the area that is read and those of the area that is
   // written were the same in the previous frame.
-  const VkExtent2D read{static_cast<std::uint32_t>(projection.size_px.x),
-                        static_cast<std::uint32_t>(projection.size_px.y)};
-  set_areas(parameters, frame, read);
+  set_areas(parameters, view);
   const maths::vec2 beyond =
       projection.size_px - 1.0f - maths::vec2(parameters.written.z, parameters.written.w);
-  parameters.to_outputs = maths::ivec2(frame.areas.output_x, frame.areas.output_y) -
+  parameters.to_outputs = maths::ivec2(info.output_x, info.output_y) -
                           maths::ivec2(parameters.written.x, parameters.written.y);
   parameters.previous_extent = maths::vec4(maths::ceil((previous.size_px - beyond) / texel) - 1.0f,
                                            previous.size_px / projection.size_px / texel);
@@ -214,7 +213,7 @@ maths::ReconstructParameters reconstruct_parameters(
         parameters.history_depth_scale.z * static_cast<float>(std::ilogb(history_unit(previous)) -
                                                               std::ilogb(history_unit(projection)));
   }
-  if (settings.half_resolution) {
+  if (settings.half_resolution != 0) {
     parameters.history_sharpness = half_history_sharpness(projection);
     parameters.history_slack = kHalfHistorySlack;
   } else {
@@ -225,31 +224,30 @@ maths::ReconstructParameters reconstruct_parameters(
                              (is_perspective(projection) ? 1.442695f : 1.0f);
   // The dither offsets of the frames are multiples of the golden ratio modulo 1, which are spread
   // evenly over any number of successive frames.
-  const std::uint32_t index = noise_index(settings, frame.index);
-  parameters.dither_offset = static_cast<float>(index * 2654435769u) * 0x1p-32f;
-  const MotionConvention& motion = inputs.motion_convention;
+  parameters.dither_offset = static_cast<float>(view.index * 2654435769u) * 0x1p-32f;
+  const MotionConvention motion = motion_of(info);
   parameters.motion = maths::vec4(
       maths::vec2(motion.scale[0], motion.scale[1]) * previous.size_px / texel,
       maths::vec2(motion.offset[0], motion.offset[1]) * previous.size_px / texel + 0.5f);
   parameters.roughness = settings.roughness;
-  const float window = window_px(inputs.raw_occlusion);
-  // kBetween of the shader: each pixel averages the traced pixels around it.
-  const bool is_between = inputs.raw_occlusion.tile_size > 1;
-  const float sharpness = is_between ? near_sharpness(frame, inputs, texel) : 1.0f;
+  const float window = window_px(settings);
+  // With tiles, each pixel averages the traced pixels around it, as kBetween of the shader.
+  const float sharpness = settings.tile_size > 1 ? near_sharpness(view, from.is_same, texel) : 1.0f;
   parameters.wide_sharpness = 1.0f / sharpness;
   parameters.first_sharpness = sharpness * 0.125f / (window * window);
-  parameters.smallest_window = smallest_window(inputs.raw_occlusion, texel) / sharpness;
-  const auto [offset_x, offset_y] = interleave_offset_of(inputs.raw_occlusion.tile_size, index);
+  parameters.smallest_window = smallest_window(settings, texel) / sharpness;
+  const auto [offset_x, offset_y] = interleave_offset_of(settings.tile_size, view.index);
   parameters.interleave_pixel = {offset_x, offset_y};
   parameters.traced_range =
       traced_range(projection.size_px, maths::vec2(parameters.interleave_pixel),
-                   static_cast<float>(inputs.raw_occlusion.tile_size));
+                   static_cast<float>(settings.tile_size));
   const float scale = parameters.inverse_depth_from_ndc.x;
   const float per_ndc = std::abs(scale);
   const bool from_zero =
       maths::is_counted_from_zero(is_perspective(projection), is_reversed(projection));
   parameters.half_inverse_depth_per_ndc = from_zero ? 0.5f * scale : -0.5f * scale;
-  parameters.depth_step = std::max(depth_step(projection, depth_format).constant, 0.0f) / per_ndc;
+  parameters.depth_step =
+      std::max(depth_step(projection, view.depth_format).constant, 0.0f) / per_ndc;
   parameters.largest_bend = kLargestBend / (per_ndc * parameters.tolerance);
   parameters.power = settings.power;
   parameters.intensity = settings.intensity;

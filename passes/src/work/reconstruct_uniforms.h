@@ -1,17 +1,22 @@
 // The parameters of shaders/reconstruct.comp.
 #pragma once
 
-#include "alcove/passes/work.h"
 #include "maths/projection.h"
 #include "reconstruct_parameters.h"
+#include "work/view_work.h"
 
 namespace alcove::passes {
 
-// Returns all parameters except the size of the history's texture. `previous` is the previous
-// frame's projection. ReconstructParameters::largest_weight is set to its value for a view that is
-// not static. `depth_format` is the format of the depth buffer.
-[[nodiscard]] maths::ReconstructParameters reconstruct_parameters(
-    const WorkFrame& frame, const maths::Projection& projection, const maths::Projection& previous,
-    const ReconstructInputs& inputs, const OcclusionSettings& settings, VkFormat depth_format);
+// The frame before, with which history is reprojected; this frame if there is no history.
+struct PreviousFrame {
+  const AlcoveCamera& camera;
+  maths::Projection projection;
+  bool is_same = true;  // nothing has moved: the camera is the same, and there is no motion image
+};
+
+// Returns all parameters except the size of the history's texture.
+// ReconstructParameters::largest_weight is set to its value for a view that is not static.
+[[nodiscard]] maths::ReconstructParameters reconstruct_parameters(const ViewWork& view,
+                                                                  const PreviousFrame& previous);
 
 }  // namespace alcove::passes

@@ -4,21 +4,21 @@
 #include <cmath>
 #include <cstddef>
 
-#include "alcove/passes/frame.h"
+#include "alcove/alcove_camera.h"
 #include "maths/language.h"
 
 namespace alcove::passes {
 
-[[nodiscard]] inline maths::mat4 to_mat4(const Matrix& matrix) {
+[[nodiscard]] inline maths::mat4 to_mat4(const float (&matrix)[16]) {
   maths::mat4 result;
-  for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)];
+  for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = matrix[i];
   return result;
 }
 
 // Returns whether `m` is a rotation or a reflection (for left-handed worlds) with a translation, up
 // to rounding errors. It is not if an engine passes a scaled or transposed matrix by mistake. A
 // camera matrix that was inverted in floats has rounding errors of at most about 1e-6.
-[[nodiscard]] inline bool is_rigid(const Matrix& m) {
+[[nodiscard]] inline bool is_rigid(const float (&m)[16]) {
   constexpr float kAxes = 1e-3f;  // tolerance of dot products between axes
   constexpr float kRow = 1e-5f;   // tolerance of the elements of the last row that should be 0
   for (std::size_t a = 0; a < 3; ++a) {
@@ -37,7 +37,7 @@ namespace alcove::passes {
 // Returns the rigid transform nearest to `matrix`, which must satisfy is_rigid(): axes of length 1
 // at right angles, and the last row 0 0 0 1. The Gram-Schmidt process is used. Its result depends
 // on which axis goes first, but by far less than a pixel.
-[[nodiscard]] inline maths::dmat4 to_rigid(const Matrix& matrix) {
+[[nodiscard]] inline maths::dmat4 to_rigid(const float (&matrix)[16]) {
   const maths::dmat4 m(to_mat4(matrix));
   const maths::dvec3 x = maths::normalize(maths::dvec3(m[0]));
   const maths::dvec3 y =

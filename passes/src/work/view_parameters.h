@@ -1,13 +1,15 @@
-// Converts a View to the parameters that the shaders use.
+// Converts cameras and conventions to the parameters that the shaders use.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
 #include <type_traits>
 
-#include "alcove/passes/work.h"
+#include "alcove/alcove_work.h"
+#include "alcove/passes/kernels.h"
 #include "maths/make_projection.h"
 #include "maths/slice_line.h"
 #include "work/rigid_transform.h"
@@ -17,40 +19,63 @@ namespace alcove::passes {
 // Returns whether a perspective matrix was given in row-major instead of column-major order: the
 // coefficient 1 of w = -z is then found in the place of the depth offset. A perspective matrix with
 // a scaled w could look the same, but engines do not use such matrices.
-[[nodiscard]] inline bool is_transposed(const Matrix& clip_from_view) {
+[[nodiscard]] inline bool is_transposed(const float (&clip_from_view)[16]) {
   const auto is_one = [](float value) { return std::abs(std::abs(value) - 1.0f) <= 1e-5f; };
   return is_one(clip_from_view[14]) && !is_one(clip_from_view[11]) && clip_from_view[11] != 0.0f &&
          clip_from_view[15] == 0.0f;
 }
 
-// Returns the projection of a view onto an image of `size` pixels, or an error that says what is
-// wrong with the view. The error sentence calls the view `name`.
+// Returns the projection of a camera onto an image of `size` pixels, or an error that says what is
+// wrong with the camera. The sentence calls the view `name`.
 [[nodiscard]] inline tl::expected<maths::Projection, Error> projection_of(
-    const View& view, VkExtent2D size, const char* name = "The view") {
+    const AlcoveCamera& camera, VkExtent2D size, const char* name = "The view") {
   const auto unusable = [name](const std::string& why) {
     return Error{std::string(name) + " cannot be used: " + why + "."};
   };
-  if (!is_rigid(view.view_from_world)) {
+  if (!is_rigid(camera.view_from_world)) {
     return tl::unexpected(
         unusable("view_from_world is not a rotation and translation; it must be column-major, "
                  "without scale and finite"));
   }
-  if (is_transposed(view.clip_from_view))
+  if (is_transposed(camera.clip_from_view))
     return tl::unexpected(unusable("clip_from_view is transposed; it must be column-major"));
-  return maths::make_projection(to_mat4(view.clip_from_view), size.width, size.height)
+  return maths::make_projection(to_mat4(camera.clip_from_view), size.width, size.height)
       .map_error(unusable);
 }
 
-// The convention of the normals that the passes make from depth.
-inline constexpr NormalConvention kOwnNormals{.in_view_space = true};
+// How the image NORMALS is meant. AlcoveViewInfo describes the fields.
+struct NormalConvention {
+  AlcoveNormalEncoding encoding = ALCOVE_NORMAL_ENCODING_SIGNED_XYZ;
+  bool in_view_space = false;
+  bool forward_z = false;
+};
+
+// Returns the convention of a view's normals, or of those that the passes make from depth.
+[[nodiscard]] inline NormalConvention normals_of(const AlcoveViewInfo& info, bool given) {
+  if (!given) return {.in_view_space = true};
+  return {info.normal_encoding, info.normals_in_view_space != 0, info.normals_forward_z != 0};
+}
 
 // Returns the rotation or reflection from the space of the normals to view space.
-[[nodiscard]] inline maths::mat4 view_from_normal(const View& view,
+[[nodiscard]] inline maths::mat4 view_from_normal(const AlcoveCamera& camera,
                                                   const NormalConvention& convention) {
-  if (!convention.in_view_space) return maths::mat4(to_rigid(view.view_from_world));
+  if (!convention.in_view_space) return maths::mat4(to_rigid(camera.view_from_world));
   maths::mat4 result(1.0f);
   if (convention.forward_z) result[2][2] = -1.0f;
   return result;
+}
+
+// How motion vectors are meant.
+struct MotionConvention {
+  std::array<float, 2> scale{1.0f, 1.0f};
+  std::array<float, 2> offset{};
+};
+
+[[nodiscard]] inline MotionConvention motion_of(const AlcoveViewInfo& info) {
+  MotionConvention motion{{info.motion_scale[0], info.motion_scale[1]},
+                          {info.motion_offset[0], info.motion_offset[1]}};
+  if (motion.scale[0] == 0.0f && motion.scale[1] == 0.0f) motion.scale = {1.0f, 1.0f};
+  return motion;
 }
 
 [[nodiscard]] inline bool is_perspective(const maths::Projection& projection) {

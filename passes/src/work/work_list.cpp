@@ -1,8 +1,9 @@
+#include "work/work_list.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
 
-#include "alcove/passes/work.h"
 #include "work/output_format.h"
 #include "work/shader_table.h"
 
@@ -31,11 +32,8 @@ AlcoveBindingType binding_type(VkDescriptorType type) {
 }
 
 // Returns the size of the texels of an image that the passes create.
-std::uint64_t image_bytes(VkFormat format, VkExtent2D size, std::uint32_t mips) {
-  std::uint64_t texels = 0;
-  for (std::uint32_t mip = 0; mip < mips; ++mip)
-    texels += std::uint64_t{std::max(size.width >> mip, 1u)} * std::max(size.height >> mip, 1u);
-  return texels * texel_bytes(format);
+std::uint64_t image_bytes(VkFormat format, VkExtent2D size) {
+  return std::uint64_t{size.width} * size.height * texel_bytes(format);
 }
 
 bool is_of_host(AlcoveResourceKind kind) {
@@ -60,21 +58,20 @@ WorkList::WorkList(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
 }
 
 Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format, VkExtent2D size,
-                      std::uint32_t mips, std::uint32_t samples) {
+                      std::uint32_t samples, std::uint32_t role) {
   if (work_.resource_count == ALCOVE_MAX_WORK_RESOURCES) return {};
-  work_.resources[work_.resource_count] = {
-      .name = name,
-      .kind = kind,
-      .format = static_cast<std::uint32_t>(format),
-      .width = size.width,
-      .height = size.height,
-      .mip_count = mips,
-      .samples = samples,
-      .usage = 0,
-      .first_dispatch = ALCOVE_WORK_NONE,
-      .last_dispatch = ALCOVE_WORK_NONE,
-      .size = is_of_host(kind) ? 0 : image_bytes(format, size, mips),
-      .data = nullptr};
+  work_.resources[work_.resource_count] = {.name = name,
+                                           .kind = kind,
+                                           .role = role,
+                                           .format = static_cast<std::uint32_t>(format),
+                                           .width = size.width,
+                                           .height = size.height,
+                                           .samples = samples,
+                                           .usage = 0,
+                                           .first_dispatch = ALCOVE_WORK_NONE,
+                                           .last_dispatch = ALCOVE_WORK_NONE,
+                                           .size = is_of_host(kind) ? 0 : image_bytes(format, size),
+                                           .data = nullptr};
   return {work_.resource_count++};
 }
 
@@ -98,14 +95,17 @@ std::uint32_t WorkList::add_table(const char* name, std::span<const std::uint32_
   const Texture table = add(ALCOVE_RESOURCE_KIND_TABLE, name, VK_FORMAT_UNDEFINED, {});
   if (table) {
     AlcoveWorkResource& added = work_.resources[table.index];
-    added.mip_count = 0;
     added.size = words.size_bytes();
     added.data = words.data();
   }
   return table.index;
 }
 
-tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
+void WorkList::dispatch(const DispatchInfo& info) {
+  if (result_) result_ = add_dispatch(info);
+}
+
+tl::expected<void, Error> WorkList::add_dispatch(const DispatchInfo& info) {
   const ShaderSource source = shader_source(info.shader);
   const auto fail = [&](std::string_view what) {
     return tl::unexpected(Error{std::string("The shader '").append(source.name).append("' ") +
@@ -126,10 +126,10 @@ tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
   made.binding_count = 0;
   std::size_t images = 0;
   for (const ShaderBinding& binding : shader_interface(info.shader).bindings) {
-    const NamedTexture table{"", {}};
-    const NamedTexture* given = &table;
-    if (binding.is_image()) given = find_named(info.images, binding.name, images++);
-    if (given == nullptr || !bind(made, binding, *given, source.table)) {
+    const NamedTexture* const given =
+        binding.is_image() ? find_named(info.images, binding.name, images++) : nullptr;
+    const Texture texture = given == nullptr ? Texture{} : given->texture;
+    if (!bind(made, binding, texture, source.table)) {
       return fail(std::string("has a binding '").append(binding.name) +
                   "', for which its pass gives no image; name it in the pass's list of images");
     }
@@ -142,24 +142,21 @@ tl::expected<void, Error> WorkList::dispatch(const DispatchInfo& info) {
 
 // Adds a binding to the dispatch that is being added, and the use to its resource: the image that
 // is given, or the table. Returns false if there is no resource.
-bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding,
-                    const NamedTexture& given, std::span<const std::uint32_t> table) {
+bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding, Texture given,
+                    std::span<const std::uint32_t> table) {
   AlcoveWorkBinding& bound = dispatch.bindings[dispatch.binding_count++];
   bound = {.name = binding.name.empty() ? "" : binding.name.data(),
            .number = binding.number,
            .type = binding_type(binding.type),
            .access = binding.access,
-           .resource = ALCOVE_WORK_NONE,
-           .mip = given.range.base_mip,
-           .mip_count = 0};
+           .resource = ALCOVE_WORK_NONE};
   if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS || bound.type == ALCOVE_BINDING_TYPE_SAMPLER)
     return true;
   const Texture used =
-      bound.type == ALCOVE_BINDING_TYPE_TABLE ? Texture{add_table("table", table)} : given.texture;
+      bound.type == ALCOVE_BINDING_TYPE_TABLE ? Texture{add_table("table", table)} : given;
   if (find(used) == nullptr) return false;
   AlcoveWorkResource& resource = work_.resources[used.index];
   bound.resource = used.index;
-  bound.mip_count = given.range.mips == framegraph::kAll ? resource.mip_count : given.range.mips;
   resource.first_dispatch = std::min(resource.first_dispatch, work_.dispatch_count);
   resource.last_dispatch = work_.dispatch_count;
   if (binding.is_image()) {
@@ -186,11 +183,6 @@ VkFormat WorkList::format(Texture texture) const {
 std::uint32_t WorkList::samples(Texture texture) const {
   const AlcoveWorkResource* const found = find(texture);
   return found == nullptr ? 0 : found->samples;
-}
-
-std::uint32_t WorkList::mips(Texture texture) const {
-  const AlcoveWorkResource* const found = find(texture);
-  return found == nullptr ? 0 : found->mip_count;
 }
 
 }  // namespace alcove::passes

@@ -1,7 +1,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/commands.h"
 #include "cli/settings.h"
 #include "gpu_cost/budget.h"
@@ -15,10 +15,10 @@ namespace alcove::sample {
 namespace {
 
 // The preset with the changes of --set.
-Result<LabelledSettings> labelled_settings(const Options& options, passes::Quality quality) {
+Result<LabelledSettings> labelled_settings(const Options& options, AlcoveQuality quality) {
   OcclusionOptions one = options.occlusion;
   one.quality = quality;
-  LabelledSettings labelled{std::string(passes::name_of(quality)), options.cost.inputs};
+  LabelledSettings labelled{std::string(passes::kQualityNames.at(quality)), options.cost.inputs};
   ALCOVE_TRY(labelled.inputs.settings,
              occlusion_settings(one, 0.5f));  // no instruction depends on the radius
   labelled.inputs.width = options.view.width;
@@ -31,24 +31,21 @@ Result<LabelledSettings> labelled_settings(const Options& options, passes::Quali
 
 Result<std::vector<SettingsCost>> measure(const Options& options) {
   std::vector<LabelledSettings> settings;
-  for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+  for (const AlcoveQuality quality : chosen_presets(options.occlusion)) {
     ALCOVE_TRY(settings.emplace_back(), labelled_settings(options, quality));
   }
-  return model_costs(settings, options.gpu);
-}
-
-Result<void> write_budget(const std::filesystem::path& file) {
-  ALCOVE_TRY(const auto device, create_null_device(kGpuParts.front().family));
-  ALCOVE_TRY(const auto costs, model_costs(budgeted_settings()));
-  return write_text(file, format_budget(costs, device.compiler));
+  return model_costs(settings, options.gpu, options.cost.range);
 }
 
 }  // namespace
 
 Result<void> run_cost(const Options& options) {
-  if (!options.cost.budget.empty()) return write_budget(options.cost.budget);
+  if (!options.cost.budget.empty()) {
+    ALCOVE_TRY(const auto budget, gpu_budget());
+    return write_text(options.cost.budget, budget);
+  }
   ALCOVE_TRY(const auto costs, measure(options));
-  std::cout << format_table(costs, options.cost.loops);
+  std::cout << format_table(costs);
   if (options.cost.json.empty()) return {};
   return write_text(options.cost.json, to_json(costs).dump(2) + "\n");
 }

@@ -5,11 +5,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/settings.h"
-#include "gpu/pipeline_capture.h"
+#include "evaluate/static_view.h"
 #include "gpu_cost/cost_report.h"
 #include "render/frame_renderer.h"
 #include "spirv/empty.h"
@@ -111,21 +111,6 @@ struct MeasuredFrame {
   std::vector<PassTime> passes;
 };
 
-FrameRequest moving_request(const Session& session, const CostInputs& inputs, std::uint32_t frame) {
-  const auto matrices = [&](std::uint32_t of) {
-    return camera_matrices(orbited(session.camera, kOrbit * static_cast<float>(of)), inputs.width,
-                           inputs.height);
-  };
-  const CameraMatrices now = matrices(frame);
-  const CameraMatrices before = matrices(frame == 0 ? 0 : frame - 1);
-  FrameRequest request;
-  request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
-                  before.clip_from_view, session.camera.reversed_z};
-  request.index = frame;
-  request.occlusion = inputs.settings;
-  return request;
-}
-
 // Renders frames of a moving camera. The first ones, which compile shaders, are not counted.
 Result<MeasuredFrame> measure(const Session& session, const Options& options,
                               const LabelledSettings& settings) {
@@ -135,10 +120,17 @@ Result<MeasuredFrame> measure(const Session& session, const Options& options,
              FrameRenderer::create(*gpu, session.scene, {inputs.width, inputs.height},
                                    options.occlusion.normals));
   constexpr std::uint32_t kWarmUp = 4;
+  const StaticSetup setup{.camera = session.camera,
+                          .width = inputs.width,
+                          .height = inputs.height,
+                          .frames = kWarmUp + options.view.frames,
+                          .orbit = kOrbit};
   std::vector<std::string> order;
   std::map<std::string, std::vector<double>> times;
-  for (std::uint32_t i = 0; i < kWarmUp + options.view.frames; ++i) {
-    ALCOVE_TRY(const auto cost, renderer->draw(moving_request(session, inputs, i)));
+  for (std::uint32_t i = 0; i < setup.frames; ++i) {
+    FrameRequest request = frame_request(setup, inputs.settings, i);
+    request.occlusion = inputs.settings;  // with specular occlusion
+    ALCOVE_TRY(const auto cost, renderer->draw(request));
     for (const PassTime& pass : cost.gpu) {
       if (i == 0) order.push_back(pass.pass);
       if (i >= kWarmUp) times[pass.pass].push_back(pass.milliseconds);
@@ -197,44 +189,11 @@ Json print(const MeasuredFrame& frame) {
           {"passes", std::move(passes)}};
 }
 
-// Prints what the driver's compiler says about the pipelines of one frame after another.
-Json print_registers(const Session& session) {
-  Json list = Json::array();
-  std::cout << "Compute pipelines in the order of their creation, as the driver describes them:\n";
-  for (const VkPipeline pipeline : captured_pipelines()) {
-    const auto compiled = read_compiled_shader(session.gpu->device().device(), pipeline);
-    if (!compiled) {
-      std::cout << "  " << compiled.error() << "\n";
-      break;
-    }
-    std::cout << fmt::format("  subgroup {}:", compiled->wave);
-    for (const auto& [name, value] : compiled->statistics)
-      std::cout << fmt::format(" {} {:g},", name, value);
-    std::cout << "\n";
-    list.push_back({{"subgroup", compiled->wave}, {"statistics", compiled->statistics}});
-  }
-  if (captured_pipelines().empty())
-    std::cout << "  The device does not have VK_KHR_pipeline_executable_properties.\n";
-  return list;
-}
-
-// Draws a few frames on the session's own device, so that its pipelines are captured.
-Result<void> compile(const Session& session, const Options& options, const CostInputs& inputs) {
-  ALCOVE_TRY(const auto renderer,
-             FrameRenderer::create(*session.gpu, session.scene, {inputs.width, inputs.height},
-                                   options.occlusion.normals));
-  for (std::uint32_t i = 0; i < 3; ++i)
-    ALCOVE_TRY_VOID(renderer->draw(moving_request(session, inputs, i)));
-  return {};
-}
-
 }  // namespace
 
 Result<void> run_measure(const Options& options) {
-  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
-  ALCOVE_TRY(auto session, load_session(options));
-  session.device = {options.device, options.validation, {}, true};
-  ALCOVE_TRY(session.gpu, open_gpu(session.device));
+  ALCOVE_TRY_VOID(create_folder(options.out));
+  ALCOVE_TRY(const auto session, open_session(options));
   const VulkanDevice& device = session.gpu->device();
   std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
   ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(*session.gpu));
@@ -245,20 +204,18 @@ Result<void> run_measure(const Options& options) {
               {"frames", options.view.frames},
               {"dispatch_us", dispatch.alone_us},
               {"dispatch_behind_barrier_us", dispatch.behind_barrier_us}};
-  std::optional<CostInputs> last;
   for (const auto& [width, height] : options.sizes) {
-    for (const passes::Quality quality : chosen_presets(options.occlusion)) {
+    for (const AlcoveQuality quality : chosen_presets(options.occlusion)) {
       OcclusionOptions one = options.occlusion;
       one.quality = quality;
       ALCOVE_TRY(const auto settings, occlusion_settings(one, session.settings.radius));
-      last = CostInputs{.width = width, .height = height, .settings = settings};
-      ALCOVE_TRY(const auto frame,
-                 measure(session, options, {std::string(passes::name_of(quality)), *last}));
+      const CostInputs inputs{.width = width, .height = height, .settings = settings};
+      ALCOVE_TRY(
+          const auto frame,
+          measure(session, options, {std::string(passes::kQualityNames.at(quality)), inputs}));
       report["measured"].push_back(print(frame));
     }
   }
-  ALCOVE_TRY_VOID(compile(session, options, *last));
-  report["pipelines"] = print_registers(session);
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {
     std::cout << "report.json is in " << options.out.string() << "\n";
   });

@@ -45,16 +45,14 @@ Json to_json(const MotionReport& report) {
         {{"frames", errors.frames}, {"kept", errors.kept}, {"restarted", errors.restarted}});
   }
   if (!report.after_cut.empty()) return json;
-  json["px_per_frame"] = {{"mean", report.speed.mean},
-                          {"percentile_95", report.speed.percentile_95}};
+  json["px_per_frame"] = report.speed;
   for (std::size_t i = 0; i < report.errors.size(); ++i)
     json[kMotionErrorNames[i]] = to_json(report.errors[i]);
-  const Flicker& flicker = report.flicker;
-  json["flicker"] = {{"with_history", flicker.with_history},
-                     {"without_history", flicker.without_history},
-                     {"static", flicker.static_camera},
-                     {"truth", flicker.truth},
-                     {"ratio", flicker.ratio()}};
+  json["bent_normals_degrees"] = {{"moving", report.bent_normal_degrees},
+                                  {"static", report.static_bent_normal_degrees}};
+  json["flicker"] = {{"with_history", report.flicker.with_history},
+                     {"without_history", report.flicker.without_history},
+                     {"ratio", report.flicker.ratio()}};
   json["weave"] = {{"moving", to_json(report.weave)}, {"static", to_json(report.static_weave)}};
   return json;
 }
@@ -67,30 +65,24 @@ std::string format_table(MotionKind kind, const MotionReport& report) {
     return out;
   }
   std::string out = fmt::format(
-      "{}: surfaces move by {:.1f} pixels per frame on average, 95 % by at most {:.1f}\n"
+      "{}: surfaces move by {:.1f} pixels per frame on average\n"
       "  RMSE against ray-traced truth     moving   static  ratio    pixels\n",
-      name_of(kind), report.speed.mean, report.speed.percentile_95);
+      name_of(kind), report.speed);
   for (std::size_t i = 0; i < report.errors.size(); ++i) {
     const ErrorPair& errors = report.errors[i];
-    const auto error = static_cast<MotionError>(i);
-    const int digits = error == MotionError::bent_normals ? 2 : 4;
     if (errors.pixels > 0) {
-      out += fmt::format("  {:34}{:6.{}f}   {:6.{}f}{:8.2f}{:10}\n", kMotionErrorTitles[i],
-                         errors.moving, digits, errors.static_camera, digits, errors.ratio(),
-                         errors.pixels);
-    } else if (error != MotionError::near_object) {
-      out += fmt::format("  {:34}none\n", kMotionErrorTitles[i]);
+      out += fmt::format("  {:34}{:6.4f}   {:6.4f}{:8.2f}{:10}\n", kMotionErrorTitles[i],
+                         errors.moving, errors.static_camera, errors.ratio(), errors.pixels);
     }
   }
-  const Flicker& flicker = report.flicker;
-  return out +
-         fmt::format(
-             "  change of visibility per frame    {:.4f} with history; {:.4f} without motion; the "
-             "truth changes by at least {:.4f}\n"
-             "    filtered, without history       {:.4f}: ratio {:.3f}\n"
-             "  Moving: {}  Static: {}",
-             flicker.with_history, flicker.static_camera, flicker.truth, flicker.without_history,
-             flicker.ratio(), weave_line(report.weave), weave_line(report.static_weave));
+  return out + fmt::format(
+                   "  bent normals, mean degrees        {:6.2f}   {:6.2f}\n"
+                   "  Change of visibility per frame at the same surface: {:.4f}, without history "
+                   "{:.4f}; ratio {:.2f}\n  Moving: {}  Static: {}",
+                   report.bent_normal_degrees, report.static_bent_normal_degrees,
+                   report.flicker.with_history, report.flicker.without_history,
+                   report.flicker.ratio(), weave_line(report.weave),
+                   weave_line(report.static_weave));
 }
 
 }  // namespace
@@ -108,7 +100,7 @@ Result<void> run_motion(const Options& options) {
   ALCOVE_TRY(const auto start, motion_start(rays, session.camera, aspect, session.settings.radius));
   const MotionSetup setup{session.settings, static_setup(options, session.camera),
                           truth_options(options)};
-  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY_VOID(create_folder(options.out));
   Json report;
   report["device"] = session.gpu->device().properties().deviceName;
   report["settings"] = to_json(session.settings);

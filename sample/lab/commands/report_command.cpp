@@ -1,7 +1,8 @@
 #include <fmt/format.h>
-#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -23,8 +24,6 @@ namespace alcove::sample {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using passes::OcclusionSettings;
-using passes::Quality;
 
 constexpr auto kFirst = static_cast<std::size_t>(Situation::first);
 constexpr auto kMoving = static_cast<std::size_t>(Situation::moving);
@@ -35,11 +34,7 @@ class ScenePage {
  public:
   ScenePage(const Options& options, const Session& session, const SettingTimes& times,
             SituationErrors errors)
-      : options_(options),
-        session_(session),
-        times_(times),
-        errors_(std::move(errors)),
-        world_(recommendation_world(errors_, times_)) {}
+      : options_(options), session_(session), times_(times), errors_(std::move(errors)) {}
 
   Result<Json> make() {
     ALCOVE_TRY_VOID(add_points());
@@ -61,7 +56,7 @@ class ScenePage {
     std::cout << fmt::format("  {:46}{:9.4f}{:10.4f}{:9.4f}{:11.4f}{:11.4f}\n", name,
                              of.rmse[kMoving], of.rmse[kStanding], of.rmse[kFirst], of.ms[kMoving],
                              of.ms[kStanding]);
-    const Shot shot{session_.camera,     of.settings,          std::nullopt,
+    const Shot shot{session_.camera,     of.choice.settings,   std::nullopt,
                     options_.view.width, options_.view.height, options_.view.frames};
     points_.push_back({{"name", name},
                        {"ms", of.ms[kMoving]},
@@ -79,34 +74,55 @@ class ScenePage {
     std::cout << fmt::format("{:43}RMSE moving  standing    first  ms moving   standing\n",
                              name_of_scene());
     const Progress progress = print_progress("settings");
+    std::optional<Achievement> last_preset;
     for (std::size_t i = 0; i < variants.size(); ++i) {
-      ALCOVE_TRY(const auto found, world_.measure(variants[i].settings));
-      const bool preset = std::ranges::any_of(
-          presets(), [&](Quality quality) { return variants[i].name == passes::name_of(quality); });
+      Achievement found{{variants[i].settings}};
+      ALCOVE_TRY(found.ms, times_(found.choice));
+      ALCOVE_TRY(found.rmse, errors_.measure(found.choice));
+      const bool preset = i < presets().size();  // they come first
       add_point(variants[i].name, found, preset, false);
+      if (preset && last_preset)
+        json_["gains"].push_back(gain(variants[i].name, found, variants[i - 1].name, *last_preset));
+      if (preset) last_preset = found;
       progress(static_cast<double>(i + 1) / static_cast<double>(variants.size()));
     }
+    for (const Json& sentence : json_["gains"])
+      std::cout << "  " << sentence.get<std::string>() << "\n";
     return {};
+  }
+
+  // Returns what a preset buys over the one below it.
+  static std::string gain(const std::string& name, const Achievement& of, const std::string& below,
+                          const Achievement& than) {
+    const auto change = [](double value, double before) {
+      const double per_cent = 100.0 * (value / before - 1.0);
+      return fmt::format("{:.0f} % {}", std::abs(per_cent), per_cent < 0.0 ? "less" : "more");
+    };
+    return fmt::format(
+        "{} over {}: error {} standing, {} moving and {} in the first frame, for {} time moving",
+        name, below, change(of.rmse[kStanding], than.rmse[kStanding]),
+        change(of.rmse[kMoving], than.rmse[kMoving]), change(of.rmse[kFirst], than.rmse[kFirst]),
+        change(of.ms[kMoving], than.ms[kMoving]));
   }
 
   // The settings that `recommend` finds within the time of `medium`.
   Result<void> add_requirements() {
-    OcclusionSettings medium = passes::quality_settings(Quality::medium, session_.settings.radius);
-    ALCOVE_TRY(const auto limit, times_(medium, false));
+    OcclusionSettings medium = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, session_.settings.radius);
+    ALCOVE_TRY(const auto limit, times_({medium}));
     RecommendationGoal goal;
-    goal.budget_ms = goal.ms({medium, {}, limit});
-    ALCOVE_TRY(const auto found, recommend(medium, goal, world_));
+    goal.budget_ms = goal.ms({{medium}, {}, limit});
+    const RecommendationWorld world{[&](const Choice& choice) { return errors_.measure(choice); },
+                                    times_, print_progress("search")};
+    ALCOVE_TRY(const auto found, recommend(medium, goal, world));
     add_point("recommended within the time of medium", found.chosen, false, true);
-    json_["summary"] = fmt::format(
-        "Within the time of medium ({:.4f} ms): tiles of {}x{}, {} slices of {} steps, {} depth "
-        "layers; RMSE {:.4f}.",
-        *goal.budget_ms, found.chosen.settings.tile_size, found.chosen.settings.tile_size,
-        found.chosen.settings.slices, found.chosen.settings.steps,
-        found.chosen.settings.depth_layers, goal.rmse(found.chosen));
+    json_["summary"] =
+        fmt::format("Within the time of medium ({:.4f} ms): {}; RMSE {:.4f}.", *goal.budget_ms,
+                    choice_text(found.chosen.choice), goal.rmse(found.chosen));
     json_["requirements"] = Json::array();
     for (const FeatureEffect& feature : found.features)
       json_["requirements"].push_back(feature.sentence());
-    ALCOVE_TRY(const auto needs, view_needs(session_, errors_, times_, goal, found.chosen));
+    ALCOVE_TRY(const auto needs,
+               view_needs(session_, errors_.truths(), times_, goal, found.chosen));
     for (const std::string& need : needs) json_["requirements"].push_back(need);
     return {};
   }
@@ -123,10 +139,10 @@ class ScenePage {
     const Image<float> open(truth.width, truth.height, 1.0f);
     ALCOVE_TRY_VOID(add_picture("pictures", "truth", truth));
     ALCOVE_TRY_VOID(add_picture("pictures", "no occlusion", open));
-    for (const Quality quality : presets()) {
-      const std::string name(passes::name_of(quality));
+    for (const AlcoveQuality quality : presets()) {
+      const std::string name(passes::kQualityNames.at(quality));
       ALCOVE_TRY(const auto visibility,
-                 errors_.draw(passes::quality_settings(quality, session_.settings.radius),
+                 errors_.draw({OcclusionSettings(quality, session_.settings.radius)},
                               options_.view.frames, 0));
       ALCOVE_TRY_VOID(add_picture("pictures", name, visibility));
       ALCOVE_TRY_VOID(add_picture("errors", name, error_colours(visibility, truth)));
@@ -138,7 +154,7 @@ class ScenePage {
   Result<void> add_split() {
     ALCOVE_TRY(const ErrorSplit split,
                split_error(*session_.gpu, session_.scene, static_setup(options_, session_.camera),
-                           passes::quality_settings(Quality::medium, session_.settings.radius),
+                           OcclusionSettings(ALCOVE_QUALITY_MEDIUM, session_.settings.radius),
                            errors_.truths().scene.visibility, errors_.truths().surfaces));
     json_["split"] = to_json(split);
     for (const ErrorCause& cause : split.causes) {
@@ -152,7 +168,6 @@ class ScenePage {
   const Session& session_;
   const SettingTimes& times_;
   SituationErrors errors_;
-  RecommendationWorld world_;
   Json json_;
   Json points_ = Json::array();
 };
@@ -160,7 +175,7 @@ class ScenePage {
 }  // namespace
 
 Result<void> run_report(const Options& options) {
-  ALCOVE_TRY(const auto folder, OutputFolder::create(options.out));
+  ALCOVE_TRY_VOID(create_folder(options.out));
   // A missing Chart.js is reported before the measurement, which takes minutes.
   ALCOVE_TRY_VOID(report_page({}));
   Json data{{"size", fmt::format("{}x{}", options.view.width, options.view.height)},

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "alcove/passes/setting_table.h"
 #include "evaluate/errors.h"
 #include "support/image_io.h"
 #include "support/progress.h"
@@ -14,7 +15,6 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using passes::OcclusionSettings;
 
 double mean_squared_error(const Image<float>& image, const Image<float>& truth, const Mask& mask) {
   const double rmse = compare_images(image, truth, mask).rmse;
@@ -61,7 +61,7 @@ class Splitter {
 };
 
 Result<Image<float>> Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings) {
-  constexpr int kDrawings = 5;
+  constexpr int kDrawings = 6;
   progress_(static_cast<double>(drawn_++) / kDrawings);
   return draw_static(gpu_, scene_, setup, settings).map([](FrameImages images) {
     return std::move(images.visibility);
@@ -115,11 +115,11 @@ Result<ErrorSplit> Splitter::split(const StaticSetup& setup, const OcclusionSett
   layers.depth_layers = 2;
   ALCOVE_TRY_VOID(try_settings("layer", "hidden surfaces, which a second layer shows", layers));
   OcclusionSettings back_faces = best;
-  back_faces.thickness_unit = passes::ThicknessUnit::back_faces;
+  back_faces.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   ALCOVE_TRY_VOID(try_settings("back_faces", "thickness, which back faces tell", back_faces));
-  ALCOVE_TRY(auto wide, draw_with_guard_band(gpu_, scene_, averaged, best,
-                                             {setup.width / 2, setup.height / 2}));
-  add("outside", "occluders outside the image", std::move(wide));
+  const VkExtent2D band{setup.width / 2, setup.height / 2};
+  ALCOVE_TRY(const auto wide, draw(with_guard_band(averaged, band), best));
+  add("outside", "occluders outside the image", without_guard_band(wide, band));
   split_.causes.push_back({"rest", "the rest", current_error_ / whole_error_, current_, truth_});
   return std::move(split_);
 }

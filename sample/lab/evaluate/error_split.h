@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/static_view.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/scene.h"
 #include "support/glm.h"
 #include "support/image.h"
@@ -41,7 +41,7 @@ struct ErrorSplit {
 // second depth layer; with back faces; and as the middle of an image of twice the width and height.
 // Errors: the settings do not allow a remedy, or a rendering fails.
 [[nodiscard]] Result<ErrorSplit> split_error(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-                                             const passes::OcclusionSettings& settings,
+                                             const OcclusionSettings& settings,
                                              const Image<float>& truth, const Mask& surfaces);
 
 // A line for each cause.

@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
-#include <vector>
 
-#include "support/median.h"
 #include "support/parallel.h"
 
 namespace alcove::sample {
@@ -61,11 +58,6 @@ struct Texels {
   }
 };
 
-bool in_image(glm::vec2 position_px, std::uint32_t width, std::uint32_t height) {
-  return position_px.x >= 0.0f && position_px.y >= 0.0f &&
-         position_px.x <= static_cast<float>(width) && position_px.y <= static_cast<float>(height);
-}
-
 constexpr glm::vec2 kNowhere(-1e6f);
 
 glm::vec2 project(const Eye& eye, const glm::vec3& position_ws) {
@@ -97,7 +89,7 @@ std::uint8_t same_surface(const Eye& eye, const RenderedFrame& before, glm::vec2
 
 // The texel of the same surface with the largest bilinear weight.
 std::size_t nearest_texel(const Reprojection& reprojection, std::size_t pixel,
-                          const Image<Age>& before) {
+                          const Image<std::uint32_t>& before) {
   const Texels texels(reprojection.position_px.pixels[pixel]);
   std::size_t nearest = 0;
   float most = -1.0f;
@@ -108,16 +100,6 @@ std::size_t nearest_texel(const Reprojection& reprojection, std::size_t pixel,
     }
   }
   return nearest;
-}
-
-// The change since the previous frame at a pixel whose four previous texels show its surface.
-double change_at(std::size_t pixel, const Image<float>& now, const Image<float>& before,
-                 const Reprojection& reprojection) {
-  const Texels texels(reprojection.position_px.pixels[pixel]);
-  float then = 0.0f;
-  for (int i = 0; i < 4; ++i)
-    then += texels.weight(i) * before.pixels[static_cast<std::size_t>(texels.index(i, before))];
-  return now.pixels[pixel] - then;
 }
 
 }  // namespace
@@ -147,25 +129,19 @@ Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
   return reprojection;
 }
 
-Image<Age> first_ages(const RenderedFrame& now) {
-  Image<Age> ages(now.depth.width, now.depth.height);
+Image<std::uint32_t> first_ages(const RenderedFrame& now) {
+  Image<std::uint32_t> ages(now.depth.width, now.depth.height);
   for (std::size_t i = 0; i < ages.pixels.size(); ++i)
-    ages.pixels[i].frames = std::isfinite(now.depth.pixels[i]) ? 1 : 0;
+    ages.pixels[i] = std::isfinite(now.depth.pixels[i]) ? 1 : 0;
   return ages;
 }
 
-Image<Age> next_ages(const RenderedFrame& now, const Reprojection& reprojection,
-                     const Image<Age>& before) {
-  Image<Age> ages = first_ages(now);
-  for (std::size_t i = 0; i < ages.pixels.size(); ++i) {
-    if (reprojection.texels.pixels[i] != 0) {
-      const Age& age = before.pixels[nearest_texel(reprojection, i, before)];
-      ages.pixels[i] = {age.frames + 1, age.uncovered};
-    } else if (ages.pixels[i].frames > 0) {
-      ages.pixels[i].uncovered =
-          in_image(reprojection.position_px.pixels[i], before.width, before.height);
-    }
-  }
+Image<std::uint32_t> next_ages(const RenderedFrame& now, const Reprojection& reprojection,
+                               const Image<std::uint32_t>& before) {
+  Image<std::uint32_t> ages = first_ages(now);
+  for (std::size_t i = 0; i < ages.pixels.size(); ++i)
+    if (reprojection.texels.pixels[i] != 0)
+      ages.pixels[i] = before.pixels[nearest_texel(reprojection, i, before)] + 1;
   return ages;
 }
 
@@ -178,26 +154,15 @@ RunningMean& RunningMean::operator+=(const RunningMean& more) {
 RunningMean visibility_change(const Image<float>& now, const Image<float>& before,
                               const Reprojection& reprojection) {
   RunningMean change;
-  for (std::size_t pixel = 0; pixel < now.pixels.size(); ++pixel)
-    if (reprojection.texels.pixels[pixel] == kAllTexels)
-      change += {std::abs(change_at(pixel, now, before, reprojection)), 1};
-  return change;
-}
-
-RunningMean change_lower_bound(const SplitTruth<float>& now, const SplitTruth<float>& before,
-                               const Reprojection& reprojection) {
-  const auto in_direction = [](double change, double other) {
-    return other == 0.0 ? 0.0 : std::copysign(change, change * other);
-  };
-  RunningMean least;
-  for (std::size_t pixel = 0; pixel < now.first.pixels.size(); ++pixel) {
-    if (reprojection.texels.pixels[pixel] == kAllTexels) {
-      const double first = change_at(pixel, now.first, before.first, reprojection);
-      const double second = change_at(pixel, now.second, before.second, reprojection);
-      least += {0.5 * (in_direction(first, second) + in_direction(second, first)), 1};
-    }
+  for (std::size_t pixel = 0; pixel < now.pixels.size(); ++pixel) {
+    if (reprojection.texels.pixels[pixel] != kAllTexels) continue;
+    const Texels texels(reprojection.position_px.pixels[pixel]);
+    float then = 0.0f;
+    for (int i = 0; i < 4; ++i)
+      then += texels.weight(i) * before.pixels[static_cast<std::size_t>(texels.index(i, before))];
+    change += {std::abs(now.pixels[pixel] - then), 1};
   }
-  return least;
+  return change;
 }
 
 Mask surfaces_where(const RenderedFrame& seen,
@@ -213,65 +178,18 @@ Mask surfaces_where(const RenderedFrame& seen,
   return mask;
 }
 
-Speed measure_speed(const Reprojection& reprojection) {
-  std::vector<float> speeds;
-  RunningMean mean;
+RunningMean measure_speed(const Reprojection& reprojection) {
+  RunningMean speed;
   for (std::size_t i = 0; i < reprojection.texels.pixels.size(); ++i) {
     if (reprojection.texels.pixels[i] == 0) continue;
     const auto width = static_cast<std::size_t>(reprojection.texels.width);
     const std::size_t row = i / width;
     const glm::vec2 here(static_cast<float>(i - row * width) + 0.5f,
                          static_cast<float>(row) + 0.5f);
-    const float speed = glm::distance(here, reprojection.position_px.pixels[i]);
-    if (speed > kMoving) {
-      speeds.push_back(speed);
-      mean += {speed, 1};
-    }
+    const float pixels = glm::distance(here, reprojection.position_px.pixels[i]);
+    if (pixels > kMoving) speed += {pixels, 1};
   }
-  return {mean.mean(), percentile(std::move(speeds), 0.95)};
+  return speed;
 }
-
-Image<float> mean_image(const SplitTruth<float>& truth) {
-  Image<float> mean = truth.first;
-  for (std::size_t i = 0; i < mean.pixels.size(); ++i)
-    mean.pixels[i] = 0.5f * (truth.first.pixels[i] + truth.second.pixels[i]);
-  return mean;
-}
-
-RunningMean squared_error(const Image<float>& result, const SplitTruth<float>& truth,
-                          const Mask& mask) {
-  RunningMean squares;
-  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
-    if (mask.pixels[i] == 0) continue;
-    const double first = truth.first.pixels[i];
-    const double second = truth.second.pixels[i];
-    const double given = result.pixels[i];
-    const double error = std::isfinite(given) ? given - 0.5 * (first + second) : 1.0;
-    const double noise = 0.5 * (first - second);
-    squares.sum += error * error - noise * noise;
-    ++squares.count;
-  }
-  return squares;
-}
-
-RunningMean squared_error(const Image<glm::vec3>& result, const SplitTruth<glm::vec3>& truth,
-                          const Mask& mask) {
-  RunningMean squares;
-  for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
-    if (mask.pixels[i] == 0) continue;
-    const glm::dvec3 given(result.pixels[i]);
-    const double length = glm::length(given);
-    const glm::dvec3 first(truth.first.pixels[i]);
-    const glm::dvec3 second(truth.second.pixels[i]);
-    // The noise of the halves is independent, so its product vanishes in the mean.
-    squares.sum += length > 0.0 && std::isfinite(length)
-                       ? glm::dot(given / length - first, given / length - second)
-                       : 2.0;
-    ++squares.count;
-  }
-  return squares;
-}
-
-double root(const RunningMean& squares) { return std::sqrt(std::max(squares.mean(), 0.0)); }
 
 }  // namespace alcove::sample

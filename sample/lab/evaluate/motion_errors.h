@@ -16,7 +16,6 @@ struct RenderedFrame {
   Image<float> depth;  // linear; infinity: sky
   Image<glm::vec3> normal_ws;
   Image<float> visibility;
-  Image<glm::vec3> bent_normal_ws;
 };
 
 // Where the surfaces of a frame were on the image of the previous frame.
@@ -33,15 +32,12 @@ using PositionBefore = std::function<glm::vec3(const glm::vec3& position_ws)>;
 [[nodiscard]] Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
                                      const PositionBefore& position_before);
 
-// For how long the surface of a pixel has been visible.
-struct Age {
-  std::uint32_t frames = 0;  // consecutive frames, this one included; 0 in the sky
-  bool uncovered = false;    // it was hidden by another surface before, not outside the image
-};
-// The ages in the first frame, and in a later frame from those of the frame before.
-[[nodiscard]] Image<Age> first_ages(const RenderedFrame& now);
-[[nodiscard]] Image<Age> next_ages(const RenderedFrame& now, const Reprojection& reprojection,
-                                   const Image<Age>& before);
+// Returns the number of consecutive frames in which the surface of each pixel has been visible,
+// this frame included; 0 in the sky. In the first frame, and in a later frame from the ages before.
+[[nodiscard]] Image<std::uint32_t> first_ages(const RenderedFrame& now);
+[[nodiscard]] Image<std::uint32_t> next_ages(const RenderedFrame& now,
+                                             const Reprojection& reprojection,
+                                             const Image<std::uint32_t>& before);
 
 // A mean over the pixels of many frames.
 struct RunningMean {
@@ -62,37 +58,7 @@ struct RunningMean {
 [[nodiscard]] Mask surfaces_where(const RenderedFrame& seen,
                                   const std::function<bool(const glm::vec3& position_ws)>& choose);
 
-// Speed of the surfaces that move on the image, in pixels per frame; zero if none moves.
-struct Speed {
-  double mean = 0;
-  double percentile_95 = 0;
-};
-[[nodiscard]] Speed measure_speed(const Reprojection& reprojection);
-
-// A ray-traced image in two halves with independent rays, whose difference gives its noise.
-template <class T>
-struct SplitTruth {
-  Image<T> first;
-  Image<T> second;
-};
-[[nodiscard]] Image<float> mean_image(const SplitTruth<float>& truth);
-
-// Returns a lower bound of visibility_change() for a truth that is traced in two halves. The change
-// in each half is counted with the sign of the change in the other half, so that noise adds nothing
-// to the mean.
-[[nodiscard]] RunningMean change_lower_bound(const SplitTruth<float>& now,
-                                             const SplitTruth<float>& before,
-                                             const Reprojection& reprojection);
-
-// Returns the squared error of a result against the mean of the two halves, minus the variance of
-// that mean. It may be slightly negative by chance if there is no error.
-[[nodiscard]] RunningMean squared_error(const Image<float>& result, const SplitTruth<float>& truth,
-                                        const Mask& mask);
-// Returns the squared error of directions: the squared length of the difference of the unit
-// vectors, which for small angles is the squared angle. A missing direction counts as 90 degrees.
-[[nodiscard]] RunningMean squared_error(const Image<glm::vec3>& result,
-                                        const SplitTruth<glm::vec3>& truth, const Mask& mask);
-// The root of a mean of squared errors; 0 if the mean is negative.
-[[nodiscard]] double root(const RunningMean& squares);
+// The speed of the surfaces that move on the image, in pixels per frame.
+[[nodiscard]] RunningMean measure_speed(const Reprojection& reprojection);
 
 }  // namespace alcove::sample

@@ -18,14 +18,9 @@ namespace {
 // depths, and heights. A height is the length that the image's height spans at a given depth.
 const float kOrbitAngle = glm::radians(0.4f);
 constexpr float kDollyStep = 0.006f;    // depths
-constexpr float kStrafeStep = 0.004f;   // heights at that depth: 2.2 pixels at 540
 constexpr float kObjectStep = 0.0075f;  // heights at the ground: 4 pixels at 540
 const float kObjectRotation = glm::radians(1.5f);
 
-// The column that is added beside the strafing camera: its depth as a fraction of the median depth
-// of the view, and its radius in heights.
-constexpr float kColumnDepth = 0.3f;
-constexpr float kColumnRadius = 0.05f;
 // The moving object: half its width in heights, and its gap to the ground in occlusion radii.
 constexpr float kObjectSize = 0.06f;
 constexpr float kObjectGap = 0.2f;
@@ -68,27 +63,6 @@ Mesh block_mesh(float half) {
   builder.box(glm::vec3(-half), glm::vec3(half, 0.2f * half, half));
   builder.box(glm::vec3(-0.45f, 0.2f, -0.45f) * half, glm::vec3(0.45f, 1.0f, 0.45f) * half);
   return builder.finish("moving").meshes.front();
-}
-
-Mesh column_mesh(const MotionStart& start, std::uint32_t frames) {
-  const Axes axes = view_axes(start.camera);
-  const float depth = kColumnDepth * start.depth;
-  const float step = kStrafeStep * height_at(start.camera, start.depth);
-  const float radius = kColumnRadius * height_at(start.camera, depth);
-  const float half_length = start.depth + height_at(start.camera, depth);
-  const std::array profile{glm::vec2(0.0f, -half_length), glm::vec2(radius, -half_length),
-                           glm::vec2(radius, half_length), glm::vec2(0.0f, half_length)};
-  SceneBuilder builder;
-  builder.use(builder.add_material("column", glm::vec3(0.6f), 0.6f));
-  const glm::vec3 foot = start.camera.eye_ws + axes.forward * depth +
-                         axes.right * (step * 0.5f * static_cast<float>(frames - 1));
-  builder.world_from_shape = glm::translate(glm::mat4(1.0f), foot);
-  // The axis of a lathe is Y; the column is aligned with the up direction of the camera.
-  builder.world_from_shape[0] = glm::vec4(axes.right, 0.0f);
-  builder.world_from_shape[1] = glm::vec4(axes.up, 0.0f);
-  builder.world_from_shape[2] = glm::vec4(-axes.forward, 0.0f);
-  builder.lathe(profile, 48);
-  return builder.finish("column").meshes.front();
 }
 
 float object_half_width(const MotionStart& start) {
@@ -156,9 +130,6 @@ Camera MotionPath::camera(std::uint32_t frame) const {
       return orbited(start_.camera, kOrbitAngle * steps);
     case MotionKind::dolly:
       return moved(start_.camera, axes.forward * (kDollyStep * start_.depth * steps));
-    case MotionKind::strafe:
-      return moved(start_.camera,
-                   axes.right * (kStrafeStep * height_at(start_.camera, start_.depth) * steps));
     case MotionKind::object:
       return start_.camera;
     case MotionKind::cut:
@@ -192,11 +163,10 @@ std::optional<std::uint32_t> MotionPath::cut() const {
 }
 
 void MotionPath::add_to(Scene& scene) const {
-  if (kind_ != MotionKind::strafe && kind_ != MotionKind::object) return;
-  Mesh mesh = kind_ == MotionKind::strafe ? column_mesh(start_, frames_)
-                                          : block_mesh(object_half_width(start_));
+  if (kind_ != MotionKind::object) return;
+  Mesh mesh = block_mesh(object_half_width(start_));
   mesh.material = static_cast<std::uint32_t>(scene.materials.size());
-  mesh.moves = kind_ == MotionKind::object;
+  mesh.moves = true;
   scene.materials.push_back({.name = mesh.name, .roughness = 0.6f});
   scene.meshes.push_back(std::move(mesh));
 }

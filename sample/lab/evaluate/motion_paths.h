@@ -19,17 +19,16 @@ namespace alcove::sample {
 enum class MotionKind : std::uint8_t {
   orbit,   // The camera orbits a point in the middle of the view at the median surface depth.
   dolly,   // The camera moves towards that point.
-  strafe,  // The camera moves to the right, past a column that is added near the eye.
   object,  // The camera is static and an added object slides over the ground.
   cut,     // The camera is static and jumps to another place in the middle of the path.
 };
 
-inline constexpr std::array kMotionKinds{MotionKind::orbit, MotionKind::dolly, MotionKind::strafe,
-                                         MotionKind::object, MotionKind::cut};
+inline constexpr std::array kMotionKinds{MotionKind::orbit, MotionKind::dolly, MotionKind::object,
+                                         MotionKind::cut};
 
 // Names in the order of the enumerators.
-inline constexpr std::array<std::string_view, 5> kMotionKindNames{"orbit", "dolly", "strafe",
-                                                                  "object", "cut"};
+inline constexpr std::array<std::string_view, 4> kMotionKindNames{"orbit", "dolly", "object",
+                                                                  "cut"};
 
 constexpr std::string_view name_of(MotionKind kind) {
   return kMotionKindNames[static_cast<std::size_t>(kind)];
@@ -63,7 +62,7 @@ class MotionPath {
   // The first frame after the cut, if the path has one.
   std::optional<std::uint32_t> cut() const;
 
-  // Adds the column or the moving object of the path to a scene.
+  // Adds the moving object of the path, if it has one, to a scene.
   void add_to(Scene& scene) const;
   // Moves the object that add_to() added to its place in a frame.
   void pose(Scene& scene, std::uint32_t frame) const;

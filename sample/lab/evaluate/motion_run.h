@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/motion_errors.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/static_view.h"
 #include "evaluate/truths.h"
 #include "evaluate/weave.h"
 #include "gpu/gpu.h"
+#include "gpu/occlusion.h"
 #include "scene/scene.h"
 #include "support/image.h"
 #include "support/result.h"
@@ -20,20 +20,20 @@ namespace alcove::sample {
 
 // The inputs of a run other than its path, which has the cameras and the number of frames.
 struct MotionSetup {
-  passes::OcclusionSettings occlusion;  // with a history
+  OcclusionSettings occlusion;  // with a history
   StaticSetup view;
-  TruthOptions truth;  // at least 2 rays per pixel
+  TruthOptions truth;
 };
 
-// The number of frames after which surfaces that were uncovered are measured. Their errors should
+// The number of frames after which surfaces that came into view are measured. Their errors should
 // then be nearly as small as those of other surfaces.
-inline constexpr std::uint32_t kUncoveredFrames = 4;  // as in kMotionErrorTitles
+inline constexpr std::uint32_t kNewFrames = 4;  // as in kMotionErrorTitles
 
 // Surfaces that a moving object passed within this many last frames are measured separately,
 // because a history could leave a trail of the object there for that long.
 inline constexpr std::uint32_t kTrailFrames = 32;
 
-// RMSE of visibility against the ray-traced truth; the noise of the truth is subtracted.
+// Root mean square of an error against the ray-traced truth.
 struct ErrorPair {
   std::uint64_t pixels = 0;
   double moving = 0;
@@ -46,8 +46,6 @@ struct ErrorPair {
 struct Flicker {
   double with_history = 0;
   double without_history = 0;  // after the spatial filter alone
-  double static_camera = 0;    // with history, when nothing moves
-  double truth = 0;            // lower bound of the change of the truth in the compared frames
 
   double ratio() const { return without_history > 0.0 ? with_history / without_history : 0.0; }
 };
@@ -60,19 +58,15 @@ struct MotionPicture {
   Image<float> truth;
 };
 
-// The kinds of error that are measured. Names and titles are in the order of the enumerators.
+// The surfaces whose errors are measured. Names and titles are in the order of the enumerators.
 enum class MotionError : std::uint8_t {
   all,
-  uncovered,     // of surfaces that another one stopped hiding kUncoveredFrames ago
-  entered,       // of surfaces that entered the image kUncoveredFrames ago
-  near_object,   // of surfaces that a moving object passed in the last kTrailFrames
-  bent_normals,  // in degrees, on all surfaces
+  uncovered,    // surfaces that came into view kNewFrames ago
+  near_object,  // surfaces that a moving object passed in the last kTrailFrames
 };
-inline constexpr std::array<const char*, 5> kMotionErrorNames{
-    "all", "uncovered", "entered", "near_object", "bent_normals_degrees"};
-inline constexpr std::array<const char*, 5> kMotionErrorTitles{
-    "whole frames", "uncovered 4 frames ago", "entered the image 4 frames ago",
-    "near the moving object", "bent normals, degrees"};
+inline constexpr std::array<const char*, 3> kMotionErrorNames{"all", "uncovered", "near_object"};
+inline constexpr std::array<const char*, 3> kMotionErrorTitles{
+    "whole frames", "in view since 4 frames", "near the moving object"};
 
 // RMSE of visibility a number of frames after a cut.
 struct CutErrors {
@@ -83,8 +77,10 @@ struct CutErrors {
 
 // The results of a path. Those of a cut are `after_cut` and the pictures only.
 struct MotionReport {
-  Speed speed;  // of surfaces on the image; mean over the frames
+  double speed = 0;  // of surfaces on the image, pixels per frame; mean over the frames
   std::array<ErrorPair, kMotionErrorNames.size()> errors;
+  double bent_normal_degrees = 0;         // mean angle to the truth with motion
+  double static_bent_normal_degrees = 0;  // and without
   Flicker flicker;
   Weave weave;                       // in the frames with motion
   Weave static_weave;                // in the same views without motion

@@ -11,8 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-
 // Materials that cover a smaller part of the surfaces in view do not decide.
 constexpr double kShare = 0.05;
 
@@ -51,7 +49,7 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
   const Mask glossy = where([&](std::size_t i) { return seen.roughness.pixels[i] < 0.5f; });
   const Image<float> open(visibility.width, visibility.height, 1.0f);
   ALCOVE_TRY(const double specular_time,
-             time_increase([](OcclusionSettings& s) { s.specular = passes::Specular::slices; }));
+             time_increase([](OcclusionSettings& s) { s.specular = ALCOVE_SPECULAR_SLICES; }));
   add(covered_share(glossy, surfaces) > kShare, "specular occlusion (specular=slices)",
       fmt::format("{:.0f} % of the surfaces have a roughness below 0.5, and their visibility is "
                   "{:.2f} less than 1 on average; {:.0f} % more time",
@@ -95,30 +93,20 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
   return sentences;
 }
 
-Result<std::vector<std::string>> view_needs(const Session& session, const SituationErrors& errors,
+Result<std::vector<std::string>> view_needs(const Session& session, const Truths& truths,
                                             const SettingTimes& times,
                                             const RecommendationGoal& goal,
                                             const Achievement& chosen) {
-  ALCOVE_TRY(const auto band_rmse, errors.measure_with_guard_band(chosen.settings));
-  ALCOVE_TRY(const auto band_ms, times(chosen.settings, true));
-  const Achievement with{chosen.settings, band_rmse, band_ms};
-  FeatureEffect band = measure_effect(
-      fmt::format("a guard band of {:g} % of the height, by AlcoveView::written_area",
-                  100.0 * kGuardBand),
-      goal, with, chosen);
-  if (goal.prefers(with, chosen, kWorthwhile)) band.verdict = "worth it";
-  const Image<float>& visibility = errors.truths().scene.visibility;
   ALCOVE_TRY(const auto rays, RayScene::create(session.scene));
-  const GBuffer seen = cast_gbuffer(rays, session.camera, visibility.width, visibility.height);
+  const GBuffer seen =
+      cast_gbuffer(rays, session.camera, truths.surfaces.width, truths.surfaces.height);
   const TimeIncrease time_increase = [&](const auto& change) -> Result<double> {
     Achievement changed = chosen;
-    change(changed.settings);
-    ALCOVE_TRY(changed.ms, times(changed.settings, false));
+    change(changed.choice.settings);
+    ALCOVE_TRY(changed.ms, times(changed.choice));
     return goal.ms(changed) / goal.ms(chosen) - 1.0;
   };
-  ALCOVE_TRY(auto needs, output_needs(session.scene, seen, errors.truths(), time_increase));
-  needs.insert(needs.begin(), band.sentence());
-  return needs;
+  return output_needs(session.scene, seen, truths, time_increase);
 }
 
 }  // namespace alcove::sample

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
 #include "evaluate/recommendation.h"
 #include "evaluate/situations.h"
 #include "evaluate/truths.h"
+#include "gpu/occlusion.h"
 #include "reference/truth.h"
 #include "render/session.h"
 #include "scene/scene.h"
@@ -17,8 +17,8 @@
 namespace alcove::sample {
 
 // Returns by how much a change of the settings raises the modelled time: 0.2 for 20 %.
-using TimeIncrease = std::function<Result<double>(
-    const std::function<void(passes::OcclusionSettings& settings)>& change)>;
+using TimeIncrease =
+    std::function<Result<double>(const std::function<void(OcclusionSettings& settings)>& change)>;
 
 // Returns a sentence for each output and input of the passes on which the materials in view decide:
 // specular occlusion, multi-bounce, bent normals, normals, settings for thin occluders, and motion
@@ -29,10 +29,9 @@ using TimeIncrease = std::function<Result<double>(
                                                             const Truths& truths,
                                                             const TimeIncrease& time_increase);
 
-// Returns what the session's view needs beside settings: a sentence on a guard band, then those of
-// output_needs(). `errors` and `times` are those of the view.
+// Returns output_needs() for the session's view. `truths` and `times` are those of the view.
 [[nodiscard]] Result<std::vector<std::string>> view_needs(const Session& session,
-                                                          const SituationErrors& errors,
+                                                          const Truths& truths,
                                                           const SettingTimes& times,
                                                           const RecommendationGoal& goal,
                                                           const Achievement& chosen);

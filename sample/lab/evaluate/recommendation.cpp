@@ -7,52 +7,40 @@
 #include <optional>
 #include <utility>
 
+#include "alcove/passes/setting_table.h"
 #include "evaluate/sweep.h"
 
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
+using Values = std::array<double, 3>;  // by Situation
 
 struct Feature {
   const char* name;
-  void (*use)(OcclusionSettings& settings);
+  void (*use)(Choice& choice);
 };
 
+static_assert(kGuardBand == 0.1);
 constexpr Feature kFeatures[] = {
-    {"a second depth layer", [](OcclusionSettings& s) { s.depth_layers = 2; }},
+    {"a second depth layer", [](Choice& c) { c.settings.depth_layers = 2; }},
+    {"a guard band of 10 % of the height", [](Choice& c) { c.guard_band = true; }},
     {"thickness from back faces",
-     [](OcclusionSettings& s) { s.thickness_unit = passes::ThicknessUnit::back_faces; }},
-    {"a thickness of 0.05", [](OcclusionSettings& s) { s.thickness = 0.05f; }},
-    {"a thickness of 0.5", [](OcclusionSettings& s) { s.thickness = 0.5f; }},
-    {"a hidden occlusion of 0.1", [](OcclusionSettings& s) { s.hidden_occlusion = 0.1f; }},
-    {"a hidden occlusion of 0.7", [](OcclusionSettings& s) { s.hidden_occlusion = 0.7f; }},
-    {"horizons, infinitely thick",
-     [](OcclusionSettings& s) { s.estimator = passes::Estimator::horizons; }},
-    {"half resolution", [](OcclusionSettings& s) { s.half_resolution = true; }},
-    {"full resolution", [](OcclusionSettings& s) { s.half_resolution = false; }},
-    {"a history of twice as many frames",
-     [](OcclusionSettings& s) { s.history_frames = std::min(2 * s.history_frames, 64u); }},
-    {"no history", [](OcclusionSettings& s) { s.history_frames = 0; }},
+     [](Choice& c) { c.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; }},
+    {"a thickness of 0.05", [](Choice& c) { c.settings.thickness = 0.05f; }},
+    {"a thickness of 0.5", [](Choice& c) { c.settings.thickness = 0.5f; }},
+    {"a hidden occlusion of 0.1", [](Choice& c) { c.settings.hidden_occlusion = 0.1f; }},
+    {"a hidden occlusion of 0.7", [](Choice& c) { c.settings.hidden_occlusion = 0.7f; }},
+    {"no history", [](Choice& c) { c.settings.history_frames = 0; }},
 };
 
-void copy_samples(const OcclusionSettings& from, OcclusionSettings& settings) {
-  settings.tile_size = from.tile_size;
-  settings.slices = from.slices;
-  settings.steps = from.steps;
-  settings.half_resolution = from.half_resolution;
+// Returns `choice` with the numbers of samples of other settings.
+Choice with_samples(Choice choice, const OcclusionSettings& samples) {
+  choice.settings.tile_size = samples.tile_size;
+  choice.settings.slices = samples.slices;
+  choice.settings.steps = samples.steps;
+  choice.settings.half_resolution = samples.half_resolution;
+  return choice;
 }
-
-double weighted(const std::array<double, 3>& values, const SituationWeights& weights) {
-  return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
-}
-
-// A number of samples, and the time that it takes with the base's features. Modelling a time takes
-// seconds, so it is done when the time is needed.
-struct Rung {
-  OcclusionSettings settings;
-  std::optional<double> ms;
-};
 
 // The number of samples for each pixel of the image.
 double samples_per_pixel(const OcclusionSettings& settings) {
@@ -61,6 +49,12 @@ double samples_per_pixel(const OcclusionSettings& settings) {
   return settings.slices * settings.steps / pixels;
 }
 
+double weighted(const Values& values, const SituationWeights& weights) {
+  return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
+}
+
+// Modelling a time and measuring an error take seconds each, so both are done when they are needed
+// and kept.
 class Search {
  public:
   Search(const OcclusionSettings& base, const RecommendationGoal& goal,
@@ -68,130 +62,153 @@ class Search {
       : base_(base), goal_(goal), world_(world) {}
 
   Result<Recommendation> run() {
-    for (Variant& variant : preset_sweep(base_)) {
-      variant.settings.depth_layers = base_.depth_layers;  // a second depth layer is a feature
-      ladder_.push_back({variant.settings, {}});
-    }
-    std::ranges::stable_sort(ladder_, {},
-                             [](const Rung& r) { return samples_per_pixel(r.settings); });
+    for (Variant& variant : preset_sweep(base_)) ladder_.push_back(variant.settings);
+    std::ranges::stable_sort(ladder_, {}, samples_per_pixel);
     ALCOVE_TRY_VOID(choose_samples());
-    for (const Feature& feature : kFeatures) try_feature(feature);
-    if (goal_.tolerance && goal_.met(found_.chosen)) try_with_fewer_samples(found_.chosen.settings);
+    constexpr double kSamples = 0.3, kAllFeatures = 0.5;  // parts of the progress
+    for (std::size_t i = 0; i < std::size(kFeatures); ++i) {
+      advance(kSamples + kAllFeatures * static_cast<double>(i) / std::size(kFeatures));
+      try_feature(kFeatures[i]);
+    }
+    advance(kSamples + kAllFeatures);
+    if (goal_.tolerance && goal_.met(found_.chosen)) try_with_fewer_samples(found_.chosen.choice);
     refine();
     return std::move(found_);
   }
 
  private:
-  Result<double> time(Rung& rung) const {
-    if (!rung.ms) {
-      ALCOVE_TRY(const auto ms, world_.time(rung.settings));
-      rung.ms = weighted(ms, goal_.weights);
-    }
-    return *rung.ms;
+  void advance(double done) const {
+    if (world_.progress) world_.progress(done);
   }
 
-  // Returns the slowest numbers of samples that take at most `ms`, at most `most` of them. Times
-  // nearly rise with the number of samples, so that few of them are modelled.
-  Result<std::vector<OcclusionSettings>> slowest_within(double ms, std::size_t most) {
-    constexpr std::size_t kOutOfOrder = 2;  // faster ones among those with more samples
+  const Achievement* measured(const Choice& choice) const {
+    const auto known = std::ranges::find(measured_, choice, &Achievement::choice);
+    return known == measured_.end() ? nullptr : &*known;
+  }
+
+  Result<Values> ms(const Choice& choice) {
+    const auto known = std::ranges::find(timed_, choice, &std::pair<Choice, Values>::first);
+    if (known != timed_.end()) return known->second;
+    ALCOVE_TRY(const Values values, world_.ms(choice));
+    timed_.emplace_back(choice, values);
+    return values;
+  }
+
+  // Measures a choice and chooses it if the goal prefers it by the margin.
+  Result<Achievement> consider(const Choice& choice, double margin = 0) {
+    if (const Achievement* known = measured(choice)) return *known;
+    ALCOVE_TRY(const Values times, ms(choice));
+    ALCOVE_TRY(const Values rmse, world_.rmse(choice));
+    measured_.push_back({choice, rmse, times});
+    const Achievement& result = measured_.back();
+    if (measured_.size() == 1 || goal_.prefers(result, found_.chosen, margin))
+      found_.chosen = result;
+    return result;
+  }
+
+  // Measures a choice only if its time does not rule it out, and returns whether it did. Choices
+  // that fail are left out.
+  bool consider_if_promising(const Choice& choice, double margin = 0) {
+    if (!passes::validate(choice.settings) || measured(choice) != nullptr) return false;
+    const auto times = ms(choice);
+    if (!times) return false;
+    const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen);
+    return (!goal_.met(found_.chosen) || weighted(*times, goal_.weights) <= limit) &&
+           consider(choice, margin).has_value();
+  }
+
+  // Returns the number of the first rungs of the ladder, at most `count`, of which `is_within` is
+  // true. It is nearly monotone.
+  template <typename IsWithin>
+  Result<std::size_t> rungs_within(std::size_t count, const IsWithin& is_within) const {
     std::size_t low = 0;
-    for (std::size_t high = ladder_.size(); low < high;) {
+    for (std::size_t high = count; low < high;) {
       const std::size_t middle = (low + high) / 2;
-      ALCOVE_TRY(const double middle_ms, time(ladder_[middle]));
-      (middle_ms <= ms ? low : high) = middle_ms <= ms ? middle + 1 : middle;
+      ALCOVE_TRY(const bool within, is_within(ladder_[middle]));
+      (within ? low : high) = within ? middle + 1 : middle;
     }
-    std::vector<OcclusionSettings> found;
-    for (std::size_t i = std::min(low + kOutOfOrder, ladder_.size());
-         i-- > 0 && found.size() < most;) {
-      ALCOVE_TRY(const double rung_ms, time(ladder_[i]));
-      if (rung_ms <= ms) found.push_back(ladder_[i].settings);
+    return low;
+  }
+
+  // Considers `choice` with the most samples that take at most `ms_limit`, `most` of them.
+  Result<void> consider_within(const Choice& choice, std::size_t rungs, double ms_limit,
+                               std::size_t most, double margin) {
+    constexpr std::size_t kOutOfOrder = 1;  // faster ones among those with more samples
+    const auto is_within = [&](const OcclusionSettings& samples) -> Result<bool> {
+      ALCOVE_TRY(const Values values, ms(with_samples(choice, samples)));
+      return weighted(values, goal_.weights) <= ms_limit;
+    };
+    ALCOVE_TRY(const std::size_t within, rungs_within(rungs, is_within));
+    std::size_t i = std::min(within + kOutOfOrder, rungs);
+    for (std::size_t count = 0; i-- > 0 && count < most;) {
+      ALCOVE_TRY(const bool fits, is_within(ladder_[i]));
+      if (!fits) continue;
+      ALCOVE_TRY_VOID(consider(with_samples(choice, ladder_[i]), margin));
+      ++count;
     }
-    return found;
+    return {};
   }
 
-  const Achievement* measured(const OcclusionSettings& settings) const {
-    const auto known = std::ranges::find(found_.measured, settings, &Achievement::settings);
-    return known == found_.measured.end() ? nullptr : &*known;
-  }
-
-  Result<Achievement> measure(const OcclusionSettings& settings) {
-    if (const Achievement* known = measured(settings)) return *known;
-    auto result = world_.measure(settings);
-    if (result) found_.measured.push_back(*result);
-    return result;
-  }
-
-  // Measures settings and chooses them if the goal prefers them by the margin.
-  Result<Achievement> consider(const OcclusionSettings& settings, double margin = 0) {
-    auto result = measure(settings);
-    if (result && (found_.measured.size() == 1 || goal_.prefers(*result, found_.chosen, margin)))
-      found_.chosen = *result;
-    return result;
-  }
-
-  // Within a budget, considers the numbers of samples that nearly use it up. For a tolerance,
-  // considers growing numbers until a few meet it, because the error does not fall with each step.
+  // Considers the numbers of samples that nearly use the budget up, or those around the fewest that
+  // meet the tolerance.
   Result<void> choose_samples() {
-    constexpr std::size_t kWithinBudget = 6;
-    constexpr int kWithinTolerance = 2;
+    constexpr std::size_t kMost = 4;
+    const Choice base{base_};
     if (goal_.budget_ms) {
-      ALCOVE_TRY(auto within, slowest_within(*goal_.budget_ms, kWithinBudget));
-      if (within.empty()) within.push_back(ladder_.front().settings);
-      for (const OcclusionSettings& settings : within) ALCOVE_TRY_VOID(consider(settings));
-      return {};
+      ALCOVE_TRY_VOID(consider_within(base, ladder_.size(), *goal_.budget_ms, kMost, 0));
+      if (!measured_.empty()) return {};
+      return consider(with_samples(base, ladder_.front())).map([](const Achievement&) {});
     }
-    int met = 0;
-    for (const Rung& rung : ladder_) {
-      ALCOVE_TRY(const Achievement result, consider(rung.settings));
-      met += goal_.met(result) ? 1 : 0;
-      if (met == kWithinTolerance) break;
-    }
+    ALCOVE_TRY(const std::size_t unmet,
+               rungs_within(ladder_.size(), [&](const OcclusionSettings& samples) -> Result<bool> {
+                 ALCOVE_TRY(const auto result, consider(with_samples(base, samples)));
+                 return !goal_.met(result);
+               }));
+    for (std::size_t i = unmet - std::min<std::size_t>(unmet, 2);
+         i < std::min(unmet + 2, ladder_.size()); ++i)
+      ALCOVE_TRY_VOID(consider(with_samples(base, ladder_[i])));
     return {};
   }
 
   void try_feature(const Feature& feature) {
     const Achievement before = found_.chosen;
-    OcclusionSettings with = before.settings;
+    Choice with = before.choice;
     feature.use(with);
-    if (with == before.settings || !passes::validate(with)) return;
+    if (with == before.choice || !passes::validate(with.settings)) return;
     const auto result = consider(with, kWorthwhile);
     if (!result) {
       found_.features.push_back({.name = feature.name, .problem = result.error()});
       return;
     }
-    FeatureEffect effect = measure_effect(feature.name, goal_, *result, before);
-    if (effect.rmse_change < -kWorthwhile) try_with_fewer_samples(with, kWorthwhile);
-    OcclusionSettings chosen = found_.chosen.settings;
+    FeatureEffect effect{feature.name, goal_.rmse(*result) / goal_.rmse(before) - 1.0,
+                         goal_.ms(*result) / goal_.ms(before) - 1.0};
+    const bool helps = effect.rmse_change < -kWorthwhile;
+    if (helps && goal_.budget_ms && !goal_.met(*result)) effect.verdict = "over the budget";
+    if (helps && (goal_.tolerance || !goal_.met(*result)))
+      try_with_fewer_samples(with, kWorthwhile);
+    Choice chosen = found_.chosen.choice;
     feature.use(chosen);
-    if (chosen == found_.chosen.settings && chosen != before.settings) effect.verdict = "used";
+    if (chosen == found_.chosen.choice && chosen != before.choice) effect.verdict = "used";
     found_.features.push_back(std::move(effect));
   }
 
-  // Tries `with` at fewer samples. What a feature adds to the time depends on their number, in
-  // steps where the search exceeds a cache, so that more numbers are modelled than measured.
-  void try_with_fewer_samples(const OcclusionSettings& with, double margin = 0) {
-    const std::size_t most = goal_.budget_ms ? 4 : 8;
-    const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen);
-    const auto within = slowest_within(limit, ladder_.size());
-    if (!within) return;
-    std::size_t count = 0;
-    for (const OcclusionSettings& samples : *within) {
-      OcclusionSettings fewer = with;
-      copy_samples(samples, fewer);
-      count += consider_if_promising(fewer, margin) ? 1 : 0;
-      if (count == most) return;
+  // Tries `with` at fewer samples: the most within a budget, or as few as a tolerance allows.
+  void try_with_fewer_samples(const Choice& with, double margin = 0) {
+    constexpr std::size_t kMost = 3;
+    const auto rungs = static_cast<std::size_t>(
+        std::ranges::count_if(ladder_, [&](const OcclusionSettings& samples) {
+          return samples_per_pixel(samples) <= samples_per_pixel(with.settings);
+        }));
+    if (goal_.budget_ms) {
+      (void)consider_within(with, rungs, *goal_.budget_ms, kMost, margin);
+      return;
     }
-  }
-
-  // Measures settings only if their time does not rule them out, and returns whether it did.
-  // Settings that fail are left out.
-  bool consider_if_promising(const OcclusionSettings& settings, double margin = 0) {
-    if (!passes::validate(settings) || measured(settings) != nullptr) return false;
-    const auto times = world_.time(settings);
-    if (!times) return false;
-    const double ms = weighted(*times, goal_.weights);
-    const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(found_.chosen);
-    return (!goal_.met(found_.chosen) || ms <= limit) && consider(settings, margin).has_value();
+    std::size_t missed = 0;
+    for (std::size_t i = rungs; i-- > 0 && missed < kMost;) {
+      const Choice fewer = with_samples(with, ladder_[i]);
+      if (!consider_if_promising(fewer, margin)) continue;
+      missed += goal_.met(*measured(fewer)) ? 0 : 1;
+    }
   }
 
   // Changes one number of samples at a time, as long as that helps.
@@ -199,16 +216,18 @@ class Search {
     constexpr int kRounds = 3;
     for (int round = 0; round < kRounds; ++round) {
       const Achievement before = found_.chosen;
-      const OcclusionSettings& from = before.settings;
+      const OcclusionSettings& from = before.choice.settings;
       // A tenth of a frame at least is the search, whose time is proportional to the samples. More
       // samples that exceed the limit even so are left out without modelling their time.
       const double limit = goal_.budget_ms ? *goal_.budget_ms : goal_.ms(before);
-      const auto change = [&](auto OcclusionSettings::*field, auto value) {
-        OcclusionSettings changed = from;
-        changed.*field = value;
-        const double more = samples_per_pixel(changed) / samples_per_pixel(from) - 1.0;
+      const auto change = [&](auto AlcoveSettings::*field, auto value) {
+        Choice changed = before.choice;
+        changed.settings.*field = value;
+        const double more = samples_per_pixel(changed.settings) / samples_per_pixel(from) - 1.0;
         const bool too_slow = more > 0 && goal_.ms(before) * (1.0 + 0.1 * more) > limit;
-        if (!goal_.met(before) || !too_slow) consider_if_promising(changed);
+        // Fewer samples within a budget raise the error.
+        const bool useless = more < 0 && goal_.budget_ms && goal_.met(before);
+        if (!goal_.met(before) || !(too_slow || useless)) consider_if_promising(changed);
       };
       for (const std::uint32_t steps :
            {from.steps * 3 / 4, from.steps - 1, from.steps + 1, (from.steps * 4 + 2) / 3})
@@ -217,14 +236,16 @@ class Search {
       change(&OcclusionSettings::slices, from.slices + 1);
       change(&OcclusionSettings::tile_size, from.tile_size / 2);
       change(&OcclusionSettings::tile_size, from.tile_size * 2);
-      if (found_.chosen.settings == from) return;
+      if (found_.chosen.choice == before.choice) return;
     }
   }
 
   OcclusionSettings base_;
   const RecommendationGoal& goal_;
   const RecommendationWorld& world_;
-  std::vector<Rung> ladder_;
+  std::vector<OcclusionSettings> ladder_;  // from few samples per pixel to many
+  std::vector<Achievement> measured_;
+  std::vector<std::pair<Choice, Values>> timed_;
   Recommendation found_;
 };
 
@@ -254,15 +275,6 @@ std::string FeatureEffect::sentence() const {
   };
   return fmt::format("{}: {} for {}; {}", name, change(rmse_change, "error"),
                      change(ms_change, "time"), verdict);
-}
-
-FeatureEffect measure_effect(const std::string& feature, const RecommendationGoal& goal,
-                             const Achievement& with, const Achievement& without) {
-  FeatureEffect effect{feature, goal.rmse(with) / goal.rmse(without) - 1.0,
-                       goal.ms(with) / goal.ms(without) - 1.0};
-  if (effect.rmse_change < -kWorthwhile && goal.budget_ms && !goal.met(with))
-    effect.verdict = "over the budget";
-  return effect;
 }
 
 Result<Recommendation> recommend(const OcclusionSettings& base, const RecommendationGoal& goal,

@@ -8,7 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
+#include "support/progress.h"
 #include "support/result.h"
 
 namespace alcove::sample {
@@ -17,10 +18,23 @@ namespace alcove::sample {
 enum class Situation { first, moving, standing };
 inline constexpr std::array<std::string_view, 3> kSituationNames{"first", "moving", "standing"};
 
-// The result of settings: the RMSE of visibility against scene truth, and the time of the occlusion
+// The width of a guard band over the height of the image: about the length of a search.
+inline constexpr double kGuardBand = 0.1;
+
+// What a search chooses.
+struct Choice {
+  OcclusionSettings settings;
+  // Whether the image is rendered with a guard band of kGuardBand beyond each border, which is not
+  // displayed (AlcoveView::written_area).
+  bool guard_band = false;
+
+  bool operator==(const Choice&) const = default;
+};
+
+// The result of a choice: the RMSE of visibility against scene truth, and the time of the occlusion
 // passes in milliseconds, in each situation.
 struct Achievement {
-  passes::OcclusionSettings settings;
+  Choice choice;
   std::array<double, 3> rmse{};
   std::array<double, 3> ms{};
 };
@@ -54,33 +68,28 @@ struct FeatureEffect {
   std::string sentence() const;
 };
 
-// Compares results with and without a feature.
-[[nodiscard]] FeatureEffect measure_effect(const std::string& feature,
-                                           const RecommendationGoal& goal, const Achievement& with,
-                                           const Achievement& without);
-
 // A feature is not used unless it lowers the error, or the time within a tolerance, by more than
 // this fraction.
 inline constexpr double kWorthwhile = 0.01;
 
 struct Recommendation {
   Achievement chosen;
-  std::vector<Achievement> measured;  // all settings that were measured, in this order
   std::vector<FeatureEffect> features;
 };
 
-// Functions that a search calls. `time` gives Achievement::ms alone and takes much less time.
+// Functions that a search calls: the values of Achievement::rmse and ms, and how much is done.
 struct RecommendationWorld {
-  std::function<Result<Achievement>(const passes::OcclusionSettings&)> measure;
-  std::function<Result<std::array<double, 3>>(const passes::OcclusionSettings&)> time;
+  std::function<Result<std::array<double, 3>>(const Choice&)> rmse;
+  std::function<Result<std::array<double, 3>>(const Choice&)> ms;
+  Progress progress = {};
 };
 
 // Searches from `base`, whose settings beyond those that the search changes are kept. First it
 // measures numbers of samples near the limit, then each feature with the best of them; a feature
 // that lowers the error is also tried with fewer samples. Last it changes slices, steps and tile
 // size a little, one at a time. If nothing meets the goal, the result is the closest. Errors: those
-// of `measure` and `time` for numbers of samples.
-[[nodiscard]] Result<Recommendation> recommend(const passes::OcclusionSettings& base,
+// of the world's functions for numbers of samples.
+[[nodiscard]] Result<Recommendation> recommend(const OcclusionSettings& base,
                                                const RecommendationGoal& goal,
                                                const RecommendationWorld& world);
 

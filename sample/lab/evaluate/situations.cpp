@@ -15,7 +15,6 @@ namespace alcove::sample {
 namespace {
 
 using Failure = tl::unexpected<std::string>;
-using passes::OcclusionSettings;
 
 constexpr float kOrbit = 0.007f;             // radians per frame
 constexpr std::uint32_t kMovingFrames = 16;  // of the orbit
@@ -44,7 +43,7 @@ OcclusionSettings timed_settings(OcclusionSettings settings) {
 }
 
 // The width of a guard band in pixels, which is even.
-std::uint32_t guard_band(std::uint32_t height) {
+std::uint32_t guard_band_pixels(std::uint32_t height) {
   return 2 * static_cast<std::uint32_t>(0.5 * kGuardBand * height);
 }
 
@@ -72,14 +71,11 @@ Result<std::array<double, 3>> cached(const TruthCache& cache, const CacheKey& ke
 Result<SituationErrors> SituationErrors::create(const Session& session, const StaticSetup& setup,
                                                 const TruthOptions& truth_options) {
   SituationErrors errors(session, setup);
-  ALCOVE_TRY(auto renderer, FrameRenderer::create(*session.gpu, session.scene,
-                                                  {setup.width, setup.height}, setup.normals));
-  errors.renderer_ = std::move(renderer);
-  ALCOVE_TRY(const auto images, draw_static(*session.gpu, session.scene, setup, session.settings));
-  ALCOVE_TRY(auto truths, compute_truths({session.scene, setup.camera, session.settings.radius,
-                                          images.depth_ndc, images.normal_ws},
-                                         truth_options));
-  errors.truths_ = std::move(truths);
+  ALCOVE_TRY(FrameRenderer* const renderer, errors.renderer(false));
+  ALCOVE_TRY(const auto images, renderer->draw_and_read(frame_request(setup, session.settings, 0)));
+  ALCOVE_TRY(errors.truths_, compute_truths({session.scene, setup.camera, session.settings.radius,
+                                             images.depth_ndc, images.normal_ws},
+                                            truth_options));
   if (truth_options.use_cache && !program_hash().empty())
     errors.cache_ = TruthCache(TruthCache::default_folder());
   const VkPhysicalDeviceProperties& device = session.gpu->device().properties();
@@ -90,34 +86,37 @@ Result<SituationErrors> SituationErrors::create(const Session& session, const St
   return errors;
 }
 
-Result<Image<float>> SituationErrors::draw(const OcclusionSettings& settings, std::uint32_t frames,
+Result<FrameRenderer*> SituationErrors::renderer(bool guard_band) {
+  std::unique_ptr<FrameRenderer>& renderer = renderers_.at(guard_band ? 1 : 0);
+  if (!renderer) {
+    const std::uint32_t band = guard_band ? guard_band_pixels(setup_.height) : 0;
+    ALCOVE_TRY(renderer, FrameRenderer::create(*session_->gpu, session_->scene,
+                                               {setup_.width + 2 * band, setup_.height + 2 * band},
+                                               setup_.normals));
+  }
+  return renderer.get();
+}
+
+Result<Image<float>> SituationErrors::draw(const Choice& choice, std::uint32_t frames,
                                            float orbit) {
-  StaticSetup setup = setup_;
+  const std::uint32_t pixels = choice.guard_band ? guard_band_pixels(setup_.height) : 0;
+  const VkExtent2D band{pixels, pixels};
+  StaticSetup setup = with_guard_band(setup_, band);
   setup.frames = frames;
   setup.orbit = orbit;
-  return draw_frames(*renderer_, setup, settings).map([](FrameImages images) {
-    return std::move(images.visibility);
+  ALCOVE_TRY(FrameRenderer* const drawn, renderer(choice.guard_band));
+  return draw_frames(*drawn, setup, choice.settings).map([&](const FrameImages& images) {
+    return without_guard_band(images.visibility, band);
   });
 }
 
-Result<std::array<double, 3>> SituationErrors::measure(const OcclusionSettings& settings) {
+Result<std::array<double, 3>> SituationErrors::measure(const Choice& choice) {
   CacheKey key = key_;
-  key.add(std::string_view(to_json(settings).dump()));
-  return cached(cache_, key, [&] {
-    return compute(
-        [&](const StaticSetup& setup) { return draw(settings, setup.frames, setup.orbit); });
-  });
+  key.add(std::string_view(to_json(choice.settings).dump()), choice.guard_band);
+  return cached(cache_, key, [&] { return compute(choice); });
 }
 
-Result<std::array<double, 3>> SituationErrors::measure_with_guard_band(
-    const OcclusionSettings& settings) const {
-  const std::uint32_t band = guard_band(setup_.height);
-  return compute([&](const StaticSetup& setup) {
-    return draw_with_guard_band(*session_->gpu, session_->scene, setup, settings, {band, band});
-  });
-}
-
-Result<std::array<double, 3>> SituationErrors::compute(const Draw& draw) const {
+Result<std::array<double, 3>> SituationErrors::compute(const Choice& choice) {
   struct Course {
     std::uint32_t frames;
     float orbit;
@@ -125,10 +124,7 @@ Result<std::array<double, 3>> SituationErrors::compute(const Draw& draw) const {
   const std::array<Course, 3> courses{{{1, 0.0f}, {kMovingFrames, kOrbit}, {setup_.frames, 0.0f}}};
   std::array<double, 3> rmse{};
   for (std::size_t i = 0; i < courses.size(); ++i) {
-    StaticSetup setup = setup_;
-    setup.frames = courses[i].frames;
-    setup.orbit = courses[i].orbit;
-    ALCOVE_TRY(const Image<float> visibility, draw(setup));
+    ALCOVE_TRY(const auto visibility, draw(choice, courses[i].frames, courses[i].orbit));
     rmse[i] = compare_images(visibility, truths_.scene.visibility, truths_.surfaces).rmse;
   }
   return rmse;
@@ -138,11 +134,10 @@ Result<SettingTimes> modelled_times(const GpuPart& part, const CostInputs& view,
   ALCOVE_TRY(const NullDevice device, create_null_device(part.family));
   const TruthCache cache(use_cache && !program_hash().empty() ? TruthCache::default_folder()
                                                               : std::filesystem::path());
-  return [&part, view, device, cache](const OcclusionSettings& settings,
-                                      bool with_guard_band) -> Result<std::array<double, 3>> {
+  return [&part, view, device, cache](const Choice& choice) -> Result<std::array<double, 3>> {
     CostInputs inputs = view;
-    inputs.guard_band = with_guard_band ? guard_band(inputs.height) : 0;
-    inputs.settings = timed_settings(settings);
+    inputs.guard_band = choice.guard_band ? guard_band_pixels(inputs.height) : 0;
+    inputs.settings = timed_settings(choice.settings);
     CacheKey key;
     key.add(std::string_view("modelled times"), std::string_view(program_hash()), part.family,
             inputs.width, inputs.height, inputs.normals, inputs.motion, inputs.guard_band,
@@ -160,17 +155,14 @@ Result<SettingTimes> modelled_times(const GpuPart& part, const CostInputs& view,
   };
 }
 
-SettingTimes measured_times(const Session& session, const StaticSetup& view, Clock clock) {
-  return [&session, view, clock](const OcclusionSettings& settings,
-                                 bool with_guard_band) -> Result<std::array<double, 3>> {
-    constexpr std::uint32_t kWarmUp = 16;  // frames that compile shaders and fill the history
+SettingTimes measured_times(const Session& session, const StaticSetup& view, Clock clock,
+                            double scale) {
+  return [&session, view, clock, scale](const Choice& choice) -> Result<std::array<double, 3>> {
+    constexpr std::uint32_t kWarmUp = 4;  // frames that compile shaders
     constexpr std::uint32_t kTimed = 11;
-    StaticSetup setup = view;
+    const std::uint32_t band = choice.guard_band ? guard_band_pixels(view.height) : 0;
+    StaticSetup setup = with_guard_band(view, {band, band});
     setup.frames = kWarmUp + kTimed;
-    if (with_guard_band) {
-      setup.width += 2 * guard_band(view.height);
-      setup.height += 2 * guard_band(view.height);
-    }
     ALCOVE_TRY(const auto renderer,
                FrameRenderer::create(*session.gpu, session.scene, {setup.width, setup.height},
                                      setup.normals));
@@ -180,9 +172,10 @@ SettingTimes measured_times(const Session& session, const StaticSetup& view, Clo
       std::vector<double> times;
       for (std::uint32_t i = 0; i < setup.frames; ++i) {
         const std::uint32_t frame = situation == Situation::first ? 0 : i;
-        ALCOVE_TRY(const FrameCost cost, renderer->draw(frame_request(setup, settings, frame)));
+        ALCOVE_TRY(const FrameCost cost,
+                   renderer->draw(frame_request(setup, choice.settings, frame)));
         if (i >= kWarmUp)
-          times.push_back(clock == Clock::processor ? cost.cpu_ms : cost.occlusion_ms);
+          times.push_back(scale * (clock == Clock::processor ? cost.cpu_ms : cost.occlusion_ms));
       }
       medians[static_cast<std::size_t>(situation)] = median(std::move(times));
     }
@@ -192,15 +185,6 @@ SettingTimes measured_times(const Session& session, const StaticSetup& view, Clo
     }
     return medians;
   };
-}
-
-RecommendationWorld recommendation_world(SituationErrors& errors, const SettingTimes& times) {
-  return {[&](const OcclusionSettings& settings) -> Result<Achievement> {
-            ALCOVE_TRY(const auto ms, times(settings, false));
-            ALCOVE_TRY(const auto rmse, errors.measure(settings));
-            return Achievement{settings, rmse, ms};
-          },
-          [&](const OcclusionSettings& settings) { return times(settings, false); }};
 }
 
 }  // namespace alcove::sample

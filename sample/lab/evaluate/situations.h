@@ -16,10 +16,6 @@
 
 namespace alcove::sample {
 
-// The width of the guard bands that are measured, over the height of the image: about the length of
-// a search.
-inline constexpr double kGuardBand = 0.1;
-
 // Measures the errors of settings in one view: of the first frame, of the last frame of an orbit
 // that ends at the view, and after StaticSetup::frames frames of a static camera.
 class SituationErrors {
@@ -31,28 +27,22 @@ class SituationErrors {
 
   // The errors in the order of Situation. They are kept in the cache on disk, if TruthOptions allow
   // it, for this build of the program and this device.
-  [[nodiscard]] Result<std::array<double, 3>> measure(const passes::OcclusionSettings& settings);
-  // The errors with a guard band of kGuardBand of the image's height. They are not kept.
-  [[nodiscard]] Result<std::array<double, 3>> measure_with_guard_band(
-      const passes::OcclusionSettings& settings) const;
+  [[nodiscard]] Result<std::array<double, 3>> measure(const Choice& choice);
 
   // Renders frames of an orbit that ends at the view, with `orbit` radians per frame, and returns
   // the visibility of the last one.
-  [[nodiscard]] Result<Image<float>> draw(const passes::OcclusionSettings& settings,
-                                          std::uint32_t frames, float orbit);
+  [[nodiscard]] Result<Image<float>> draw(const Choice& choice, std::uint32_t frames, float orbit);
   const Truths& truths() const { return truths_; }
 
  private:
-  // Renders StaticSetup of a situation and returns its visibility.
-  using Draw = std::function<Result<Image<float>>(const StaticSetup& setup)>;
-
   SituationErrors(const Session& session, const StaticSetup& setup)
       : session_(&session), setup_(setup) {}
-  Result<std::array<double, 3>> compute(const Draw& draw) const;
+  Result<FrameRenderer*> renderer(bool guard_band);
+  Result<std::array<double, 3>> compute(const Choice& choice);
 
   const Session* session_;
   StaticSetup setup_;
-  std::unique_ptr<FrameRenderer> renderer_;
+  std::array<std::unique_ptr<FrameRenderer>, 2> renderers_;  // without and with a guard band
   Truths truths_;
   TruthCache cache_{{}};
   CacheKey key_;
@@ -67,10 +57,8 @@ enum class Clock : std::uint8_t {
 // Names in the order of the enumerators.
 inline constexpr std::array<std::string_view, 3> kClockNames{"modelled", "timestamps", "processor"};
 
-// Returns the times of settings in the order of Situation, in milliseconds, without or with a guard
-// band of kGuardBand of the image's height.
-using SettingTimes = std::function<Result<std::array<double, 3>>(
-    const passes::OcclusionSettings& settings, bool guard_band)>;
+// Returns the times of a choice in the order of Situation, in milliseconds.
+using SettingTimes = std::function<Result<std::array<double, 3>>(const Choice& choice)>;
 
 // Times that are modelled for a GPU. They are kept in the cache on disk for this build of the
 // program. `inputs` are those of the view; settings are replaced. Error: Mesa's AMD driver is
@@ -78,14 +66,10 @@ using SettingTimes = std::function<Result<std::array<double, 3>>(
 [[nodiscard]] Result<SettingTimes> modelled_times(const GpuPart& part, const CostInputs& inputs,
                                                   bool use_cache);
 
-// Times that are measured on the session's device for images of the size of `setup`: medians over
-// frames. `clock` is not `modelled`. Borrows the session. Error of a call: the device does not time
-// its passes, or a rendering fails.
+// Times that are measured on the session's device for images of the size of `setup`, medians over
+// frames, times `scale`. `clock` is not `modelled`. Borrows the session. Error of a call: the
+// device does not time its passes, or a rendering fails.
 [[nodiscard]] SettingTimes measured_times(const Session& session, const StaticSetup& setup,
-                                          Clock clock);
-
-// Returns functions that measure settings by these errors and times, which must outlive them.
-[[nodiscard]] RecommendationWorld recommendation_world(SituationErrors& errors,
-                                                       const SettingTimes& times);
+                                          Clock clock, double scale);
 
 }  // namespace alcove::sample

@@ -5,26 +5,20 @@
 
 namespace alcove::sample {
 
-using passes::OcclusionSettings;
-
 FrameRequest frame_request(const StaticSetup& setup, const OcclusionSettings& settings,
                            std::uint32_t frame) {
-  const auto matrices = [&](std::uint32_t at) {
-    const float angle =
-        setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1));
-    return camera_matrices(orbited(setup.camera, angle), setup.width, setup.height);
+  const auto camera = [&](std::uint32_t at) {
+    return orbited(setup.camera,
+                   setup.orbit * (static_cast<float>(at) - static_cast<float>(setup.frames - 1)));
   };
-  const CameraMatrices now = matrices(frame);
-  const CameraMatrices before = setup.orbit == 0.0f ? now : matrices(std::max(frame, 1u) - 1);
   FrameRequest request;
-  request.view = {now.view_from_world, now.clip_from_view, before.view_from_world,
-                  before.clip_from_view, setup.camera.reversed_z};
+  request.view =
+      gbuffer_view(camera(frame), camera(std::max(frame, 1u) - 1), {setup.width, setup.height});
   request.index = setup.first_frame + frame;
   request.restart = frame == 0;
   request.static_frames = setup.orbit == 0.0f ? frame : 0;
   request.occlusion = settings;
-  request.occlusion.specular = passes::Specular::none;
-  request.occlusion.bent_normal = false;
+  request.occlusion.specular = ALCOVE_SPECULAR_NONE;
   return request;
 }
 
@@ -42,8 +36,7 @@ Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene, const StaticSetup&
   return draw_frames(*renderer, setup, settings);
 }
 
-Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-                                          const OcclusionSettings& settings, VkExtent2D band) {
+StaticSetup with_guard_band(const StaticSetup& setup, VkExtent2D band) {
   StaticSetup wide = setup;
   wide.width += 2 * band.width;
   wide.height += 2 * band.height;
@@ -52,10 +45,13 @@ Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene, const St
   camera.fov_y = 2.0f * std::atan(scale.y * std::tan(0.5f * camera.fov_y));
   camera.ortho_height *= scale.y;
   camera.offset_ndc /= scale;
-  ALCOVE_TRY(const FrameImages images, draw_static(gpu, scene, wide, settings));
-  Image<float> middle(setup.width, setup.height);
-  for (std::uint32_t y = 0; y < setup.height; ++y)
-    std::copy_n(&images.visibility.at(band.width, y + band.height), setup.width, &middle.at(0, y));
+  return wide;
+}
+
+Image<float> without_guard_band(const Image<float>& image, VkExtent2D band) {
+  Image<float> middle(image.width - 2 * band.width, image.height - 2 * band.height);
+  for (std::uint32_t y = 0; y < middle.height; ++y)
+    std::copy_n(&image.at(band.width, y + band.height), middle.width, &middle.at(0, y));
   return middle;
 }
 

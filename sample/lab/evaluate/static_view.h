@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 #include "render/frame_renderer.h"
 #include "render/normal_source.h"
 #include "scene/camera.h"
@@ -24,24 +24,23 @@ struct StaticSetup {
   float orbit = 0;                // radians per frame, of an orbit that ends at the camera
 };
 
-// Returns the request for a frame of the view: visibility alone, with motion relative to the frame
-// before.
+// Returns the request for a frame of the view: visibility, and bent normals if the settings have
+// them, with motion relative to the frame before.
 [[nodiscard]] FrameRequest frame_request(const StaticSetup& setup,
-                                         const passes::OcclusionSettings& settings,
+                                         const OcclusionSettings& settings,
                                          std::uint32_t frame);
 
 // Renders the frames of a view and reads the last one back.
 [[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
-                                              const passes::OcclusionSettings& settings);
+                                              const OcclusionSettings& settings);
 [[nodiscard]] Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene,
                                               const StaticSetup& setup,
-                                              const passes::OcclusionSettings& settings);
+                                              const OcclusionSettings& settings);
 
-// Renders the frames of a view with a guard band, which is this many pixels wide beyond the borders
-// at the sides, and at top and bottom, and returns the visibility of the view without the band.
-[[nodiscard]] Result<Image<float>> draw_with_guard_band(Gpu& gpu, const Scene& scene,
-                                                        const StaticSetup& setup,
-                                                        const passes::OcclusionSettings& settings,
-                                                        VkExtent2D band);
+// Returns the view with a guard band, which is this many pixels wide beyond the borders at the
+// sides, and at top and bottom.
+[[nodiscard]] StaticSetup with_guard_band(const StaticSetup& setup, VkExtent2D band);
+// Returns an image of that view without the band.
+[[nodiscard]] Image<float> without_guard_band(const Image<float>& image, VkExtent2D band);
 
 }  // namespace alcove::sample

@@ -11,9 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-using passes::OcclusionSettings;
-using passes::Quality;
-
 // The settings that differ between the points of a sweep.
 struct SweepPoint {
   std::uint32_t tile_size;
@@ -63,10 +60,11 @@ class SweepList {
 
 std::vector<Variant> preset_sweep(const OcclusionSettings& base) {
   SweepList list(base);
-  for (const Quality quality : presets()) {
-    const OcclusionSettings preset = passes::quality_settings(quality, base.radius);
-    list.add(std::string(passes::name_of(quality)), {preset.tile_size, preset.slices, preset.steps,
-                                                     preset.half_resolution, preset.depth_layers});
+  for (const AlcoveQuality quality : presets()) {
+    const OcclusionSettings preset = OcclusionSettings(quality, base.radius);
+    list.add(std::string(passes::kQualityNames.at(quality)),
+             {preset.tile_size, preset.slices, preset.steps, preset.half_resolution != 0,
+              preset.depth_layers});
   }
   for (const SweepPoint& point : kSweepPoints) list.add(name_of(point), point);
   return list.take();

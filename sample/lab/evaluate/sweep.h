@@ -4,19 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
+#include "gpu/occlusion.h"
 
 namespace alcove::sample {
 
 struct Variant {
   std::string name;
-  passes::OcclusionSettings settings;
+  OcclusionSettings settings;
 };
 
 // Returns the presets, and other settings with tile sizes, numbers of slices and steps, and half
 // resolution between and beyond those of the presets. Everything else is as in `base`, except that
 // a preset with a second depth layer has one. No setting appears twice. `base` itself appears only
 // if it equals one of these.
-[[nodiscard]] std::vector<Variant> preset_sweep(const passes::OcclusionSettings& base);
+[[nodiscard]] std::vector<Variant> preset_sweep(const OcclusionSettings& base);
 
 }  // namespace alcove::sample

@@ -16,27 +16,43 @@ namespace {
 constexpr std::uint32_t kTruthVersion = 2;
 constexpr std::uint32_t kHeightFieldSlices = 24;
 
-Result<OcclusionTruth> scene_truth(const TruthFrame& frame, const TruthOptions& options,
-                                   const TruthCache& cache, const Image<float>& depth) {
+TruthCache cache_of(const TruthOptions& options) {
+  return TruthCache(options.use_cache ? TruthCache::default_folder() : std::filesystem::path());
+}
+
+}  // namespace
+
+Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& options) {
+  const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
+  Truths truths{{{depth.width, depth.height}, {depth.width, depth.height}},
+                {depth.width, depth.height}};
+  for (std::size_t i = 0; i < depth.pixels.size(); ++i)
+    truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
+  if (std::ranges::find(truths.surfaces.pixels, 1) == truths.surfaces.pixels.end()) {
+    return tl::unexpected<std::string>(
+        "the view shows nothing but sky: turn it with --eye and --target, widen --near and --far, "
+        "or draw back faces by --both-sides");
+  }
   const TruthSettings settings{.radius = frame.radius, .spp = options.spp};
   CacheKey key;
   key.add("scene truth", kTruthVersion, frame.scene, frame.camera, settings.radius, settings.spp,
           depth, frame.normal_ws);
-  OcclusionTruth truth{{depth.width, depth.height}, {depth.width, depth.height}};
-  if (cache.read_all(key, truth.visibility, truth.bent_normal_ws)) return truth;
+  const TruthCache cache = cache_of(options);
+  if (cache.read_all(key, truths.scene.visibility, truths.scene.bent_normal_ws)) return truths;
   ALCOVE_TRY(const auto rays, RayScene::create(frame.scene));
-  truth = occlusion_truth(rays, surface_points(rays, frame.camera, frame.normal_ws, depth),
-                          settings, print_progress("scene truth"));
-  cache.write_all(key, truth.visibility, truth.bent_normal_ws);
-  return truth;
+  truths.scene = occlusion_truth(rays, surface_points(rays, frame.camera, frame.normal_ws, depth),
+                                 settings, print_progress("scene truth"));
+  cache.write_all(key, truths.scene.visibility, truths.scene.bent_normal_ws);
+  return truths;
 }
 
-HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthCache& cache,
-                             const Image<float>& depth) {
+HeightFieldTruth compute_height_field_truth(const TruthFrame& frame, const TruthOptions& options) {
+  const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
   const HeightFieldSettings settings{frame.radius, kHeightFieldSlices};
   CacheKey key;
   key.add("height-field truth", kTruthVersion, frame.camera, settings.radius, settings.slices,
           depth, frame.normal_ws);
+  const TruthCache cache = cache_of(options);
   HeightFieldTruth truth{{depth.width, depth.height}, {depth.width, depth.height}};
   if (!cache.read_all(key, truth.visibility, truth.bent_normal_ws)) {
     truth = height_field_truth(depth, frame.normal_ws, frame.camera, settings,
@@ -44,26 +60,6 @@ HeightFieldTruth depth_truth(const TruthFrame& frame, const TruthCache& cache,
     cache.write_all(key, truth.visibility, truth.bent_normal_ws);
   }
   return truth;
-}
-
-}  // namespace
-
-Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& options) {
-  const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
-  Truths truths;
-  truths.surfaces = Mask(depth.width, depth.height);
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i)
-    truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
-  if (std::ranges::find(truths.surfaces.pixels, 1) == truths.surfaces.pixels.end()) {
-    return tl::unexpected<std::string>(
-        "the view shows nothing but sky: turn it with --eye and --target, or widen --near and "
-        "--far");
-  }
-  const TruthCache cache(options.use_cache ? TruthCache::default_folder()
-                                           : std::filesystem::path());
-  ALCOVE_TRY(truths.scene, scene_truth(frame, options, cache, depth));
-  truths.height_field = depth_truth(frame, cache, depth);
-  return truths;
 }
 
 }  // namespace alcove::sample

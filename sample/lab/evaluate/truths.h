@@ -28,16 +28,20 @@ struct TruthFrame {
   const Image<glm::vec3>& normal_ws;  // the normals that the occlusion pass was given
 };
 
-// Both truths of a frame, and the pixels at which they are defined.
+// The ray-traced truth of a frame, and the pixels at which it is defined.
 struct Truths {
-  OcclusionTruth scene;           // ray traced
-  HeightFieldTruth height_field;  // brute force on the same depth buffer
-  Mask surfaces;                  // pixels that are not sky
+  OcclusionTruth scene;
+  Mask surfaces;  // pixels that are not sky
 };
 
-// Computes the truths, or reads them from the cache on disk. They are computed at the points where
+// Traces the truth of a frame, or reads it from the cache on disk. It is traced at the points where
 // primary rays through the pixel centres hit the scene, with the normals that the occlusion pass
 // was given. Prints progress on stderr. Error: the view shows nothing but sky.
 [[nodiscard]] Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& options);
+
+// Computes the height-field truth of a frame by brute force on the same depth buffer, or reads it
+// from the cache.
+[[nodiscard]] HeightFieldTruth compute_height_field_truth(const TruthFrame& frame,
+                                                          const TruthOptions& options);
 
 }  // namespace alcove::sample

@@ -22,8 +22,8 @@ maths::SliceNoise noise_of(Texel tile, bool moves) {
 }
 
 // The depth sample `step` of one half-slice, as in gtao_search_line.h.
-ImageAccess depth_sample(const PassImage& image, const passes::OcclusionSettings& settings,
-                         float radius_px, std::uint32_t slice, float side, std::uint32_t step) {
+ImageAccess depth_sample(const PassImage& image, const OcclusionSettings& settings, float radius_px,
+                         std::uint32_t slice, float side, std::uint32_t step) {
   const auto tile_size = static_cast<std::int32_t>(settings.tile_size);
   const auto texel = [=, slices = settings.slices,
                       steps = static_cast<float>(settings.steps)](Texel tile) {
@@ -39,7 +39,7 @@ ImageAccess depth_sample(const PassImage& image, const passes::OcclusionSettings
 
 // gtao.comp: each traced pixel reads its inputs, then depth along its slices, and writes its tile.
 Accesses gtao_accesses(const PassWork& work) {
-  const passes::OcclusionSettings& settings = work.settings;
+  const OcclusionSettings& settings = work.settings;
   const float radius_px = kRadius * static_cast<float>(work.height);
   const auto tile = static_cast<std::int32_t>(settings.tile_size);
   const Texel traced{tile / 2, tile / 4};
@@ -62,33 +62,18 @@ Accesses gtao_accesses(const PassWork& work) {
   return accesses;
 }
 
-// invocation_tile() of gtao.comp: groups advance by columns through strips that are `groups.x`
-// groups high. Here the strips of a dispatch lie one below the other.
-ImageAccess in_strips(ImageAccess access, const Groups& groups) {
-  const auto high = static_cast<std::int32_t>(groups.x);
-  const auto wide = static_cast<std::int32_t>(groups.y);
-  access.texel = [=, texel = std::move(access.texel)](Texel invocation) {
-    constexpr auto kSide = static_cast<std::int32_t>(kGroup);
-    const std::int32_t column = invocation.y / kSide;
-    const std::int32_t row = column / wide * high + invocation.x / kSide;
-    return texel(
-        {column % wide * kSide + invocation.x % kSide, row * kSide + invocation.y % kSide});
-  };
-  return access;
-}
-
 // The blocks of 8x8 texels that a group of reconstruct.comp computes, one below the other.
-std::int32_t blocks_of(const passes::OcclusionSettings& settings) {
+std::int32_t blocks_of(const OcclusionSettings& settings) {
   return settings.tile_size > (settings.half_resolution ? 2u : 1u) ? 4 : 1;
 }
 
 // load_tiles() of reconstruct.comp: a group loads the tiles around it, one per invocation.
 void add_tiles(const PassImage& image, const PassWork& work, Accesses& accesses) {
-  const passes::OcclusionSettings& settings = work.settings;
+  const OcclusionSettings& settings = work.settings;
   const std::uint32_t width = kGroup * (settings.half_resolution ? 2 : 1);
   const std::uint32_t height = width * static_cast<std::uint32_t>(blocks_of(settings));
   const bool fresh = settings.history_frames == 0 || work.state == FrameState::first;
-  const std::uint32_t radius = std::min(filter_radius(settings), fresh ? 3u : 1u);
+  const std::uint32_t radius = std::min(passes::filter_radius(settings), fresh ? 3u : 1u);
   const std::uint32_t span = width / settings.tile_size + 2 * radius;
   const std::uint32_t tiles = span * (height / settings.tile_size + 2 * radius);
   for (std::uint32_t first = 0; first < tiles; first += kGroup * kGroup) {
@@ -126,11 +111,13 @@ ImageAccess in_block(ImageAccess access, std::int32_t block, std::int32_t blocks
 // The normals of the pixels whose tangent plane does not come from depth. In the atrium, the arcade
 // and the helmet 16 to 27 % of the waves contain one; here a fifth of the blocks do.
 ImageAccess at_bent_depth(const PassImage& image) {
-  return {image, 1, [](Texel invocation) {
+  return {image, 1,
+          [](Texel invocation) {
             constexpr auto kSide = static_cast<std::int32_t>(kGroup);
             const bool reads = (invocation.x / kSide + 2 * (invocation.y / kSide)) % 5 == 0;
             return reads ? invocation : Texel{};
-          }};
+          },
+          true};
 }
 
 // The accesses of reconstruct.comp to an image for one block of texels.
@@ -225,31 +212,36 @@ Texel along_slice(Texel from, float phi, float distance) {
       directions[static_cast<std::size_t>(phi * (static_cast<float>(kDirections) / maths::kPi)) %
                  kDirections];
   const auto rounded = [distance](float component) {
-    return static_cast<std::int32_t>(std::floor(component * distance + 0.5f));
+    constexpr float kBelow = 16384.0f;  // is below every distance, so that truncation rounds down
+    return static_cast<std::int32_t>(component * distance + (kBelow + 0.5f)) -
+           static_cast<std::int32_t>(kBelow);
   };
   return {from.x + rounded(direction.x), from.y + rounded(direction.y)};
 }
 
 ImageAccess at_invocation(const PassImage& image, std::int32_t scale, Texel offset,
                           std::uint32_t footprint) {
-  return {image, footprint, [=](Texel invocation) {
+  return {image, footprint,
+          [=](Texel invocation) {
             return Texel{invocation.x * scale + offset.x, invocation.y * scale + offset.y};
-          }};
+          },
+          scale <= 2};
 }
 
 DispatchAccesses accesses_of(const PassWork& work) {
   DispatchAccesses dispatch{work.groups.x, work.groups.y * work.groups.z, {}};
-  if (work.pass == "gtao")
-    for (ImageAccess& access : gtao_accesses(work))
-      dispatch.accesses.push_back(in_strips(std::move(access), work.groups));
-  else if (work.pass == "reconstruct")
+  if (work.pass == "gtao") {
+    dispatch.strip_columns = work.groups.y;
+    dispatch.accesses = gtao_accesses(work);
+  } else if (work.pass == "reconstruct") {
     dispatch.accesses = reconstruct_accesses(work);
-  else if (work.pass == "upsample")
+  } else if (work.pass == "upsample") {
     dispatch.accesses = upsample_accesses(work);
-  else if (work.pass == "normals")
+  } else if (work.pass == "normals") {
     dispatch.accesses = normals_accesses(work);
-  else
+  } else {
     for (const PassImage& image : work.images) dispatch.accesses.push_back(at_invocation(image));
+  }
   return dispatch;
 }
 

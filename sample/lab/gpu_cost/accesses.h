@@ -25,6 +25,9 @@ struct ImageAccess {
   // The texel of an invocation, or with a footprint of 2 the first of its texels. It is clamped to
   // the image.
   std::function<Texel(Texel invocation)> texel;
+  // Whether a wave reads each cache line between the texels of its first and of its last
+  // invocation.
+  bool dense = false;
 };
 
 // The image instructions that each wave of a dispatch executes, in this order. A workgroup has 8x8
@@ -33,6 +36,9 @@ struct DispatchAccesses {
   std::uint32_t groups_x = 1;
   std::uint32_t groups_y = 1;
   std::vector<ImageAccess> accesses;
+  // The groups of a row, if groups run by columns through strips that are groups_x groups high
+  // (invocation_tile() of gtao.comp) and lie one below the other. 0: groups run row by row.
+  std::uint32_t strip_columns = 0;
 };
 
 // The image instructions of a pass whose pattern is not declared read or write one texel of each

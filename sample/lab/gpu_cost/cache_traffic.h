@@ -3,9 +3,14 @@
 //
 // Every wave of the frame is followed, with the addresses that accesses.h declares. The waves of a
 // compute unit are in flight together, as many as their registers allow, and drift apart. Images
-// are stored in square tiles of one cache line. Stores go to L2. Left out: the last-level cache of
-// RDNA2 parts, compressed depth, and conflicts between banks.
+// are stored in tiles of one cache line. Stores go to L2. A last-level cache serves what L2 misses
+// as far as it holds the images of the dispatch. Left out: compressed depth, conflicts between
+// banks, and what other work leaves in the caches.
 #pragma once
+
+#include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "gpu_cost/accesses.h"
 #include "gpu_cost/gpu_part.h"
@@ -14,19 +19,35 @@ namespace alcove::sample {
 
 struct CacheTraffic {
   double lines_per_load = 0;  // cache lines that a load of a wave touches
-  double texture_cycles = 0;  // of the busiest texture unit: four lanes, a line or a miss a cycle
   double l2_bytes = 0;        // that L2 receives and sends
-  double memory_bytes = 0;    // that memory receives and sends
+  double memory_bytes = 0;    // that memory, or the last-level cache, receives and sends
+  double texture_ms = 0;      // of the busiest texture unit: four lanes or a line a cycle
+  double l2_ms = 0;
+  double memory_ms = 0;
+  double milliseconds() const { return std::max({texture_ms, l2_ms, memory_ms}); }
 };
 
-// `waves_per_simd` is the number of waves in flight on a SIMD.
-[[nodiscard]] CacheTraffic cache_traffic(const GpuPart& part, const DispatchAccesses& dispatch,
-                                         double waves_per_simd);
+// What no published source tells about the parts, and what decides most of the modelled times.
+struct CacheAssumptions {
+  std::string_view name;                // of what differs from the first of kCacheAssumptions
+  bool flat_tiles = false;              // lines of 8-byte texels are twice as wide, half as high
+  std::uint32_t accesses_in_a_row = 1;  // that a wave executes before others have their turn
+  double fetched_part = 1;              // of a line that a miss of a cache moves
+  double l2_width = 1;                  // of the bytes per cycle that GpuPart states
+  bool hashed_sets = true;              // false: address bits select the set of L2
+};
+// Those of the model, and others that differ in one point each.
+inline constexpr std::array<CacheAssumptions, 6> kCacheAssumptions{
+    {{"the model"},
+     {.name = "8-byte texels in flat tiles", .flat_tiles = true},
+     {.name = "two accesses of a wave in a row", .accesses_in_a_row = 2},
+     {.name = "fetches of half a line", .fetched_part = 0.5},
+     {.name = "half the width of L2", .l2_width = 0.5},
+     {.name = "sets of L2 by address bits", .hashed_sets = false}}};
 
-// The time that L2, and memory, take for the traffic, in milliseconds.
-[[nodiscard]] double l2_ms(const GpuPart& part, const CacheTraffic& traffic);
-[[nodiscard]] double memory_ms(const GpuPart& part, const CacheTraffic& traffic);
-// The longest of the times of texture units, L2 and memory.
-[[nodiscard]] double cache_ms(const GpuPart& part, const CacheTraffic& traffic);
+// `waves_per_simd` is the number of waves in flight on a SIMD.
+[[nodiscard]] CacheTraffic cache_traffic(
+    const GpuPart& part, const DispatchAccesses& dispatch, double waves_per_simd,
+    const CacheAssumptions& assumptions = kCacheAssumptions.front());
 
 }  // namespace alcove::sample

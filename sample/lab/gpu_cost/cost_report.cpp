@@ -24,29 +24,18 @@ std::string pass_row(const ModelledPass& pass) {
       shader.shared_bytes, pass.cache_lines_per_load, fmt::join(pass.limits_ms, " "));
 }
 
-std::string wave_rows(const ModelledPass& pass) {
-  std::string out = fmt::format(
-      "      one wave: {:.0f} instructions, {:.0f} vector ({:.0f} transcendental, {:.0f} select), "
-      "{:.0f} scalar, {:.0f} fetches, {:.0f} stores, {:.0f} on shared memory\n",
-      pass.wave.instructions, pass.wave.vector_instructions, pass.wave.transcendentals,
-      pass.wave.selects, pass.wave.scalar_instructions, pass.wave.loads, pass.wave.stores,
-      pass.wave.shared_operations);
-  for (const Loop& one : pass.loops) {
-    const CompiledLoop& loop = one.summary;
-    out += fmt::format(
-        "      loop {}, depth {}: {} instructions, {} fetches, {} stores, {} on shared memory; "
-        "runs {:.1f} times\n",
-        loop.index, loop.depth, loop.instructions, loop.loads, loop.stores, loop.shared,
-        one.iterations);
+// The range of the times under different assumptions, and the time under each.
+std::string range_row(const SettingsCost& cost) {
+  const auto [least, most] = std::ranges::minmax(cost.assumed_ms);
+  std::string out = fmt::format("    moving frame: {:.3f} to {:.3f} ms.", least, most);
+  for (std::size_t i = 0; i < kCacheAssumptions.size(); ++i) {
+    out += fmt::format("{} {} {:.3f}", i == 0 ? "" : ",", kCacheAssumptions[i].name,
+                       cost.assumed_ms[i]);
   }
-  for (const Branch& branch : pass.branches) {
-    out += fmt::format("      branch: {} instructions, {} fetches; {:g} of the waves run it\n",
-                       branch.summary.instructions, branch.summary.loads, branch.share);
-  }
-  return out;
+  return out + "\n";
 }
 
-std::string settings_rows(const SettingsCost& cost, bool loops) {
+std::string settings_rows(const SettingsCost& cost) {
   std::string out;
   const CostInputs& inputs = cost.settings.inputs;
   const double peer_ms = xegtao_ms(*cost.part, kXeGtaoHigh, inputs.width, inputs.height);
@@ -54,9 +43,9 @@ std::string settings_rows(const SettingsCost& cost, bool loops) {
     out += fmt::format("  {}, {} frame: {:.3f} ms, {:.2f} of {} at this size\n",
                        cost.settings.label, name_of(frame.state), frame.milliseconds(),
                        frame.milliseconds() / peer_ms, kXeGtaoHigh.name);
-    for (const ModelledPass& pass : frame.passes)
-      out += pass_row(pass) + (loops ? wave_rows(pass) : "");
+    for (const ModelledPass& pass : frame.passes) out += pass_row(pass);
   }
+  if (!cost.assumed_ms.empty()) out += range_row(cost);
   for (const Occupancy& occupancy : cost.occupancies) {
     out += fmt::format("    {:20}vector registers and waves per SIMD:", occupancy.pass);
     for (std::size_t i = 0; i < kProjectionNames.size(); ++i) {
@@ -126,33 +115,35 @@ Json to_json(const SettingsCost& cost, double peer_ms) {
   }
   return {{"label", cost.settings.label},
           {"frames", std::move(frames)},
-          {"occupancy", std::move(occupancies)}};
+          {"occupancy", std::move(occupancies)},
+          {"assumed_ms", cost.assumed_ms}};
 }
 
 }  // namespace
 
-Result<SettingsCost> model_cost(const GpuPart& part, const NullDevice& device,
-                                const LabelledSettings& settings) {
-  ALCOVE_TRY(auto frames, modelled_frames(part, device, settings.inputs));
-  ALCOVE_TRY(auto found, occupancies(part, device, settings.inputs));
-  return SettingsCost{settings, &part, std::move(frames), std::move(found)};
-}
-
 Result<std::vector<SettingsCost>> model_costs(std::span<const LabelledSettings> settings,
-                                              const GpuPart* only) {
+                                              const GpuPart* only, bool range) {
   std::vector<SettingsCost> costs;
   for (const GpuPart& part : kGpuParts) {
     if (only != nullptr && only != &part) continue;
     ALCOVE_TRY(const auto device, create_null_device(part.family));
     for (const LabelledSettings& one : settings) {
-      ALCOVE_TRY(auto cost, model_cost(part, device, one));
+      SettingsCost cost{one, &part};
+      ALCOVE_TRY(cost.frames, modelled_frames(part, device, one.inputs));
+      ALCOVE_TRY(cost.occupancies, occupancies(part, device, one.inputs));
+      for (const CacheAssumptions& assumptions : kCacheAssumptions) {
+        if (!range) break;
+        ALCOVE_TRY(const auto frame,
+                   modelled_frame(part, device, one.inputs, FrameState::moving, &assumptions));
+        cost.assumed_ms.push_back(frame.milliseconds());
+      }
       costs.push_back(std::move(cost));
     }
   }
   return costs;
 }
 
-std::string format_table(std::span<const SettingsCost> costs, bool loops) {
+std::string format_table(std::span<const SettingsCost> costs) {
   std::string out;
   for (const GpuPart& part : kGpuParts) {
     const auto first = std::ranges::find(costs, &part, &SettingsCost::part);
@@ -166,10 +157,10 @@ std::string format_table(std::span<const SettingsCost> costs, bool loops) {
     }
     out +=
         "; all passes of the paper on a PS4 0.5 (as published, 1920x1080)\n"
-        "    pass                      ms  limit          instr/px fetches stores    L2 memory"
+        "    pass                      ms  limit          instr/px fetches stores  L2 B beyond"
         "  VGPRs  waves  spills    code  shared  lines   ALU texture shared L2 memory latency\n";
     for (const SettingsCost& cost : costs)
-      if (cost.part == &part) out += settings_rows(cost, loops);
+      if (cost.part == &part) out += settings_rows(cost);
   }
   return out;
 }

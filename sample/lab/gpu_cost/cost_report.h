@@ -23,21 +23,17 @@ struct SettingsCost {
   const GpuPart* part = nullptr;
   std::vector<ModelledFrame> frames;   // for a finite far plane
   std::vector<Occupancy> occupancies;  // of each pass, for each kind of projection
+  // Milliseconds of a moving frame under each of kCacheAssumptions; empty if they are not wanted.
+  std::vector<double> assumed_ms;
 };
 
-// Errors: those of modelled_frames().
-[[nodiscard]] Result<SettingsCost> model_cost(const GpuPart& part, const NullDevice& device,
-                                              const LabelledSettings& settings);
-
-// The costs of all these settings on each GPU of the model, or on `only`. Errors: those of
-// create_null_device() and modelled_frames().
+// The costs of all these settings on each GPU of the model, or on `only`. With `range`, also under
+// each of kCacheAssumptions. Errors: those of create_null_device() and modelled_frames().
 [[nodiscard]] Result<std::vector<SettingsCost>> model_costs(
-    std::span<const LabelledSettings> settings, const GpuPart* only = nullptr);
+    std::span<const LabelledSettings> settings, const GpuPart* only, bool range);
 
 // Returns the costs as text: a table for each GPU, with the passes of each frame and their sums.
-// With `loops`, also the instructions of a wave by kind, each loop of the compiled shader with its
-// number of iterations, and each branch that not every wave executes.
-[[nodiscard]] std::string format_table(std::span<const SettingsCost> costs, bool loops);
+[[nodiscard]] std::string format_table(std::span<const SettingsCost> costs);
 [[nodiscard]] nlohmann::ordered_json to_json(std::span<const SettingsCost> costs);
 
 }  // namespace alcove::sample

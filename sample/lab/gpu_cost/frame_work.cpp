@@ -3,84 +3,98 @@
 #include <algorithm>
 #include <span>
 
-#include "alcove/passes/work.h"
+#include "alcove/passes/setting_table.h"
 
 namespace alcove::sample {
 namespace {
 
-using framegraph::Texture;
-
 // A camera of 60 degrees, or an orthographic view.
-passes::View camera(ProjectionKind kind) {
-  passes::View view;
-  const float scale = 1.7320508f;  // 1 / tan(30 degrees)
-  const float near_plane = 0.1f;
-  const float far_plane = 100.0f;
-  const float range = far_plane - near_plane;
-  view.clip_from_view = {scale * 9 / 16, 0, 0, 0, 0, -scale, 0, 0, 0, 0, 0, -1, 0, 0,
-                         near_plane,     0};
+AlcoveCamera camera_of(ProjectionKind kind) {
+  constexpr float kScale = 1.7320508f;  // 1 / tan(30 degrees)
+  constexpr float kNear = 0.1f, kFar = 100.0f, kRange = kFar - kNear;
+  AlcoveCamera camera{{kScale * 9 / 16, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0},
+                      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+  float* const clip = camera.clip_from_view;
   if (kind == ProjectionKind::finite_far) {
-    view.clip_from_view[10] = near_plane / range;
-    view.clip_from_view[14] = near_plane * far_plane / range;
+    clip[10] = kNear / kRange;
+    clip[14] = kNear * kFar / kRange;
   } else if (kind == ProjectionKind::orthographic) {
-    view.clip_from_view = {
-        0.09f, 0, 0, 0, 0, -0.16f, 0, 0, 0, 0, -1 / range, 0, 0, 0, -near_plane / range, 1};
+    clip[0] = 0.09f;
+    clip[5] = -0.16f;
+    clip[10] = -1 / kRange;
+    clip[11] = 0;
+    clip[14] = -kNear / kRange;
+    clip[15] = 1;
   }
-  return view;
+  return camera;
 }
 
-tl::expected<passes::OcclusionOutputs, passes::Error> describe(passes::WorkList& list,
-                                                               const CostInputs& inputs,
-                                                               FrameState state) {
-  passes::WorkFrame frame{camera(inputs.projection), static_cast<std::uint32_t>(state)};
-  frame.previous_view = frame.view;
-  if (state == FrameState::moving) frame.previous_view.view_from_world[12] = 0.01f;
-  frame.static_frames = state == FrameState::unchanged   ? 1
-                        : state == FrameState::converged ? 16
-                                                         : 0;
+AlcoveWorkInfo work_info(const CostInputs& inputs) {
+  AlcoveWorkInfo info{.struct_size = sizeof info};
+  AlcoveViewInfo& view = info.view;
+  view.settings = &inputs.settings;
+  view.camera = camera_of(inputs.projection);
+  view.normal_encoding = inputs.normal_encoding;
+  view.not_receiving = view.not_occluding = inputs.mask ? 1 : 0;
   const std::uint32_t band = inputs.guard_band;
   const VkExtent2D size{inputs.width + 2 * band, inputs.height + 2 * band};
-  const auto add = [&](bool wanted, const char* name, VkFormat format, std::uint32_t samples = 1) {
-    return wanted ? list.add(ALCOVE_RESOURCE_KIND_INPUT, name, format, size, 1, samples)
-                  : Texture{};
+  if (inputs.area || band > 0) view.read_area = {0, 0, size.width, size.height};
+  if (band > 0) view.written_area = {band, band, inputs.width, inputs.height};
+  const auto add = [&](bool wanted, AlcoveImageRole role, VkFormat format,
+                       std::uint32_t samples = 1) {
+    const VkExtent2D written{inputs.width, inputs.height};
+    const auto& [width, height] = role < ALCOVE_IMAGE_FIRST_OUTPUT ? size : written;
+    if (wanted) info.images[role] = {static_cast<std::uint32_t>(format), width, height, samples};
   };
-  if (inputs.area || band > 0) {
-    frame.areas.read = {0, 0, size.width, size.height};
-    if (band > 0) frame.areas.written = {band, band, inputs.width, inputs.height};
-  }
-  const passes::OcclusionSettings& settings = inputs.settings;
-  passes::OcclusionInputs given;
-  given.depth_ndc = add(true, "depth", VK_FORMAT_D32_SFLOAT, inputs.samples ? 4 : 1);
-  given.mask = add(inputs.mask, "mask", VK_FORMAT_R8_UNORM);
-  given.not_receiving = given.not_occluding = inputs.mask ? 1 : 0;
-  given.normals = add(inputs.normals, "normals", VK_FORMAT_R16G16B16A16_SFLOAT);
-  given.normal_convention.encoding = inputs.normal_encoding;
-  given.motion = add(inputs.motion, "motion vectors", VK_FORMAT_R16G16_SFLOAT);
-  given.back_depth_ndc =
-      add(passes::needs_back_depth(settings), "back-face depth", VK_FORMAT_D32_SFLOAT);
-  given.second_depth_ndc =
-      add(passes::needs_second_depth(settings), "second depth", VK_FORMAT_D32_SFLOAT);
-  return passes::describe_occlusion(list, frame, given, settings);
+  const OcclusionSettings& settings = inputs.settings;
+  add(true, ALCOVE_IMAGE_DEPTH, VK_FORMAT_D32_SFLOAT, inputs.samples ? 4 : 1);
+  add(inputs.mask, ALCOVE_IMAGE_MASK, VK_FORMAT_R8_UNORM);
+  add(inputs.normals, ALCOVE_IMAGE_NORMALS, VK_FORMAT_R16G16B16A16_SFLOAT);
+  add(inputs.motion, ALCOVE_IMAGE_MOTION, VK_FORMAT_R16G16_SFLOAT);
+  add(passes::needs_back_depth(settings), ALCOVE_IMAGE_BACK_DEPTH, VK_FORMAT_D32_SFLOAT);
+  add(passes::needs_second_depth(settings), ALCOVE_IMAGE_SECOND_DEPTH, VK_FORMAT_D32_SFLOAT);
+  const bool bytes = settings.precision == ALCOVE_PRECISION_UNORM8;
+  const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
+  add(settings.visibility, ALCOVE_IMAGE_VISIBILITY, scalar);
+  add(settings.bent_normal, ALCOVE_IMAGE_BENT_NORMAL,
+      bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT);
+  add(settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR, scalar);
+  return info;
 }
 
 std::uint32_t texel_bytes(const AlcoveWorkResource& resource) {
-  if (resource.kind == ALCOVE_RESOURCE_KIND_INPUT) {  // one of describe()
-    return resource.format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8
-           : resource.format == VK_FORMAT_R8_UNORM          ? 1
-                                                            : 4 * resource.samples;
+  switch (resource.role == ALCOVE_WORK_NONE ? VK_FORMAT_UNDEFINED
+                                            : static_cast<VkFormat>(resource.format)) {
+    case VK_FORMAT_UNDEFINED:
+      return static_cast<std::uint32_t>(resource.size /
+                                        (std::uint64_t{resource.width} * resource.height));
+    case VK_FORMAT_R8_UNORM:
+      return 1;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return 16;
+    default:
+      return 4 * resource.samples;
   }
-  return static_cast<std::uint32_t>(resource.size /
-                                    (std::uint64_t{resource.width} * resource.height));
 }
 
 }  // namespace
 
 Result<std::vector<AlcoveWork>> describe_frames(const CostInputs& inputs) {
   std::vector<AlcoveWork> frames(kFrameStates);
+  AlcoveWorkInfo info = work_info(inputs);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    passes::WorkList list(frames[i], i == 0 ? nullptr : &frames[i - 1]);
-    if (const auto described = describe(list, inputs, static_cast<FrameState>(i)); !described)
-      return tl::unexpected(described.error().message);
+    const auto state = static_cast<FrameState>(i);
+    info.previous = i == 0 ? nullptr : &frames[i - 1];
+    info.index = static_cast<std::uint32_t>(i);
+    info.view.camera.view_from_world[12] = state == FrameState::first ? 0.01f : 0.0f;
+    info.view.static_frames = state == FrameState::unchanged   ? 1
+                              : state == FrameState::converged ? 16
+                                                               : 0;
+    char message[ALCOVE_MAX_MESSAGE];
+    if (alcoveDescribeWork(&info, &frames[i], message) != ALCOVE_SUCCESS)
+      return tl::unexpected(std::string(message));
   }
   return frames;
 }
@@ -91,7 +105,7 @@ std::vector<PassImage> dispatch_images(const AlcoveWork& work, const AlcoveWorkD
   for (auto binding = bindings.begin(); binding != bindings.end(); ++binding) {
     // A binding that a shader does not use has a resource of another binding.
     const auto is_same = [&](const AlcoveWorkBinding& other) {
-      return other.resource == binding->resource && other.mip == binding->mip;
+      return other.resource == binding->resource;
     };
     if (binding->type <= ALCOVE_BINDING_TYPE_TABLE ||
         std::any_of(bindings.begin(), binding, is_same))

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "alcove/alcove_work.h"
+#include "gpu/occlusion.h"
 #include "gpu_cost/pass_work.h"
 #include "support/result.h"
 
@@ -29,8 +30,8 @@ struct CostInputs {
   bool mask = false;             // a mask of surfaces (R8)
   bool samples = false;          // four samples of depth per pixel
   ProjectionKind projection = ProjectionKind::finite_far;
-  passes::OcclusionSettings settings;
-  passes::NormalEncoding normal_encoding = passes::NormalEncoding::signed_xyz;
+  OcclusionSettings settings;
+  AlcoveNormalEncoding normal_encoding = ALCOVE_NORMAL_ENCODING_SIGNED_XYZ;
 };
 
 // Returns the work of a frame of each FrameState, in their order, with the outputs that the

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include "gpu_cost/cache_traffic.h"
-
 namespace alcove::sample {
 namespace {
 
@@ -69,63 +67,80 @@ bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const Alcove
          dispatch_images(work_a, a) == dispatch_images(work_b, b);
 }
 
+// Fills in what the caches contribute. Error: the accesses that accesses.h declares are not those
+// that a wave executes.
+Result<void> add_caches(const GpuPart& part, const PassWork& work,
+                        const CacheAssumptions& assumptions, double pixels, ModelledPass& pass) {
+  const DispatchAccesses dispatch = accesses_of(work);
+  const auto stores = std::ranges::count(dispatch.accesses, Direction::write,
+                                         [](const ImageAccess& a) { return a.image.direction; });
+  const auto loads = std::ssize(dispatch.accesses) - stores;
+  printf("%s %s: declared %ld loads %ld stores, executed %.2f %.2f\n",
+         std::string(work.pass).c_str(), std::string(name_of(work.state)).c_str(), long(loads),
+         long(stores), pass.wave.loads, pass.wave.stores);
+  const CacheTraffic traffic = cache_traffic(part, dispatch, pass.waves_per_simd, assumptions);
+  pass.l2_bytes_per_pixel = traffic.l2_bytes / pixels;
+  pass.bytes_per_pixel = traffic.memory_bytes / pixels;
+  pass.cache_lines_per_load = traffic.lines_per_load;
+  auto& [alu, texture, shared, l2, memory, latency] = pass.limits_ms;
+  texture = std::max(texture, traffic.texture_ms);
+  l2 = traffic.l2_ms;
+  memory = traffic.memory_ms;
+  return {};
+}
+
 Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
                            const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch,
-                           FrameState state) {
+                           FrameState state, const CacheAssumptions* assumptions) {
   ALCOVE_TRY(const auto compiled, compile_dispatch(device, dispatch));
   const CompiledShader& shader = *compiled;
-  const auto statistics = read_statistics(shader);
-  const auto blocks = parse_blocks(shader);
-  if (!statistics || !blocks) return Failure(statistics ? blocks.error() : statistics.error());
+  ALCOVE_TRY(const auto statistics, read_statistics(shader));
+  ALCOVE_TRY(const auto blocks, parse_blocks(shader));
   const auto images = dispatch_images(frame, dispatch);
   const auto& groups = dispatch.groups;
   const PassWork work{
       dispatch.label, inputs.settings, state, images, {groups[0], groups[1], groups[2]},
       inputs.height};
-  ModelledPass cost;
-  cost.pass = dispatch.label;
-  cost.statistics = *statistics;
-  cost.loops = find_loops(*blocks);
+  std::vector<Loop> loops = find_loops(blocks);
   std::vector<CompiledLoop> summaries;
-  for (const Loop& loop : cost.loops) summaries.push_back(loop.summary);
+  for (const Loop& loop : loops) summaries.push_back(loop.summary);
   ALCOVE_TRY(const auto iterations, loop_iterations(work, summaries));
-  for (std::size_t i = 0; i < iterations.size(); ++i) cost.loops[i].iterations = iterations[i];
-  std::vector<Branch> branches = find_branches(*blocks);
+  for (std::size_t i = 0; i < iterations.size(); ++i) loops[i].iterations = iterations[i];
+  std::vector<Branch> branches = find_branches(blocks);
   for (Branch& branch : branches) {
     branch.summary.loops =
-        static_cast<std::uint32_t>(std::ranges::count_if(cost.loops, [&](const Loop& loop) {
+        static_cast<std::uint32_t>(std::ranges::count_if(loops, [&](const Loop& loop) {
           return branch.first <= loop.first && loop.last <= branch.last;
         }));
     branch.share = branch_share(work, branch.summary);
-    if (branch.share < 1.0) cost.branches.push_back(branch);
   }
   const double wave = shader.wave;
   constexpr double kGroup = 64;  // invocations, as alcove_work.h says
   const double pixels = static_cast<double>(inputs.width) * inputs.height;
   const auto milliseconds = [&](double cycles) { return cycles / part.hertz * 1e3; };
-  cost.wave = wave_work(*blocks, cost.loops, branches, part.rdna, shader.wave);
+  ModelledPass cost;
+  cost.pass = dispatch.label;
+  cost.statistics = statistics;
+  cost.wave = wave_work(blocks, loops, branches, part.rdna, shader.wave);
   cost.waves = static_cast<double>(groups[0]) * groups[1] * groups[2] * std::ceil(kGroup / wave);
-  cost.waves_per_simd = waves_held(part, *statistics, wave);
+  cost.waves_per_simd = waves_held(part, statistics, wave);
   const double lanes = cost.waves * wave;
   cost.instructions_per_pixel = cost.wave.instructions * lanes / pixels;
   cost.fetches_per_pixel = cost.wave.loads * lanes / pixels;
   cost.stores_per_pixel = cost.wave.stores * lanes / pixels;
-  const CacheTraffic traffic = cache_traffic(part, accesses_of(work), cost.waves_per_simd);
-  cost.l2_bytes_per_pixel = traffic.l2_bytes / pixels;
-  cost.bytes_per_pixel = traffic.memory_bytes / pixels;
-  cost.cache_lines_per_load = traffic.lines_per_load;
   const double per_unit = std::ceil(cost.waves / part.compute_units);
+  const double per_simd = cost.waves / part.simds;
   cost.limits_ms = {
       // A SIMD executes whole waves, so that some SIMDs may execute one more than others.
-      milliseconds(std::ceil(cost.waves / part.simds) * cost.wave.busiest()),
-      milliseconds(std::max(per_unit * cost.wave.texture_cycles, traffic.texture_cycles)),
+      milliseconds(std::ceil(per_simd) * cost.wave.busiest()),
+      milliseconds(per_unit * cost.wave.texture_cycles),
       // A compute unit's shared memory moves 32 words a cycle.
-      milliseconds(per_unit * cost.wave.shared_words * wave / 32), l2_ms(part, traffic),
-      memory_ms(part, traffic),
-      milliseconds(std::ceil(cost.waves / part.simds / std::max(cost.waves_per_simd, 1.0)) *
-                   wave_latency(*statistics, cost.wave, cost.waves_per_simd, shader.wave,
-                                !cost.loops.empty()))};
+      milliseconds(per_unit * cost.wave.shared_words * wave / 32), 0.0, 0.0,
+      milliseconds(
+          std::ceil(per_simd / std::max(cost.waves_per_simd, 1.0)) *
+          wave_latency(statistics, cost.wave, cost.waves_per_simd, shader.wave, !loops.empty()))};
   cost.dispatch_ms = 1e3 * part.dispatch_seconds;
+  if (assumptions != nullptr) ALCOVE_TRY_VOID(add_caches(part, work, *assumptions, pixels, cost));
   return cost;
 }
 
@@ -142,8 +157,23 @@ double ModelledFrame::milliseconds() const {
   return sum;
 }
 
+Result<ModelledFrame> modelled_frame(const GpuPart& part, const NullDevice& device,
+                                     const CostInputs& inputs, FrameState state,
+                                     const CacheAssumptions* assumptions) {
+  ALCOVE_TRY(const auto frames, describe_frames(inputs));
+  const AlcoveWork& frame = frames.at(static_cast<std::size_t>(state));
+  ModelledFrame cost{state, {}};
+  for (const AlcoveWorkDispatch& dispatch :
+       std::span(frame.dispatches).first(frame.dispatch_count)) {
+    ALCOVE_TRY(auto pass, model(part, device, inputs, frame, dispatch, state, assumptions));
+    cost.passes.push_back(std::move(pass));
+  }
+  return cost;
+}
+
 Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part, const NullDevice& device,
-                                                   const CostInputs& inputs) {
+                                                   const CostInputs& inputs,
+                                                   const CacheAssumptions* assumptions) {
   ALCOVE_TRY(const auto frames, describe_frames(inputs));
   std::vector<ModelledFrame> costs;
   // Returns the cost of a dispatch of an earlier frame that does the same work, or null.
@@ -161,9 +191,9 @@ Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part, const Nu
     for (const AlcoveWorkDispatch& dispatch :
          std::span(frame.dispatches).first(frame.dispatch_count)) {
       const ModelledPass* const same = find_same(frame, dispatch);
-      ALCOVE_TRY(auto modelled, same != nullptr
-                                    ? *same
-                                    : model(part, device, inputs, frame, dispatch, cost.state));
+      ALCOVE_TRY(auto modelled, same != nullptr ? *same
+                                                : model(part, device, inputs, frame, dispatch,
+                                                        cost.state, assumptions));
       cost.passes.push_back(std::move(modelled));
     }
     costs.push_back(std::move(cost));

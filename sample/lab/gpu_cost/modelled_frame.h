@@ -5,7 +5,7 @@
 //   texture  cycles of the busiest texture unit: four lanes or one cache line a cycle
 //   shared   words that lanes move to and from shared memory, at 32 a cycle of a compute unit
 //   L2       bytes that L2 receives and sends, after the caches before it
-//   memory   bytes that memory receives and sends, after all caches
+//   memory   bytes that memory, or the last-level cache, receives and sends, after L2
 //   latency  the compiler's latency of one wave, over the waves that a SIMD holds
 // A dispatch costs GpuPart::dispatch_seconds, because each waits for the one before. The figures
 // are the same on every run and on every machine. cache_traffic.h says what is left out.
@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu_cost/cache_traffic.h"
 #include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
 #include "gpu_cost/wave.h"
@@ -45,15 +46,13 @@ struct ModelledPass {
   ShaderStatistics statistics;
   double waves_per_simd = 0;  // of at most 10 on GCN and 16 on RDNA2
   WaveWork wave;              // of one wave
-  std::vector<Loop> loops;
-  std::vector<Branch> branches;  // those that not every wave executes
   double waves = 0;
   // For each pixel of the full image.
   double instructions_per_pixel = 0;
   double fetches_per_pixel = 0;
   double stores_per_pixel = 0;
   double l2_bytes_per_pixel = 0;
-  double bytes_per_pixel = 0;  // from and to memory
+  double bytes_per_pixel = 0;  // beyond L2
   double cache_lines_per_load = 0;
   std::array<double, kLimitNames.size()> limits_ms{};
   double dispatch_ms = 0;  // added to the longest of the others
@@ -68,12 +67,16 @@ struct ModelledFrame {
   double milliseconds() const;
 };
 
-// Returns the modelled time of one frame of each FrameState on one GPU. Errors: those of
-// describe_frames() and compile_dispatch(), the driver's text cannot be parsed, or the iterations
-// of a loop are not declared.
-[[nodiscard]] Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part,
-                                                                 const NullDevice& device,
-                                                                 const CostInputs& inputs);
+// Returns the modelled time of a frame of one state, or of each FrameState, on one GPU. Without
+// `assumptions` the caches are not simulated, and the times leave them out. Errors: those of
+// describe_frames() and compile_dispatch(), the driver's text cannot be parsed, the iterations of a
+// loop are not declared, or accesses.h declares other image instructions than the shader executes.
+[[nodiscard]] Result<ModelledFrame> modelled_frame(
+    const GpuPart& part, const NullDevice& device, const CostInputs& inputs, FrameState state,
+    const CacheAssumptions* assumptions = &kCacheAssumptions.front());
+[[nodiscard]] Result<std::vector<ModelledFrame>> modelled_frames(
+    const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
+    const CacheAssumptions* assumptions = &kCacheAssumptions.front());
 
 // The registers of a pass and the waves that they allow, for each ProjectionKind: the most
 // registers and the fewest waves of all frames.

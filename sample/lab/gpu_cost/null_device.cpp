@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -203,6 +204,9 @@ bool create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch, VkPipe
 }  // namespace
 
 Result<NullDevice> create_null_device(std::string_view family) {
+  // Parts of one family share a device, and with it the pipelines that it has compiled.
+  static std::map<std::string, NullDevice, std::less<>> known;
+  if (const auto found = known.find(family); found != known.end()) return found->second;
   const auto manifest = radv_manifest();
   if (!manifest) {
     return Failure(
@@ -235,7 +239,7 @@ Result<NullDevice> create_null_device(std::string_view family) {
                                          .pNext = &driver};
   vkGetPhysicalDeviceProperties2(null_device.physical_device, &properties);
   null_device.compiler = std::string(driver.driverName) + ", " + driver.driverInfo;
-  return null_device;
+  return known[std::string(family)] = null_device;
 }
 
 Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline) {

@@ -23,10 +23,10 @@ struct NullDevice {
   std::string compiler;  // name and version of the driver, whose compiler determines the costs
 };
 
-// Creates a device of the GPU family `family`, named as in the environment variable
-// RADV_FORCE_FAMILY. Environment variables of this process are set during the call, and no other
-// thread may read them meanwhile. Errors: the driver is not installed, or does not support the
-// family.
+// Returns the device of the GPU family `family`, named as in the environment variable
+// RADV_FORCE_FAMILY, which the first call creates. Environment variables of this process are set
+// during the call, and no other thread may read them meanwhile. Errors: the driver is not
+// installed, or does not support the family.
 [[nodiscard]] Result<NullDevice> create_null_device(std::string_view family);
 
 struct CompiledShader {

@@ -30,8 +30,8 @@ struct Samples {
   std::uint32_t rolled_half_slice = 1;
 };
 
-Samples samples_of(const passes::OcclusionSettings& settings) {
-  const bool connected = settings.estimator == passes::Estimator::connected;
+Samples samples_of(const OcclusionSettings& settings) {
+  const bool connected = settings.estimator == ALCOVE_ESTIMATOR_CONNECTED;
   Samples samples;
   samples.loads_per_step = passes::needs_back_depth(settings) ? 2 : 1;
   samples.half_slice =
@@ -49,11 +49,11 @@ Samples samples_of(const passes::OcclusionSettings& settings) {
   return samples;
 }
 
-std::optional<double> sampling_iterations(const passes::OcclusionSettings& settings, Loops loops,
+std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
                                           std::uint32_t index);
 
 // Image loads in one iteration of a loop, those of its inner loops as often as they run.
-std::optional<double> loads_per_iteration(const passes::OcclusionSettings& settings, Loops loops,
+std::optional<double> loads_per_iteration(const OcclusionSettings& settings, Loops loops,
                                           std::uint32_t index) {
   const CompiledLoop& loop = loops[index];
   double loads = loop.loads;
@@ -71,7 +71,7 @@ std::optional<double> loads_per_iteration(const passes::OcclusionSettings& setti
 // Returns how often a loop with image loads runs: once for each step of a half-slice, each of the
 // two half-slices of a slice, or each slice of a pixel. Its number of loads decides which of these
 // loops it is.
-std::optional<double> sampling_iterations(const passes::OcclusionSettings& settings, Loops loops,
+std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
                                           std::uint32_t index) {
   const Samples samples = samples_of(settings);
   const auto loads = loads_per_iteration(settings, loops, index);
@@ -86,7 +86,7 @@ std::optional<double> sampling_iterations(const passes::OcclusionSettings& setti
 }
 
 // gtao.comp. With back faces there is a loop over the ends of occluder runs.
-std::optional<double> gtao_iterations(const passes::OcclusionSettings& settings, Loops loops,
+std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops loops,
                                       std::uint32_t index) {
   if (loops[index].loads == 0)
     return passes::needs_back_depth(settings) ? std::optional(kOccluderRuns) : std::nullopt;
@@ -96,7 +96,7 @@ std::optional<double> gtao_iterations(const passes::OcclusionSettings& settings,
 // reconstruct.comp. The outermost loop runs over the blocks of a column. The loops of sum_wide()
 // are counted as not run: pixels with a history run them only while it is less than two frames old,
 // which is rare.
-double reconstruct_iterations(const passes::OcclusionSettings& settings, const CompiledLoop& loop) {
+double reconstruct_iterations(const OcclusionSettings& settings, const CompiledLoop& loop) {
   const bool column = settings.tile_size > (settings.half_resolution ? 2u : 1u);
   return column && loop.depth == 1 ? 4.0 : 0.0;
 }
@@ -136,7 +136,7 @@ Result<std::vector<double>> loop_iterations(const PassWork& work, Loops loops) {
 
 bool has_depth_planes(const PassWork& work) {
   return !work.settings.half_resolution && work.settings.history_frames > 0 &&
-         work.state != FrameState::first && work.settings.specular != passes::Specular::slices;
+         work.state != FrameState::first && work.settings.specular != ALCOVE_SPECULAR_SLICES;
 }
 
 // The branches that read a normal or compute it from depth, which loads the depth of the pixel and

@@ -12,7 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "alcove/passes/occlusion.h"
+#include "alcove/passes/setting_table.h"
+#include "gpu/occlusion.h"
 #include "support/result.h"
 
 namespace alcove::sample {
@@ -61,7 +62,7 @@ struct Groups {
 // reads and writes.
 struct PassWork {
   std::string_view pass;  // AlcoveWorkDispatch::label
-  const passes::OcclusionSettings& settings;
+  const OcclusionSettings& settings;
   FrameState state = FrameState::first;
   std::span<const PassImage> images;
   Groups groups;

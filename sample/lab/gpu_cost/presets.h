@@ -2,15 +2,15 @@
 
 #include <vector>
 
-#include "alcove/passes/setting_names.h"
+#include "alcove/passes/setting_table.h"
 
 namespace alcove::sample {
 
 // The presets in order of cost, without `reference`, which is not meant for frames in real time.
-[[nodiscard]] inline std::vector<passes::Quality> presets() {
-  std::vector<passes::Quality> all;
-  for (std::size_t i = 0; i < passes::kNames<passes::Quality>.size(); ++i)
-    if (const auto quality = static_cast<passes::Quality>(i); quality != passes::Quality::reference)
+[[nodiscard]] inline std::vector<AlcoveQuality> presets() {
+  std::vector<AlcoveQuality> all;
+  for (std::size_t i = 0; i < passes::kQualityNames.size(); ++i)
+    if (const auto quality = static_cast<AlcoveQuality>(i); quality != ALCOVE_QUALITY_REFERENCE)
       all.push_back(quality);
   return all;
 }

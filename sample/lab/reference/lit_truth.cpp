@@ -5,9 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "reference/ray_scene.h"
-#include "reference/sampling.h"
-#include "support/parallel.h"
+#include "reference/path.h"
 
 namespace alcove::sample {
 namespace {
@@ -46,17 +44,12 @@ class Reflectance {
 
   static glm::vec2 integrate(float n_dot_v, float roughness) {
     constexpr uint32_t kSamples = 1024;
-    const float alpha = std::max(roughness * roughness, 1e-4f);
-    const glm::vec3 v(std::sqrt(1.0f - n_dot_v * n_dot_v), 0.0f, n_dot_v);
+    const LobeSampler lobe({std::sqrt(1.0f - n_dot_v * n_dot_v), 0.0f, n_dot_v}, roughness);
     glm::dvec2 sum(0.0);
     for (uint32_t i = 0; i < kSamples; ++i) {
-      const glm::vec3 h = visible_normal(v, alpha, r2_point(i, 0));
-      const glm::vec3 l = 2.0f * glm::dot(v, h) * h - v;
-      if (l.z <= 0.0f) continue;
-      const float share = (1.0f + ggx_lambda(v.z, alpha)) /
-                          (1.0f + ggx_lambda(v.z, alpha) + ggx_lambda(l.z, alpha));
-      const float fresnel = schlick(glm::dot(v, h));
-      sum += glm::dvec2(share * (1.0f - fresnel), share * fresnel);
+      const LobeSample light = lobe.at(r2_point(i, 0));
+      const float fresnel = schlick(light.half_cosine);
+      sum += glm::dvec2(light.weight * (1.0f - fresnel), light.weight * fresnel);
     }
     return sum / double(kSamples);
   }
@@ -64,12 +57,11 @@ class Reflectance {
   std::array<std::array<glm::vec2, kSide>, kSide> entries_;
 };
 
-// A surface point and its material. Directions are local, with z along the normal.
+// A surface point and its material.
 struct ShadingPoint {
   Basis basis;
-  glm::vec3 view;  // local, z > 0
+  LobeSampler lobe;
   glm::vec3 f0;
-  float alpha;
   glm::vec3 diffuse;   // albedo of the Lambertian part, scaled by what the specular part leaves
   glm::vec3 specular;  // directional albedo of the specular part
 };
@@ -77,73 +69,45 @@ struct ShadingPoint {
 ShadingPoint make_surface(const Reflectance& reflectance, const glm::vec3& normal,
                           const glm::vec3& view, const glm::vec3& base, float roughness,
                           float metallic) {
-  ShadingPoint surface;
-  surface.basis = make_basis(normal);
-  surface.view = surface.basis.to_local(view);
-  surface.view.z = std::max(surface.view.z, 1e-3f);
-  surface.view = glm::normalize(surface.view);
-  surface.f0 = glm::mix(glm::vec3(0.04f), base, metallic);
-  surface.alpha = std::max(roughness * roughness, 1e-4f);
-  surface.specular = reflectance.at(surface.view.z, roughness, surface.f0);
-  surface.diffuse = base * (1.0f - metallic) * (1.0f - surface.specular);
-  return surface;
+  const Basis basis = make_basis(normal);
+  const LobeSampler lobe(basis.to_local(view), roughness);
+  const glm::vec3 f0 = glm::mix(glm::vec3(0.04f), base, metallic);
+  const glm::vec3 specular = reflectance.at(lobe.view().z, roughness, f0);
+  return {basis, lobe, f0, base * (1.0f - metallic) * (1.0f - specular), specular};
 }
-
-// A sampled direction and its weight: BRDF times cosine over density.
-struct Scattered {
-  glm::vec3 direction_ws;
-  glm::vec3 weight;
-};
 
 Scattered scatter_diffuse(const ShadingPoint& surface, const glm::vec2& u) {
   return {surface.basis.to_world(cosine_direction(u)), surface.diffuse};
 }
 
 std::optional<Scattered> scatter_specular(const ShadingPoint& surface, const glm::vec2& u) {
-  const glm::vec3& v = surface.view;
-  const glm::vec3 h = visible_normal(v, surface.alpha, u);
-  const glm::vec3 l = 2.0f * glm::dot(v, h) * h - v;
-  if (l.z <= 0.0f) return std::nullopt;
-  const float masked = 1.0f + ggx_lambda(v.z, surface.alpha);
-  const float share = masked / (masked + ggx_lambda(l.z, surface.alpha));
-  const glm::vec3 fresnel = surface.f0 + (1.0f - surface.f0) * schlick(glm::dot(v, h));
-  return Scattered{surface.basis.to_world(l), fresnel * share};
+  const LobeSample light = surface.lobe.at(u);
+  if (light.weight <= 0.0f) return std::nullopt;
+  const glm::vec3 fresnel = surface.f0 + (1.0f - surface.f0) * schlick(light.half_cosine);
+  return Scattered{surface.basis.to_world(light.direction), fresnel * light.weight};
 }
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 class Tracer {
  public:
-  Tracer(const RayScene::Impl& scene, const EnvironmentImage& environment, float radius)
+  Tracer(const RayScene& scene, const EnvironmentImage& environment, float radius)
       : scene_(scene), environment_(environment), radius_(radius) {}
 
   const Reflectance& reflectance() const { return reflectance_; }
 
   // The radiance that arrives from a direction.
-  glm::vec3 trace(glm::vec3 origin, glm::vec3 direction, uint64_t seed) const {
-    constexpr uint32_t kLongest = 256;
-    glm::vec3 weight(1.0f);
-    for (uint32_t bounce = 0; bounce < kLongest; ++bounce) {
-      const std::optional<Hit> hit = scene_.nearest(origin, direction, radius_);
-      if (!hit) return weight * radiance(environment_, direction);
-      const uint64_t bits = hash(seed, bounce);
-      const auto next = scatter(surface_at(*hit, direction), bits);
-      if (!next) return glm::vec3(0.0f);
-      weight *= next->weight;
-      const float survival = std::min(largest(weight), 0.95f);
-      if (bounce >= 2) {
-        if (!(unit_float(hash(bits, 7)) < survival)) return glm::vec3(0.0f);
-        weight /= survival;
-      }
-      origin = scene_.off_surface(origin + direction * hit->distance, hit->geometric_normal_ws);
-      direction = next->direction_ws;
-    }
-    return glm::vec3(0.0f);
+  glm::vec3 trace(const glm::vec3& origin, const glm::vec3& direction, uint64_t seed) const {
+    const auto end = follow_path(scene_, origin, direction, radius_, seed,
+                                 [&](const Hit& hit, const glm::vec3& from, uint64_t bits) {
+                                   return scatter(surface_at(hit, from), bits);
+                                 });
+    return end ? end->weight * radiance(environment_, end->direction_ws) : glm::vec3(0.0f);
   }
 
  private:
   ShadingPoint surface_at(const Hit& hit, const glm::vec3& direction) const {
-    const Scene& scene = *scene_.scene;
+    const Scene& scene = scene_.scene();
     const Material& material = scene.materials[hit.material];
     const glm::vec4 texel = sample_texture(scene, material.metal_roughness_texture, hit.uvs);
     return make_surface(reflectance_, hit.geometric_normal_ws, -direction, albedo_at(scene, hit),
@@ -165,7 +129,7 @@ class Tracer {
     return out;
   }
 
-  const RayScene::Impl& scene_;
+  const RayScene& scene_;
   const EnvironmentImage& environment_;
   float radius_;
   Reflectance reflectance_;
@@ -186,19 +150,17 @@ LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
                    const Progress& progress) {
   const uint32_t width = points.normal_ws.width, height = points.normal_ws.height;
   LitTruth out{{width, height}, {width, height}, {width, height}, {width, height}};
-  const Tracer tracer(scene.impl(), environment, settings.radius);
-  const auto shade = [&](size_t pixel) {
-    const glm::vec3& position = points.position_ws.pixels[pixel];
-    const glm::vec3 view = view_from(viewer, position);
+  const Tracer tracer(scene, environment, settings.radius);
+  for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t pixel_seed) {
+    const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
     const ShadingPoint surface = make_surface(
         tracer.reflectance(), points.normal_ws.pixels[pixel], view, materials.albedo.pixels[pixel],
         materials.roughness.pixels[pixel], materials.metallic.pixels[pixel]);
-    const glm::vec3 origin =
-        scene.impl().off_surface(position, points.geometric_normal_ws.pixels[pixel]);
+    const glm::vec3 origin = ray_start(scene, points, pixel);
     HalfMeans diffuse, specular;
     const uint32_t samples = std::max(settings.spp / 2, 1u);
     for (uint32_t half = 0; half < 2; ++half) {
-      const uint64_t seed = hash(hash(settings.seed, pixel), half);
+      const uint64_t seed = hash(pixel_seed, half);
       for (uint32_t i = 0; i < samples; ++i) {
         const glm::vec2 u = r2_point(i, seed);
         const Scattered diffused = scatter_diffuse(surface, u);
@@ -215,15 +177,7 @@ LitTruth lit_truth(const RayScene& scene, const SurfacePoints& points,
     out.specular.pixels[pixel] = specular.mean();
     out.diffuse_noise.pixels[pixel] = diffuse.half_difference();
     out.specular_noise.pixels[pixel] = specular.half_difference();
-  };
-  parallel_rows(
-      height,
-      [&](uint32_t y) {
-        for (size_t pixel = size_t{y} * width; pixel < size_t{y + 1} * width; ++pixel) {
-          if (points.normal_ws.pixels[pixel] != glm::vec3(0.0f)) shade(pixel);
-        }
-      },
-      progress);
+  });
   return out;
 }
 

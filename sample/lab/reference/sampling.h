@@ -83,6 +83,7 @@ struct Basis {
 struct LobeSample {
   glm::vec3 direction;  // local
   float weight;         // 0 below the surface
+  float half_cosine;    // of the angle between view and microfacet, for Fresnel
 };
 
 // Samples the GGX lobe of a view direction, with Smith's height-correlated masking and without
@@ -96,12 +97,14 @@ class LobeSampler {
     view_ = glm::normalize(view);
     view_lambda_ = ggx_lambda(view_.z, alpha_);
   }
+  [[nodiscard]] const glm::vec3& view() const { return view_; }
   [[nodiscard]] LobeSample at(const glm::vec2& u) const {
     const glm::vec3 h = visible_normal(view_, alpha_, u);
-    const glm::vec3 l = 2.0f * glm::dot(view_, h) * h - view_;
-    if (l.z <= 0.0f) return {l, 0.0f};
+    const float cosine = glm::dot(view_, h);
+    const glm::vec3 l = 2.0f * cosine * h - view_;
+    if (l.z <= 0.0f) return {l, 0.0f, cosine};
     // BRDF times cosine over density: the masking of l given that of the view.
-    return {l, (1.0f + view_lambda_) / (1.0f + view_lambda_ + ggx_lambda(l.z, alpha_))};
+    return {l, (1.0f + view_lambda_) / (1.0f + view_lambda_ + ggx_lambda(l.z, alpha_)), cosine};
   }
 
  private:

@@ -7,37 +7,12 @@
 #include <optional>
 #include <span>
 
-#include "reference/ray_scene.h"
-#include "reference/sampling.h"
-#include "support/parallel.h"
+#include "reference/path.h"
 
 namespace alcove::sample {
 namespace {
 
 constexpr uint32_t kPacket = 16;  // rays traced together
-
-bool is_sky(const glm::vec3& normal) { return normal == glm::vec3(0.0f); }
-
-// Runs `shade(pixel, seed)` for every pixel that has a surface.
-template <class Shade>
-void for_each_surface(const SurfacePoints& points, uint32_t seed, const Progress& progress,
-                      const Shade& shade) {
-  const Image<glm::vec3>& normals = points.normal_ws;
-  parallel_rows(
-      normals.height,
-      [&](uint32_t y) {
-        for (uint32_t x = 0; x < normals.width; ++x) {
-          const size_t pixel = size_t{y} * normals.width + x;
-          if (!is_sky(normals.pixels[pixel])) shade(pixel, hash(seed, pixel));
-        }
-      },
-      progress);
-}
-
-glm::vec3 ray_start(const RayScene& scene, const SurfacePoints& points, size_t pixel) {
-  return scene.impl().off_surface(points.position_ws.pixels[pixel],
-                                  points.geometric_normal_ws.pixels[pixel]);
-}
 
 // Stores a hit in one pixel of the g-buffer.
 void store_hit(const Scene& scene, const Hit& hit, const Ray& ray, const glm::vec3& forward,
@@ -61,7 +36,7 @@ struct OpenRays {
   glm::vec3 sum{0.0f};
 };
 
-OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, const Basis& basis,
+OpenRays trace_hemisphere(const RayScene& scene, const glm::vec3& origin, const Basis& basis,
                           const TruthSettings& settings, uint64_t seed) {
   OpenRays open;
   std::array<glm::vec3, kPacket> directions;
@@ -81,7 +56,7 @@ OpenRays trace_hemisphere(const RayScene::Impl& scene, const glm::vec3& origin, 
 }
 
 // The visible fraction of a GGX lobe.
-float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Basis& basis,
+float trace_lobe(const RayScene& scene, const glm::vec3& origin, const Basis& basis,
                  const LobeSampler& lobe, const TruthSettings& settings, uint64_t seed) {
   double open = 0.0, all = 0.0;
   std::array<glm::vec3, kPacket> directions;
@@ -106,30 +81,6 @@ float trace_lobe(const RayScene::Impl& scene, const glm::vec3& origin, const Bas
   return all > 0.0 ? static_cast<float>(open / all) : 1.0f;
 }
 
-// Radiance that arrives along one path: the product of the albedos until it leaves the scene.
-glm::vec3 trace_path(const RayScene::Impl& scene, glm::vec3 origin, glm::vec3 direction,
-                     float radius, uint64_t seed) {
-  constexpr uint32_t kLongest = 256;  // the weight is below 1e-8 even at an albedo of 0.93
-  constexpr uint32_t kSure = 3;       // bounces without Russian roulette, at the start of a path
-  glm::vec3 weight(1.0f);
-  for (uint32_t bounce = 0; bounce < kLongest; ++bounce) {
-    const std::optional<Hit> hit = scene.nearest(origin, direction, radius);
-    if (!hit) return weight;
-    weight *= albedo_at(*scene.scene, *hit);
-    const uint64_t bits = hash(seed, bounce);
-    const float survival = std::min(std::max({weight.x, weight.y, weight.z}), 0.98f);
-    if (survival <= 0.0f) return glm::vec3(0.0f);
-    if (bounce >= kSure) {
-      if (unit_float(hash(bits, 7)) >= survival) return glm::vec3(0.0f);
-      weight /= survival;
-    }
-    origin = scene.off_surface(origin + direction * hit->distance, hit->geometric_normal_ws);
-    const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
-    direction = make_basis(hit->geometric_normal_ws).to_world(cosine_direction(u));
-  }
-  return glm::vec3(0.0f);
-}
-
 }  // namespace
 
 GBuffer cast_gbuffer(const RayScene& scene, const Camera& camera, uint32_t width, uint32_t height) {
@@ -152,10 +103,10 @@ GBuffer cast_gbuffer(const RayScene& scene, const Camera& camera, uint32_t width
       const float cosine = glm::dot(ray.direction_ws, forward);
       ray.origin_ws += ray.direction_ws * (camera.near_plane / cosine);
       const float far = (camera.far_plane - camera.near_plane) / cosine;
-      const auto hit = scene.impl().nearest(ray.origin_ws, ray.direction_ws, far);
+      const auto hit = scene.nearest(ray.origin_ws, ray.direction_ws, far);
       if (!hit) continue;
       const size_t pixel = size_t{y} * width + x;
-      store_hit(*scene.impl().scene, *hit, ray, forward, pixel, out);
+      store_hit(scene.scene(), *hit, ray, forward, pixel, out);
       out.depth_vs.pixels[pixel] += camera.near_plane;
     }
   });
@@ -168,7 +119,7 @@ OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& point
   OcclusionTruth out{{width, height, 1.0f}, {width, height}};
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
-    const OpenRays open = trace_hemisphere(scene.impl(), ray_start(scene, points, pixel),
+    const OpenRays open = trace_hemisphere(scene, ray_start(scene, points, pixel),
                                            make_basis(normal), settings, seed);
     const float length = glm::length(open.sum);
     out.visibility.pixels[pixel] =
@@ -197,7 +148,7 @@ Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
     const Basis basis = make_basis(points.normal_ws.pixels[pixel]);
     const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
     out.pixels[pixel] =
-        trace_lobe(scene.impl(), ray_start(scene, points, pixel), basis,
+        trace_lobe(scene, ray_start(scene, points, pixel), basis,
                    LobeSampler(basis.to_local(view), roughness.pixels[pixel]), settings, seed);
   });
   return out;
@@ -206,13 +157,21 @@ Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
 Image<glm::vec3> interreflection_truth(const RayScene& scene, const SurfacePoints& points,
                                        const TruthSettings& settings, const Progress& progress) {
   Image<glm::vec3> out(points.normal_ws.width, points.normal_ws.height, glm::vec3(1.0f));
+  const auto reflect = [&](const Hit& hit, const glm::vec3&, uint64_t bits) {
+    const glm::vec2 u(unit_float(bits), unit_float(hash(bits, 3)));
+    const Basis basis = make_basis(hit.geometric_normal_ws);
+    return std::optional(
+        Scattered{basis.to_world(cosine_direction(u)), albedo_at(scene.scene(), hit)});
+  };
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const Basis basis = make_basis(points.normal_ws.pixels[pixel]);
     const glm::vec3 origin = ray_start(scene, points, pixel);
     glm::dvec3 sum(0.0);
     for (uint32_t i = 0; i < settings.spp; ++i) {
       const glm::vec3 direction = basis.to_world(cosine_direction(r2_point(i, seed)));
-      sum += trace_path(scene.impl(), origin, direction, settings.radius, hash(seed, i + 1));
+      if (const auto end =
+              follow_path(scene, origin, direction, settings.radius, hash(seed, i + 1), reflect))
+        sum += end->weight;
     }
     out.pixels[pixel] = sum / static_cast<double>(settings.spp);
   });

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "scene/camera.h"
+#include "scene/ray_scene.h"
 #include "scene/scene.h"
 #include "support/glm.h"
 #include "support/image.h"
@@ -55,24 +55,6 @@ struct OcclusionTruth {
   // The unit direction of the cosine-weighted mean of the visible directions; the normal if nothing
   // is visible, and zero in the sky.
   Image<glm::vec3> bent_normal_ws;
-};
-
-// The triangles of a scene in an Embree acceleration structure. Alpha-masked texels do not occlude.
-// It is immutable, and any thread may trace. The scene must outlive it.
-class RayScene {
- public:
-  // Errors: Embree has no device or no memory; the scene extends further than 1e12 from its origin.
-  [[nodiscard]] static Result<RayScene> create(const Scene& scene);
-  RayScene(RayScene&&) noexcept;
-  RayScene& operator=(RayScene&&) noexcept;
-  ~RayScene();
-
-  struct Impl;
-  const Impl& impl() const { return *impl_; }
-
- private:
-  RayScene();
-  std::unique_ptr<Impl> impl_;
 };
 
 [[nodiscard]] GBuffer cast_gbuffer(const RayScene& scene, const Camera& camera, uint32_t width,

@@ -35,23 +35,25 @@ static AlcoveResult start(const Engine* engine, AlcoveContext** context, char* m
 
 static AlcoveView view_of(const Engine* engine, const AlcoveSettings* settings) {
   AlcoveView view = {.struct_size = sizeof view};
-  view.settings = settings;
-  view.camera = engine->camera;
-  view.previous_camera = engine->previous_camera;
-  view.depth = engine->depth;
-  view.depth.initial_state.stages = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
-  view.depth.initial_state.access = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-  view.depth.initial_state.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-  view.depth.final_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  view.depth.final_state.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-  view.depth.final_state.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-  view.visibility = engine->occlusion;
+  view.info.settings = settings;
+  view.info.camera = engine->camera;
+  view.info.previous_camera = engine->previous_camera;
+  AlcoveImage* depth = &view.images[ALCOVE_IMAGE_DEPTH];
+  AlcoveImage* visibility = &view.images[ALCOVE_IMAGE_VISIBILITY];
+  *depth = engine->depth;
+  depth->initial_state.stages = VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+  depth->initial_state.access = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  depth->initial_state.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+  depth->final_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  depth->final_state.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+  depth->final_state.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+  *visibility = engine->occlusion;
   /* The lighting of the frame before read it; what it holds is not needed any more. */
-  view.visibility.initial_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  view.visibility.initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  view.visibility.final_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-  view.visibility.final_state.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-  view.visibility.final_state.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  visibility->initial_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  visibility->initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  visibility->final_state.stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  visibility->final_state.access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+  visibility->final_state.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   return view;
 }
 

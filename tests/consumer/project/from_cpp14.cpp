@@ -9,14 +9,6 @@ int main() {
   AlcoveSettings settings{};
   settings.struct_size = sizeof settings;
   if (alcoveGetSettings(ALCOVE_QUALITY_HIGH, 2.0f, &settings) != ALCOVE_SUCCESS) return 1;
-  AlcoveMemory memory{};
-  memory.struct_size = sizeof memory;
-  const uint32_t outputs = ALCOVE_OUTPUT_VISIBILITY | ALCOVE_OUTPUT_BENT_NORMAL;
-  if (alcoveEstimateMemory(&settings, 1920, 1080, outputs, ALCOVE_INPUT_NORMALS, &memory) !=
-      ALCOVE_SUCCESS)
-    return 1;
-  std::printf("%.1f MB at 1080p\n", static_cast<double>(memory.allocated) * 1e-6);
-
   AlcoveContextInfo info{};
   info.struct_size = sizeof info;
   AlcoveContext* context = nullptr;

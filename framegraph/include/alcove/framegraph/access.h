@@ -59,8 +59,6 @@ constexpr Access storage_read_write(VkPipelineStageFlags2 stages) {
 
 inline constexpr Access sampled_compute = sampled(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 inline constexpr Access sampled_fragment = sampled(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
-inline constexpr Access sampled_general_compute =
-    sampled_general(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 inline constexpr Access depth_read_fragment = depth_read(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access depth_read_compute = depth_read(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 inline constexpr Access storage_read_compute = storage_read(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
@@ -68,12 +66,8 @@ inline constexpr Access storage_read_fragment =
     storage_read(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access storage_write_compute =
     storage_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-inline constexpr Access storage_write_fragment =
-    storage_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access storage_read_write_compute =
     storage_read_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-inline constexpr Access storage_read_write_fragment =
-    storage_read_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 // Colour and depth attachments: the read bits are for blending, testing and load operations.
 inline constexpr Access color_attachment{
     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -88,22 +82,11 @@ inline constexpr Access depth_attachment{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-// The stencil test and stencil writes. If the pass declares this access with Range::stencil(),
-// another access of the pass may read the depth aspect of the same texture.
-inline constexpr Access stencil_attachment{
-    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-    VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
 // Depth test without writes.
 inline constexpr Access depth_test{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-// The access of a texture that the fragment shader reads at its own pixel, as an input attachment
-// of a render pass.
-inline constexpr Access input_attachment{
-    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT,
-    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT};
 // Copies, blits and clears (VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT is their union).
 inline constexpr Access transfer_source{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
@@ -140,27 +123,17 @@ constexpr Access storage_write(VkPipelineStageFlags2 stages) {
   return {stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
 }
-// Returns the access of a buffer that shaders of these stages read and write. Between consecutive
-// passes that declare it with Contents::accumulate, for example for atomic additions, the graph
-// adds no barrier.
 constexpr Access storage_read_write(VkPipelineStageFlags2 stages) {
   return storage_read(stages) | storage_write(stages);
 }
 
-inline constexpr Access uniform_compute = uniform(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-inline constexpr Access uniform_graphics =
-    uniform(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access storage_read_compute = storage_read(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 inline constexpr Access storage_read_fragment =
     storage_read(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access storage_write_compute =
     storage_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-inline constexpr Access storage_write_fragment =
-    storage_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access storage_read_write_compute =
     storage_read_write(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-inline constexpr Access storage_read_write_fragment =
-    storage_read_write(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 inline constexpr Access vertex_buffer{VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT,
                                       VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT,
                                       VK_IMAGE_LAYOUT_UNDEFINED, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT};
@@ -182,31 +155,6 @@ inline constexpr Access transfer_destination{
 inline constexpr Access fill{VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                              VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                              VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-
-// Ray tracing. A pass declares an acceleration structure as the buffer that contains it.
-
-// Vertices, indices, transforms and instances that the build of an acceleration structure reads.
-inline constexpr Access build_input{
-    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR, VK_ACCESS_2_SHADER_READ_BIT,
-    VK_IMAGE_LAYOUT_UNDEFINED,
-    VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-        VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT};
-inline constexpr Access build_scratch{
-    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-    VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR |
-        VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
-    VK_IMAGE_LAYOUT_UNDEFINED,
-    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT};
-inline constexpr Access acceleration_structure_build{
-    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
-    VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};
-// Returns the access of an acceleration structure that shaders of these stages trace rays through.
-// If `stages` is the acceleration structure build stage, the build of another structure reads it.
-constexpr Access acceleration_structure_read(VkPipelineStageFlags2 stages) {
-  return {stages, VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR, VK_IMAGE_LAYOUT_UNDEFINED,
-          VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR};
-}
 
 // The final state of a buffer that the host reads after the frame's fence has signalled.
 inline constexpr State host_read{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT,

@@ -21,16 +21,21 @@ struct MemoryRequirements {
 };
 
 // A function that returns the memory requirements of a transient. The compiler calls it for each
-// transient that a live pass uses; `usage` is the union of the usages of these passes. It must be a
-// pure function.
+// transient that a live pass uses. `usage` is the union of the usages of these passes, and
+// `concurrent` is Placement::concurrent. It must be a pure function. Without a query, a texel of
+// mip 0 counts as 4 bytes, which only tests of plans without a device use.
 struct MemoryOracle {
-  MemoryRequirements (*query)(const void* context, const ResourceRecord& record,
-                              VkFlags usage) = nullptr;
+  MemoryRequirements (*query)(const void* context, const ResourceRecord& record, VkFlags usage,
+                              bool concurrent) = nullptr;
   const void* context = nullptr;
+
+  MemoryRequirements operator()(const ResourceRecord& record, VkFlags usage,
+                                bool concurrent) const {
+    if (query) return query(context, record, usage, concurrent);
+    const VkDeviceSize texels = VkDeviceSize{record.width} * record.height * record.depth;
+    return {record.size + 4 * texels * record.layers * record.samples};
+  }
 };
-// Estimates the memory of a resource without a device: the texels of all mips times the texel size,
-// aligned to 256 bytes. The default MemoryOracle uses it.
-MemoryRequirements estimate_requirements(const ResourceRecord& record);
 
 // A function that returns the usages that a format supports, or 0 to refuse the format. It must be
 // a pure function.
@@ -65,12 +70,6 @@ struct Limits {
   // The device limit bufferImageGranularity in bytes. A buffer and an image with optimal tiling
   // never share a page of this size, even if both lie in the same heap.
   VkDeviceSize buffer_image_granularity = 1;
-  // Whether the device has a lazily allocated memory type. If so, attachments whose contents are
-  // neither loaded by a pass nor needed later are allocated from it.
-  bool has_lazy_memory = false;
-  // Whether the feature separateDepthStencilLayouts is enabled. Accesses to one aspect of a texture
-  // with depth and stencil need it.
-  bool separate_depth_stencil = true;
   // Queue family of each QueueClass. If a class has none (kNone), its passes run on the graphics
   // queue.
   std::uint32_t queue_families[kQueueClasses] = {0, kNone, kNone};
@@ -100,9 +99,7 @@ class Compiler {
 
 [[nodiscard]] tl::expected<Plan, Errors> compile(const GraphDescription& graph,
                                                  const Limits& limits = {});
-[[nodiscard]] inline tl::expected<Plan, Errors> compile(const Graph& graph,
-                                                        const Limits& limits = {}) {
-  return compile(graph.description(), limits);
-}
+// Also refuses passes that run and have no callback.
+[[nodiscard]] tl::expected<Plan, Errors> compile(const Graph& graph, const Limits& limits = {});
 
 }  // namespace alcove::framegraph

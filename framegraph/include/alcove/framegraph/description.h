@@ -29,31 +29,11 @@ struct ResourceRecord {
   std::uint32_t external = kNone;  // of an import or a history slot: index into externals
   ResourceKind kind = ResourceKind::texture;
   Origin origin = Origin::transient;
-  std::uint8_t slot = 0;     // of a history: its age in frames; 0 is this frame's slot
-  std::uint8_t slots = 1;    // of a history: the number of its slots
-  std::uint32_t flags = 0;   // ResourceFlags
-  std::uint32_t planes = 1;  // aspects with separate states: 2 if the format has depth and stencil
+  std::uint8_t slot = 0;   // of a history: its age in frames; 0 is this frame's slot
+  std::uint8_t slots = 1;  // of a history: the number of its slots
   bool operator==(const ResourceRecord&) const = default;
 };
 static_assert(std::has_unique_object_representations_v<ResourceRecord>);
-
-constexpr bool has_depth_and_stencil(VkFormat format) {
-  return format >= VK_FORMAT_D16_UNORM_S8_UINT && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
-}
-
-// Returns the index of the range's first plane. Subresources are numbered by mip, then by layer,
-// then by plane; depth is plane 0 and stencil plane 1.
-constexpr std::uint32_t first_plane(const Range& range) {
-  return range.aspects == VK_IMAGE_ASPECT_STENCIL_BIT ? 1 : 0;
-}
-constexpr std::uint32_t plane_count(const ResourceRecord& record, const Range& range) {
-  return range.aspects != 0 ? 1 : record.planes;
-}
-
-enum ResourceFlags : std::uint32_t {
-  kRelativeToNothing = 1,  // its extent is relative to a handle that is no longer valid
-  kPersistent = 2,         // a history with one slot, which keeps its contents from frame to frame
-};
 
 // The state of a resource that exists outside the frame: an import or a history slot.
 struct ExternalRecord {
@@ -68,8 +48,7 @@ struct ExternalRecord {
   std::uint8_t has_handle = 0;                        // 0 or 1: the caller gave a Vulkan handle
   HistoryValidity validity = HistoryValidity::valid;  // of a history slot
   QueueClass queue = QueueClass::graphics;            // the queue that used it last
-  std::uint8_t concurrent = 0;                        // 0 or 1: queues need no ownership transfers
-  std::uint8_t reserved[2] = {};
+  std::uint8_t reserved[3] = {};
   bool operator==(const ExternalRecord&) const = default;
 };
 static_assert(std::has_unique_object_representations_v<ExternalRecord>);
@@ -77,14 +56,11 @@ static_assert(std::has_unique_object_representations_v<ExternalRecord>);
 enum AccessFlags : std::uint32_t {
   kWrite = 1,
   kDiscard = 2,
-  kOptional = 4,
-  kForeign = 8,     // the handle belongs to another graph or an earlier frame
-  kNull = 16,       // the handle is default-constructed
-  kClosed = 32,     // declared on a pass after the next pass was added
-  kWhole = 64,      // declared without a range
-  kOnBuffer = 128,  // the handle is a Buffer
-  // Contents::accumulate: the order of this write relative to others with the same access is free.
-  kUnordered = 256,
+  kForeign = 4,    // the handle belongs to another graph or an earlier frame
+  kNull = 8,       // the handle is default-constructed
+  kClosed = 16,    // declared on a pass after the next pass was added
+  kWhole = 32,     // declared without a range
+  kOnBuffer = 64,  // the handle is a Buffer
   // Marks an OutputRecord that reports the use of a PassBuilder after Graph::reset().
   kStaleBuilder = 1u << 16,
 };
@@ -112,10 +88,10 @@ struct AccessRecord {
   std::uint32_t resource = kNone;
   std::uint32_t flags = 0;  // AccessFlags
   // The declared range, with kAll replaced by the texture's number of mips or layers. kAll remains
-  // only if the base mip or layer is out of range. `aspects` is 0 unless the range selects only the
-  // depth or only the stencil of a format that has both.
+  // only if the base mip or layer is out of range.
   Range range;
   std::uint32_t version = 0;  // of the handle; a write returns the next version
+  std::uint32_t reserved = 0;
 
   ResourceKind kind() const {
     return flags & kOnBuffer ? ResourceKind::buffer : ResourceKind::texture;
@@ -124,7 +100,7 @@ struct AccessRecord {
 };
 static_assert(std::has_unique_object_representations_v<AccessRecord>);
 
-enum PassFlags : std::uint8_t { kSideEffect = 1, kHasCallback = 2 };
+enum PassFlags : std::uint8_t { kSideEffect = 1 };
 
 struct PassRecord {
   std::uint32_t first_access = 0;

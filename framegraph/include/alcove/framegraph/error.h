@@ -10,21 +10,19 @@
 namespace alcove::framegraph {
 
 enum class ErrorCode : std::uint8_t {
-  stale_handle,         // a version that a later write has replaced
-  foreign_handle,       // a handle of another graph, or of a frame before reset()
-  null_handle,          // a default-constructed handle
-  read_before_write,    // a read of contents that nothing wrote
-  read_and_write,       // one pass reads and writes one subresource in two accesses
-  two_writers,          // one pass writes one subresource twice
-  attachment_mismatch,  // one pass's attachments differ in size or samples
-  missing_usage,        // an import was not created for this use
-  unsupported_format,   // the device does not support this use of the format
-  bad_range,            // a range with mips or layers that the texture does not have
-  bad_access,           // an access that contradicts itself or the pass's queue
-  bad_description,      // a size of zero, an undefined format, or a size above a device limit
-  // An import without a Vulkan handle, with the handle of another import, or with a relative
-  // extent.
-  bad_import,
+  stale_handle,           // a version that a later write has replaced
+  foreign_handle,         // a handle of another graph, or of a frame before reset()
+  null_handle,            // a default-constructed handle
+  read_before_write,      // a read of contents that nothing wrote
+  read_and_write,         // one pass reads and writes one subresource in two accesses
+  two_writers,            // one pass writes one subresource twice
+  attachment_mismatch,    // one pass's attachments differ in size or samples
+  missing_usage,          // an import was not created for this use
+  unsupported_format,     // the device does not support this use of the format
+  bad_range,              // a range with mips or layers that the texture does not have
+  bad_access,             // an access that contradicts itself or the pass's queue
+  bad_description,        // a size of zero, an undefined format, or a size above a device limit
+  bad_import,             // an import without a Vulkan handle, or with that of another import
   history_never_written,  // a pass reads a history that no frame writes
   history_cycle,          // a history's slots form a cycle within the frame
   closed_pass,            // an access declared after the next pass was begun

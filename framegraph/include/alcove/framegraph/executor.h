@@ -40,10 +40,8 @@ struct DeviceHandles {
   VkDevice device = VK_NULL_HANDLE;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   QueueHandle queues[kQueueClasses];
-  bool debug_utils = false;             // VK_EXT_debug_utils is enabled on the instance
-  bool storage_multisample = false;     // the feature shaderStorageImageMultisample is enabled
-  bool separate_depth_stencil = false;  // the feature separateDepthStencilLayouts is enabled
-  HostServices host;                    // the caller's allocators and log
+  bool debug_utils = false;  // VK_EXT_debug_utils is enabled on the instance
+  HostServices host;         // the caller's allocators and log
 };
 
 // Checks a plan against the declaration and the limits that it was made for.
@@ -121,21 +119,20 @@ class Executor {
   // The device must have finished all recorded frames. The destructor waits for submitted ones.
   ~Executor();
 
-  // Records the frame into `commands`, a primary command buffer of the graphics queue family that
-  // is in the recording state and outside a render pass. All passes are recorded into it, whatever
-  // their queue class. The caller must submit the command buffers in the order in which they were
-  // recorded, once each, to one queue. If the declaration is invalid, nothing is recorded. An error
-  // that is found while recording (an undeclared use, or no more memory) leaves `commands`
-  // incomplete: discard it. After any error, the histories have the contents that they had before
-  // the frame, except that a history which the frame declared with another description, or reset,
-  // has no contents.
+  // Records the declared frame, once, into `commands`, a primary command buffer of the graphics
+  // queue family that is in the recording state and outside a render pass. All passes are recorded
+  // into it, whatever their queue class. The caller must submit the command buffers in the order in
+  // which they were recorded, once each, to one queue. If the declaration is invalid, nothing is
+  // recorded. An error that is found while recording (an undeclared use, or no more memory) leaves
+  // `commands` incomplete: discard it. After any error, the histories have the contents that they
+  // had before the frame, except that a history which the frame declared with another description,
+  // or reset, has no contents.
   [[nodiscard]] tl::expected<FrameReport, Errors> record(Graph& graph, VkCommandBuffer commands,
                                                          const FrameInfo& frame = {});
   // Undoes the effects of recording a frame, if its commands will not be submitted. Call it before
   // any other function of this graph or executor. The graph and the executor are then as if that
   // frame had not been declared or recorded. Without this call, the histories would be treated as
-  // if the frame had written them. To record the frame again, declare it again if it changed the
-  // description of a history.
+  // if the frame had written them. To record the frame again, declare it again.
   void discard(Graph& graph, const FrameInfo& frame = {});
 
   // Records the frame and submits it to the queues of the device. The work of a queue is collected
@@ -159,10 +156,6 @@ class Executor {
   // passes only ever used the view that was imported with it: a new image may get the same handle
   // as the old one.
   void forget(VkImage image);
-  // Frees the memory of all transients as soon as the device has finished with it; the next frame
-  // allocates what it needs. Without this call, memory is freed if no frame of a while has needed
-  // half of it.
-  void trim();
 
   const VulkanFunctions& functions() const;
   // Returns the limits that plans are compiled with.

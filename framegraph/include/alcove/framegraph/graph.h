@@ -3,7 +3,7 @@
 //
 //   Graph graph;
 //   Texture depth = graph.import_texture("depth", engine_depth);
-//   Texture ao = graph.create_texture("ao", {VK_FORMAT_R8_UNORM, Extent::relative(depth, 2)});
+//   Texture ao = graph.create_texture("ao", {VK_FORMAT_R8_UNORM, {width, height}});
 //   PassBuilder pass = graph.add_pass("gtao", QueueClass::compute);
 //   pass.read(depth, access::depth_read_compute);
 //   ao = pass.write(ao, access::storage_write_compute);
@@ -26,6 +26,7 @@
 
 #include "alcove/framegraph/access.h"
 #include "alcove/framegraph/description.h"
+#include "alcove/framegraph/error.h"
 #include "alcove/framegraph/history.h"
 #include "alcove/framegraph/plan.h"
 #include "alcove/framegraph/record_context.h"
@@ -47,17 +48,9 @@ class PassBuilder {
   // Declares that the pass writes the texture or buffer. Returns the handle of the next version;
   // the given handle becomes invalid.
   [[nodiscard]] Texture write(Texture texture, const Access& access, Range range = {},
-                              Contents contents = Contents::keep, Need need = Need::required);
+                              Contents contents = Contents::keep);
   [[nodiscard]] Buffer write(Buffer buffer, const Access& access,
-                             Contents contents = Contents::keep, Need need = Need::required);
-  // Declares a write that is culled if no later pass reads its result. The callback can ask
-  // RecordContext::is_used() whether the write takes place.
-  [[nodiscard]] Texture write_optional(Texture texture, const Access& access, Range range = {}) {
-    return write(texture, access, range, Contents::keep, Need::optional);
-  }
-  [[nodiscard]] Buffer write_optional(Buffer buffer, const Access& access) {
-    return write(buffer, access, Contents::keep, Need::optional);
-  }
+                             Contents contents = Contents::keep);
 
   // Marks the pass as one with effects outside the graph. It is never culled.
   void side_effect();
@@ -85,23 +78,20 @@ class PassBuilder {
   std::uint32_t tag_;  // Graph::tag_ of the frame
 };
 
-// A resource that keeps contents from frame to frame. `current` is written in this frame.
+// A texture that keeps contents from frame to frame. `current` is written in this frame.
 // previous(k) is what was `current` k frames ago; frames in which no pass wrote `current` do not
 // count. A frame that changes only a part of the contents may write previous() with Contents::keep
 // instead of `current`, which updates the older slot in place.
-template <ResourceKind kKind>
-struct History {
-  Handle<kKind> current;
+struct TextureHistory {
+  Texture current;
   std::uint32_t slots = 0;
   HistoryValidity validity = HistoryValidity::first_frame;  // of previous(1)
   // Returns the slot of that age. The graph reports an error if age is 0 or not below `slots`.
-  Handle<kKind> previous(std::uint32_t age = 1) const {
+  Texture previous(std::uint32_t age = 1) const {
     if (age == 0 || age >= slots) return {};
     return {current.index + age, 0, current.graph};
   }
 };
-using TextureHistory = History<ResourceKind::texture>;
-using BufferHistory = History<ResourceKind::buffer>;
 
 // The caller's Vulkan handles for one frame. They are not part of the plan.
 struct ImportHandles {
@@ -111,9 +101,7 @@ struct ImportHandles {
   std::uint32_t history = kNone;  // for a history slot: index into the graph's histories
   std::uint32_t layer = 0;        // the layer of the image that is the texture's first
   std::uint32_t layers = 1;       // number of layers of the texture
-  std::uint32_t initial_family = kNone;
-  std::uint32_t final_family = kNone;
-  std::uint32_t next = kNone;  // the next import with a handle of the same hash
+  std::uint32_t next = kNone;     // the next import with a handle of the same hash
 };
 
 class Graph {
@@ -130,18 +118,10 @@ class Graph {
   Buffer create_buffer(std::string_view name, const BufferDesc& desc);
   Texture import_texture(std::string_view name, const ImportedTexture& import);
   Buffer import_buffer(std::string_view name, const ImportedBuffer& import);
-  // Creates a history, or finds the one with this name from the previous frames. `slots`, 1 to 8,
+  // Creates a history, or finds the one with this name from the previous frames. `slots`, 2 to 8,
   // includes the slot of the current frame: 2 keeps the contents of one earlier frame.
   TextureHistory create_texture_history(std::string_view name, const TextureDesc& desc,
                                         std::uint32_t slots = 2);
-  BufferHistory create_buffer_history(std::string_view name, const BufferDesc& desc,
-                                      std::uint32_t slots = 2);
-  // Create persistent resources: histories with one slot. `current` keeps its contents from frame
-  // to frame, and a write with Contents::keep updates it in place. `validity` tells whether
-  // `current` has contents; if it does, passes can read it before the frame writes it. Passes that
-  // write it are never culled.
-  TextureHistory create_persistent_texture(std::string_view name, const TextureDesc& desc);
-  BufferHistory create_persistent_buffer(std::string_view name, const BufferDesc& desc);
   // Discards the contents of the named history, or of all histories, when they are next declared.
   void reset_history(std::string_view name);
   void reset_histories();
@@ -173,6 +153,9 @@ class Graph {
   VkFormat format(Texture texture) const;
 
   const GraphDescription& description() const { return description_; }
+  bool has_callback(std::uint32_t pass) const { return callbacks_[pass].call != nullptr; }
+  // Returns the error of a pass that runs and has no callback.
+  Error missing_callback(std::uint32_t pass) const;
 
   // Functions for callers that compile a frame without an executor, or that declare a frame and do
   // not record it. histories() returns the state of the histories. leave_histories() advances that
@@ -180,10 +163,6 @@ class Graph {
   HistoryTable& histories() { return histories_; }
   const HistoryTable& histories() const { return histories_; }
   void leave_histories(std::span<const FinalState> finals);
-  // Writes the current states of the histories into the declared frame, so that the same
-  // declaration can be compiled and recorded once more. Returns false if a history that it declares
-  // was dropped.
-  [[nodiscard]] bool refresh_histories();
 
  private:
   friend class PassBuilder;
@@ -218,13 +197,9 @@ class Graph {
   std::string_view keep_name(std::string_view name);
   void grow_passes();
   std::uint32_t add_resource(std::string_view name, const ResourceRecord& record);
-  static void fill_absolute(ResourceRecord& record, const TextureDesc& desc);
-  static bool is_absolute(const ResourceRecord& record, const TextureDesc& desc);
-  ResourceRecord texture_record(const TextureDesc& desc) const;
+  static ResourceRecord texture_record(const TextureDesc& desc);
+  static bool is_transient(const ResourceRecord& record, const TextureDesc& desc);
   static ResourceRecord buffer_record(const BufferDesc& desc);
-  template <ResourceKind kKind>
-  History<kKind> add_history(std::string_view name, ResourceRecord record, std::uint32_t slots,
-                             std::uint32_t flags = 0);
   template <typename Import>
   std::uint32_t add_import(std::string_view name, const Import& import, ResourceRecord record,
                            ImportHandles handles, bool has_contents);
@@ -237,6 +212,7 @@ class Graph {
                                std::uint32_t tag, const Access& access, Range range,
                                std::uint32_t flags);
   void add_output(std::uint32_t index, std::uint32_t version, std::uint32_t tag);
+  bool lost_executor() const;
   void* allocate(std::size_t size, std::size_t alignment);
   void* allocate_in_next_block(std::size_t size, std::size_t alignment);
   void destroy_callables();
@@ -260,6 +236,7 @@ class Graph {
   std::uint32_t repeating_tag_ = 0;
   HistoryTable histories_;
   std::weak_ptr<const char> executor_;  // Tells which executor the graph was last recorded by.
+  bool recorded_ = false;               // the declared frame
 };
 
 }  // namespace alcove::framegraph

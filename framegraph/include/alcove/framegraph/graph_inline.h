@@ -24,7 +24,6 @@ void PassBuilder::record(Callable&& callable) {
   graph_.callbacks_[pass_] = {
       [](void* stored, RecordContext& context) { (*static_cast<Stored*>(stored))(context); },
       object};
-  graph_.description_.passes[pass_].flags |= kHasCallback;
   if constexpr (!std::is_trivially_destructible_v<Stored>) {
     graph_.cleanups_.push_back(
         {[](void* stored) { static_cast<Stored*>(stored)->~Stored(); }, object});
@@ -50,9 +49,8 @@ inline std::string_view Graph::keep_name(std::string_view name) {
   return {static_cast<const char*>(place), name.size()};
 }
 
-// Fills in the record of a transient texture whose extent is absolute.
-inline void Graph::fill_absolute(ResourceRecord& record, const TextureDesc& desc) {
-  record = {};
+inline ResourceRecord Graph::texture_record(const TextureDesc& desc) {
+  ResourceRecord record;
   record.format = desc.format;
   record.width = desc.extent.width;
   record.height = desc.extent.height;
@@ -61,12 +59,12 @@ inline void Graph::fill_absolute(ResourceRecord& record, const TextureDesc& desc
   record.layers = desc.layers;
   record.samples = desc.samples;
   record.create_flags = desc.flags;
-  record.planes = has_depth_and_stencil(desc.format) ? 2 : 1;
+  return record;
 }
 
-// Returns whether a record is the one that fill_absolute() makes. It combines the differences of
-// all fields, so that there is one branch.
-inline bool Graph::is_absolute(const ResourceRecord& record, const TextureDesc& desc) {
+// Returns whether a record is the one that texture_record() makes for a transient. It combines the
+// differences of all fields, so that there is one branch.
+inline bool Graph::is_transient(const ResourceRecord& record, const TextureDesc& desc) {
   const auto pair = [](std::uint32_t low, std::uint32_t high) {
     return low | std::uint64_t{high} << 32;
   };
@@ -74,19 +72,18 @@ inline bool Graph::is_absolute(const ResourceRecord& record, const TextureDesc& 
           (pair(record.height, record.depth) ^ pair(desc.extent.height, desc.extent.depth)) |
           (pair(record.mips, record.layers) ^ pair(desc.mips, desc.layers)) |
           (pair(record.samples, record.create_flags) ^ pair(desc.samples, desc.flags)) |
-          static_cast<std::uint32_t>(record.origin) | static_cast<std::uint32_t>(record.kind) |
-          record.flags) == 0;
+          static_cast<std::uint32_t>(record.origin) | static_cast<std::uint32_t>(record.kind)) == 0;
 }
 
 // The usual frame repeats the previous one. Its records are only compared, which costs less than
 // writing them.
 inline Texture Graph::create_texture(std::string_view name, const TextureDesc& desc) {
   const auto index = static_cast<std::uint32_t>(description_.resources.size());
-  if (desc.extent.relative_to || index >= versions_.size()) [[unlikely]]
+  if (index >= versions_.size()) [[unlikely]]
     return {add_resource(name, texture_record(desc)), 0, tag_};
   ResourceRecord& next = description_.resources.next();
-  if (!is_absolute(next, desc)) [[unlikely]] {
-    fill_absolute(next, desc);
+  if (!is_transient(next, desc)) [[unlikely]] {
+    next = texture_record(desc);
     change();
   }
   description_.resources.repeat();
@@ -100,6 +97,7 @@ inline PassBuilder Graph::add_pass(std::string_view name, QueueClass queue) {
   if (index == callbacks_.size()) [[unlikely]]
     grow_passes();
   description_.pass_names[index] = keep_name(name);
+  callbacks_[index] = {};
   description_.passes.add({static_cast<std::uint32_t>(description_.accesses.size()), queue, 0, 0});
   return {*this, static_cast<std::uint32_t>(index), tag_};
 }
@@ -146,10 +144,8 @@ inline std::uint32_t Graph::add_access(PassBuilder pass, const Handle<kKind>& ha
   return (flags & kWrite) != 0 ? ++versions_[handle.index] : handle.version;
 }
 
-constexpr std::uint32_t write_flags(Contents contents, Need need) {
-  return kWrite | (contents == Contents::discard ? kDiscard : 0u) |
-         (contents == Contents::accumulate ? kUnordered : 0u) |
-         (need == Need::optional ? kOptional : 0u);
+constexpr std::uint32_t write_flags(Contents contents) {
+  return contents == Contents::discard ? kWrite | kDiscard : kWrite;
 }
 
 inline void PassBuilder::read(Texture texture, const Access& access, Range range) {
@@ -161,14 +157,13 @@ inline void PassBuilder::read(Buffer buffer, const Access& access) {
 }
 
 inline Texture PassBuilder::write(Texture texture, const Access& access, Range range,
-                                  Contents contents, Need need) {
-  texture.version = graph_.add_access(*this, texture, access, range, write_flags(contents, need));
+                                  Contents contents) {
+  texture.version = graph_.add_access(*this, texture, access, range, write_flags(contents));
   return texture;
 }
 
-inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents contents,
-                                 Need need) {
-  buffer.version = graph_.add_access(*this, buffer, access, {}, write_flags(contents, need));
+inline Buffer PassBuilder::write(Buffer buffer, const Access& access, Contents contents) {
+  buffer.version = graph_.add_access(*this, buffer, access, {}, write_flags(contents));
   return buffer;
 }
 

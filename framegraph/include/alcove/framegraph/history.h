@@ -1,4 +1,4 @@
-// The state of a graph's history resources, kept from frame to frame.
+// The state of a graph's histories, which are textures that are kept from frame to frame.
 //
 // A history has N slots. In each frame, slot 0 ("current") may be written, and slot k holds what
 // was current k frames ago. Slots rotate at the end of a frame in which a live pass wrote slot 0. A
@@ -60,22 +60,16 @@ class HistoryTable {
   // Marks all histories as not declared, so that each can be dropped.
   void end_frame();
 
-  // Functions for the end of a frame. begin_end() is called first. leave() stores the state in
-  // which the frame left a slot. rotate() is called for a history whose slot 0 was written: slot 0
-  // becomes slot 1, and the oldest slot becomes slot 0.
-  void begin_end();
+  // Functions for the end of a frame. leave() stores the state in which the frame left a slot.
+  // rotate() is called for a history whose slot 0 was written: slot 0 becomes slot 1, and the
+  // oldest slot becomes slot 0.
   void leave(std::uint32_t index, std::uint32_t slot, const HistorySlot& left);
   void rotate(std::uint32_t index);
   // Restores the table as it was at begin_frame(), because the declared frame does not run.
   // Histories that were removed with drop() stay removed.
   void undo();
-  // Returns whether undo() took back a description that the declared frame still uses.
-  bool must_be_declared_anew() const { return anew_; }
   // Makes all slots invalid and without a state, because their executor is gone.
   void forget_contents();
-  // Returns whether a frame has changed or taken back slots since begin_frame() or clear_moved().
-  bool have_moved() const { return moved_; }
-  void clear_moved() { moved_ = false; }
   // Returns whether the resources of a generation are in use, or undo() could make them used again.
   bool needs(std::uint32_t index, std::uint32_t generation) const;
 
@@ -95,9 +89,6 @@ class HistoryTable {
 
   std::vector<HistoryEntry> entries_;
   std::vector<SavedState> saved_;  // room for all entries
-  bool ended_ = false;             // the frame has left some
-  bool anew_ = false;
-  bool moved_ = false;
   std::shared_ptr<const char> life_ = std::make_shared<const char>('\0');
 };
 

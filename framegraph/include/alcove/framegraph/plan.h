@@ -26,10 +26,9 @@ struct PassCullReason {
   bool is_live() const { return cull_reason < CullReason::unread; }
 };
 
-// One dependency of a barrier command. If `resource` is set, it is an image barrier over `range`,
-// or the queue ownership transfer of a buffer. Otherwise it is a memory barrier over all memory,
-// which is enough for a texture that keeps its layout and queue family and for a buffer that keeps
-// its queue family.
+// One dependency of a barrier command. If `resource` is set, it is an image barrier over `range`.
+// Otherwise it is a memory barrier over all memory, which is enough for a buffer and for a texture
+// that keeps its layout.
 struct Transition {
   VkPipelineStageFlags2 src_stages = 0;
   VkAccessFlags2 src_access = 0;
@@ -39,10 +38,6 @@ struct Transition {
   VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkImageLayout new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   Range range;
-  // The queue classes between which ownership is transferred. They are equal if there is no
-  // transfer.
-  QueueClass src_queue = QueueClass::graphics;
-  QueueClass dst_queue = QueueClass::graphics;
 };
 
 // The transitions that one vkCmdPipelineBarrier2 records, before a pass or after the last pass of a
@@ -56,9 +51,8 @@ struct Batch {
 struct PlannedPass {
   std::uint32_t pass = kNone;  // declaration index
   QueueClass queue = QueueClass::graphics;
-  std::uint32_t submission = 0;   // into Plan::submissions
-  std::uint32_t first_batch = 0;  // into Plan::batches; recorded before the pass
-  std::uint32_t batch_count = 0;
+  std::uint32_t submission = 0;  // into Plan::submissions
+  std::uint32_t batch = kNone;   // into Plan::batches; recorded before the pass; kNone: no barriers
 };
 
 // Work that is submitted to one queue at once. A submission waits only for earlier submissions.
@@ -75,15 +69,13 @@ struct Submission {
   std::uint32_t pass_count = 0;
   std::uint32_t first_wait = 0;  // into Plan::waits
   std::uint32_t wait_count = 0;
-  std::uint32_t first_batch = 0;  // into Plan::batches; recorded after its last pass
-  std::uint32_t batch_count = 0;
+  std::uint32_t end_batch = kNone;  // into Plan::batches; recorded after its last pass
 };
 
-// A wait for a timeline semaphore: the stages `stages` of the waiting submission begin after all
-// work of the submission with the index `submission` is done.
+// A wait for a timeline semaphore: the waiting submission begins after all work of the submission
+// with the index `submission` is done.
 struct Wait {
   std::uint32_t submission = 0;
-  VkPipelineStageFlags2 stages = 0;
 };
 
 // The memory of a transient. A resource that no live pass uses has heap == kNone.
@@ -95,10 +87,14 @@ struct Placement {
   std::uint32_t first = kNone;  // positions of its first and its last use
   std::uint32_t last = kNone;
   VkFlags usage = 0;  // of all live accesses
+  // Passes of several queue families use it: it is created with VK_SHARING_MODE_CONCURRENT.
+  bool concurrent = false;
 };
 
 struct Heap {
   std::uint32_t memory_types = 0;  // allowed memory types, as a mask
+  bool device_address = false;     // whether it has buffers with a device address
+  VkDeviceSize alignment = 1;      // the largest of its resources
   VkDeviceSize size = 0;           // in bytes
   VkDeviceSize lower_bound = 0;    // most bytes that are live at the same time
   VkDeviceSize unaliased = 0;      // sum of the sizes
@@ -131,12 +127,12 @@ struct Plan {
   std::vector<Placement> placements;  // by resource
   std::vector<Heap> heaps;
   std::vector<PassCullReason> cull_reasons;  // by declared pass
-  std::vector<std::uint8_t> live_accesses;   // by declared access: 0 or 1
   std::vector<std::uint8_t> contents;        // by declared access: ContentFlags
   std::vector<FinalState> finals;
   // The submission of the graphics queue after which imports are in their final states. kNone if
   // the frame has no imports and no pass on the graphics queue.
   std::uint32_t final_submission = 0;
+  std::uint32_t final_batch = kNone;  // into batches; recorded at the end of final_submission
 };
 
 }  // namespace alcove::framegraph

@@ -57,9 +57,9 @@ class RecordContext {
   // Returns a view of `range`, which must lie within what the pass declared for this texture.
   // Without `range`, the view covers the range of the first access that names the texture. Unless
   // `type` is given, the view is 3D for a 3D texture, a 2D array if it covers several layers, and
-  // 2D otherwise. For a format with depth and stencil it shows depth, unless `range` selects the
-  // stencil aspect. A different `format` needs VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT in
-  // TextureDesc::flags, and a cube view needs VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT.
+  // 2D otherwise. For a format with depth and stencil it shows depth. A different `format` needs
+  // VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT in TextureDesc::flags, and a cube view needs
+  // VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT.
   VkImageView view(Texture texture) const;
   VkImageView view(Texture texture, Range range, VkImageViewType type = kViewTypeByRange,
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
@@ -70,8 +70,8 @@ class RecordContext {
   // Returns the attachment for vkCmdBeginRendering. Earlier contents are loaded if there are any
   // and the access keeps them. The result is stored if a later pass or frame needs it.
   VkRenderingAttachmentInfo attachment(const Attachment& attachment) const;
-  // Begins a rendering to the attachments' mips and layers. `depth` is bound for the aspects that
-  // the pass declared as attachments. Returns false, and record() returns an error, if the
+  // Begins a rendering to the attachments' mips and layers. `depth` is bound for all aspects of its
+  // format. Returns false, and record() returns an error, if the
   // attachments' sizes or samples differ, the rendering covers more than they have, or the device
   // lacks dynamic rendering.
   bool begin_rendering(std::span<const Attachment> colors, const Attachment& depth = {},
@@ -83,18 +83,9 @@ class RecordContext {
   VkExtent3D extent(Texture texture, std::uint32_t mip = 0) const;
   VkDeviceSize size(Buffer buffer) const;
   VkFormat format(Texture texture) const;
-  // Returns whether an access of this pass to the texture or buffer takes place. With `range`, only
-  // accesses to mips, layers or aspects of that range count. Returns false for an optional write
-  // that was culled.
-  template <ResourceKind kKind>
-  bool is_used(Handle<kKind> handle, const Range& range = {}) const {
-    return is_used(handle.index, range);
-  }
-  // Returns whether a slot of a history resource has contents, and if not, why.
-  template <ResourceKind kKind>
-  HistoryValidity validity(Handle<kKind> handle) const {
-    return validity(handle.index);
-  }
+  // Returns whether a slot of a history has contents, and if not, why. If uses are checked, a pass
+  // that uses an older slot without contents and has not asked for its validity before is an error.
+  HistoryValidity validity(Texture texture) const;
   std::string_view pass_name() const;
   // Tells the executor that an object which the pass needs could not be created: record() then
   // returns an error whose sentence contains `what`, and the frame must not be submitted.
@@ -103,14 +94,15 @@ class RecordContext {
  private:
   friend class Recorder;
   VkRenderingAttachmentInfo attachment(const Attachment& attachment, std::uint32_t access) const;
-  bool is_used(std::uint32_t resource, const Range& range) const;
-  HistoryValidity validity(std::uint32_t resource) const;
+  // Returns the physical resource of a texture or buffer that the pass declared, or null.
+  struct Physical* physical(std::uint32_t resource, std::uint32_t version) const;
   RecordContext(VkCommandBuffer command_buffer, const VulkanFunctions& functions,
                 const class Recorder& recorder, std::uint32_t pass)
       : commands(command_buffer), vk(functions), recorder_(recorder), pass_(pass) {}
   const class Recorder& recorder_;
   std::uint32_t pass_;
   mutable bool gave_imported_view_ = false;
+  mutable std::uint64_t asked_ = 0;  // textures whose validity the pass knows: bit index % 64
 };
 
 }  // namespace alcove::framegraph

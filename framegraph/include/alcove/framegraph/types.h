@@ -28,22 +28,15 @@ struct Handle {
 using Texture = Handle<ResourceKind::texture>;
 using Buffer = Handle<ResourceKind::buffer>;
 
-// A size in texels, or a size relative to that of another texture. A relative size multiplies and
-// then divides each dimension, rounds it up, and is at least 1. With `relative_to`, a width or
-// height other than 0 and a depth other than 1 are not relative.
+// A size in texels.
 struct Extent {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t depth = 1;  // above 1 makes a 3D image
-  Texture relative_to = {};
-  std::uint32_t divisor = 1;
-  std::uint32_t multiplier = 1;
 
-  static Extent absolute(std::uint32_t width, std::uint32_t height, std::uint32_t depth = 1) {
-    return {width, height, depth, {}, 1, 1};
-  }
-  static Extent relative(Texture to, std::uint32_t divisor = 1, std::uint32_t multiplier = 1) {
-    return {0, 0, 1, to, divisor, multiplier};
+  static constexpr Extent absolute(std::uint32_t width, std::uint32_t height,
+                                   std::uint32_t depth = 1) {
+    return {width, height, depth};
   }
 };
 
@@ -60,9 +53,7 @@ struct TextureDesc {
 
 struct BufferDesc {
   VkDeviceSize size = 0;  // bytes
-  // Additional usage flags. The graph adds the usages of the accesses that are not culled. A
-  // history is created once for all frames, with all buffer usages of Vulkan 1.0; name any other
-  // usage that it needs here, for example VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
+  // Additional usage flags. The graph adds the usages of the accesses that are not culled.
   VkBufferUsageFlags usage = 0;
 };
 
@@ -77,21 +68,16 @@ struct Access {
   VkFlags usage = 0;
 };
 
-// The mips, layers and aspects of one access. The default is all of them.
+// The mips and layers of one access. The default is all of them. An access to a texture with depth
+// and stencil is to both.
 struct Range {
   std::uint16_t base_mip = 0;
   std::uint16_t mips = kAll;
   std::uint16_t base_layer = 0;
   std::uint16_t layers = kAll;
-  // An aspect of a texture with depth and stencil, or 0 for all aspects of the format. With it, a
-  // pass may read the depth and write the stencil of one texture. It needs the feature
-  // separateDepthStencilLayouts.
-  VkImageAspectFlags aspects = 0;
 
   static constexpr Range mip(std::uint32_t mip) { return {base(mip), 1, 0, kAll}; }
   static constexpr Range layer(std::uint32_t layer) { return {0, kAll, base(layer), 1}; }
-  static constexpr Range depth() { return {0, kAll, 0, kAll, VK_IMAGE_ASPECT_DEPTH_BIT}; }
-  static constexpr Range stencil() { return {0, kAll, 0, kAll, VK_IMAGE_ASPECT_STENCIL_BIT}; }
   constexpr bool operator==(const Range&) const = default;
 
  private:
@@ -118,33 +104,25 @@ struct State {
 
 // An image that the caller owns. If `view` is null, the executor creates the views that passes ask
 // for and caches them by image: call Executor::forget before you destroy the image. `usage` is the
-// usage with which the image was created.
+// usage with which the image was created. The graph records no transfers of queue family ownership.
+// An image or buffer that passes of several queue families use must have been created with
+// VK_SHARING_MODE_CONCURRENT for them. If it arrives from another family, or leaves to one, the
+// caller records the barriers before and after the frame.
 struct ImportedTexture {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;  // a view of the whole image, or null
-  TextureDesc desc;                   // the extent must be absolute
+  TextureDesc desc;
   VkImageUsageFlags usage = 0;
   // The first imported layer of the image; desc.layers layers are imported. In barriers and views
   // of the graph, layer 0 is this layer. A callback that uses the VkImage directly must add
   // first_layer to its layer numbers.
   std::uint32_t first_layer = 0;
   State initial_state;
-  // The queue family (VK_QUEUE_FAMILY_EXTERNAL is allowed) that has released the image to the
-  // family of the queue that uses it first in this frame, or to the graphics family if no pass uses
-  // it. The graph records the matching acquire barrier, with initial_state.layout as old and new
-  // layout. kNone: no ownership transfer is needed.
-  std::uint32_t initial_family = kNone;
-  // The queue family to which the graphics queue releases the image at the end of the frame, in the
-  // layout of final_state. kNone: no ownership transfer.
-  std::uint32_t final_family = kNone;
   // The state in which the graph leaves the image. A write to an image with a final_state is an
   // output of the frame. All work of the frame on the image is ordered before later work in the
   // stages of final_state. Without a final_state (undefined layout and no stages), a write that
   // nobody reads is culled.
   State final_state;
-  // Whether the image was created with VK_SHARING_MODE_CONCURRENT for the families of all queues
-  // that use it. The queues then need no ownership transfers and may read it at the same time.
-  bool concurrent = false;
 };
 
 struct ImportedBuffer {
@@ -156,30 +134,17 @@ struct ImportedBuffer {
   bool has_contents = true;
   State initial_state;
   State final_state;
-  std::uint32_t initial_family = kNone;  // as in ImportedTexture
-  std::uint32_t final_family = kNone;
-  bool concurrent = false;
 };
 
 // The effect of a write on the earlier contents of its range.
 enum class Contents : std::uint8_t {
-  // The write may cover a part of the range, so the earlier contents are kept. If the result is
+  // The write may cover a part of the range, so the earlier contents are kept. If there are none,
+  // the rest of the range is undefined. If the result is
   // needed, the passes that wrote the earlier contents run too. If the access also reads (blending,
   // a depth test, atomics), they run whenever the pass of this access runs.
   keep,
   // The pass writes every texel and reads none: the earlier contents may be thrown away.
   discard,
-  // The write keeps the earlier contents, as with `keep`, and its order among other such writes
-  // does not matter, as with atomic additions. Consecutive writes of this kind with the same access
-  // on one queue get no barrier between them. All of them are ordered after the accesses before
-  // them, and before the next read or other write.
-  accumulate,
-};
-
-// Whether a write has to take place.
-enum class Need : std::uint8_t {
-  required,  // takes place whenever its pass runs
-  optional,  // costs nothing when nobody reads it: RecordContext::is_used tells the pass
 };
 
 enum class QueueClass : std::uint8_t { graphics, compute, transfer };

@@ -67,7 +67,7 @@ struct NamedConstant {
 };
 
 // Owns the pipelines, descriptor sets and parameter buffers of the passes on one device. A pipeline
-// is created when a shader is first used with a set of constants, and is kept (Frame::prepare
+// is created when a shader is first used with a set of constants, and is kept (prepare_view()
 // creates all that a view can need). A frame that needs no new pipeline allocates nothing. Several
 // threads may call dispatch() at the same time; only one thread at a time may call any other
 // function.
@@ -122,6 +122,10 @@ class Kernels {
   void dispatch(framegraph::RecordContext& context, Kernel kernel,
                 std::span<const VkImageView> views, std::span<const std::byte> parameters,
                 const std::array<std::uint32_t, 3>& groups);
+
+  // Returns a list for the work that is being described, which is too large for a stack. Its
+  // contents are undefined.
+  [[nodiscard]] AlcoveWork& scratch();
 
   // Returns how many pipelines have been created. Passes that are not added create none.
   [[nodiscard]] std::size_t pipeline_count() const;

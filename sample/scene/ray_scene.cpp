@@ -1,17 +1,35 @@
-#include "reference/ray_scene.h"
+#include "scene/ray_scene.h"
+
+#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-
-#include "support/result.h"
+#include <vector>
 
 namespace alcove::sample {
 namespace {
 
 constexpr uint32_t kPacket = 16;
 
-using FilteredMesh = RayScene::Impl::FilteredMesh;
+// User data of Embree's filter functions.
+struct FilteredMesh {
+  const Scene* scene;
+  const Mesh* mesh;
+};
+
+// The mesh and the instance of a geometry of the tree.
+struct Attached {
+  uint32_t mesh;
+  uint32_t instance;
+};
+
+struct Context : RTCIntersectContext {
+  explicit Context(bool hits_both_sides = false) : both_sides(hits_both_sides) {
+    rtcInitIntersectContext(this);
+  }
+  bool both_sides;
+};
 
 // Alpha of the base colour at a point of a triangle.
 float alpha_at(const Scene& scene, const Mesh& mesh, uint32_t triangle, float u, float v) {
@@ -26,6 +44,8 @@ float alpha_at(const Scene& scene, const Mesh& mesh, uint32_t triangle, float u,
 void reject_invisible(const RTCFilterFunctionNArguments* args) {
   const auto& [scene, mesh] = *static_cast<const FilteredMesh*>(args->geometryUserPtr);
   const Material& material = scene->materials[mesh->material];
+  const bool culls =
+      !material.double_sided && !static_cast<const Context*>(args->context)->both_sides;
   const unsigned count = args->N;
   for (unsigned i = 0; i < count; ++i) {
     if (args->valid[i] == 0) continue;
@@ -33,7 +53,7 @@ void reject_invisible(const RTCFilterFunctionNArguments* args) {
     const float along = RTCRayN_dir_x(args->ray, count, i) * RTCHitN_Ng_x(args->hit, count, i) +
                         RTCRayN_dir_y(args->ray, count, i) * RTCHitN_Ng_y(args->hit, count, i) +
                         RTCRayN_dir_z(args->ray, count, i) * RTCHitN_Ng_z(args->hit, count, i);
-    if (!material.double_sided && along > 0.0f) {
+    if (culls && along > 0.0f) {
       args->valid[i] = 0;
     } else if (material.alpha_mode == AlphaMode::mask) {
       const float alpha = alpha_at(*scene, *mesh, RTCHitN_primID(args->hit, count, i),
@@ -72,17 +92,18 @@ RTCGeometry triangles_of(RTCDevice device, const Material& material, FilteredMes
   return geometry;
 }
 
-RTCScene new_tree(RTCDevice device) {
+RTCScene new_tree(RTCDevice device, RayScene::Build build) {
   RTCScene tree = rtcNewScene(device);
   rtcSetSceneFlags(tree, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(tree, RTC_BUILD_QUALITY_HIGH);
+  rtcSetSceneBuildQuality(
+      tree, build == RayScene::Build::quick ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
   return tree;
 }
 
 // One geometry of `tree` for each instance of the mesh, all with the same triangles.
 void attach_instances(RTCDevice device, RTCScene tree, RTCGeometry triangles, uint32_t mesh_index,
-                      const Mesh& mesh, std::vector<RayScene::Impl::Attached>& attached) {
-  RTCScene shared = new_tree(device);
+                      const Mesh& mesh, RayScene::Build build, std::vector<Attached>& attached) {
+  RTCScene shared = new_tree(device, build);
   rtcAttachGeometryByID(shared, triangles, 0);
   rtcCommitScene(shared);
   for (uint32_t i = 0; i < mesh.instances.size(); ++i) {
@@ -127,23 +148,29 @@ class NormalTransform {
   glm::dmat3 cofactor_;
 };
 
-glm::vec3 facing(const glm::vec3& n, const glm::vec3& direction) {
-  return glm::dot(n, direction) > 0.0f ? -n : n;
-}
-
 }  // namespace
+
+struct RayScene::Impl {
+  const Scene* scene = nullptr;
+  RTCDevice device = nullptr;
+  RTCScene tree = nullptr;
+  std::vector<Attached> attached;  // by geometry index
+  std::vector<FilteredMesh> filtered;
+
+  ~Impl() {
+    if (tree) rtcReleaseScene(tree);
+    if (device) rtcReleaseDevice(device);
+  }
+};
 
 RayScene::RayScene() : impl_(std::make_unique<Impl>()) {}
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
 
-RayScene::Impl::~Impl() {
-  if (tree) rtcReleaseScene(tree);
-  if (device) rtcReleaseDevice(device);
-}
+const Scene& RayScene::scene() const { return *impl_->scene; }
 
-Result<RayScene> RayScene::create(const Scene& scene) {
+Result<RayScene> RayScene::create(const Scene& scene, Build build) {
   if (is_too_large(scene.bounds_ws)) {
     return tl::unexpected("the scene " + scene.name +
                           " reaches further than 1e12 from its origin, too far for rays to be "
@@ -154,7 +181,7 @@ Result<RayScene> RayScene::create(const Scene& scene) {
   impl.scene = &scene;
   impl.device = rtcNewDevice(nullptr);
   if (!impl.device) return tl::unexpected<std::string>("Embree, the ray tracer, cannot start");
-  impl.tree = new_tree(impl.device);
+  impl.tree = new_tree(impl.device, build);
   impl.filtered.reserve(scene.meshes.size());  // Embree keeps their addresses
   bool room = true;
   for (uint32_t m = 0; room && m < scene.meshes.size(); ++m) {
@@ -169,7 +196,7 @@ Result<RayScene> RayScene::create(const Scene& scene) {
       rtcAttachGeometryByID(impl.tree, triangles, static_cast<unsigned>(impl.attached.size()));
       impl.attached.push_back({m, 0});
     } else {
-      attach_instances(impl.device, impl.tree, triangles, m, mesh, impl.attached);
+      attach_instances(impl.device, impl.tree, triangles, m, mesh, build, impl.attached);
     }
     rtcReleaseGeometry(triangles);
   }
@@ -181,25 +208,26 @@ Result<RayScene> RayScene::create(const Scene& scene) {
   return out;
 }
 
-std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::vec3& direction,
-                                           float far) const {
+std::optional<Hit> RayScene::nearest(const glm::vec3& origin, const glm::vec3& direction, float far,
+                                     bool both_sides) const {
   if (!is_traceable(origin, direction)) return std::nullopt;
   RTCRayHit query{};
   query.ray = {origin.x,    origin.y, origin.z, 0.0f,        direction.x, direction.y,
                direction.z, 0.0f,     far,      0xffffffffu, 0,           0};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(tree, &context, &query);
+  Context context(both_sides);
+  rtcIntersect1(impl_->tree, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-  const Attached& hit_geometry = attached[instanced ? query.hit.instID[0] : query.hit.geomID];
-  const Mesh& mesh = scene->meshes[hit_geometry.mesh];
+  const Attached& hit_geometry =
+      impl_->attached[instanced ? query.hit.instID[0] : query.hit.geomID];
+  const Mesh& mesh = scene().meshes[hit_geometry.mesh];
   const uint32_t* i = &mesh.indices[size_t{3} * query.hit.primID];
   const float u = query.hit.u, v = query.hit.v, w = 1.0f - u - v;
   Hit hit;
   hit.distance = query.ray.tfar;
+  hit.mesh = hit_geometry.mesh;
   hit.material = mesh.material;
   hit.color = color_within(mesh, query.hit.primID, u, v);
   const NormalTransform placed(world_from_mesh(mesh, hit_geometry.instance));
@@ -207,7 +235,8 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
   const double length_of_area = glm::length(area);
   if (!(length_of_area > 0.0) || !std::isfinite(hit.distance)) return std::nullopt;
   const glm::vec3 normal(area / length_of_area);
-  hit.geometric_normal_ws = facing(normal, direction);
+  hit.front = !(glm::dot(normal, direction) > 0.0f);
+  hit.geometric_normal_ws = hit.front ? normal : -normal;
   hit.shading_normal_ws = hit.geometric_normal_ws;
   if (!mesh.normals.empty()) {
     const glm::vec3 smooth =
@@ -215,16 +244,15 @@ std::optional<Hit> RayScene::Impl::nearest(const glm::vec3& origin, const glm::v
     const glm::vec3 smooth_ws(direction_of(placed(glm::dvec3(smooth))));
     // The vertex normal is flipped on a back face, as the triangle's normal is, even if the vertex
     // normal faces the ray already.
-    const float side = glm::dot(normal, direction) > 0.0f ? -1.0f : 1.0f;
     if (glm::length(smooth) > 1e-6f && smooth_ws != glm::vec3(0.0f))
-      hit.shading_normal_ws = side * smooth_ws;
+      hit.shading_normal_ws = hit.front ? smooth_ws : -smooth_ws;
   }
   hit.uvs = uvs_within(mesh, query.hit.primID, u, v);
   return hit;
 }
 
-uint32_t RayScene::Impl::blocked(const glm::vec3& origin, std::span<const glm::vec3> directions,
-                                 float far) const {
+uint32_t RayScene::blocked(const glm::vec3& origin, std::span<const glm::vec3> directions,
+                           float far) const {
   alignas(64) RTCRay16 rays;
   alignas(64) int valid[kPacket];
   for (uint32_t i = 0; i < kPacket; ++i) {
@@ -243,18 +271,16 @@ uint32_t RayScene::Impl::blocked(const glm::vec3& origin, std::span<const glm::v
     rays.id[i] = i;
     rays.flags[i] = 0;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded16(valid, tree, &context, &rays);
+  Context context;
+  rtcOccluded16(valid, impl_->tree, &context, &rays);
   uint32_t bits = 0;
   for (uint32_t i = 0; i < directions.size(); ++i)
     if (rays.tfar[i] < 0.0f) bits |= 1u << i;
   return bits;
 }
 
-glm::vec3 RayScene::Impl::off_surface(const glm::vec3& position_ws,
-                                      const glm::vec3& normal_ws) const {
-  const Bounds& bounds = scene->bounds_ws;
+glm::vec3 RayScene::off_surface(const glm::vec3& position_ws, const glm::vec3& normal_ws) const {
+  const Bounds& bounds = scene().bounds_ws;
   const glm::vec3 reach =
       glm::max(glm::max(glm::abs(bounds.low), glm::abs(bounds.high)), glm::abs(position_ws));
   return position_ws + normal_ws * (std::max({reach.x, reach.y, reach.z}) * 0x1p-20f);

@@ -1,8 +1,12 @@
-#include "alcove/passes/fit_budget.h"
-
+// The controller that fits the number of samples to a time.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+
+#include "alcove/alcove.h"
+#include "alcove/passes/setting_table.h"
+#include "c/failure.h"
 
 namespace alcove::passes {
 namespace {
@@ -25,7 +29,7 @@ struct Samples {
 // Calls `visit` for each choice in ascending order of work: all steps of the fewest slices, then of
 // one slice more, without choices that take no more work than those before.
 template <typename Visit>
-void for_each_choice(const Budget& budget, const Visit& visit) {
+void for_each_choice(const AlcoveBudget& budget, const Visit& visit) {
   std::uint32_t before = 0;
   for (Samples choice{budget.least_slices}; choice.slices <= budget.most_slices; ++choice.slices) {
     for (choice.steps = budget.least_steps; choice.steps <= budget.most_steps; ++choice.steps) {
@@ -49,27 +53,14 @@ double median_ms(std::span<const double> milliseconds) {
   return *middle;
 }
 
-tl::expected<void, Error> check(const Budget& budget) {
-  if (!std::isfinite(budget.target_ms) || budget.target_ms <= 0.0)
-    return tl::unexpected(Error{"The target of a budget is not a time above 0 milliseconds."});
-  if (budget.least_slices < 1 || budget.most_slices > 64 ||
-      budget.least_slices > budget.most_slices || budget.least_steps < 2 ||
-      budget.most_steps > 64 || budget.least_steps > budget.most_steps) {
-    return tl::unexpected(
-        Error{"The limits of a budget exclude each other or are out of range; slices are 1 to 64 "
-              "and steps 2 to 64, the least at most the most."});
-  }
-  return {};
+bool is_usable(const AlcoveBudget& budget) {
+  return budget.struct_size == sizeof budget && std::isfinite(budget.target_ms) &&
+         budget.target_ms > 0.0 && budget.least_slices >= 1 && budget.most_slices <= 64 &&
+         budget.least_slices <= budget.most_slices && budget.least_steps >= 2 &&
+         budget.most_steps <= 64 && budget.least_steps <= budget.most_steps;
 }
 
-}  // namespace
-
-tl::expected<OcclusionSettings, Error> fit_budget(const Budget& budget,
-                                                  std::span<const double> milliseconds,
-                                                  const OcclusionSettings& settings) {
-  if (auto good = check(budget).and_then([&] { return validate(settings); }); !good)
-    return tl::unexpected(good.error());
-  const Samples now{settings.slices, settings.steps};
+Samples fit(const AlcoveBudget& budget, std::span<const double> milliseconds, const Samples& now) {
   const bool outside = now.slices < budget.least_slices || now.slices > budget.most_slices ||
                        now.steps < budget.least_steps || now.steps > budget.most_steps;
   const double measured = median_ms(milliseconds);
@@ -86,11 +77,24 @@ tl::expected<OcclusionSettings, Error> fit_budget(const Budget& budget,
   best = best.slices == 0 ? least : best;
   const bool too_slow = measured > budget.target_ms && best.work() < now.work();
   const bool too_fast = measured > 0.0 && best.work() > now.work();
-  const Samples chosen = too_slow || too_fast ? best : outside ? nearest : now;
-  OcclusionSettings result = settings;
-  result.slices = chosen.slices;
-  result.steps = chosen.steps;
-  return result;
+  return too_slow || too_fast ? best : outside ? nearest : now;
 }
 
+}  // namespace
 }  // namespace alcove::passes
+
+using namespace alcove::passes;
+
+AlcoveResult alcoveFitBudget(const AlcoveBudget* budget, const double* milliseconds, uint32_t count,
+                             AlcoveSettings* settings, uint32_t* changed) {
+  return guarded([&]() -> Result {
+    if (budget == nullptr || settings == nullptr || changed == nullptr ||
+        (milliseconds == nullptr && count > 0) || !is_usable(*budget) || !validate(*settings))
+      return invalid("");
+    const Samples fitted = fit(*budget, {milliseconds, count}, {settings->slices, settings->steps});
+    *changed = settings->slices != fitted.slices || settings->steps != fitted.steps ? 1 : 0;
+    settings->slices = fitted.slices;
+    settings->steps = fitted.steps;
+    return {};
+  });
+}

@@ -1,46 +1,46 @@
 #pragma once
 
-#include <embree3/rtcore.h>
-
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "reference/truth.h"
+#include "scene/scene.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
 // A hit of a ray with the scene. Normals are unit and face the ray's origin.
 struct Hit {
   float distance;
+  uint32_t mesh;  // indexes Scene::meshes
   uint32_t material;
+  bool front;  // whether the ray meets the front of the triangle
   glm::vec3 geometric_normal_ws;
   glm::vec3 shading_normal_ws;
   MeshUvs uvs;
   glm::vec4 color;  // of the vertices, linear RGB and alpha
 };
 
-// The bounding volume hierarchy that Embree builds over a scene, and the queries of it.
-struct RayScene::Impl {
-  const Scene* scene = nullptr;
-  RTCDevice device = nullptr;
-  RTCScene tree = nullptr;
-  // The mesh and the instance of each geometry of the tree, by geometry index.
-  struct Attached {
-    uint32_t mesh;
-    uint32_t instance;
-  };
-  std::vector<Attached> attached;
-  struct FilteredMesh {
-    const Scene* scene;
-    const Mesh* mesh;
-  };
-  std::vector<FilteredMesh> filtered;  // user data of Embree's filter functions
+// The triangles of a scene in an acceleration structure of Embree. It is immutable, and any thread
+// may trace. The scene must outlive it.
+class RayScene {
+ public:
+  enum class Build { thorough, quick };  // quick: built in less time, and slower to trace
 
-  ~Impl();
+  // Errors: Embree has no device or no memory; the scene extends further than 1e12 from its origin.
+  [[nodiscard]] static Result<RayScene> create(const Scene& scene, Build build = Build::thorough);
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+  ~RayScene();
+
+  [[nodiscard]] const Scene& scene() const;
+
+  // Returns the nearest hit. Rays pass through points that the rasteriser does not draw: points
+  // below the cutoff of an alpha mask, and back faces of single-sided materials unless
+  // `both_sides`.
   [[nodiscard]] std::optional<Hit> nearest(const glm::vec3& origin, const glm::vec3& direction,
-                                           float far) const;
+                                           float far, bool both_sides = false) const;
   // Whether each of up to 16 rays from one origin hits anything nearer than `far`. Bit i is ray i.
   [[nodiscard]] uint32_t blocked(const glm::vec3& origin, std::span<const glm::vec3> directions,
                                  float far) const;
@@ -49,6 +49,11 @@ struct RayScene::Impl {
   // does not occlude itself.
   [[nodiscard]] glm::vec3 off_surface(const glm::vec3& position_ws,
                                       const glm::vec3& normal_ws) const;
+
+ private:
+  struct Impl;
+  RayScene();
+  std::unique_ptr<Impl> impl_;
 };
 
 // Linear base colour at a hit.

@@ -1,0 +1,99 @@
+// Fills a list of work (alcove_work.h). The textures that passes name are handles of the list:
+// Texture::index is the index of a resource.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "alcove/alcove_work.h"
+#include "alcove/framegraph/graph.h"
+#include "alcove/passes/kernels.h"
+
+namespace alcove::passes {
+
+// The histories of a view.
+enum class HistoryRole : std::uint8_t { visibility, depth, bent_normal, lobe };
+
+// An image for a binding of a shader, by the variable's name in GLSL.
+struct NamedTexture {
+  std::string_view name;
+  framegraph::Texture texture;
+};
+
+// A request of a pass to run a shader. Constants and images that only other shaders have are
+// ignored, so that all variants of a shader can be given the same lists.
+struct DispatchInfo {
+  const char* label = "";  // static
+  Shader shader = Shader::count;
+  std::span<const NamedConstant> constants = {};
+  std::span<const NamedTexture> images = {};
+  std::span<const std::byte> parameters = {};
+  VkExtent3D size{};  // invocations
+};
+
+// Fills an AlcoveWork. It refers to the list, which must outlive it, and allocates nothing.
+class WorkList {
+ public:
+  // The slots of a history, and whether the contents of `previous` can be read.
+  struct History {
+    framegraph::Texture previous;
+    framegraph::Texture current;
+    bool valid = false;
+  };
+  // Decides about a history instead of `previous`. It is called when the history has been added.
+  struct HistorySource {
+    bool (*is_valid)(void* user, HistoryRole role, const History& history) = nullptr;
+    void* user = nullptr;
+  };
+
+  // Begins an empty list. The histories continue those of `previous`, the list of the last executed
+  // frame, which may be `work` itself, or null.
+  explicit WorkList(AlcoveWork& work, const AlcoveWork* previous = nullptr);
+
+  // Adds an image. Returns a null handle if the list is full.
+  framegraph::Texture add(AlcoveResourceKind kind, const char* name, VkFormat format,
+                          VkExtent2D size, std::uint32_t samples = 1,
+                          std::uint32_t role = ALCOVE_WORK_NONE);
+  framegraph::Texture add_transient(const char* name, VkFormat format, VkExtent2D size) {
+    return add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, format, size);
+  }
+  // Adds the two slots of a history.
+  History add_history(HistoryRole role, VkFormat format, VkExtent2D size);
+  void set_history_source(const HistorySource& source) { source_ = source; }
+
+  // Adds a dispatch. The accesses follow from the shader's interface. A constant or an image of the
+  // shader that is missing, or a full list, is an error, which result() returns.
+  void dispatch(const DispatchInfo& info);
+  // Returns the first error of dispatch().
+  [[nodiscard]] tl::expected<void, Error> result() const { return result_; }
+
+  VkExtent2D size(framegraph::Texture texture) const;
+  VkFormat format(framegraph::Texture texture) const;
+  std::uint32_t samples(framegraph::Texture texture) const;  // per pixel
+  AlcoveWork& work() const { return work_; }
+
+ private:
+  struct KnownHistory {
+    const char* name = nullptr;
+    std::uint32_t format = 0;
+    VkExtent2D size{};
+  };
+  const AlcoveWorkResource* find(framegraph::Texture texture) const;
+  std::uint32_t add_table(const char* name, std::span<const std::uint32_t> words);
+  tl::expected<void, Error> add_dispatch(const DispatchInfo& info);
+  bool bind(AlcoveWorkDispatch& dispatch, const struct ShaderBinding& binding,
+            framegraph::Texture given, std::span<const std::uint32_t> table);
+
+  AlcoveWork& work_;
+  HistorySource source_;
+  KnownHistory previous_[ALCOVE_MAX_WORK_HISTORIES];  // of the last frame
+  tl::expected<void, Error> result_;
+};
+
+// Returns the list as text: its resources, and its dispatches with all that they bind.
+[[nodiscard]] std::string print_work(const AlcoveWork& work);
+
+}  // namespace alcove::passes
