@@ -17,6 +17,7 @@
 #include "alcove/passes/setting_table.h"
 #include "gpu_cost/budget.h"
 #include "gpu_cost/cache_traffic.h"
+#include "gpu_cost/presets.h"
 #include "gpu_cost/xegtao.h"
 
 namespace alcove::sample {
@@ -352,6 +353,23 @@ TEST_P(CompiledPresets, SearchIsChargedWithEverySampleOfEveryTracedPixel) {
     const double tile = inputs.settings.tile_size;
     EXPECT_GE(search.fetches_per_pixel,
               2.0 * inputs.settings.slices * inputs.settings.steps / (tile * tile));
+  }
+}
+
+// A texel that a shader loads and accesses.cpp does not know would cost no byte.
+TEST_P(CompiledPresets, DeclaredAccessesAreTheLoadsOfTheCompiledShaders) {
+  CostInputs inputs;
+  inputs.width = 384;
+  inputs.height = 216;
+  for (const passes::Quality quality : presets()) {
+    inputs.settings = passes::quality_settings(quality, 0.5f);
+    const auto frame = modelled_frame(part_, device_, inputs, FrameState::moving);
+    ASSERT_TRUE(frame) << frame.error();
+    for (const ModelledPass& pass : frame->passes) {
+      // The loads of rare branches, such as those of a missing normal, are less than half a load.
+      EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
+          << passes::name_of(quality) << ", " << pass.pass;
+    }
   }
 }
 

@@ -198,7 +198,8 @@ Result<void> run_measure(const Options& options) {
   std::cout << device.properties().deviceName << ", " << device.driver() << "\n";
   ALCOVE_TRY(const DispatchCost dispatch, measure_dispatch_cost(*session.gpu));
   std::cout << fmt::format("An empty dispatch takes {:.2f} microseconds, behind a barrier {:.2f}\n",
-                           dispatch.alone_us, dispatch.behind_barrier_us);
+                           dispatch.alone_us, dispatch.behind_barrier_us)
+            << std::flush;
   Json report{{"device", device.properties().deviceName},
               {"driver", device.driver()},
               {"frames", options.view.frames},

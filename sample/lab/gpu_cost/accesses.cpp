@@ -108,8 +108,7 @@ ImageAccess in_block(ImageAccess access, std::int32_t block, std::int32_t blocks
   return access;
 }
 
-// The normals of the pixels whose tangent plane does not come from depth. In the atrium, the arcade
-// and the helmet 16 to 27 % of the waves contain one; here a fifth of the blocks do.
+// The normals of the pixels whose tangent plane does not come from depth, in a fifth of the blocks.
 ImageAccess at_bent_depth(const PassImage& image) {
   return {image, 1,
           [](Texel invocation) {
@@ -117,7 +116,7 @@ ImageAccess at_bent_depth(const PassImage& image) {
             const bool reads = (invocation.x / kSide + 2 * (invocation.y / kSide)) % 5 == 0;
             return reads ? invocation : Texel{};
           },
-          true};
+          true, kBentDepth};
 }
 
 // The accesses of reconstruct.comp to an image for one block of texels.

@@ -28,6 +28,7 @@ struct ImageAccess {
   // Whether a wave reads each cache line between the texels of its first and of its last
   // invocation.
   bool dense = false;
+  double share = 1.0;  // of the waves that execute it; the others read their first texel
 };
 
 // The image instructions that each wave of a dispatch executes, in this order. A workgroup has 8x8

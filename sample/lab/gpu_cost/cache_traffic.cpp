@@ -310,7 +310,8 @@ class Simulation {
 
 CacheTraffic cache_traffic(const GpuPart& part, const DispatchAccesses& dispatch,
                            double waves_per_simd, const CacheAssumptions& assumptions) {
-  return Simulation(part, dispatch, std::max(waves_per_simd, 1.0), assumptions).run();
+  return Simulation(part, dispatch, std::max(waves_per_simd * assumptions.waves, 1.0), assumptions)
+      .run();
 }
 
 }  // namespace alcove::sample

@@ -34,15 +34,17 @@ struct CacheAssumptions {
   std::uint32_t accesses_in_a_row = 1;  // that a wave executes before others have their turn
   double fetched_part = 1;              // of a line that a miss of a cache moves
   double l2_width = 1;                  // of the bytes per cycle that GpuPart states
+  double waves = 1;                     // in flight, of those that the registers allow
   bool hashed_sets = true;              // false: address bits select the set of L2
 };
 // Those of the model, and others that differ in one point each.
-inline constexpr std::array<CacheAssumptions, 6> kCacheAssumptions{
+inline constexpr std::array<CacheAssumptions, 7> kCacheAssumptions{
     {{"the model"},
      {.name = "8-byte texels in flat tiles", .flat_tiles = true},
      {.name = "two accesses of a wave in a row", .accesses_in_a_row = 2},
      {.name = "fetches of half a line", .fetched_part = 0.5},
      {.name = "half the width of L2", .l2_width = 0.5},
+     {.name = "half the waves in flight", .waves = 0.5},
      {.name = "sets of L2 by address bits", .hashed_sets = false}}};
 
 // `waves_per_simd` is the number of waves in flight on a SIMD.

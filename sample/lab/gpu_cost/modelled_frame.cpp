@@ -67,17 +67,12 @@ bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const Alcove
          dispatch_images(work_a, a) == dispatch_images(work_b, b);
 }
 
-// Fills in what the caches contribute. Error: the accesses that accesses.h declares are not those
-// that a wave executes.
-Result<void> add_caches(const GpuPart& part, const PassWork& work,
-                        const CacheAssumptions& assumptions, double pixels, ModelledPass& pass) {
+// Fills in what the caches contribute.
+void add_caches(const GpuPart& part, const PassWork& work, const CacheAssumptions& assumptions,
+                double pixels, ModelledPass& pass) {
   const DispatchAccesses dispatch = accesses_of(work);
-  const auto stores = std::ranges::count(dispatch.accesses, Direction::write,
-                                         [](const ImageAccess& a) { return a.image.direction; });
-  const auto loads = std::ssize(dispatch.accesses) - stores;
-  printf("%s %s: declared %ld loads %ld stores, executed %.2f %.2f\n",
-         std::string(work.pass).c_str(), std::string(name_of(work.state)).c_str(), long(loads),
-         long(stores), pass.wave.loads, pass.wave.stores);
+  for (const ImageAccess& access : dispatch.accesses)
+    pass.declared_loads += access.image.direction == Direction::read ? access.share : 0.0;
   const CacheTraffic traffic = cache_traffic(part, dispatch, pass.waves_per_simd, assumptions);
   pass.l2_bytes_per_pixel = traffic.l2_bytes / pixels;
   pass.bytes_per_pixel = traffic.memory_bytes / pixels;
@@ -86,7 +81,6 @@ Result<void> add_caches(const GpuPart& part, const PassWork& work,
   texture = std::max(texture, traffic.texture_ms);
   l2 = traffic.l2_ms;
   memory = traffic.memory_ms;
-  return {};
 }
 
 Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
@@ -140,7 +134,7 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
           std::ceil(per_simd / std::max(cost.waves_per_simd, 1.0)) *
           wave_latency(statistics, cost.wave, cost.waves_per_simd, shader.wave, !loops.empty()))};
   cost.dispatch_ms = 1e3 * part.dispatch_seconds;
-  if (assumptions != nullptr) ALCOVE_TRY_VOID(add_caches(part, work, *assumptions, pixels, cost));
+  if (assumptions != nullptr) add_caches(part, work, *assumptions, pixels, cost);
   return cost;
 }
 

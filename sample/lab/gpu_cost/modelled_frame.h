@@ -54,6 +54,7 @@ struct ModelledPass {
   double l2_bytes_per_pixel = 0;
   double bytes_per_pixel = 0;  // beyond L2
   double cache_lines_per_load = 0;
+  double declared_loads = 0;  // of a wave by accesses.h, beside wave.loads of the compiled shader
   std::array<double, kLimitNames.size()> limits_ms{};
   double dispatch_ms = 0;  // added to the longest of the others
 
@@ -70,7 +71,7 @@ struct ModelledFrame {
 // Returns the modelled time of a frame of one state, or of each FrameState, on one GPU. Without
 // `assumptions` the caches are not simulated, and the times leave them out. Errors: those of
 // describe_frames() and compile_dispatch(), the driver's text cannot be parsed, the iterations of a
-// loop are not declared, or accesses.h declares other image instructions than the shader executes.
+// loop are not declared.
 [[nodiscard]] Result<ModelledFrame> modelled_frame(
     const GpuPart& part, const NullDevice& device, const CostInputs& inputs, FrameState state,
     const CacheAssumptions* assumptions = &kCacheAssumptions.front());

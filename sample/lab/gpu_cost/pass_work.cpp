@@ -146,10 +146,7 @@ double branch_share(const PassWork& work, const CompiledBranch& branch) {
   // given normal is missing or seems to face away from the eye by a little. It is zero with the
   // triangles' own normals, except at silhouettes.
   constexpr double kNormalFromDepth = 0.02;
-  // reconstruct.comp: the waves with a pixel whose tangent plane does not come from depth, as in
-  // accesses.cpp.
-  constexpr double kBentDepth = 0.22;
-  if (branch.stores > 0 || branch.loops > 0) return 1.0;
+  if (branch.stores > 0 || branch.shared > 0 || branch.loops > 0) return 1.0;
   // A half-slice of eight samples loads as much, but takes more instructions.
   constexpr std::uint32_t kMostInstructions = 300;
   const bool from_depth =

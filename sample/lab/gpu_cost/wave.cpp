@@ -324,7 +324,8 @@ std::vector<Branch> find_branches(const std::vector<BasicBlock>& blocks) {
       const WaveWork work = work_between(blocks, open.back() + 1, end - 1);
       branches.push_back(
           {{static_cast<std::uint32_t>(work.instructions), static_cast<std::uint32_t>(work.loads),
-            static_cast<std::uint32_t>(work.stores)},
+            static_cast<std::uint32_t>(work.stores),
+            static_cast<std::uint32_t>(work.shared_operations)},
            open.back() + 1,
            end - 1});
     }
