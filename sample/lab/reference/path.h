@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "reference/sampling.h"
+#include "reference/truth.h"
 #include "scene/ray_scene.h"
 #include "support/parallel.h"
 
