@@ -207,7 +207,7 @@ class Inspector {
     // seen.
     const double small = quantile(pixels, 0.1) / frame_.size.height;
     lacks(Mistake::radius_too_small, quantile(pixels, 0.9) < 1.0);
-    lacks(Mistake::radius_too_large, small > 2.0 || (small > 0.5 && frame_.radius > 0.75 * extent));
+    lacks(Mistake::radius_too_large, small > 2.0 || (small > 0.5 && frame_.radius > 0.5 * extent));
     return true;
   }
 
