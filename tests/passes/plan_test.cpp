@@ -191,10 +191,6 @@ TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
   EXPECT_LT(plan(half).bytes, plan(least()).bytes);
 }
 
-TEST_F(OcclusionPlan, OutputsThatNobodyReadsAreCulledWithTheirPasses) {
-  EXPECT_THAT(plan(least(), {.visibility = false}, {.normals = false}).passes, testing::IsEmpty());
-}
-
 TEST_F(OcclusionPlan, ChangedRadiusCreatesNoNewPipeline) {
   (void)plan(least());
   const std::size_t pipelines = gpu().kernels().pipeline_count();
