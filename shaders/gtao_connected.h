@@ -95,8 +95,11 @@ void add_sample(inout SegmentState state, float sectors, uint layer, uint k, Sli
     state.known_back = true;
   }
   state.occluded |= inside ? beyond ^ sectors_beyond(back) : 0u;
-  state.occluded |= connected && state.inside ? beyond ^ state.beyond : 0u;
-  bool nearer = here.point.y > 0.0;
+  // The sky continues no surface and hides nothing, even if it lies next to a surface without a
+  // discontinuity, as at a horizon that is seen from within the radius.
+  bool drawn = !is_sky_sample(here);
+  state.occluded |= connected && state.inside && drawn ? beyond ^ state.beyond : 0u;
+  bool nearer = here.point.y > 0.0 && drawn;
   // A sample is part of an occluder run if it stands above the tangent plane by more than a sector,
   // and lies within the radius or nearer to the eye than the shaded point.
   bool hides = front < kPositionBits + kSectorCount && (inside || nearer);

@@ -36,10 +36,10 @@ const bool kLobe = false;
 #endif
 
 layout(set = 0, binding = 0) uniform Parameters { ReconstructParameters parameters; };
-layout(set = 0, binding = 16) uniform sampler nearest_sampler;  // it clamps to the edge
-layout(set = 0, binding = 1) uniform utexture2D raw_image;      // one texel a tile
-layout(set = 0, binding = 3) uniform texture2D depth_image;     // as the projection wrote it
-layout(set = 0, binding = 4) uniform texture2D normal_image;    // xyz
+layout(set = 0, binding = 1) uniform sampler nearest_sampler;  // it clamps to the edge
+layout(set = 0, binding = 16) uniform utexture2D raw_image;    // one texel a tile
+layout(set = 0, binding = 3) uniform texture2D depth_image;    // as the projection wrote it
+layout(set = 0, binding = 4) uniform texture2D normal_image;   // xyz
 
 #ifdef HALF
 layout(set = 0, binding = 5) uniform writeonly image2D half_image;        // pack_half_texel()

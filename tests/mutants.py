@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts the mutants of the libraries that the tests kill.
+"""Counts the mutants of the libraries and shaders that the tests kill.
 
   tests/mutants.py [--count 300] [--seed 1] [--build build/mutants] [--folders framegraph/src,...]
 
@@ -16,11 +16,12 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FOLDERS = "framegraph/src,framegraph/verifier/src,passes/src,shaders/maths"
+FOLDERS = "framegraph/src,framegraph/verifier/src,passes/src,shaders"
 # The test programs, quickest first, and the folders whose faults they can see.
-PROGRAMS = {"framegraph/framegraph_test": "framegraph", "maths/maths_test": "shaders",
-            "framegraph/framegraph_gpu_test": "framegraph", "passes/passes_test": "",
-            "passes/c_interface_test": "", "host/mistakes_test": "passes/src/diagnose"}
+PROGRAMS = {"framegraph/framegraph_test": "framegraph", "maths/maths_test": "shaders/maths",
+            "framegraph/framegraph_gpu_test": "framegraph", "passes/passes_test": "", "passes/light_passes_test": "",
+            "passes/c_interface_test": "", "host/mistakes_test": "passes/src/diagnose",
+            "sample/light_test": "sample/render"}
 OPERATORS = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > "), (" == ", " != "),
              (" != ", " == "), (" && ", " || "), (" || ", " && "), (" + ", " - "), (" - ", " + "),
              (" * ", " / "), (" / ", " * "), (" | ", " & "), ("++", "--"), ("min(", "max("), ("max(", "min(")]
@@ -44,7 +45,7 @@ def candidates(folders):
     every = []
     for folder in folders:
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix not in (".cpp", ".h"):
+            if path.suffix not in (".cpp", ".h", ".comp"):
                 continue
             for number, line in enumerate(path.read_text().splitlines(keepends=True)):
                 code = line.split("//")[0]

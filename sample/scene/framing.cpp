@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 
@@ -33,8 +32,7 @@ bool is_ground(const Bounds& bounds, const Bounds& rest) {
          bounds.high.y <= rest.low.y + kSunk * size_of(rest).y;
 }
 
-// Returns the distance at which a ray meets a mesh if it meets a face of it that is drawn, and no
-// other.
+// Returns the distance at which a ray meets a mesh if it meets the front of a face, and no other.
 std::optional<float> distance_to_shell(const RayScene& rays, uint32_t mesh, const glm::vec3& from,
                                        const glm::vec3& direction) {
   constexpr int kMostHits = 64;
@@ -45,7 +43,7 @@ std::optional<float> distance_to_shell(const RayScene& rays, uint32_t mesh, cons
     if (!hit) return found;
     distance = 1.0001f * (distance + hit->distance);
     if (hit->mesh != mesh) continue;
-    if (found || !(hit->front || rays.scene().materials[hit->material].double_sided)) break;
+    if (found || !hit->front) break;
     found = distance;
   }
   return std::nullopt;
@@ -53,8 +51,7 @@ std::optional<float> distance_to_shell(const RayScene& rays, uint32_t mesh, cons
 
 bool is_sky(const RayScene& rays, const MeshInstance& part, const Bounds& rest) {
   const glm::vec3 border = 0.1f * size_of(rest);
-  if (!is_wider(part.bounds_ws, rest) || !contains(part.bounds_ws, rest.low + border) ||
-      !contains(part.bounds_ws, rest.high - border))
+  if (!contains(part.bounds_ws, rest.low + border) || !contains(part.bounds_ws, rest.high - border))
     return false;
   for (int i = 0; i < 13; ++i) {  // eight rays to the sides, five up
     const float angle = 0.7854f * static_cast<float>(i) + 0.19f;  // not to the edges of boxes
@@ -73,24 +70,24 @@ Bounds bounds_without_strays(const Scene& scene, Parts parts, size_t& strays) {
   };
   std::vector<Triangle> triangles;
   Bounds all = empty_bounds(), box, core = empty_bounds();
-  double area = 0.0, sampled = 0.0, visited = 0.0;
+  double area = 0.0;
   for (const MeshInstance& part : parts) {
     const Mesh& mesh = scene.meshes[part.mesh];
     const glm::dmat4x3 world(world_from_mesh(mesh, part.instance));
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      std::array<glm::dvec3, 3> at;
-      for (size_t c = 0; c < 3; ++c)
-        at[c] = world * glm::dvec4(mesh.positions[mesh.indices[i + c]], 1.0);
-      triangles.push_back(
-          {{glm::min(at[0], glm::min(at[1], at[2])), glm::max(at[0], glm::max(at[1], at[2]))},
-           glm::length(glm::cross(at[1] - at[0], at[2] - at[0]))});
+      const auto at = [&](size_t c) {
+        return world * glm::dvec4(mesh.positions[mesh.indices[i + c]], 1.0);
+      };
+      const glm::dvec3 a = at(0), b = at(1), c = at(2);
+      triangles.push_back({{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))},
+                           glm::length(glm::cross(b - a, c - a))});
       all = united(all, triangles.back().bounds_ws);
       area += triangles.back().area;
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> lows, highs;  // of triangles, as often as their area is large
-    sampled = visited = 0.0;
+    double sampled = 0.0, visited = 0.0;
     for (const Triangle& triangle : triangles) {
       for (visited += triangle.area; sampled < visited; sampled += area / kSamples) {
         lows.push_back(triangle.bounds_ws.low[axis]);
@@ -126,7 +123,7 @@ std::optional<glm::vec3> inside_of_room(const RayScene& rays, const Bounds& boun
       const glm::vec3 to(radius * std::cos(angle), y, radius * std::sin(angle));
       const auto wall = rays.nearest(at, to, reach);
       const auto outside = rays.nearest(at + reach * to, -to, reach);
-      walls += wall && wall->front ? 1 : 0;
+      walls += wall && wall->front && wall->distance > 0.02f * reach ? 1 : 0;
       outsides += outside && outside->front ? 1 : 0;
     }
     if (4 * walls >= 3 * kRays && 3 * outsides <= 2 * walls) return at;
@@ -162,7 +159,7 @@ struct ViewFinder::Picture {
 
 ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bounds_ws) {
   constexpr uint64_t kMostTriangles = uint64_t{1} << 23;
-  constexpr size_t kMostSurroundings = 8;
+  constexpr size_t kMostSurroundings = 4;
   if (scene.meshes.empty() || triangle_count(scene) > kMostTriangles) return;
   if (auto rays = RayScene::create(scene, RayScene::Build::quick)) rays_ = std::move(*rays);
   std::vector<MeshInstance> parts = instances_of(scene.meshes);
@@ -170,7 +167,6 @@ ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bo
   std::ranges::stable_sort(parts, std::greater<>(), width);
   // The widest parts are left out if each is a sky or a ground of the others.
   for (size_t count = std::min(parts.size() - 1, kMostSurroundings);; --count) {
-    if (count > 0 && width(parts[count - 1]) < 3.0f * width(parts[count])) continue;
     size_t strays = 0, grounds = 0;
     subject_ws_ = bounds_without_strays(scene, Parts(parts).subspan(count), strays);
     skies_.clear();
@@ -181,7 +177,8 @@ ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bo
         skies_.push_back(part.mesh);
     }
     if (skies_.size() + grounds < count) continue;
-    left_out_ = std::string(skies_.empty() ? "" : ", sky") + (grounds > 0 ? ", ground" : "");
+    left_out_ =
+        std::string(skies_.empty() ? "" : ", sky or room") + (grounds > 0 ? ", ground" : "");
     if (strays > 0) left_out_ += fmt::format(", stray triangles ({})", strays);
     if (!left_out_.empty())
       left_out_ = "The default view is framed without " + left_out_.substr(2) + ".";
@@ -224,11 +221,11 @@ Camera ViewFinder::framing_camera(double aspect) const {
   constexpr glm::vec3 kSides[] = {
       {0.6f, 0.45f, 0.85f}, {-0.85f, 0.45f, 0.6f}, {-0.6f, 0.45f, -0.85f}, {0.85f, 0.45f, -0.6f}};
   constexpr float kInside = 0.85f;  // of the distance to a sky or a wall
-  const auto room = rays_ ? inside_of_room(*rays_, subject_ws_) : std::nullopt;
+  const float kFovY = glm::radians(45.0f);
+  const auto room = rays_ && skies_.empty() ? inside_of_room(*rays_, subject_ws_) : std::nullopt;
   Camera camera, best;
   camera.name = "frame";
   camera.origin = scene_.origin;
-  camera.fov_y = glm::radians(room ? 65.0f : 45.0f);
   camera.target_ws = room.value_or(middle(subject_ws_));
   camera.near_plane = 0.0f;
   camera.far_plane = kInfinity;
@@ -245,8 +242,10 @@ Camera ViewFinder::framing_camera(double aspect) const {
       const auto hit = rays_->nearest(*room, back, std::min({free, exit.x, exit.y, exit.z}));
       free = hit ? hit->distance : std::min({free, exit.x, exit.y, exit.z});
     }
-    const float distance =
-        std::min(kInside * free, distance_in_view(subject_ws_, back, camera.fov_y, aspect));
+    // An eye that cannot go back far enough sees more by a wider angle.
+    const float whole = distance_in_view(subject_ws_, back, kFovY, aspect);
+    const float distance = std::min(kInside * free, whole);
+    camera.fov_y = distance < whole ? 1.45f * kFovY : kFovY;
     camera.eye_ws = camera.target_ws + distance * back;
     // An eye that is too near shows a large part of a subject that is cut off.
     const float score = distance * static_cast<float>(look(camera, aspect).fronts);
@@ -282,17 +281,12 @@ RadiusChoice ViewFinder::radius(const Camera& camera, double aspect) const {
     out.reason = "a twentieth of the width of the view at the median distance of its surfaces";
   }
   if (picture.surfaces * 10 >= picture.pixels) return out;
-  if (picture.backs > picture.surfaces)
-    out.advice =
-        "The view shows back faces, which are not drawn: draw them by --both-sides, or turn it "
-        "with --eye and --target.";
-  else if (picture.surfaces == 0)
-    out.advice =
-        "The view shows nothing but sky: turn it with --eye and --target, or widen --near and "
-        "--far.";
-  else
-    out.advice =
-        "Surfaces fill less than a tenth of the view: choose another by --eye and --target.";
+  out.advice =
+      picture.backs > picture.surfaces
+          ? "The view shows back faces, which are not drawn: draw them by --both-sides, or "
+      : picture.surfaces == 0 ? "The view shows nothing but sky: widen --near and --far, or "
+                              : "Surfaces fill less than a tenth of the view: ";
+  out.advice += "turn it with --eye and --target.";
   return out;
 }
 

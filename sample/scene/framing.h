@@ -19,10 +19,10 @@ struct RadiusChoice {
 // Chooses cameras and radii by rays through a scene, which must outlive it.
 //
 // The subject of a scene is everything but skies, grounds and strays, judged by the boxes of the
-// instances of meshes. Skies and grounds are at least three times as wide as the rest in both
-// horizontal directions. A sky contains the rest, and rays from there to the sides and up meet it
-// once. A ground is flat and below the rest. Strays are triangles outside the box that holds 99.9 %
-// of the area, if the subject is clearly larger with them. Scenes of more than 2^23 triangles are
+// instances of meshes. A sky, or the shell of a room, contains the rest, and rays from there to the
+// sides and up meet it once, from the front. A ground is flat, below the rest, and at least three
+// times as wide in both horizontal directions. Strays are triangles outside the box that holds
+// 99.9 % of the area, if the subject is clearly larger with them. Scenes of more than 2^23 triangles are
 // judged by boxes alone.
 class ViewFinder {
  public:
@@ -33,7 +33,7 @@ class ViewFinder {
   [[nodiscard]] const std::string& left_out() const { return left_out_; }
   // Returns a camera that looks at the whole subject diagonally from above, inside of a sky, from
   // the first of four sides or one that shows clearly more front faces. In a room whose walls have
-  // no outside, the eye is inside. Call with_fitted_planes() afterwards.
+  // no outside, the eye is inside. with_fitted_planes() sets its near and far plane.
   [[nodiscard]] Camera framing_camera(double aspect) const;
   // Returns the camera with a near and far plane around the surfaces in view.
   [[nodiscard]] Camera with_fitted_planes(const Camera& camera, double aspect) const;

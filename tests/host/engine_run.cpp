@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 #include <vector>
 
@@ -28,10 +29,12 @@ constexpr VkImageUsageFlags kFilledUsage =
 constexpr VkImageUsageFlags kVisibilityUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 
-AlcoveCamera to_camera(const CameraMatrices& matrices) {
+AlcoveCamera to_camera(const CameraMatrices& matrices, const glm::vec3& origin) {
+  glm::mat4 view = matrices.view_from_world;
+  view[3] = view * glm::vec4(origin, 1.0f);
   AlcoveCamera camera;
   std::memcpy(camera.clip_from_view, &matrices.clip_from_view, sizeof camera.clip_from_view);
-  std::memcpy(camera.view_from_world, &matrices.view_from_world, sizeof camera.view_from_world);
+  std::memcpy(camera.view_from_world, &view, sizeof camera.view_from_world);
   return camera;
 }
 
@@ -149,6 +152,15 @@ VkExtent2D EngineRun::size_at(std::uint32_t frame) const {
 CameraMatrices EngineRun::matrices_at(std::uint32_t frame, bool with_jitter) const {
   const float cut = course_.cut && frame < course_.change_at ? 0.4f : 0.0f;
   Camera now = orbited(camera_, cut + course_.orbit * static_cast<float>(frame));
+  const auto step = static_cast<float>(frame);
+  const glm::vec3 ahead = glm::normalize(now.target_ws - now.eye_ws);
+  const glm::vec3 right = glm::normalize(glm::cross(ahead, now.up_ws));
+  const glm::vec3 shift =
+      (course_.straight ? step * (0.06f * right + 0.03f * ahead) : glm::vec3(0)) +
+      (course_.stereo && frame % 2 == 1 ? 0.4f * right : glm::vec3(0));
+  now.eye_ws += shift;
+  now.target_ws += shift;
+  if (course_.zoom) now.fov_y *= std::pow(0.985f, step);
   if (course_.jitter && with_jitter) {
     now.jitter_px = {static_cast<float>(frame % 8) / 8.0f - 0.4375f,
                      static_cast<float>(5 * frame % 8) / 8.0f - 0.4375f};
@@ -157,15 +169,24 @@ CameraMatrices EngineRun::matrices_at(std::uint32_t frame, bool with_jitter) con
   return camera_matrices(now, size.width, size.height);
 }
 
+glm::mat4 EngineRun::world_from_moving_at(std::uint32_t frame) const {
+  const float angle = course_.sway ? 0.02f * std::sin(1.3f * static_cast<float>(frame)) : 0.0f;
+  return glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0.6f, 0.0f, 0.8f));
+}
+
 Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
-  const CameraMatrices before = matrices_at(frame == 0 ? 0 : frame - 1, true);
+  const std::uint32_t back = course_.stereo ? 2 : 1;
+  const std::uint32_t previous = frame < back ? frame : frame - back;
+  const CameraMatrices before = matrices_at(previous, true);
   const GbufferView seen{.view_from_world = now.view_from_world,
                          .clip_from_view = now.clip_from_view,
                          .previous_view_from_world = before.view_from_world,
                          .previous_clip_from_view = before.clip_from_view,
-                         .reversed_z = camera_.reversed_z};
+                         .reversed_z = camera_.reversed_z,
+                         .world_from_moving = world_from_moving_at(frame),
+                         .previous_world_from_moving = world_from_moving_at(previous)};
   DrawnFrame drawn;
   AlcoveView& view = drawn.view;
   struct Target {
@@ -201,13 +222,14 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   });
   if (!report) return Failure(report.error());
   view.struct_size = sizeof view;
-  view.info.camera = to_camera(now);
-  view.info.previous_camera = to_camera(before);
+  const glm::vec3 origin = course_.relative ? glm::vec3(now.world_from_view[3]) : glm::vec3(0.0f);
+  view.info.camera = to_camera(now, origin);
+  view.info.previous_camera = to_camera(before, origin);
   view.images[ALCOVE_IMAGE_VISIBILITY].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
   const bool changes = (course_.cut || course_.resize) && frame == course_.change_at;
   view.info.reset_history = changes ? VK_TRUE : VK_FALSE;
   view.info.static_frames = course_.orbit != 0.0f || course_.jitter ? 0 : frame;
-  drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false));
+  drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false), origin);
   auto done = course_.other_inputs ? create_other_inputs(drawn, frame) : Result<void>();
   frames_.push_back(drawn);
   return done;
@@ -218,19 +240,36 @@ Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t fra
   const CameraMatrices now = matrices_at(frame, true);
   const auto depths = read<float>(drawn.view.images[ALCOVE_IMAGE_DEPTH]);
   const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.images[ALCOVE_IMAGE_NORMALS]);
-  if (!depths || !halves) return Failure(depths ? halves.error() : depths.error());
-  std::vector<float> linear, coarse;
-  std::vector<glm::vec4> octahedral, in_view;
+  AlcoveImage half_image = drawn.other.half_depth;
+  half_image.width = size.width / 2;
+  half_image.height = size.height / 2;
+  const auto half_depths = read<float>(half_image);
+  if (!depths || !halves || !half_depths) return Failure("The images could not be read back.");
+  std::vector<float> linear, coarse, gamma, filtered;
+  std::vector<glm::vec4> octahedral, in_view, transposed;
   for (std::size_t i = 0; i < depths->size(); ++i) {
     const double distance = view_depth(now.clip_from_view, (*depths)[i]);
     linear.push_back(static_cast<float>(std::min(distance, 1e3)));
     coarse.push_back(std::round((*depths)[i] * 65535.0f) / 65535.0f);
+    gamma.push_back(std::pow((*depths)[i], 1.0f / 2.2f));
+    const auto half_at = [&](std::uint32_t x, std::uint32_t y) {
+      return (*half_depths)[std::min(y, half_image.height - 1) * half_image.width +
+                            std::min(x, half_image.width - 1)];
+    };
+    const auto row = static_cast<std::uint32_t>(i) / size.width;
+    const auto column = static_cast<std::uint32_t>(i) % size.width;
+    const std::uint32_t x = (column + 1) / 2, y = (row + 1) / 2;  // of the farther texels
+    const float s = column % 2 == 1 ? 0.25f : 0.75f, t = row % 2 == 1 ? 0.25f : 0.75f;
+    const std::uint32_t left = std::max(x, 1u) - 1, top = std::max(y, 1u) - 1;
+    filtered.push_back(std::lerp(std::lerp(half_at(left, top), half_at(x, top), s),
+                                 std::lerp(half_at(left, y), half_at(x, y), s), t));
     const auto& half = (*halves)[i];
     const glm::vec3 normal(half_to_float(half[0]), half_to_float(half[1]), half_to_float(half[2]));
     const bool is_sky = glm::dot(normal, normal) < 0.25f;
     octahedral.emplace_back(is_sky ? glm::vec2(0.0f) : maths::octahedral_encode(normal), 0.0f,
                             0.0f);
     in_view.emplace_back(glm::mat3(now.view_from_world) * normal, 0.0f);
+    transposed.emplace_back(normal * glm::mat3(now.view_from_world), 0.0f);
   }
   const auto fill = [&](AlcoveImage& into, VkFormat format, const auto& texels) {
     return create_filled(format, size, texels).map([&](const AlcoveImage& texture) {
@@ -241,6 +280,11 @@ Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t fra
       .and_then([&] { return fill(drawn.other.coarse_depth, VK_FORMAT_R32_SFLOAT, coarse); })
       .and_then([&] {
         return fill(drawn.other.octahedral_normals, VK_FORMAT_R32G32B32A32_SFLOAT, octahedral);
+      })
+      .and_then([&] { return fill(drawn.other.gamma_depth, VK_FORMAT_R32_SFLOAT, gamma); })
+      .and_then([&] { return fill(drawn.other.filtered_depth, VK_FORMAT_R32_SFLOAT, filtered); })
+      .and_then([&] {
+        return fill(drawn.other.transposed_normals, VK_FORMAT_R32G32B32A32_SFLOAT, transposed);
       })
       .and_then(
           [&] { return fill(drawn.other.view_normals, VK_FORMAT_R32G32B32A32_SFLOAT, in_view); });
@@ -258,7 +302,7 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
     result.settings.steps = 2;
   }
   result.view = drawn(0).view;
-  result.view.info.id = next_id_;
+  result.view.info.id = 2 * next_id_ + (course_.stereo ? frame % 2 : 0);
   result.right = result.view;
   result.view.images[ALCOVE_IMAGE_MOTION] = {};
   result.other = drawn(0).other;
@@ -302,9 +346,10 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
     const VkCommandBuffer commands = commands_.at(i % kSlots);
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     device = vkBeginCommandBuffer(commands, &info);
-    if (device == VK_SUCCESS &&
-        alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
-      result.said = std::string(alcoveGetMessage(context)) + "\n";
+    for (std::uint32_t record = 0; device == VK_SUCCESS && record < described.records; ++record) {
+      if (alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
+        result.said = std::string(alcoveGetMessage(context)) + "\n";
+    }
     device = device == VK_SUCCESS ? vkEndCommandBuffer(commands) : device;
     if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) device = submit(waiting);
     waiting = late ? commands : VK_NULL_HANDLE;

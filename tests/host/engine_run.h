@@ -28,6 +28,11 @@ struct EngineCourse {
   bool geometric = false;  // the triangles' own normals instead of shading normals
   bool resize = false;     // the images before the frame `change_at` are smaller
   bool cut = false;        // the camera before it is another
+  bool straight = false;   // the camera also moves, without a rotation
+  bool zoom = false;       // the angle of view changes
+  bool sway = false;       // each Mesh::moves sways
+  bool stereo = false;     // two eyes alternate, each with a view of its own
+  bool relative = false;   // the eye of each frame is the origin of its cameras
   std::uint32_t change_at = 4;
   bool quick = false;         // few samples, for callers that do not look at the visibility
   bool other_inputs = false;  // creates OtherInputs, which takes time
@@ -38,15 +43,19 @@ struct OtherInputs {
   AlcoveCamera camera_without_jitter{};
   AlcoveImage half_depth{};  // half the width and height
   AlcoveImage linear_depth{};
-  AlcoveImage coarse_depth{};  // rounded to 16 bits
+  AlcoveImage coarse_depth{};    // rounded to 16 bits
+  AlcoveImage gamma_depth{};     // with an exponent of 2.2
+  AlcoveImage filtered_depth{};  // the half depth, enlarged with a linear filter
   AlcoveImage octahedral_normals{};
-  AlcoveImage view_normals{};  // in view space
+  AlcoveImage view_normals{};        // in view space
+  AlcoveImage transposed_normals{};  // the same, by the transposed matrix
   AlcoveImage albedo{};
 };
 
 // A frame that an engine passes to the C interface.
 struct EngineFrame {
-  AlcoveFrame frame{};  // `views` points to `view`
+  std::uint32_t records = 1;  // in the command buffer of the frame
+  AlcoveFrame frame{};        // `views` points to `view`
   AlcoveView view{};
   AlcoveSettings settings{};
   OtherInputs other;
@@ -110,6 +119,7 @@ class EngineRun {
   Result<std::vector<Texel>> read(const AlcoveImage& image);
   VkExtent2D size_at(std::uint32_t frame) const;
   CameraMatrices matrices_at(std::uint32_t frame, bool with_jitter) const;
+  glm::mat4 world_from_moving_at(std::uint32_t frame) const;
   Result<void> draw_frame(std::uint32_t frame);
   Result<void> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
   EngineFrame describe(std::uint32_t frame) const;

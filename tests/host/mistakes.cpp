@@ -146,25 +146,32 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"reversed projection, depth not reversed", "depth runs the other way",
        [](F& f) { change_depth_row(f, -1.0f, 1.0f); }, "reversed_depth"},
       {"depth reversed, projection not", "depth runs the other way",
-       [](F& f) { change_depth_row(f, -1.0f, 1.0f); }, "", true},
+       [](F& f) { change_depth_row(f, -1.0f, 1.0f); }, "", PlantedMistake::reversed},
       {"OpenGL's projection, depth from -1 to 1", "looks like OpenGL's",
        [](F& f) { change_depth_row(f, 2.0f, -1.0f); }, "opengl_depth"},
+      {"OpenGL's projection with a near plane that is no round number", "depth from -1 to 1",
+       [](F& f) { change_depth_row(f, 2.0f, -1.0f); }, "", PlantedMistake::odd_planes},
       {"DEPTH_FROM_MINUS_ONE for depth from 0 to 1", "without that bit",
        [](F& f) { change_depth_row(f, 0.5f, 0.5f); }},
-      {"the same, with reversed depth", "without that bit",
-       [](F& f) { change_depth_row(f, 0.5f, 0.5f); }, "", true},
+      {"the same, with reversed depth", "no range of depth",
+       [](F& f) { change_depth_row(f, 0.5f, 0.5f); }, "", PlantedMistake::reversed},
       {"projection of a narrower angle of view", "another angle of view",
        [](F& f) { scale_tangents(f, 1.5f, 1.5f); }, "angle_of_view"},
       {"projection of a wider angle of view", "another angle of view",
        [](F& f) { scale_tangents(f, 0.7f, 0.7f); }},
+      {"angle of view five degrees too wide", "another angle of view",
+       [](F& f) { scale_tangents(f, 0.906f, 0.906f); }},
+      {"aspect 13 % wrong", "another angle of view", [](F& f) { scale_tangents(f, 1.13f, 1.0f); }},
       {"near plane ten times too far away", "other near and far planes",
        [](F& f) { set_planes(f, 10.0f * kNear, kFar); }, "near_plane"},
       {"near plane ten times too far away, infinite", "the near plane of clip_from_view",
-       [](F& f) { change_depth_row(f, 10.0f, 0.0f); }, "", true},
+       [](F& f) { change_depth_row(f, 10.0f, 0.0f); }, "", PlantedMistake::reversed},
       {"far plane ten times too near", "other near and far planes",
        [](F& f) { set_planes(f, kNear, 0.1f * kFar); }, "far_plane"},
       {"y of the projection with the wrong sign", "the other way round",
        [](F& f) { scale_tangents(f, 1.0f, -1.0f); }, "flipped_y"},
+      {"x of the projection with the wrong sign", "the other way round",
+       [](F& f) { scale_tangents(f, -1.0f, 1.0f); }},
       {"view-projection given as projection", "view-projection",
        [](F& f) { change_cameras(f, multiply_by_view); }},
       {"transposed projection", "transposed",
@@ -181,20 +188,38 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.linear_depth; }},
       {"16-bit depth copied to 32 bits", "the steps of another format",
        [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.coarse_depth; }},
+      {"depth with a gamma", "a gamma was applied to depth",
+       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.gamma_depth; }},
+      {"depth filtered while it was scaled", "between those of the surfaces",
+       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.filtered_depth; }},
       // The view matrix.
       {"world_from_view instead of view_from_world", "only if it is inverted",
        [](F& f) { change_view_matrices(f, invert); }},
+      {"the same, on a straight path", "only if it is inverted",
+       [](F& f) { change_view_matrices(f, invert); }, "", PlantedMistake::straight},
       {"transposed view matrix", "column-major",
        [](F& f) { change_view_matrices(f, [](float* m) { transpose(m, 4); }); }},
       {"view matrix with a scale", "without scale",
        [](F& f) { change_view_matrices(f, [](float* m) { m[0] *= 2.0f; }); }},
       {"view matrix without translation", "has no translation",
        [](F& f) { change_view_matrices(f, [](float* m) { m[12] = m[13] = m[14] = 0.0f; }); }},
-      {"view matrix in centimetres", "the unit of view_from_world",
+      {"view matrix in centimetres", "its unit is wrong",
        [](F& f) {
          change_view_matrices(f, [](float* m) {
            for (std::size_t i = 12; i < 15; ++i) m[i] *= 100.0f;
          });
+       }},
+      {"an origin of the world that moves", "another way than view_from_world",
+       [](F& f) {
+         const auto move = [](AlcoveCamera& camera, std::uint32_t index) {
+           const float x = 0.3f * std::sin(1.7f * static_cast<float>(index));
+           const float y = 0.2f * std::cos(2.3f * static_cast<float>(index));
+           for (std::size_t i = 0; i < 3; ++i)
+             camera.view_from_world[12 + i] +=
+                 x * camera.view_from_world[i] + y * camera.view_from_world[8 + i];
+         };
+         move(f.view.info.camera, f.frame.index);
+         if (f.frame.index > 0) move(f.view.info.previous_camera, f.frame.index - 1);
        }},
       {"camera one frame late", "are not of the same frame",
        [](F& f) {
@@ -232,7 +257,7 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) { f.view.info.previous_camera = f.right_before_that.info.camera; }},
       {"previous_camera is inverted", "previous_camera is not the camera",
        [](F& f) { invert(f.view.info.previous_camera.view_from_world); }},
-      {"AlcoveFrame::index stands still", "AlcoveFrame::index stays the same",
+      {"AlcoveFrame::index stands still", "AlcoveFrame::index is that of the last record",
        [](F& f) { f.frame.index = 7; }, "index"},
       {"AlcoveFrame::index is that of the slot", "AlcoveFrame::index goes back",
        [](F& f) { f.frame.index %= 2; }},
@@ -242,8 +267,21 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        [](F& f) { f.frame.index = 1000 - f.frame.index; }},
       {"static_frames is not 0 in motion", "static_frames is not 0",
        [](F& f) { f.view.info.static_frames = 16 + f.frame.index; }, "static_frames"},
-      {"reset_history in every frame", "reset_history is set in every frame",
+      {"reset_history in every frame", "reset_history is set again and again",
        [](F& f) { f.view.info.reset_history = VK_TRUE; }, "reset_history"},
+      {"reset_history in every fourth frame", "reset_history is set again and again",
+       [](F& f) { f.view.info.reset_history = f.frame.index % 4 == 0 ? VK_TRUE : VK_FALSE; }},
+      {"a view recorded twice in a frame", "AlcoveFrame::index is that of the last record",
+       [](F& f) {
+         f.records = 2;
+         f.frame.diagnose_pixels = VK_FALSE;  // the samples would be written twice
+       }},
+      {"two eyes with one id", "an AlcoveView::id of its own",
+       [](F& f) {
+         f.view.info.id &= ~1u;
+         f.view.info.previous_camera = f.right_before.info.camera;
+       },
+       "", PlantedMistake::stereo},
       {"slot recorded again before its frame has finished", "AlcoveFrame::slot was recorded again",
        nullptr, "slot"},
       {"a new id in every frame", "More views have a history",
@@ -271,9 +309,10 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        "small_radius"},
       {"radius in another unit by 100", "less than a pixel",
        [](F& f) { f.settings.radius *= 0.01f; }},
-      {"radius in millimetres", "more than twice the height",
+      {"radius in millimetres", "larger than twice the height",
        [](F& f) { f.settings.radius *= 1000.0f; }, "large_radius"},
-      {"radius in pixels", "more than twice the height", [](F& f) { f.settings.radius = 40.0f; }},
+      {"radius in pixels", "larger than twice the height", [](F& f) { f.settings.radius = 40.0f; }},
+      {"radius ten times too large", "larger than", [](F& f) { f.settings.radius *= 10.0f; }},
       // Normals.
       {"normals of world space declared to be of view space", "in the other space",
        [](F& f) { f.view.info.normals_in_view_space = VK_TRUE; }, "normal_space"},
@@ -297,6 +336,10 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        }},
       {"albedo given as normals", "under no reading",
        [](F& f) { set_normals(f, f.other.albedo, ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ); }},
+      {"normals of view space by the transposed matrix", "transposed",
+       [](F& f) {
+         set_normals(f, f.other.transposed_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, true);
+       }},
       // Motion vectors.
       {"motion vectors that point back", "the other sign of x or y",
        [](F& f) { scale_motion(f, -1.0f, -1.0f); }},
@@ -309,7 +352,7 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        }},
       {"motion vectors in normalised device coordinates", "in another unit",
        [](F& f) { scale_motion(f, 2.0f, 2.0f); }},
-      {"jitter added to motion vectors that have it", "with other jitter",
+      {"jitter added to motion vectors that have it", "with a constant offset",
        [](F& f) {
          scale_motion(f, 1.0f, 1.0f);
          for (std::size_t i = 0; i < 2; ++i)
@@ -319,6 +362,13 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        }},
       {"motion vectors without the camera's motion", "motion vectors are 0",
        [](F& f) { scale_motion(f, 1e-6f, 1e-6f); }},
+      {"motion vectors with a constant offset", "with a constant offset",
+       [](F& f) {
+         scale_motion(f, 1.0f, 1.0f);
+         f.view.info.motion_offset[0] = 0.01f;
+       }},
+      {"normals given as motion vectors", "under no reading",
+       [](F& f) { set_motion(f, f.other.view_normals, 1.0f, 1.0f); }},
       // Calls that are refused.
       {"struct_size is 0", "struct_size", [](F& f) { f.view.struct_size = 0; }},
       {"radius is 0", "radius", [](F& f) { f.settings.radius = 0.0f; }},
@@ -346,16 +396,23 @@ const std::vector<PlantedMistake>& planted_mistakes() {
 }
 
 std::vector<RightCourse> right_courses(const EngineCourse& base) {
-  std::vector<RightCourse> courses{{"still", base},    {"jittered", base},
-                                   {"orbiting", base}, {"geometric normals", base},
-                                   {"resized", base},  {"cut", base}};
-  for (std::size_t i = 1; i < courses.size(); ++i) {
-    courses[i].course.jitter = true;
-    courses[i].course.orbit = i > 1 ? 0.01f : 0.0f;
-  }
-  courses[3].course.geometric = true;
-  courses[4].course.resize = true;
-  courses[5].course.cut = true;
+  EngineCourse jittered = base;
+  jittered.jitter = true;
+  EngineCourse orbiting = jittered;
+  orbiting.orbit = 0.01f;
+  std::vector<RightCourse> courses{{"still", base}, {"jittered", jittered}, {"orbiting", orbiting}};
+  const auto add = [&](const char* name, bool EngineCourse::*member) {
+    courses.push_back({name, orbiting});
+    courses.back().course.*member = true;
+  };
+  add("geometric normals", &EngineCourse::geometric);
+  add("resized", &EngineCourse::resize);
+  add("cut", &EngineCourse::cut);
+  add("straight", &EngineCourse::straight);
+  add("zooming", &EngineCourse::zoom);
+  add("swaying", &EngineCourse::sway);
+  add("stereo", &EngineCourse::stereo);
+  add("camera-relative", &EngineCourse::relative);
   return courses;
 }
 
@@ -375,32 +432,31 @@ Result<std::string> diagnose_right_frames(EngineRun& run) {
   return said;
 }
 
-Result<MistakeRun> MistakeRun::create(Gpu& gpu, const Scene& scene, const Camera& camera,
-                                      EngineCourse course) {
-  course.orbit = 0.02f;
-  course.jitter = true;
-  course.other_inputs = true;
-  Camera from = camera;
-  from.near_plane = kNear;
-  from.far_plane = kFar;
-  from.reversed_z = false;
-  MistakeRun result;
-  auto plain = EngineRun::create(gpu, scene, from, course);
-  from.reversed_z = true;
-  from.far_plane = std::numeric_limits<float>::infinity();
-  auto reversed = EngineRun::create(gpu, scene, from, course);
-  if (!plain || !reversed) return Failure(plain ? reversed.error() : plain.error());
-  result.plain_ = std::move(*plain);
-  result.reversed_ = std::move(*reversed);
-  return result;
+Result<EngineRun*> MistakeRun::run_of(PlantedMistake::Frames frames) {
+  std::unique_ptr<EngineRun>& run = runs_.at(frames);
+  if (!run) {
+    Camera from = camera_;
+    from.reversed_z = frames == PlantedMistake::reversed;
+    from.near_plane = frames == PlantedMistake::odd_planes ? 0.1370519f : kNear;
+    from.far_plane = from.reversed_z ? std::numeric_limits<float>::infinity() : kFar;
+    EngineCourse course = course_;
+    course.jitter = course.other_inputs = true;
+    course.straight = frames == PlantedMistake::straight;
+    course.stereo = frames == PlantedMistake::stereo;
+    course.orbit = course.straight ? 0.0f : 0.02f;
+    ALCOVE_TRY(run, EngineRun::create(gpu_, scene_, from, course));
+  }
+  return run.get();
 }
 
 Result<EngineResult> MistakeRun::draw(const PlantedMistake& mistake, std::uint32_t begin) {
-  return (mistake.reversed ? reversed_ : plain_)->draw(mistake.plant, begin, !mistake.plant);
+  return run_of(mistake.frames).and_then([&](EngineRun* run) {
+    return run->draw(mistake.plant, begin, !mistake.plant);
+  });
 }
 
-Result<EngineResult> MistakeRun::draw_right(bool reversed) {
-  return (reversed ? reversed_ : plain_)->draw();
+Result<EngineResult> MistakeRun::draw_right(PlantedMistake::Frames frames) {
+  return run_of(frames).and_then([](EngineRun* run) { return run->draw(); });
 }
 
 bool names(const std::string& said, const PlantedMistake& mistake) {

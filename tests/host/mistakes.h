@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -16,7 +17,9 @@ struct PlantedMistake {
   const char* sentence;  // part of the only sentence of alcoveDiagnose, or of the refused call
   ChangeFrame plant;     // makes the mistake in a frame; null for a late submission
   const char* table_name = "";  // in the table of passes/INTEGRATION.md, if it has a row there
-  bool reversed = false;        // in frames with a reversed depth buffer and an infinite far plane
+  // The frames: of an orbiting camera, with a reversed depth buffer and an infinite far plane, of a
+  // camera that moves straight ahead, with two eyes, or with a near plane that is no round number.
+  enum Frames { orbit, reversed, straight, stereo, odd_planes, kinds } frames = orbit;
 };
 
 [[nodiscard]] const std::vector<PlantedMistake>& planted_mistakes();
@@ -36,16 +39,21 @@ struct RightCourse {
 class MistakeRun {
  public:
   // `course` has the size and the radius, and says when the size changes.
-  [[nodiscard]] static Result<MistakeRun> create(Gpu& gpu, const Scene& scene, const Camera& camera,
-                                                 EngineCourse course);
+  MistakeRun(Gpu& gpu, const Scene& scene, const Camera& camera, const EngineCourse& course)
+      : gpu_(gpu), scene_(scene), camera_(camera), course_(course) {}
 
   // Makes a mistake from the frame `begin` on.
   [[nodiscard]] Result<EngineResult> draw(const PlantedMistake& mistake, std::uint32_t begin);
-  [[nodiscard]] Result<EngineResult> draw_right(bool reversed);
+  [[nodiscard]] Result<EngineResult> draw_right(PlantedMistake::Frames frames);
 
  private:
-  std::unique_ptr<EngineRun> plain_;
-  std::unique_ptr<EngineRun> reversed_;
+  Result<EngineRun*> run_of(PlantedMistake::Frames frames);
+
+  Gpu& gpu_;
+  const Scene& scene_;
+  Camera camera_;
+  EngineCourse course_;
+  std::array<std::unique_ptr<EngineRun>, PlantedMistake::kinds> runs_;  // made when needed
 };
 
 // Returns whether `said` is one line, which contains the sentence of the mistake.

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
-#include "evaluate/errors.h"
 #include "gpu_test.h"
 #include "mistakes.h"
 #include "scene/builtin_scene.h"
@@ -15,7 +15,7 @@
 namespace alcove::sample {
 namespace {
 
-constexpr EngineCourse kQuick{.size = {120, 68}, .frames = 20, .quick = true};
+constexpr EngineCourse kQuick{.size = {120, 68}, .frames = 26, .quick = true};
 
 // One device for all tests.
 class Mistakes : public testing::Test {
@@ -23,18 +23,11 @@ class Mistakes : public testing::Test {
   static void SetUpTestSuite() {
     gpu_ = open_validated();
     ASSERT_TRUE(gpu_);
-    const Scene& scene = builtin();
-    const auto create = [&](EngineCourse course) {
-      auto made = MistakeRun::create(*gpu_, scene, camera(), course);
-      EXPECT_TRUE(made) << made.error();
-      return made ? std::make_unique<MistakeRun>(std::move(*made)) : nullptr;
-    };
-    whole_ = create({});
-    run_ = create(kQuick);
     EngineCourse resized = kQuick;
     resized.resize = true;
-    resized_ = create(resized);
-    ASSERT_TRUE(whole_ && run_ && resized_);
+    whole_ = std::make_unique<MistakeRun>(*gpu_, builtin(), camera(), EngineCourse{});
+    run_ = std::make_unique<MistakeRun>(*gpu_, builtin(), camera(), kQuick);
+    resized_ = std::make_unique<MistakeRun>(*gpu_, builtin(), camera(), resized);
   }
   static void TearDownTestSuite() {
     whole_.reset();
@@ -71,16 +64,17 @@ TEST_F(Mistakes, AtLeastSixtyMistakesArePlanted) { EXPECT_GE(planted_mistakes().
 
 // Also prints the RMSE of the table of passes/INTEGRATION.md.
 TEST_F(Mistakes, EachMistakeIsNamedIfItIsMadeFromTheFirstFrameOn) {
-  const auto plain = whole_->draw_right(false);
-  const auto reversed = whole_->draw_right(true);
-  ASSERT_TRUE(plain && reversed);
+  std::array<Image<float>, PlantedMistake::kinds> right;
+  for (std::size_t i = 0; i < right.size(); ++i)
+    right.at(i) = whole_->draw_right(static_cast<PlantedMistake::Frames>(i)).value().visibility;
   for (const PlantedMistake& mistake : planted_mistakes()) {
     const Image<float> drawn = expect_named(*whole_, mistake, 0);
     if (drawn.empty()) continue;  // the frames were refused
-    const Image<float>& right = (mistake.reversed ? reversed : plain)->visibility;
-    const Mask all(right.width, right.height, 1);
-    std::cout << compare_images(drawn, right, all).rmse << "  " << mistake.name << " "
-              << mistake.table_name << "\n";
+    double squares = 0.0;
+    for (std::size_t i = 0; i < drawn.pixels.size(); ++i)
+      squares += std::pow(drawn.pixels[i] - right.at(mistake.frames).pixels[i], 2.0);
+    std::cout << std::sqrt(squares / static_cast<double>(drawn.pixels.size())) << "  "
+              << mistake.name << " " << mistake.table_name << "\n";
   }
 }
 
@@ -96,13 +90,17 @@ TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAfterAResize) {
 TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
   for (const char* name :
        {"builtin", "terrain", "plane:60", "groove:90", "corner", "sphere", "pit", "step"}) {
-    const auto scene = load_scene(name);
+    auto scene = load_scene(name);
     ASSERT_TRUE(scene) << scene.error();
+    for (std::size_t i = 0; i < scene->meshes.size(); i += 4) scene->meshes[i].moves = true;
     EngineCourse course = kQuick;
     course.radius = default_radius(*scene);
     for (Camera from : scene->cameras) {
       from.reversed_z = true;
-      for (const RightCourse& right : right_courses(course)) {
+      // The analytic scenes are small and simple; they have the first courses.
+      std::vector<RightCourse> courses = right_courses(course);
+      if (std::string_view(name) != "builtin") courses.resize(6);
+      for (const RightCourse& right : courses) {
         auto run = EngineRun::create(*gpu_, *scene, from, right.course);
         ASSERT_TRUE(run) << run.error();
         const auto said = diagnose_right_frames(**run);

@@ -1,9 +1,12 @@
 // Tests that parameter structs, which GLSL and C++ share, have the same layout in a uniform block
-// as in C++.
+// as in C++. GLSL aligns a member at least as much as C++, so that one that is moved moves all
+// after it. The last member of a struct therefore tells whether all are in their places.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 
 #include "depth_copy_parameters.h"
@@ -16,105 +19,48 @@
 #include "normals_parameters.h"
 #include "parameter_layouts_spirv.h"
 #include "reconstruct_parameters.h"
-#include "spirv_layout.h"
 #include "upsample_parameters.h"
 
 namespace alcove::maths_test {
 namespace {
 
-using Offsets = std::map<std::string, std::uint32_t>;
+#define ALCOVE_LAST(type, member) \
+  { #type, std::uint32_t(offsetof(maths::type, member)) }
 
-#define ALCOVE_OFFSET(type, member) \
-  { #member, std::uint32_t(offsetof(maths::type, member)) }
-
-const std::map<std::string, Offsets> kExpected = {
-    {"Projection",
-     {ALCOVE_OFFSET(Projection, uv_to_slope), ALCOVE_OFFSET(Projection, uv_to_origin),
-      ALCOVE_OFFSET(Projection, position_to_uv), ALCOVE_OFFSET(Projection, depth_to_uv),
-      ALCOVE_OFFSET(Projection, depth_unproject), ALCOVE_OFFSET(Projection, eye),
-      ALCOVE_OFFSET(Projection, size_px), ALCOVE_OFFSET(Projection, texel_uv),
-      ALCOVE_OFFSET(Projection, sky), ALCOVE_OFFSET(Projection, near_far)}},
-    {"GtaoParameters",
-     {ALCOVE_OFFSET(GtaoParameters, area), ALCOVE_OFFSET(GtaoParameters, written),
-      ALCOVE_OFFSET(GtaoParameters, view_from_normal), ALCOVE_OFFSET(GtaoParameters, slope),
-      ALCOVE_OFFSET(GtaoParameters, inverse_depth_from_ndc),
-      ALCOVE_OFFSET(GtaoParameters, interleave_offset), ALCOVE_OFFSET(GtaoParameters, radius),
-      ALCOVE_OFFSET(GtaoParameters, frame), ALCOVE_OFFSET(GtaoParameters, thickness),
-      ALCOVE_OFFSET(GtaoParameters, hidden_exponent), ALCOVE_OFFSET(GtaoParameters, roughness),
-      ALCOVE_OFFSET(GtaoParameters, depth_step),
-      ALCOVE_OFFSET(GtaoParameters, depth_step_per_inverse_depth)}},
-    {"GtsoParameters",
-     {ALCOVE_OFFSET(GtsoParameters, origins), ALCOVE_OFFSET(GtsoParameters, written),
-      ALCOVE_OFFSET(GtsoParameters, size_px), ALCOVE_OFFSET(GtsoParameters, projection),
-      ALCOVE_OFFSET(GtsoParameters, view_from_normal), ALCOVE_OFFSET(GtsoParameters, roughness)}},
-    {"DepthCopyParameters",
-     {ALCOVE_OFFSET(DepthCopyParameters, first), ALCOVE_OFFSET(DepthCopyParameters, size),
-      ALCOVE_OFFSET(DepthCopyParameters, not_receiving),
-      ALCOVE_OFFSET(DepthCopyParameters, not_occluding), ALCOVE_OFFSET(DepthCopyParameters, sky)}},
-    {"LinearDepthParameters",
-     {ALCOVE_OFFSET(LinearDepthParameters, projection),
-      ALCOVE_OFFSET(LinearDepthParameters, origin)}},
-    {"InspectParameters",
-     {ALCOVE_OFFSET(InspectParameters, origin), ALCOVE_OFFSET(InspectParameters, size_px),
-      ALCOVE_OFFSET(InspectParameters, has_normals), ALCOVE_OFFSET(InspectParameters, has_motion)}},
-    {"MultiBounceParameters",
-     {ALCOVE_OFFSET(MultiBounceParameters, positions),
-      ALCOVE_OFFSET(MultiBounceParameters, size_px)}},
-    {"NormalsParameters", {ALCOVE_OFFSET(NormalsParameters, slope)}},
-    {"ReconstructParameters",
-     {ALCOVE_OFFSET(ReconstructParameters, area),
-      ALCOVE_OFFSET(ReconstructParameters, written),
-      ALCOVE_OFFSET(ReconstructParameters, to_outputs),
-      ALCOVE_OFFSET(ReconstructParameters, previous_from_pixel),
-      ALCOVE_OFFSET(ReconstructParameters, normal_from_view),
-      ALCOVE_OFFSET(ReconstructParameters, plane_from_normal),
-      ALCOVE_OFFSET(ReconstructParameters, previous_from_view),
-      ALCOVE_OFFSET(ReconstructParameters, slope),
-      ALCOVE_OFFSET(ReconstructParameters, previous_extent),
-      ALCOVE_OFFSET(ReconstructParameters, history_depth_scale),
-      ALCOVE_OFFSET(ReconstructParameters, traced_range),
-      ALCOVE_OFFSET(ReconstructParameters, motion),
-      ALCOVE_OFFSET(ReconstructParameters, history_texel),
-      ALCOVE_OFFSET(ReconstructParameters, pixel_uv),
-      ALCOVE_OFFSET(ReconstructParameters, inverse_depth_from_ndc),
-      ALCOVE_OFFSET(ReconstructParameters, pixels_per_slope),
-      ALCOVE_OFFSET(ReconstructParameters, interleave_pixel),
-      ALCOVE_OFFSET(ReconstructParameters, smallest_window),
-      ALCOVE_OFFSET(ReconstructParameters, first_sharpness),
-      ALCOVE_OFFSET(ReconstructParameters, wide_sharpness),
-      ALCOVE_OFFSET(ReconstructParameters, half_inverse_depth_per_ndc),
-      ALCOVE_OFFSET(ReconstructParameters, depth_step),
-      ALCOVE_OFFSET(ReconstructParameters, largest_bend),
-      ALCOVE_OFFSET(ReconstructParameters, history_slope),
-      ALCOVE_OFFSET(ReconstructParameters, history_unit),
-      ALCOVE_OFFSET(ReconstructParameters, tolerance),
-      ALCOVE_OFFSET(ReconstructParameters, history_sharpness),
-      ALCOVE_OFFSET(ReconstructParameters, history_slack),
-      ALCOVE_OFFSET(ReconstructParameters, largest_weight),
-      ALCOVE_OFFSET(ReconstructParameters, roughness),
-      ALCOVE_OFFSET(ReconstructParameters, power),
-      ALCOVE_OFFSET(ReconstructParameters, intensity),
-      ALCOVE_OFFSET(ReconstructParameters, dither_offset)}},
-    {"UpsampleParameters",
-     {ALCOVE_OFFSET(UpsampleParameters, area), ALCOVE_OFFSET(UpsampleParameters, written),
-      ALCOVE_OFFSET(UpsampleParameters, to_outputs),
-      ALCOVE_OFFSET(UpsampleParameters, normal_from_view), ALCOVE_OFFSET(UpsampleParameters, slope),
-      ALCOVE_OFFSET(UpsampleParameters, inverse_depth_from_ndc),
-      ALCOVE_OFFSET(UpsampleParameters, pixel_uv), ALCOVE_OFFSET(UpsampleParameters, texel_uv),
-      ALCOVE_OFFSET(UpsampleParameters, half_pixel_per_tilt),
-      ALCOVE_OFFSET(UpsampleParameters, tolerance), ALCOVE_OFFSET(UpsampleParameters, power),
-      ALCOVE_OFFSET(UpsampleParameters, intensity)}},
+const std::map<std::string, std::uint32_t> kLastOffsets = {
+    ALCOVE_LAST(Projection, near_far),
+    ALCOVE_LAST(GtaoParameters, depth_step_per_inverse_depth),
+    ALCOVE_LAST(GtsoParameters, roughness),
+    ALCOVE_LAST(DepthCopyParameters, sky),
+    ALCOVE_LAST(LinearDepthParameters, origin),
+    ALCOVE_LAST(InspectParameters, has_motion),
+    ALCOVE_LAST(MultiBounceParameters, size_px),
+    ALCOVE_LAST(NormalsParameters, slope),
+    ALCOVE_LAST(ReconstructParameters, dither_offset),
+    ALCOVE_LAST(UpsampleParameters, intensity),
 };
 
-TEST(ShaderParameters, StructsHaveTheSameLayoutInUniformBlocksAndInCpp) {
-  std::map<std::string, int> seen;
-  for (const StructLayout& layout : struct_layouts(kParameterLayouts)) {
-    const auto match = kExpected.find(layout.name);
-    if (match == kExpected.end()) continue;
-    EXPECT_EQ(layout.offsets, match->second) << layout.name;
-    ++seen[layout.name];
+// Returns the largest offset of a member of each struct of the module that has offsets.
+std::map<std::string, std::uint32_t> last_offsets(std::span<const std::uint32_t> module) {
+  constexpr std::uint32_t kOpName = 5, kOpMemberDecorate = 72, kOffset = 35;
+  std::map<std::uint32_t, std::string> names;
+  std::map<std::string, std::uint32_t> offsets;
+  for (std::size_t at = 5; at < module.size(); at += module[at] >> 16) {
+    const auto words = module.subspan(at, module[at] >> 16);
+    const std::uint32_t code = module[at] & 0xffffu;
+    if (code == kOpName) names[words[1]] = reinterpret_cast<const char*>(&words[2]);
+    if (code == kOpMemberDecorate && words[3] == kOffset)
+      offsets[names[words[1]]] = std::max(offsets[names[words[1]]], words[4]);
   }
-  for (const auto& [name, offsets] : kExpected) EXPECT_EQ(seen[name], 1) << name;
+  return offsets;
+}
+
+TEST(ShaderParameters, StructsHaveTheSameLayoutInUniformBlocksAndInCpp) {
+  auto found = last_offsets(kParameterLayouts);
+  for (const auto& [name, offset] : kLastOffsets) {
+    ASSERT_TRUE(found.contains(name)) << name;
+    EXPECT_EQ(found[name], offset) << name;
+  }
 }
 
 TEST(ShaderParameters, ProjectionSizeIsAMultipleOf16Bytes) {

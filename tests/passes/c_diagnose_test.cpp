@@ -69,7 +69,7 @@ TEST(CDiagnose, IndexMayStandStillIfNoiseIsStatic) {
   };
   EXPECT_EQ(diagnose_noise(0, 1), "");
   for (const std::string& other : {diagnose_noise(0, 0), diagnose_noise(32, 1)}) {
-    EXPECT_THAT(other, HasSubstr("AlcoveFrame::index stays the same"));
+    EXPECT_THAT(other, HasSubstr("AlcoveFrame::index is that of the last record"));
     EXPECT_THAT(other, HasSubstr("AlcoveFrame::index goes back"));
   }
 }
@@ -160,7 +160,7 @@ TEST_F(CDiagnoseFrames, DiagnosisTextIsTruncatedToTheBufferOfTheCaller) {
   for (std::uint32_t i = 0; i < 8; ++i) run_frame(*context, {&view, 1}, 4);
   engine().wait();
   const std::string text = print_diagnosis(*context);
-  EXPECT_THAT(text, HasSubstr("View 0: AlcoveFrame::index stays the same"));
+  EXPECT_THAT(text, HasSubstr("View 0: AlcoveFrame::index is that of the last record"));
   char small[7];
   EXPECT_EQ(alcoveDiagnose(context.get(), small, sizeof small), text.size());
   EXPECT_STREQ(small, "View 0");

@@ -1,4 +1,4 @@
-// Tests add_occlusion() with the largest, the smallest and invalid numbers.
+// Tests every preset with the largest, the smallest and invalid numbers.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -6,8 +6,6 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
-#include <numbers>
-#include <tuple>
 #include <utility>
 
 #include "alcove/passes/setting_table.h"
@@ -20,15 +18,15 @@ namespace {
 constexpr std::uint32_t kWidth = 57;
 constexpr std::uint32_t kHeight = 39;
 
-// Returns settings that compute visibility, bent normals and specular occlusion, and whose
-// pipelines compile quickly.
+// Returns settings that compute visibility, bent normals and specular occlusion.
 OcclusionSettings everything(AlcoveQuality quality, float radius) {
   OcclusionSettings settings(quality, radius);
-  settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
-  settings.steps = 6;
   settings.bent_normal = true;
   settings.specular = ALCOVE_SPECULAR_SLICES;
   settings.precision = ALCOVE_PRECISION_FLOAT32;
+  // The preset `reference` with fewer samples, which compile and run faster.
+  settings.slices = std::min(settings.slices, 4u);
+  settings.steps = std::min(settings.steps, 16u);
   return settings;
 }
 
@@ -37,7 +35,7 @@ AlcoveCamera moved_by(AlcoveCamera view, double x) {
   return view;
 }
 
-class Extremes : public PassTest {
+class Extremes : public PassTest, public testing::WithParamInterface<AlcoveQuality> {
  protected:
   using Images = OcclusionImages;
 
@@ -54,7 +52,8 @@ class Extremes : public PassTest {
                                       .normal_vs = &drawing.normal_vs,
                                       .previous_view = moved_by(view.view, -step * (i - 1.0)),
                                       .index = i,
-                                      .reset = i == 0},
+                                      .reset = i == 0,
+                                      .second_depth_ndc = &drawing.depth_ndc},
                                      settings));
     }
     return images;
@@ -71,23 +70,18 @@ class Extremes : public PassTest {
   }
 };
 
-TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
-  constexpr std::array<std::pair<AlcoveQuality, bool>, 4> kCases{{{ALCOVE_QUALITY_MEDIUM, false},
-                                                                  {ALCOVE_QUALITY_MEDIUM, true},
-                                                                  {ALCOVE_QUALITY_CONSOLE, false},
-                                                                  {ALCOVE_QUALITY_CONSOLE, true}}};
-  for (const auto& [quality, orthographic] : kCases) {
+TEST_P(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
+  for (const bool orthographic : {false, true}) {
     std::vector<Images> expected;
     for (const int exponent : {0, -30, 17, 30}) {
-      SCOPED_TRACE(testing::Message() << kQualityNames.at(quality)
-                                      << (orthographic ? ", orthographic, " : ", perspective, ")
-                                      << "in units of 2^" << -exponent);
+      SCOPED_TRACE(testing::Message() << (orthographic ? "orthographic" : "perspective")
+                                      << " in units of 2^" << -exponent);
       const double unit = std::ldexp(1.0, exponent);
       const TestView view =
           orthographic ? orthographic_view("", 3.0 * unit, 2.0 * unit, 0.125 * unit, 16.125 * unit)
                        : perspective_view("", 1.2, 1.8, 0.125 * unit, kInfinity, true);
       const std::vector<Images> found = strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
-                                               everything(quality, static_cast<float>(unit)), 3);
+                                               everything(GetParam(), static_cast<float>(unit)), 3);
       if (exponent == 0) expected = found;
       for (std::size_t i = 0; i < found.size(); ++i) {
         EXPECT_EQ(found[i].visibility.texels, expected[i].visibility.texels) << "frame " << i;
@@ -100,8 +94,8 @@ TEST_F(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
 
 // Tests near planes in front of the eye and behind it. Some engines place the near plane of an
 // orthographic view behind the eye.
-TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
-  const OcclusionSettings settings = everything(ALCOVE_QUALITY_MEDIUM, 1.0f);
+TEST_P(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
+  const OcclusionSettings settings = everything(GetParam(), 1.0f);
   for (const NamedScene& scene : gtao_scenes()) {
     std::vector<Images> expected;
     for (const double shift : {0.0, 4.125, 1024.0, -1024.0}) {
@@ -111,31 +105,19 @@ TEST_F(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
           strafe(view, shifted(scene.scene, {0.0, 0.0, shift}), 0.05, settings, 4);
       if (shift == 0.0) expected = found;
       for (std::size_t i = 0; i < found.size(); ++i)
-        EXPECT_LT(rms(found[i].visibility, expected[i].visibility), 0.002) << "frame " << i;
+        EXPECT_LT(rms(found[i].visibility, expected[i].visibility), 0.003) << "frame " << i;
     }
-  }
-}
-
-TEST_F(Extremes, PlaneBehindTheEyeOfAnOrthographicViewDoesNotOccludeItself) {
-  OcclusionSettings settings = everything(ALCOVE_QUALITY_MEDIUM, 1.0f);
-  settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
-  for (const double distance : {4.0, -4.0}) {
-    SCOPED_TRACE(testing::Message() << "a plane at " << distance);
-    const TestView view = orthographic_view("", 3.0, 2.0, -16.0, 16.0);
-    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(30.0, distance)});
-    const Images images = render(drawing, settings);
-    EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(1.0f - 1.0f / 255.0f)));
   }
 }
 
 // The camera is static at coordinates so large that adjacent floats differ by more than 0.05.
 // Motion vectors are given.
-TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
+TEST_P(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   const HostImage motion{kWidth, kHeight,
                          std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
-  const OcclusionSettings settings = everything(ALCOVE_QUALITY_MEDIUM, 1.0f);
+  const OcclusionSettings settings = everything(GetParam(), 1.0f);
   const auto visibility_at = [&](double distance) {
     glm::dmat4 rotated = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
     rotated = glm::translate(rotated, distance * glm::dvec3(-1.0, -0.3, 0.8));
@@ -148,7 +130,8 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
                                   .normal_vs = &drawing.normal_vs,
                                   .motion = &motion,
                                   .index = i,
-                                  .reset = i == 0},
+                                  .reset = i == 0,
+                                  .second_depth_ndc = &drawing.depth_ndc},
                                  settings)
                        .visibility;
     return visibility;
@@ -156,13 +139,13 @@ TEST_F(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
   EXPECT_LT(rms(visibility_at(1e6), visibility_at(0.0)), 1e-3);
 }
 
-TEST_F(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
+TEST_P(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
   constexpr std::array kHoles{0u, 20 * kWidth + 28, 20 * kWidth + 29, 7 * kWidth + 40};
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing clean = draw(view, kWidth, kHeight, ball_on_floor());
     const HostImage smooth{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight, 0.4f),
                            1};
-    const OcclusionSettings settings = everything(ALCOVE_QUALITY_HIGH, 1.0f);
+    const OcclusionSettings settings = everything(GetParam(), 1.0f);
     // Renders several frames. Frame 1 has the value `wrong` in its normals or roughness.
     const auto frames = [&](float wrong, bool in_normals) {
       std::vector<Images> images;
@@ -180,6 +163,7 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
                                         .previous_view = moved_by(view.view, 0.01 * (i - 1.0)),
                                         .index = i,
                                         .reset = i == 0,
+                                        .second_depth_ndc = &clean.depth_ndc,
                                         .roughness = &roughness},
                                        settings));
       }
@@ -205,7 +189,7 @@ TEST_F(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
 
 // Every traced pixel of a tile lies on a surface that is 10^10 times nearer than the other pixels.
 // The weights of the traced pixels for the other pixels are tiny, and must not become zero.
-TEST_F(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
+TEST_P(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
   constexpr std::uint32_t kSide = 64;
   const TestView view = perspective_view("", 1.2, 1.2, 0.01, kInfinity, true);
   std::vector<double> means;
@@ -217,25 +201,23 @@ TEST_F(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
       std::copy_n(&near.normal_vs.texels[std::size_t{i} * 4], 4,
                   &far.normal_vs.texels[std::size_t{i} * 4]);
     }
-    OcclusionSettings settings = everything(ALCOVE_QUALITY_LOW, static_cast<float>(0.3 * distance));
-    settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
+    OcclusionSettings settings = everything(GetParam(), static_cast<float>(0.3 * distance));
     settings.history_frames = 0;
     const Images images = render(far, settings);
     expect_sound(images);
     means.push_back(mean(images.visibility));
   }
-  EXPECT_LT(means[0], 0.997);
+  EXPECT_LT(means[0], 0.9995);
   EXPECT_NEAR(means[1], means[0], 1e-4);
 }
 
-TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
+TEST_P(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
     std::vector<HostImage> largest;
     for (const float radius : {1e-30f, 1e-5f, 1e-3f, 1.0f, 1e6f, 1e12f, 1e30f, 3e38f}) {
       SCOPED_TRACE(testing::Message() << view.name << ", radius " << radius);
-      OcclusionSettings settings = everything(ALCOVE_QUALITY_HIGH, radius);
-      settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
+      OcclusionSettings settings = everything(GetParam(), radius);
       settings.history_frames = 0;
       const Images images = render(drawing, settings);
       expect_sound(images);
@@ -251,60 +233,38 @@ TEST_F(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
   }
 }
 
-// Pixels up to half a degree from the horizon of the plane are tested, at a field of view of 170
-// degrees.
-TEST_F(Extremes, PlaneIsUnoccludedAtTheNarrowestAndWidestFieldOfView) {
-  const auto view_of = [](double degrees) {
-    const double scale = 1.0 / std::tan(degrees * std::numbers::pi / 360.0);
-    return perspective_view("", scale / 1.5, scale, 0.1, kInfinity, true);
-  };
-  TestView aside = perspective_view("", 1.2, 1.8, 0.1, kInfinity, true);
-  aside.view.clip_from_view[8] = 5.0f;
-  aside.view.clip_from_view[9] = -8.0f;
-  for (const auto& [name, view, least] :
-       {std::tuple{"1 degree", view_of(1.0), 1.0f - 1.0f / 255.0f},
-        {"170 degrees", view_of(170.0), 0.975f},
-        {"off-centre", aside, 1.0f - 1.0f / 255.0f}}) {
-    for (const double tilt : {0.0, 60.0, 85.0}) {
-      SCOPED_TRACE(testing::Message() << name << ", tilted " << tilt << " degrees");
-      const Drawing drawing = draw(view, 96, 64, {tilted_plane(tilt, 4.0)});
-      OcclusionSettings settings = everything(ALCOVE_QUALITY_REFERENCE, 0.5f);
-      settings.slices = 4;
-      settings.steps = 16;
-      for (std::uint32_t i = 0; i < 4; ++i) {
-        const Images images = render(drawing, settings, i);
-        EXPECT_GE(*std::ranges::min_element(images.visibility.texels), least);
-      }
-    }
-  }
-}
-
-TEST_F(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
+TEST_P(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
   constexpr VkExtent2D kLargest{64, 48};
   constexpr std::array<VkExtent2D, 9> kSizes{
       {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};
   const TestView view = test_views()[2];
-  for (const AlcoveQuality quality : {ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_CONSOLE}) {
-    const OcclusionSettings settings = everything(quality, 1.0f);
-    // The frame counter wraps around within these frames.
-    std::uint32_t index = std::numeric_limits<std::uint32_t>::max() - 4;
-    VkExtent2D previous = kSizes[0];
-    for (const VkExtent2D size : kSizes) {
-      SCOPED_TRACE(testing::Message()
-                   << kQualityNames.at(quality) << ", " << size.width << " x " << size.height);
-      const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
-      const Images images = run_occlusion({.view = view.view,
-                                           .depth_ndc = drawing.depth_ndc,
-                                           .normal_vs = &drawing.normal_vs,
-                                           .index = index++,
-                                           .previous_size = previous,
-                                           .largest_size = kLargest},
-                                          settings);
-      expect_sound(images);
-      previous = size;
-    }
+  const OcclusionSettings settings = everything(GetParam(), 1.0f);
+  // The frame counter wraps around within these frames.
+  std::uint32_t index = std::numeric_limits<std::uint32_t>::max() - 4;
+  VkExtent2D previous = kSizes[0];
+  for (const VkExtent2D size : kSizes) {
+    SCOPED_TRACE(testing::Message() << size.width << " x " << size.height);
+    const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
+    const Images images = run_occlusion({.view = view.view,
+                                         .depth_ndc = drawing.depth_ndc,
+                                         .normal_vs = &drawing.normal_vs,
+                                         .index = index++,
+                                         .second_depth_ndc = &drawing.depth_ndc,
+                                         .previous_size = previous,
+                                         .largest_size = kLargest},
+                                        settings);
+    expect_sound(images);
+    previous = size;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Presets, Extremes,
+                         testing::Values(ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW,
+                                         ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH,
+                                         ALCOVE_QUALITY_ULTRA, ALCOVE_QUALITY_REFERENCE),
+                         [](const auto& each) {
+                           return std::string(kQualityNames.at(each.param));
+                         });
 
 }  // namespace
 }  // namespace alcove::passes

@@ -43,21 +43,6 @@ class NormalsOfAGBuffer : public PassTest {
   }
 };
 
-TEST_F(NormalsOfAGBuffer, UnoccludedPlaneStaysUnoccludedIfItsNormalsFaceAwayFromTheEye) {
-  for (const TestView& view : {test_views()[2], test_views().back()}) {
-    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(60.0, 4.0)});
-    for (const AlcoveQuality quality : {ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_REFERENCE}) {
-      OcclusionSettings settings = all_outputs(quality);
-      settings.slices = std::min(settings.slices, 4u);
-      settings.steps = std::min(settings.steps, 16u);
-      SCOPED_TRACE(testing::Message() << view.name << ", quality " << int(quality));
-      const OcclusionImages images = third_frame(invert_normals(drawing), settings);
-      EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.996f)));
-      EXPECT_THAT(images.specular.texels, testing::Each(testing::Ge(0.98f)));
-    }
-  }
-}
-
 TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacingOnes) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
@@ -68,23 +53,6 @@ TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacing
     EXPECT_LT(rms(found.visibility, expected.visibility), 2e-3);
     EXPECT_LT(rms(found.bent_normal, expected.bent_normal), 0.02);
     EXPECT_LT(rms(found.specular, expected.specular), 5e-3);
-  }
-}
-
-TEST_F(NormalsOfAGBuffer, ZeroAndNonFiniteNormalsAreReplacedByNormalsFromDepth) {
-  for (const TestView& view : {test_views()[2], test_views().back()}) {
-    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(40.0, 4.0)});
-    const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM);
-    for (const float missing : {0.0f, kNaN, kInfinity}) {
-      for (const std::size_t stride : {std::size_t{1}, std::size_t{3}}) {
-        SCOPED_TRACE(testing::Message() << view.name << ": " << missing << " every " << stride);
-        const OcclusionImages images =
-            third_frame(replace_normals(drawing, missing, stride), settings);
-        EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.99f)));
-        EXPECT_THAT(images.specular.texels, testing::Each(testing::Ge(0.97f)));
-        EXPECT_LT(rms(images.bent_normal, third_frame(drawing, settings).bent_normal), 5e-3);
-      }
-    }
   }
 }
 

@@ -53,25 +53,6 @@ Difference difference(const HostImage& a, const HostImage& b) {
   return found;
 }
 
-TEST_F(GtaoInvariance, VisibilityIsIndependentOfTheUnitOfLength) {
-  for (const AlcoveEstimator estimator : kEstimators) {
-    for (const NamedScene& scene : gtao_scenes()) {
-      const TestView one = perspective_view("one", 1.2, 1.8, 0.1, kInfinity, true);
-      const HostImage expected = visibility(one, scene.scene, unfiltered(estimator, 1.0f));
-      for (const double unit : {1e-3, 1e3, 2.5e6}) {
-        SCOPED_TRACE(testing::Message() << scene.name << " in units of " << 1.0 / unit);
-        const TestView view = perspective_view("scaled", 1.2, 1.8, 0.1 * unit, kInfinity, true);
-        const Difference apart =
-            difference(visibility(view, scaled(scene.scene, unit),
-                                  unfiltered(estimator, static_cast<float>(unit))),
-                       expected);
-        EXPECT_LT(apart.mean, 5e-4);
-        EXPECT_LT(apart.largest, 0.1);
-      }
-    }
-  }
-}
-
 TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthBuffersGiveTheSameVisibility) {
   for (const AlcoveEstimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {

@@ -98,7 +98,8 @@ TEST_F(GtaoTruth, EstimatorConnectedAgreesWithBruteForceIfVolumeBehindOccludersI
     SCOPED_TRACE(scene.name);
     const Errors errors = errors_of(ALCOVE_ESTIMATOR_CONNECTED, test_views()[2], scene.scene);
     EXPECT_LT(errors.mean, 0.02);
-    EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.08);
+    // At the border of the image a share of the directions is excluded.
+    EXPECT_LT(errors.largest, scene.name == "ball" ? 0.3 : 0.1);
   }
 }
 

@@ -152,60 +152,6 @@ TEST_F(GtsoPass, InvalidTexelsInAnyInputGiveSpecularOcclusionInRange) {
   EXPECT_THAT(result().texels, testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
 }
 
-// Returns visibility and bent normals of an unoccluded plane, with noise as after the filter.
-Inputs open_inputs(const Drawing& plane) {
-  maths_test::RandomInput random;
-  Inputs inputs;
-  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
-    const vec3 normal = direction(plane.normal_vs, i % kWidth, i / kWidth);
-    inputs.visibility.texels.push_back(random.uniform(127.0f / 128.0f, 1.0f));
-    append(inputs.bent, glm::normalize(normal + 0.1f * random.unit_vector()), 0.0f);
-  }
-  return inputs;
-}
-
-// Returns the smallest value over the pixels of a plane whose view direction is within 85 degrees
-// of the normal.
-float lowest(const HostImage& image, const Drawing& plane) {
-  const maths::Projection projection = projection_of(plane.view);
-  float least = 1.0f;
-  for (std::uint32_t y = 0; y < kHeight; ++y) {
-    for (std::uint32_t x = 0; x < kWidth; ++x) {
-      const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
-      const float depth = maths::linear_depth(projection, plane.depth_ndc.at(x, y));
-      const vec3 towards =
-          maths::view_direction(projection, maths::position_vs(projection, uv, depth));
-      if (glm::dot(towards, direction(plane.normal_vs, x, y)) >= std::cos(glm::radians(85.0f)))
-        least = std::min(least, image.at(x, y));
-    }
-  }
-  return least;
-}
-
-TEST_F(GtsoPass, UnoccludedSurfaceHasSpecularVisibilityOneAtAnyRoughness) {
-  const std::array roughness{0.0f, 0.1f, 0.3f, 0.6f, 1.0f};
-  for (const TestView& view : test_views()) {
-    for (const double degrees : {0.0, 30.0, 60.0, 84.0}) {
-      const Drawing plane = draw(view, kWidth, kHeight, {tilted_plane(degrees, 4.0)});
-      const Inputs open = open_inputs(plane);
-      run([&](Graph& graph) {
-        const auto made =
-            add_surface(graph, gpu().kernels(), view.view, upload(graph, plane.depth_ndc));
-        ASSERT_TRUE(made) << made.error().message;
-        ViewTextures textures{made->linear_depth, upload(graph, plane.normal_vs)};
-        textures[ALCOVE_IMAGE_VISIBILITY] = upload(graph, open.visibility);
-        textures[ALCOVE_IMAGE_BENT_NORMAL] = upload(graph, open.bent);
-        for (const float r : roughness)
-          read_back(graph, add(graph, view.view, textures, settings_of(r)));
-      });
-      for (std::size_t image = 0; image < roughness.size(); ++image) {
-        EXPECT_GE(lowest(result(image), plane), 0.99f)
-            << view.name << " tilted " << degrees << " degrees, roughness " << roughness[image];
-      }
-    }
-  }
-}
-
 TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   const Inputs inputs = random_inputs();
   const auto with = [&](AlcoveCamera view, bool in_view_space) {
@@ -222,17 +168,6 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   view.view_from_world[0] = view.view_from_world[5] = -1.0f;
   EXPECT_NE(in_view_space.texels, with(view, false).texels);
   EXPECT_EQ(in_view_space.texels, with(view, true).texels);
-}
-
-TEST_F(GtsoPass, SpecularOcclusionPassIsCulledIfNobodyReadsItsOutput) {
-  const Inputs inputs = random_inputs();
-  run([&](Graph& graph) {
-    const ViewTextures textures = textures_of(graph, inputs);
-    (void)add(graph, test_views().front().view, textures, settings_of());
-    read_back(graph, textures[ALCOVE_IMAGE_DEPTH]);
-  });
-  for (const framegraph::PassTiming& timing : gpu().timings())
-    EXPECT_NE(timing.name, "specular occlusion");
 }
 
 TEST_F(GtsoPass, LookupTableIsCreatedWhenAPassReadsIt) {

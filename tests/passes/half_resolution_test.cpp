@@ -142,32 +142,5 @@ TEST_F(HalfResolution, StaleHistoryTexelsOutsideTheRenderedPartOfAnImageAreNotRe
   EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(0.9f, kRounding)));
 }
 
-TEST_F(HalfResolution, UnoccludedPlaneGetsItsNormalAndSpecularVisibilityOneAtHalfResolution) {
-  const TestView view = test_views()[2];
-  const Drawing drawing = draw(view, 33, 23, {tilted_plane(40.0, 4.0)});
-  OcclusionSettings settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
-  settings.precision = ALCOVE_PRECISION_FLOAT32;
-  settings.bent_normal = true;
-  settings.specular = ALCOVE_SPECULAR_SLICES;
-  settings.half_resolution = 1;
-  for (const std::uint32_t history : {0u, 16u}) {
-    settings.history_frames = history;
-    for (std::uint32_t frame = 0; frame < 3; ++frame) {
-      SCOPED_TRACE(testing::Message() << "history " << history << ", frame " << frame);
-      const OcclusionImages found = render(drawing, settings, frame);
-      for (std::uint32_t y = 0; y < 23; ++y) {
-        for (std::uint32_t x = 0; x < 33; ++x) {
-          ASSERT_NEAR(found.visibility.at(x, y), 1.0, 1e-5) << "at " << x << ", " << y;
-          ASSERT_NEAR(found.specular.at(x, y), 1.0, 1e-3) << "at " << x << ", " << y;
-          double cosine = 0.0;
-          for (std::uint32_t c = 0; c < 3; ++c)
-            cosine += double{found.bent_normal.at(x, y, c)} * drawing.normal_vs.at(x, y, c);
-          ASSERT_GT(cosine, 0.999) << "at " << x << ", " << y;
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace alcove::passes

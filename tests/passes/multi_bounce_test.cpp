@@ -58,16 +58,5 @@ TEST_F(MultiBouncePass, MultiBounceImageAgreesWithTheFormulaInEachColourChannel)
   }
 }
 
-TEST_F(MultiBouncePass, MultiBouncePassIsCulledIfNobodyReadsItsOutput) {
-  const Inputs inputs = random_inputs();
-  run([&](Graph& graph) {
-    const framegraph::Texture visibility = upload(graph, inputs.visibility);
-    (void)add(graph, visibility, inputs.albedo);
-    read_back(graph, visibility);
-  });
-  for (const framegraph::PassTiming& timing : gpu().timings())
-    EXPECT_NE(timing.name, "multi-bounce");
-}
-
 }  // namespace
 }  // namespace alcove::passes

@@ -179,7 +179,8 @@ PassTest::OcclusionImages PassTest::render(const Drawing& drawing,
                         .depth_ndc = drawing.depth_ndc,
                         .normal_vs = &drawing.normal_vs,
                         .index = index,
-                        .reset = index == 0},
+                        .reset = index == 0,
+                        .second_depth_ndc = &drawing.depth_ndc},
                        settings);
 }
 
@@ -193,6 +194,7 @@ PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& input,
                               .largest_height = input.largest_size.height,
                               .previous_width = input.previous_size.width,
                               .previous_height = input.previous_size.height,
+                              .depth_format = static_cast<std::uint32_t>(input.depth_format),
                               .normals_in_view_space = 1};
     ViewTextures textures{};
     textures[ALCOVE_IMAGE_DEPTH] = upload(graph, input.depth_ndc);

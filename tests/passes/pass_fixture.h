@@ -96,6 +96,7 @@ class PassTest : public testing::Test {
     const HostImage* roughness = nullptr;
     VkExtent2D previous_size{};
     VkExtent2D largest_size{};
+    VkFormat depth_format = VK_FORMAT_UNDEFINED;
   };
   struct OcclusionImages {
     HostImage visibility;
@@ -110,7 +111,8 @@ class PassTest : public testing::Test {
     ASSERT_TRUE(added) << added.error().message;
   }
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
-  // Runs frame `index` of a drawing with its normals. Frame 0 resets the history first.
+  // Runs frame `index` of a drawing with its normals, and with its depth as second depth. Frame 0
+  // resets the history first.
   OcclusionImages render(const Drawing& drawing, const OcclusionSettings& settings,
                          std::uint32_t index = 0);
 

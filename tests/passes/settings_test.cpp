@@ -137,7 +137,7 @@ TEST(Settings, EverySettingIsPrintedShortAndReadBackInEveryLocale) {
 TEST(Settings, OnlyNamedSettingsAreChanged) {
   AlcoveSettings found = preset(), expected = preset();
   EXPECT_EQ(read("", found), "");
-  EXPECT_EQ(read("\n  steps=9 \r\n\n\tstatic_noise = 1", found), "");
+  EXPECT_EQ(read("\n  steps=9 \r\n\n\tstatic_noise = true", found), "");
   expected.steps = 9;
   expected.static_noise = 1;
   EXPECT_EQ(printed(found), printed(expected));
@@ -161,7 +161,7 @@ TEST(Settings, TextThatCannotBeReadIsReportedInASentenceAndChangesNothing) {
       {"thickness = 1e99", "'thickness' is 1e99"},
       {"estimator = magic", "horizons or connected"},
       {"half_resolution = 1", "false or true"},
-      {"slices = 3\ntile_size = 1\nhalf_resolution = 1", "tile_size of 1"},
+      {"slices = 3\ntile_size = 1\nhalf_resolution = true", "tile_size of 1"},
   };
   for (const auto& [text, part] : cases) {
     AlcoveSettings found = preset();

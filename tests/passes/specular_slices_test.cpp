@@ -89,25 +89,6 @@ TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTh
   }
 }
 
-TEST_F(SpecularOcclusionFromSlices, UnoccludedSurfaceHasSpecularVisibilityOne) {
-  for (const TestView& view : test_views()) {
-    for (const double degrees : {0.0, 60.0, 85.0}) {
-      const Drawing plane = draw(view, 64, 48, {tilted_plane(degrees, 4.0)});
-      for (const float roughness : {0.0f, 0.3f, 1.0f}) {
-        for (const AlcoveQuality quality : {ALCOVE_QUALITY_LOW, ALCOVE_QUALITY_MEDIUM}) {
-          for (std::uint32_t index = 0; index < 2; ++index) {
-            SCOPED_TRACE(testing::Message() << view.name << " tilted " << degrees << ", roughness "
-                                            << roughness << ", frame " << index);
-            const auto images = render(plane, settings_of(quality, 0.5f, roughness), index);
-            EXPECT_THAT(images.specular.texels, testing::Each(testing::Ge(0.99f)));
-            EXPECT_THAT(images.specular.texels, testing::Each(testing::Le(1.0f)));
-          }
-        }
-      }
-    }
-  }
-}
-
 // The error decreases over several frames. In a single frame few slices cross a narrow lobe.
 TEST_F(SpecularOcclusionFromSlices, ErrorOfNarrowSpecularLobesDecreasesOverAccumulatedFrames) {
   const float radius = 1.2f, roughness = 0.2f;

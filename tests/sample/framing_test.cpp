@@ -123,16 +123,16 @@ std::vector<File> files() {
       {"HouseFarFromTheOrigin", house(), scene_of({house()}, {}, {691000.0, 120.0, -5335000.0})},
       {"HouseOnAWideGround", house(), scene_of({house(), flat(2000)}), "ground"},
       {"HouseJoinedWithItsGround", flat(500), scene_of({joined(flat(500), house())})},
-      {"HouseInASkyTurnedOutwards", house(), scene_of({house()}, {ball(200, false)}), "sky", 200},
+      {"BodyAroundAHouse", ball(200, false), scene_of({house()}, {ball(200, false)})},
       {"HouseInASkyJoinedWithItsGround", house(),
-       scene_of({house(), joined(ball(150, true, 0), flat(150))}), "sky", 150},
+       scene_of({house(), joined(ball(150, true, 0), flat(150))}), "sky or room", 150},
       {"HouseInASkyBox", house(), scene_of({house(), box(glm::vec3(-50), glm::vec3(50), true)}),
-       "sky", 87},
+       "sky or room", 87},
       {"HouseInASkyWithStrays", house(),
        scene_of({joined(house(), sliver({0, 3, 200})), flat(900), ball(500, true)}),
-       "sky, ground, stray triangles (1)", 500},
+       "sky or room, ground, stray triangles (1)", 500},
       {"HouseAmongStrays", house(), scene_of({joined(house(), strays())}), "stray triangles (500)"},
-      {"HouseWithALampInside", hull, scene_of({hull, moved(ball(0.2f, false), {1, 1, 0})})},
+      {"HouseWithALampInside", hull, scene_of({}, {hull, moved(ball(0.2f, false), {1, 1, 0})})},
       {"HouseWithADoor", hull,
        scene_of({}, {hull, quad({0, 0, 3}, {1, 0, 3}, {1, 2, 3}, {0, 2, 3})})},
       {"BannerWithARod", banner,
@@ -146,15 +146,15 @@ std::vector<File> files() {
        scene_of({quad({1, 0, 0}, {-1, 0, 0}, {-1, 1, 0}, {1, 1, 0})})},
       {"Mug", ball(1, false), scene_of({joined(ball(1, false), ball(0.9f, true))})},
   };
-  for (const float radius : {25.0f, 120.0f, 1000.0f})
+  for (const float radius : {30.0f, 120.0f, 1000.0f})
     for (const float bottom : {-1.0f, 0.0f})
       for (const float ground : {0.7f, 1.0f, 2.0f})
         out.push_back({"HouseUnderASky", house(),
                        scene_of({house(), flat(ground * radius)}, {ball(radius, true, bottom)}),
-                       "sky, ground", radius});
+                       "sky or room, ground", radius});
   const auto person = box({-0.4f, 0, -0.2f}, {0.4f, 1.8f, 0.2f});
   out.push_back({"PersonUnderASmallSky", person, scene_of({person, flat(60), ball(12, true, 0)}),
-                 "sky, ground", 12});
+                 "sky or room, ground", 12});
   for (const float x : {30.0f, 60.0f, 200.0f})
     out.push_back({"HouseWithASliver", house(), scene_of({house(), sliver({x, 0, 0})}),
                    "stray triangles (1)"});

@@ -361,14 +361,14 @@ TEST_P(CompiledPresets, DeclaredAccessesAreTheLoadsOfTheCompiledShaders) {
   CostInputs inputs;
   inputs.width = 384;
   inputs.height = 216;
-  for (const passes::Quality quality : presets()) {
-    inputs.settings = passes::quality_settings(quality, 0.5f);
+  for (const AlcoveQuality quality : presets()) {
+    inputs.settings = OcclusionSettings(quality, 0.5f);
     const auto frame = modelled_frame(part_, device_, inputs, FrameState::moving);
     ASSERT_TRUE(frame) << frame.error();
     for (const ModelledPass& pass : frame->passes) {
       // The loads of rare branches, such as those of a missing normal, are less than half a load.
       EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
-          << passes::name_of(quality) << ", " << pass.pass;
+          << passes::kQualityNames.at(quality) << ", " << pass.pass;
     }
   }
 }

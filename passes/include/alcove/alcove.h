@@ -63,7 +63,7 @@ typedef struct AlcoveContextInfo {
   uint32_t queue_family;
   VkInstance instance;  // created for Vulkan 1.2 or newer
   // The physical device. It must support Vulkan 1.3, or 1.2 with the extension
-  // VK_KHR_synchronization2, and at least 8 storage images per shader stage
+  // VK_KHR_synchronization2, and at least 6 storage images per shader stage
   // (maxPerStageDescriptorStorageImages).
   VkPhysicalDevice physical_device;
   // The device. It must have been created with the features synchronization2 and

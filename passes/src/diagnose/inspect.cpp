@@ -48,6 +48,13 @@ dvec3 plane_normal(const Picture& picture, const PixelSample& s, const dvec2& gr
   return to_eye < 0.0 ? -dvec3(plane) : dvec3(plane);
 }
 
+bool same_rotation(const dmat4& a, const dmat4& b) {
+  double largest = 0.0;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(a[i][k] - b[i][k]));
+  return largest < 1e-5;
+}
+
 class Inspector {
  public:
   explicit Inspector(std::span<const InspectedFrame> frames)
@@ -56,6 +63,12 @@ class Inspector {
         frame_(now_.frame),
         reversed_(std::abs(now_.distance(0.0)) > std::abs(now_.distance(1.0 - 1e-7))) {
     given_.normals = frame_.normals;
+    // Cameras may be relative to an origin that moves. previous_camera then differs from the camera
+    // that the last frame was recorded with in its translation alone.
+    const dmat4 previous = to_rigid(frame_.previous_camera.view_from_world);
+    if (pictures_.size() > 1 && previous != now_.view_from_world &&
+        same_rotation(previous, pictures_[1].view_from_world))
+      pictures_[1].view_from_world = previous;
   }
 
   // Stops at the first mistake of the geometry, because others would be its consequences.
@@ -80,6 +93,7 @@ class Inspector {
     return lacks(Mistake::image_too_small, is_too_small()) &&
            lacks(Mistake::depth_outside, is_depth_outside()) &&
            lacks(Mistake::depth_converted_from_minus_one, is_converted_from_minus_one()) &&
+           lacks(Mistake::depth_filtered, is_depth_filtered()) &&
            lacks(Mistake::depth_reversed, is_depth_reversed()) && inspect_depth_format() &&
            lacks(Mistake::depth_from_minus_one, is_depth_from_minus_one()) && inspect_radius();
   }
@@ -92,6 +106,26 @@ class Inspector {
   bool is_depth_outside() const {
     return share_of(frame_.samples,
                     [](const PixelSample& s) { return s.depth < 0.0f || s.depth > 1.0f; }) > 0.02;
+  }
+
+  // At the edge of an object each pixel has the depth of one of two surfaces. A linear filter gives
+  // it a depth between them, which is neither theirs nor, as on a steep surface, their mean.
+  bool is_depth_filtered() const {
+    std::size_t edges = 0, between = 0;
+    const auto look_at = [&](float before, float here, float after) {
+      if (is_sky(before) || is_sky(here) || is_sky(after)) return;
+      const double a = now_.distance(before), b = now_.distance(here), c = now_.distance(after);
+      const double least = std::min(std::abs(here - before), std::abs(after - here));
+      const double most = std::max(std::abs(here - before), std::abs(after - here));
+      if (std::abs(a - c) < 0.15 * b || least > 0.8 * most) return;
+      ++edges;
+      between += (b - a) * (c - b) > 0.0 && least > 0.2 * most;
+    };
+    for (const PixelSample& s : frame_.samples) {
+      look_at(s.left, s.depth, s.right);
+      look_at(s.up, s.depth, s.down);
+    }
+    return edges >= kEnoughOfSome && 2 * between > edges;
   }
 
   // Returns true if the sky lies at the near plane, or if almost all surfaces lie just behind it.
@@ -155,21 +189,25 @@ class Inspector {
 
   bool inspect_radius() {
     std::vector<double> pixels;
+    std::array<std::vector<double>, 3> places;
     const double scale = 0.5 * frame_.size.height * std::abs(now_.clip_from_view[1][1]);
-    for (const PixelSample& sample : frame_.samples) {
-      if (!is_sky(sample.depth)) {
-        const double distance = now_.perspective ? now_.distance(sample.depth) : 1.0;
-        pixels.push_back(frame_.radius * scale / distance);
-      }
+    for (const PixelSample& s : frame_.samples) {
+      if (is_sky(s.depth)) continue;
+      const dvec4 place = now_.view_from_clip * dvec4(now_.ndc(s, given_), s.depth, 1.0);
+      pixels.push_back(frame_.radius * scale / (now_.perspective ? -place.z / place.w : 1.0));
+      for (int i = 0; i < 3; ++i) places.at(i).push_back(place[i] / place.w);
     }
-    if (pixels.size() >= kEnoughSamples) {
-      // The radius is too small if it spans less than a pixel at 90 % of the samples, and too large
-      // if it spans more than two image heights at 90 %.
-      const double large = quantile(pixels, 0.9), small = quantile(pixels, 0.1);
-      lacks(Mistake::radius_too_small, large < 1.0, large);
-      lacks(Mistake::radius_too_large, small > 2.0 * frame_.size.height,
-            small / frame_.size.height);
-    }
+    if (pixels.size() < kEnoughSamples) return true;
+    // The size of what is seen.
+    double extent = 0.0;
+    for (const std::vector<double>& place : places)
+      extent = std::max(extent, quantile(place, 0.95) - quantile(place, 0.05));
+    // The radius is too small if it spans less than a pixel at 90 % of the samples. It is too large
+    // if it spans more than two image heights at 90 %, or half of one and three quarters of what is
+    // seen.
+    const double small = quantile(pixels, 0.1) / frame_.size.height;
+    lacks(Mistake::radius_too_small, quantile(pixels, 0.9) < 1.0);
+    lacks(Mistake::radius_too_large, small > 2.0 || (small > 0.5 && frame_.radius > 0.5 * extent));
     return true;
   }
 
@@ -191,10 +229,10 @@ class Inspector {
 
   dvec3 given_normal(const maths::vec3& stored, const Reading& reading) const {
     dvec3 given(maths::decode_normal(stored, static_cast<std::uint32_t>(reading.normals.encoding)));
-    if (!reading.normals.in_view_space)
-      given = dvec3(now_.view_by(reading) * dvec4(given, 0.0));
-    else if (reading.normals.forward_z)
-      given.z = -given.z;
+    const dmat4 view = now_.view_by(reading);
+    if (reading.transposed_normals) return dvec3(view * view * dvec4(given, 0.0));
+    if (!reading.normals.in_view_space) return dvec3(view * dvec4(given, 0.0));
+    if (reading.normals.forward_z) given.z = -given.z;
     return given;
   }
 
@@ -247,9 +285,9 @@ class Inspector {
       found = Mistake::field_of_view;
     // Floors that are seen from above have the normals of ceilings that are seen from below.
     Reading flipped = given_;
-    flipped.flip_y = true;
+    flipped.tangent_scale.y = -1.0;
     if (found == Mistake::count && facing_away(given_) > 0.2 && facing_away(flipped) < 0.02)
-      found = Mistake::flipped_y;
+      found = Mistake::flipped;
     // A jitter in another unit shifts the whole projection.
     const double jitter =
         pictures_.size() > 1 ? maths::length(now_.jitter() - pictures_[1].jitter()) : 0.0;
@@ -261,8 +299,8 @@ class Inspector {
     if (found == Mistake::count && typical > 25.0) found = Mistake::normals_disagree;
     for (const Mistake mistake :
          {Mistake::normal_space, Mistake::normal_encoding, Mistake::normal_forward_z,
-          Mistake::view_inverted, Mistake::flipped_y, Mistake::image_too_large,
-          Mistake::field_of_view, Mistake::normals_disagree})
+          Mistake::normals_transposed, Mistake::view_inverted, Mistake::flipped,
+          Mistake::image_too_large, Mistake::field_of_view, Mistake::normals_disagree})
       findings_.set(mistake, mistake == found, typical);
     return found == Mistake::count;
   }
@@ -297,6 +335,9 @@ class Inspector {
     if (given_.normals.in_view_space) {
       reading.normals.forward_z = !given_.normals.forward_z;
       consider(Mistake::normal_forward_z, reading);
+      reading = given_;
+      reading.transposed_normals = true;
+      consider(Mistake::normals_transposed, reading);
     } else {
       reading.invert_view = true;
       consider(Mistake::view_inverted, reading);

@@ -13,46 +13,9 @@
 namespace alcove::passes {
 
 enum class Mistake : std::uint8_t {
-  // Mistakes that show in the calls.
-  index_repeats,
-  index_goes_back,
-  previous_is_this,        // previous_camera is this frame's although the camera moved
-  previous_is_another,     // it is neither this frame's nor the last one's
-  projection_is_another,   // only its projection is not the last frame's
-  previous_size_is_wrong,  // previous_width and previous_height are not the last frame's
-  static_in_motion,        // static_frames is not 0 although the image changed
-  history_reset,
-  // Mistakes that show in the pixels of one frame.
-  slot_reused,
-  image_too_small,       // the image is smaller than the part of it that is in use
-  image_too_large,       // the pixels fit the camera if the whole image is in use
-  size_changes,          // dynamic resolution without a largest size
-  depth_outside,         // depth is not from 0 to 1
-  depth_format,          // depth has steps of another format
-  depth_reversed,        // depth is reversed and the projection is not, or the other way round
-  depth_from_minus_one,  // the projection is OpenGL's, with depth from -1 to 1
-  depth_converted_from_minus_one,  // the projection was converted as if it were OpenGL's
-  field_of_view,                   // the pixels fit another field of view or other planes
-  flipped_y,                       // y of the projection has the wrong sign for the image
-  radius_too_small,
-  radius_too_large,
-  normal_space,      // normals are in world space instead of view space, or the other way round
-  normal_encoding,   // normals fit with another encoding
-  normal_forward_z,  // z of the normals has the wrong sign
-  view_inverted,     // view_from_world is world_from_view
-  normals_disagree,  // normals fit depth under no reading
-  // Mistakes that show in the pixels of successive frames.
-  camera_of_another_frame,  // camera or depth is that of the frame before
-  jitter_missing,           // depth has a jitter that the cameras lack
-  jitter_unused,            // the cameras have a jitter that depth lacks
-  jitter_wrong,       // the jitter of the cameras has another sign or scale than that of depth
-  translation_scale,  // the camera moves further, or less far, than view_from_world says
-  no_translation,     // view_from_world lacks the translation
-  cameras_disagree,   // the cameras fit depth under no reading
-  motion_zero,
-  motion_sign,
-  motion_unit,
-  motion_jitter,
+#define ALCOVE_MISTAKE(name, sentence) name,
+#include "diagnose/mistakes.inc"
+#undef ALCOVE_MISTAKE
   count,
 };
 
@@ -85,6 +48,7 @@ struct PixelSample {
 // inspect.comp, row by row.
 struct InspectedFrame {
   AlcoveCamera camera{};
+  AlcoveCamera previous_camera{};
   VkExtent2D size{};        // of the part of the images that is in use
   VkExtent2D depth_size{};  // of the whole images, as the device reports them
   VkExtent2D normals_size{};

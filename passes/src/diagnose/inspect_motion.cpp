@@ -19,6 +19,7 @@ constexpr double kMisfits = 0.5;     // the share at most if they do not
 struct Displacement {
   dvec2 direction;
   double distance = 0.0;  // pixels
+  dvec3 by_translation;   // its derivative by the translation of the camera
   // The distance would be clearly another without the camera's translation or without any motion.
   // The depths of a floor, for example, stay the same when the camera moves along it or turns.
   bool shows_motion = false;
@@ -30,12 +31,14 @@ double share_at(const std::vector<Displacement>& displacements, const dvec2& shi
   });
 }
 
-// The share of the samples that show the camera's motion at the place where it says, or nothing if
-// there are too few.
-std::optional<double> share_in_motion(std::vector<Displacement> displacements) {
+// The share of the samples that a hypothesis explains: of all, or of those that show the camera's
+// motion, if these are enough and their share is smaller.
+double explained(std::vector<Displacement> displacements, const dvec2& shift = dvec2(0.0)) {
+  if (displacements.size() < kEnoughSamples) return 0.0;
+  const double of_all = share_at(displacements, shift);
   std::erase_if(displacements, [](const Displacement& d) { return !d.shows_motion; });
-  return displacements.size() < kEnoughOfSome ? std::nullopt
-                                              : std::optional(share_at(displacements, dvec2(0.0)));
+  return displacements.size() < kEnoughOfSome ? of_all
+                                              : std::min(of_all, share_at(displacements, shift));
 }
 
 // Returns the shift of the image that explains the displacements best, by least squares without
@@ -83,26 +86,26 @@ class MotionInspector {
     // If almost no sample stays on the image, a hypothesis under which samples stay is right.
     const bool leaves_image = by_cameras.size() < kEnoughSamples;
     const double share_of_all = leaves_image ? 0.0 : share_at(by_cameras, dvec2(0.0));
-    const double share = std::min(share_of_all, share_in_motion(by_cameras).value_or(1.0));
+    const double share = explained(by_cameras);
     double measure = 100.0 * (1.0 - share);
     const Mistake found = share > kMisfits
                               ? Mistake::count
                               : mistake_of_cameras(by_cameras, share_of_all, share, measure);
     for (const Mistake mistake :
          {Mistake::camera_of_another_frame, Mistake::jitter_missing, Mistake::jitter_unused,
-          Mistake::jitter_wrong, Mistake::translation_scale, Mistake::no_translation,
-          Mistake::cameras_disagree, Mistake::image_too_large, Mistake::field_of_view,
-          Mistake::flipped_y, Mistake::view_inverted})
+          Mistake::jitter_wrong, Mistake::translation_scale, Mistake::translation_wrong,
+          Mistake::no_translation, Mistake::cameras_disagree, Mistake::image_too_large,
+          Mistake::field_of_view, Mistake::flipped, Mistake::view_inverted})
       if (mistake == found || (findings_.seen >> static_cast<int>(mistake) & 1u) == 0)
         findings_.set(mistake, mistake == found, measure);
-    if (found == Mistake::count && share > kMisfits && frame_.has_motion) inspect_motion_vectors();
+    if (share > kMisfits && frame_.has_motion) inspect_motion_vectors(share > kFits);
   }
 
  private:
   // Returns the matrix from the view space of `now` to that of `before`.
   static dmat4 camera_motion(const Picture& now, const Picture& before, const Reading& reading) {
     dmat4 motion = before.view_by(reading) * maths::inverse(now.view_by(reading));
-    motion[3] = dvec4(dvec3(motion[3]) * reading.translation_scale, 1.0);
+    if (reading.translation) motion[3] = dvec4(*reading.translation, 1.0);
     return motion;
   }
 
@@ -159,7 +162,15 @@ class MotionInspector {
           return (p.z / p.w - depth_at(to_pixel(p))) / slope;
         };
         const double here = distance(clip);
-        result.push_back({*gradient / slope, here,
+        const double place_w = (from * ndc).w;
+        dvec3 by_translation;
+        for (int axis = 0; axis < 3; ++axis) {
+          const dvec4 change = place_w / clip.w * (to[axis] - clip * (to[axis].w / clip.w));
+          by_translation[axis] =
+              (change.z - 0.5 * maths::dot(*gradient, dvec2(change) * before.size(reading))) /
+              slope;
+        }
+        result.push_back({*gradient / slope, here, by_translation,
                           std::abs(distance(by_rotation * ndc) - here) > 2.0 * kSamePlace ||
                               std::abs(distance(without_motion * ndc) - here) > 2.0 * kSamePlace});
       }
@@ -167,61 +178,89 @@ class MotionInspector {
     return result;
   }
 
+  // Returns the translation of the camera that explains the depths best, by least squares without
+  // outliers, beginning with a camera that does not move.
+  dvec3 best_translation() const {
+    Reading reading = given_;
+    reading.translation = dvec3(0.0);
+    for (const double limit : {30.0, 20.0, 10.0, 5.0, 3.0, 2.0, 1.0, 0.5, 0.3, 0.3}) {
+      maths::dmat3 matrix(1e-12);
+      dvec3 sum(0.0);
+      for (const Displacement& d : displacements(now_, pictures_[1], now_, pictures_[1], reading)) {
+        if (std::abs(d.distance) > limit) continue;
+        matrix += maths::outerProduct(d.by_translation, d.by_translation);
+        sum += d.by_translation * d.distance;
+      }
+      *reading.translation -= maths::inverse(matrix) * sum;
+    }
+    return *reading.translation;
+  }
+
   // Returns the mistake that explains why the cameras do not fit depth from frame to frame.
   // `share_of_all` is the share of all samples at the place that the cameras say, and `share` that
-  // of the samples that show the camera's motion, if it is smaller.
+  // of the samples that show the camera's motion, if it is smaller. A hypothesis must explain most
+  // samples, and more than those before it, which are simpler.
   Mistake mistake_of_cameras(const std::vector<Displacement>& by_cameras, double share_of_all,
                              double share, double& measure) const {
     const Picture& before = pictures_[1];
-    const auto fits = [&](const std::vector<Displacement>& other, const dvec2& shift) {
-      return other.size() >= kEnoughSamples &&
-             share_at(other, shift) > std::max(kFits, share_of_all + 0.3);
+    Mistake best = Mistake::count;
+    double most = std::max(kFits, share + 0.3);
+    const auto consider = [&](Mistake mistake, double its_measure,
+                              const std::vector<Displacement>& other,
+                              const dvec2& shift = dvec2(0.0)) {
+      const double its_share = explained(other, shift);
+      if (its_share <= most) return;
+      most = its_share + 0.02;
+      best = mistake;
+      measure = its_measure;
+    };
+    const auto by = [&](const Reading& reading) {
+      return displacements(now_, before, now_, before, reading);
     };
     if (pictures_.size() > 2) {
       const Picture& oldest = pictures_[2];
-      if (fits(displacements(before, oldest, now_, before, given_), dvec2(0.0)) ||
-          fits(displacements(now_, before, before, oldest, given_), dvec2(0.0)))
-        return Mistake::camera_of_another_frame;
+      consider(Mistake::camera_of_another_frame, 0.0,
+               displacements(before, oldest, now_, before, given_));
+      consider(Mistake::camera_of_another_frame, 0.0,
+               displacements(now_, before, before, oldest, given_));
     }
+    Reading reading = given_;
+    reading.invert_view = true;
+    consider(Mistake::view_inverted, 0.0, by(reading));
+    for_projections(now_, given_, [&](Mistake mistake, const Reading& projection) {
+      consider(mistake, 0.0, by(projection));
+    });
     // Jitter: the whole image is shifted from where the cameras expect it.
     const dvec2 in_cameras = now_.jitter() - before.jitter();
     for (const dvec2& begin : {dvec2(0.0), in_cameras}) {
       const dvec2 shift = common_shift(by_cameras, begin);
       const dvec2 in_depth = in_cameras - shift;
-      measure = maths::length(shift);
-      if (fits(by_cameras, shift) && std::abs(in_depth.x) < 1.2 && std::abs(in_depth.y) < 1.2) {
-        return maths::length(in_cameras) < 0.02 ? Mistake::jitter_missing
-               : maths::length(in_depth) < 0.1  ? Mistake::jitter_unused
-                                                : Mistake::jitter_wrong;
+      if (std::abs(in_depth.x) < 1.2 && std::abs(in_depth.y) < 1.2) {
+        consider(maths::length(in_cameras) < 0.02 ? Mistake::jitter_missing
+                 : maths::length(in_depth) < 0.1  ? Mistake::jitter_unused
+                                                  : Mistake::jitter_wrong,
+                 maths::length(shift), by_cameras, shift);
       }
     }
-    Mistake best = Mistake::count;
-    double most = std::max(kFits, share + 0.3);
-    const auto consider = [&](Mistake mistake, const Reading& reading) {
-      const auto other = displacements(now_, before, now_, before, reading);
-      const double other_share =
-          other.size() < kEnoughSamples ? 0.0 : share_in_motion(other).value_or(0.0);
-      if (other_share > most) {
-        most = other_share;
-        best = mistake;
-        measure = reading.translation_scale;
-      }
-    };
-    for_projections(now_, given_, consider);
-    Reading reading = given_;
-    for (double scale = 0.008; scale < 130.0; scale *= 1.1) {
-      reading.translation_scale = scale;
-      consider(Mistake::translation_scale, reading);
-    }
+    const dvec3 translation(camera_motion(now_, before, given_)[3]);
     reading = given_;
-    reading.invert_view = true;
-    consider(Mistake::view_inverted, reading);
-    if (best != Mistake::count) return best;
-    measure = 100.0 * (1.0 - share);
+    reading.translation = best_translation();
+    const double length = maths::length(translation);
+    const double scale = maths::dot(*reading.translation, translation) / (length * length);
+    const bool is_scaled =
+        scale > 0.0 && maths::length(*reading.translation - scale * translation) <
+                           0.1 * maths::length(*reading.translation);
     const auto has_translation = [](const Picture& picture) {
       return dvec3(picture.view_from_world[3]) != dvec3(0.0);
     };
-    if (!has_translation(now_) && !has_translation(before)) return Mistake::no_translation;
+    const bool has_none = !has_translation(now_) && !has_translation(before);
+    consider(has_none    ? Mistake::no_translation
+             : is_scaled ? Mistake::translation_scale
+                         : Mistake::translation_wrong,
+             scale, by(reading));
+    if (best != Mistake::count) return best;
+    measure = 100.0 * (1.0 - share);
+    if (has_none) return Mistake::no_translation;
     // Where objects move, depth alone does not tell whether the cameras fit.
     if (by_cameras.size() < kEnoughSamples || share_of_all > 0.25 || frame_.has_motion)
       return Mistake::count;
@@ -233,7 +272,8 @@ class MotionInspector {
   }
 
   // Compares the motion vectors with the motion that the cameras give to static surfaces.
-  void inspect_motion_vectors() {
+  // `is_static` says that depth shows almost no other motion.
+  void inspect_motion_vectors(bool is_static) {
     struct Vector {
       dvec2 stored;
       dvec2 by_cameras;  // pixels
@@ -261,34 +301,46 @@ class MotionInspector {
         return maths::length(given - v.by_cameras) <= 0.1 + 0.05 * maths::length(v.by_cameras);
       });
     };
+    // Returns the offset of most vectors in pixels.
+    const auto common_offset = [&](const dvec2& factor) {
+      std::array<std::vector<double>, 2> rests;
+      for (const Vector& v : vectors)
+        for (int i = 0; i < 2; ++i)
+          rests.at(i).push_back(v.by_cameras[i] -
+                                (scale[i] * v.stored[i] * factor[i] + offset[i]) * size[i]);
+      return dvec2(quantile(rests[0], 0.5), quantile(rests[1], 0.5));
+    };
     const double given = share(dvec2(1.0), dvec2(0.0));
+    const bool is_zero = share_of(vectors, [&](const Vector& v) {
+                           return maths::length(scale * v.stored * size) < 0.02;
+                         }) > 0.9;
     Mistake found = Mistake::count;
-    if (given < kMisfits) {
+    if (given < kMisfits && is_zero) {
+      found = Mistake::motion_zero;
+    } else if (given < kMisfits) {
       double most = std::max(kFits, given + 0.3);
-      const dvec2 jitter = now_.jitter() - pictures_[1].jitter();
-      const dvec2 units[] = {dvec2(1.0), dvec2(0.5), dvec2(2.0), 1.0 / size, size};
-      for (const double jitters : {0.0, 1.0, 2.0, -1.0}) {
-        for (const dvec2& unit : units) {
+      for (const bool has_offset : {false, true}) {
+        for (const dvec2& unit : {dvec2(1.0), dvec2(0.5), dvec2(2.0), 1.0 / size, size}) {
           for (int signs = 0; signs < 4; ++signs) {
             const dvec2 factor =
                 unit * dvec2((signs & 1) != 0 ? -1.0 : 1.0, (signs & 2) != 0 ? -1.0 : 1.0);
-            const double other = share(factor, jitters * jitter);
+            const dvec2 shift = has_offset ? common_offset(factor) : dvec2(0.0);
+            // With another unit or sign, only a jitter is likely to be missing too.
+            if (factor != dvec2(1.0) && maths::length(shift) > kLargestJitter) continue;
+            const double other = share(factor, shift);
             if (other > most + 0.02) {
               most = other;
               found = unit != dvec2(1.0) ? Mistake::motion_unit
                       : signs != 0       ? Mistake::motion_sign
-                                         : Mistake::motion_jitter;
+                                         : Mistake::motion_offset;
             }
           }
         }
       }
-      if (found == Mistake::count && share_of(vectors, [&](const Vector& v) {
-                                       return maths::length(scale * v.stored * size) < 0.02;
-                                     }) > 0.9)
-        found = Mistake::motion_zero;
+      if (found == Mistake::count && is_static && given < 0.25) found = Mistake::motion_disagrees;
     }
-    for (const Mistake mistake :
-         {Mistake::motion_zero, Mistake::motion_sign, Mistake::motion_unit, Mistake::motion_jitter})
+    for (const Mistake mistake : {Mistake::motion_zero, Mistake::motion_sign, Mistake::motion_unit,
+                                  Mistake::motion_offset, Mistake::motion_disagrees})
       findings_.set(mistake, mistake == found);
   }
 

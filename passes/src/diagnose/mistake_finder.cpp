@@ -23,76 +23,15 @@ bool same(const AlcoveCamera& a, const AlcoveCamera& b) {
   return same(a.clip_from_view, b.clip_from_view) && same(a.view_from_world, b.view_from_world);
 }
 
-// Sentences that say what is wrong and what to do, in the order of Mistake. A # stands for
-// Findings::measures.
+bool same_rotation(AlcoveCamera a, const AlcoveCamera& b) {
+  std::copy_n(b.view_from_world + 12, 3, a.view_from_world + 12);
+  return same(a.view_from_world, b.view_from_world);
+}
+
 constexpr std::array<const char*, kMistakes> kSentences{
-    "AlcoveFrame::index stays the same from frame to frame; count it up, so that the noise "
-    "averages out, or set static_noise if no temporal filter follows.",
-    "AlcoveFrame::index goes back again and again; count it up, so that the noise averages out.",
-    "previous_camera is this frame's camera in every frame in which the camera moves; give the "
-    "camera that the view was last recorded with.",
-    "previous_camera is not the camera that the view was last recorded with; store that one after "
-    "each frame.",
-    "previous_camera has the last frame's view_from_world but another clip_from_view; give the "
-    "matrix that depth was drawn with, jitter included.",
-    "previous_width and previous_height are not the size that the view was last recorded with; "
-    "store it after each frame.",
-    "static_frames is not 0 although the image changes; it counts frames that show exactly the "
-    "same.",
-    "reset_history is set in every frame, so that no history accumulates; set it at cuts only.",
-    "AlcoveFrame::slot was recorded again before the device had finished its last frame; wait for "
-    "the fence of the slot.",
-    "an image is smaller than AlcoveImage::width and height say.",
-    "the pixels fit the camera only if the whole image is in use, which is larger than "
-    "AlcoveImage::width and height say; give the size of this frame.",
-    "the size changes within an image of one size, and each change begins a new history; give "
-    "largest_width and largest_height, and previous_width and previous_height.",
-    "the image of depth holds values below 0 or above 1; give the depth buffer as the projection "
-    "writes it, not a linear depth.",
-    "the values of the image of depth have the steps of another format than AlcoveImage::format "
-    "says; give the format that its view was created with.",
-    "depth runs the other way than camera.clip_from_view says: the sky, or all that is seen, lies "
-    "at its near plane; give the matrix that depth was drawn with.",
-    "camera.clip_from_view looks like OpenGL's, with depth from -1 to 1: its near plane is a round "
-    "number only then; convert it with ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE.",
-    "camera.clip_from_view looks as if it had depth from 0 to 1 and was converted with "
-    "ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE; convert it without that bit.",
-    "the pixels fit another angle of view, or other near and far planes, than those of "
-    "camera.clip_from_view; give the matrix that depth was drawn with.",
-    "the pixels fit y of camera.clip_from_view the other way round; see "
-    "ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP.",
-    "the radius is less than a pixel almost everywhere; give it in the units of the scene.",
-    "the radius is more than twice the height of the image everywhere; give it in the units of the "
-    "scene.",
-    "normals fit the depth in the other space; change normals_in_view_space.",
-    "normals fit the depth when they are decoded in another way; change normal_encoding.",
-    "normals fit the depth with the other sign of z; change normals_forward_z.",
-    "the pixels fit camera.view_from_world only if it is inverted; give the matrix from world to "
-    "view space.",
-    "normals fit the depth under no reading, typically by # degrees: the image holds something "
-    "else, or normals with other axes; or depth is not what camera.clip_from_view gives; or "
-    "camera.view_from_world is not the camera's.",
-    "the pixels fit the camera of the frame before or after: camera and depth are not of the same "
-    "frame; give the camera that this frame's depth was drawn with.",
-    "depth is shifted by jitter, typically by # pixels from frame to frame, that "
-    "camera.clip_from_view lacks; give the matrix that depth was drawn with.",
-    "camera.clip_from_view has a jitter, of # pixels from frame to frame, that depth was not drawn "
-    "with; give the matrix that depth was drawn with.",
-    "the jitter of camera.clip_from_view differs, by # pixels from frame to frame, from that of "
-    "depth: it has another sign or unit, or is another frame's; give the matrix that depth was "
-    "drawn with.",
-    "depth of successive frames fits if the camera moves # times as far as camera.view_from_world "
-    "says; the near plane of clip_from_view or the unit of view_from_world is wrong.",
-    "camera.view_from_world has no translation, but the camera moves; give the whole matrix, or "
-    "one that is relative to one origin for this frame and the last.",
-    "at # % of the pixels depth is not what the cameras of this frame and the last expect, so that "
-    "their history is rejected; give the matrices that depth was drawn with, and motion vectors if "
-    "objects move.",
-    "motion vectors are 0 although the camera moves; they must contain the motion by the camera.",
-    "motion vectors fit the motion of the camera with the other sign of x or y; change "
-    "motion_scale.",
-    "motion vectors fit the motion of the camera in another unit; change motion_scale.",
-    "motion vectors fit the motion of the camera with other jitter; change motion_offset.",
+#define ALCOVE_MISTAKE(name, sentence) sentence,
+#include "diagnose/mistakes.inc"
+#undef ALCOVE_MISTAKE
 };
 
 VkExtent2D read_size(const AlcoveView& view) {
@@ -102,10 +41,28 @@ VkExtent2D read_size(const AlcoveView& view) {
                           view.images[ALCOVE_IMAGE_DEPTH].height};
 }
 
+// `seen` has a bit for each frame that could show the mistake.
 bool is_reported(Mistake mistake, std::uint32_t seen) {
-  // An index may go back once, for example when a game restarts.
-  return mistake == Mistake::index_goes_back ? std::popcount(seen) >= 2
-                                             : std::popcount(seen & 0xffu) >= 5;
+  switch (mistake) {
+    case Mistake::index_goes_back:  // once it may, for example when a game restarts
+      return std::popcount(seen) >= 2;
+    case Mistake::index_repeats:  // in every second record if a view is recorded twice a frame
+      return std::popcount(seen & 0xffu) >= 3;
+    case Mistake::history_reset:  // a film may have a cut or two
+      return std::popcount(seen & 0xffffu) >= 3;
+    case Mistake::eyes_alternate:  // a camera may tremble
+      return (seen & 0xffu) == 0xffu;
+    default:
+      return std::popcount(seen & 0xffu) >= 5;
+  }
+}
+
+std::array<float, 3> eye_of(const AlcoveCamera& camera) {
+  const float* const m = camera.view_from_world;
+  std::array<float, 3> eye{};
+  for (std::size_t i = 0; i < 3; ++i)
+    eye.at(i) = -(m[4 * i] * m[12] + m[4 * i + 1] * m[13] + m[4 * i + 2] * m[14]);
+  return eye;
 }
 
 }  // namespace
@@ -149,11 +106,24 @@ Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::ui
   result.set(Mistake::index_goes_back, reads_index && index < view.index);
   result.set(Mistake::history_reset, reset);
   if (reset || given.info.settings->history_frames == 0) return result;
+  // Two steps in opposite directions.
+  float both = 0.0f, step = 0.0f, last_step = 0.0f;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float now = eye_of(given.info.camera).at(i) - view.eyes[0].at(i);
+    const float last = view.eyes[0].at(i) - view.eyes[1].at(i);
+    both += now * last;
+    step += now * now;
+    last_step += last * last;
+  }
+  const float least = 1e-3f * given.info.settings->radius;
+  result.set(Mistake::eyes_alternate, std::min(step, last_step) > least * least &&
+                                          both < -0.7f * std::sqrt(step * last_step));
   if (!same(given.info.camera, view.camera)) {
-    const bool is_last = same(given.info.previous_camera, view.camera);
     const bool is_this = same(given.info.previous_camera, given.info.camera);
-    const bool other_projection =
-        same(given.info.previous_camera.view_from_world, view.camera.view_from_world);
+    const bool other_projection = same_rotation(given.info.previous_camera, view.camera);
+    // The translation may differ: cameras may be relative to an origin that moves.
+    const bool is_last = other_projection && same(given.info.previous_camera.clip_from_view,
+                                                  view.camera.clip_from_view);
     result.set(Mistake::previous_is_this, is_this);
     result.set(Mistake::projection_is_another, !is_last && !is_this && other_projection);
     result.set(Mistake::previous_is_another, !is_last && !is_this && !other_projection);
@@ -181,6 +151,7 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
     view->has_history = given.info.settings->history_frames > 0;
     view->index = frame.index;
     view->camera = given.info.camera;
+    view->eyes = {eye_of(given.info.camera), view->eyes[0]};
     view->size = read_size(given);
   }
   new_views_ = static_cast<std::uint8_t>(new_views_ << 1 | (is_new_ ? 1 : 0));
@@ -208,8 +179,9 @@ std::string MistakeFinder::describe() const {
         std::string sentence = kSentences.at(i);
         if (const std::size_t at = sentence.find('#'); at != std::string::npos) {
           const float measure = view.measures.at(i);
-          const float unit = measure < 10.0f ? 100.0f : 1.0f;
-          sentence.replace(at, 1, number_text(std::round(measure * unit) / unit));
+          // One digit, so that the sentence stays the same from frame to frame.
+          const float unit = std::pow(10.0f, std::floor(std::log10(std::max(measure, 1e-3f))));
+          sentence.replace(at, 1, number_text(std::round(measure / unit) * unit));
         }
         text += "View " + std::to_string(view.id) + ": " + sentence + "\n";
       }

@@ -36,6 +36,7 @@ class MistakeFinder {
     // Values of the last recorded frame:
     std::uint32_t index = 0;
     AlcoveCamera camera{};
+    std::array<std::array<float, 3>, 2> eyes{};  // of the last two records
     VkExtent2D size{};
     // A bit for each frame in which the mistake could be seen, the newest first: whether it was.
     std::array<std::uint32_t, kMistakes> seen{};

@@ -24,11 +24,11 @@ inline constexpr std::size_t kEnoughOfSome = 12;
 // A hypothesis of how the inputs are meant.
 struct Reading {
   NormalConvention normals;
-  bool flip_y = false;
-  bool invert_view = false;        // view_from_world is world_from_view
-  bool whole_image = false;        // the whole image is in use
-  double tangent_scale = 1.0;      // of the tangents of half the angles of view
-  double translation_scale = 1.0;  // of the camera's way from frame to frame
+  dvec2 tangent_scale = dvec2(1.0);  // of the tangents of half the angles of view
+  bool invert_view = false;          // view_from_world is world_from_view
+  bool whole_image = false;          // the whole image is in use
+  bool transposed_normals = false;   // rotated by world_from_view instead of view_from_world
+  std::optional<dvec3> translation;  // of the camera from frame to frame; else the cameras'
 };
 
 inline bool is_sky(float depth) { return !(depth > 0.0f && depth < 1.0f); }
@@ -78,8 +78,8 @@ class Picture {
   dmat4 clip_from_view_by(const Reading& reading) const {
     dmat4 clip = clip_from_view;
     for (int column = 0; column < 4; ++column) {
-      clip[column][0] /= reading.tangent_scale;
-      clip[column][1] /= reading.flip_y ? -reading.tangent_scale : reading.tangent_scale;
+      clip[column][0] /= reading.tangent_scale.x;
+      clip[column][1] /= reading.tangent_scale.y;
     }
     return clip;
   }
@@ -145,14 +145,15 @@ void for_projections(const Picture& picture, const Reading& given, const Call& c
   if (is_smaller(picture.frame.size, picture.frame.depth_size))
     call(Mistake::image_too_large, reading);
   reading = given;
-  reading.flip_y = true;
-  call(Mistake::flipped_y, reading);
-  // Factors by which the tangent of half the field of view may be wrong.
-  reading = given;
-  for (double scale = 0.25; picture.perspective && scale < 4.2; scale *= 1.05) {
-    if (scale < 0.87 || scale > 1.15) {
-      reading.tangent_scale = scale;
-      call(Mistake::field_of_view, reading);
+  for (const dvec2& sign : {dvec2(1.0, -1.0), dvec2(-1.0, 1.0)}) {
+    reading.tangent_scale = sign;
+    call(Mistake::flipped, reading);
+  }
+  // Factors by which the tangent of half the field of view, or the aspect, may be wrong.
+  for (double scale = 0.25; picture.perspective && scale < 4.2; scale *= 1.03) {
+    for (const dvec2& scales : {dvec2(scale), dvec2(scale, 1.0)}) {
+      reading.tangent_scale = scales;
+      if (std::abs(std::log(scale)) > 0.05) call(Mistake::field_of_view, reading);
     }
   }
 }

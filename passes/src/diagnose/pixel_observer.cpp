@@ -49,6 +49,7 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Kernels& 
   pending.id = info.id;
   pending.frame = {
       .camera = info.camera,
+      .previous_camera = info.previous_camera,
       .size = size,
       .depth_format = image.format,
       .has_normals = bool(normals),

@@ -116,9 +116,9 @@ class Kernels {
 
   // Records a dispatch of `groups`. `parameters` are the contents of the shader's uniform buffer.
   // `views` has one view for each image binding of the shader, ascending by number: sampled images
-  // in the layout SHADER_READ_ONLY_OPTIMAL, storage images in GENERAL. A view that is bound both as
-  // a sampled and as a storage image is in GENERAL. Executor::record() returns an error if memory
-  // runs out, if begin_frame() was given no valid slot, or if the frame already has kMaxDispatches.
+  // in the layout SHADER_READ_ONLY_OPTIMAL, storage images in GENERAL. Executor::record() returns
+  // an error if memory runs out, if begin_frame() was given no valid slot, or if the frame already
+  // has kMaxDispatches.
   void dispatch(framegraph::RecordContext& context, Kernel kernel,
                 std::span<const VkImageView> views, std::span<const std::byte> parameters,
                 const std::array<std::uint32_t, 3>& groups);

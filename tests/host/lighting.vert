@@ -1,6 +1,0 @@
-#version 450
-
-// A triangle that covers the image.
-void main() {
-  gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
