@@ -301,6 +301,7 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
     result.settings.slices = 1;
     result.settings.steps = 2;
   }
+  result.back = course_.stereo ? 2 : 1;
   result.view = drawn(0).view;
   result.view.info.id = 2 * next_id_ + (course_.stereo ? frame % 2 : 0);
   result.right = result.view;

@@ -55,6 +55,7 @@ struct OtherInputs {
 // A frame that an engine passes to the C interface.
 struct EngineFrame {
   std::uint32_t records = 1;  // in the command buffer of the frame
+  std::uint32_t back = 1;     // frames since the last one of the view
   AlcoveFrame frame{};        // `views` points to `view`
   AlcoveView view{};
   AlcoveSettings settings{};

@@ -111,8 +111,8 @@ void change_size(F& frame) {
     return width;
   };
   const std::uint32_t index = frame.frame.index;
-  if (index > 0) {
-    frame.view.info.previous_width = crop(frame.view.info.previous_camera, index - 1);
+  if (index >= frame.back) {
+    frame.view.info.previous_width = crop(frame.view.info.previous_camera, index - frame.back);
     frame.view.info.previous_height = frame.view.images[ALCOVE_IMAGE_DEPTH].height;
   }
   frame.view.info.largest_width = whole;
