@@ -48,11 +48,15 @@ std::string diagnose(const std::function<void(AlcoveFrame&, AlcoveView&)>& chang
 TEST(CDiagnose, CorrectCallsAreNotReportedAsMistakes) {
   for (const float speed : {0.0f, 1e-5f, 0.1f, 1e4f})
     EXPECT_EQ(diagnose([](AlcoveFrame&, AlcoveView&) {}, speed), "") << speed;
-  // The following calls are correct as well: a reset of the history in every fifth frame, pairs of
-  // frames with the same index, as for the two eyes of a stereo view, and a game that starts anew.
+  // The following calls are correct as well: cuts, pairs of frames with the same index for the two
+  // eyes of a stereo view, each with its own id, and a game that starts anew.
   EXPECT_EQ(diagnose([](AlcoveFrame& frame, AlcoveView& view) {
-              view.info.reset_history = frame.index % 5 == 0 ? VK_TRUE : VK_FALSE;
-              frame.index = frame.index % 25 / 2;
+              const std::uint32_t pair = frame.index / 2;
+              view.info.id = frame.index % 2;
+              view.info.camera = camera_at(0.1f * static_cast<float>(pair), 0.0f);
+              view.info.previous_camera = camera_at(0.1f * (static_cast<float>(pair) - 1.0f), 0.0f);
+              view.info.reset_history = pair % 8 == 0 ? VK_TRUE : VK_FALSE;
+              frame.index = pair % 12;
             }),
             "");
 }

@@ -93,9 +93,9 @@ TEST_F(CFailure, VulkanFeaturesAndFunctionsThatTheDeviceLacksAreReported) {
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
               HasSubstr("has Vulkan 1.1, and at least 1.2 is needed"));
   api_version = VK_API_VERSION_1_3;
-  storage_images = 7;
+  storage_images = 5;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
-              HasSubstr("7 storage images to a shader; the occlusion passes need 8."));
+              HasSubstr("5 storage images to a shader; the occlusion passes need 6."));
   storage_images = 10;
   missing_function = "vkCmdPipelineBarrier2";
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));
