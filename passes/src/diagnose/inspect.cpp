@@ -195,7 +195,8 @@ class Inspector {
       if (is_sky(s.depth)) continue;
       const dvec4 place = now_.view_from_clip * dvec4(now_.ndc(s, given_), s.depth, 1.0);
       pixels.push_back(frame_.radius * scale / (now_.perspective ? -place.z / place.w : 1.0));
-      for (int i = 0; i < 3; ++i) places.at(i).push_back(place[i] / place.w);
+      for (int i = 0; i < 3; ++i)
+        places.at(static_cast<std::size_t>(i)).push_back(place[i] / place.w);
     }
     if (pixels.size() < kEnoughSamples) return true;
     // The size of what is seen.

@@ -306,8 +306,9 @@ class MotionInspector {
       std::array<std::vector<double>, 2> rests;
       for (const Vector& v : vectors)
         for (int i = 0; i < 2; ++i)
-          rests.at(i).push_back(v.by_cameras[i] -
-                                (scale[i] * v.stored[i] * factor[i] + offset[i]) * size[i]);
+          rests.at(static_cast<std::size_t>(i))
+              .push_back(v.by_cameras[i] -
+                         (scale[i] * v.stored[i] * factor[i] + offset[i]) * size[i]);
       return dvec2(quantile(rests[0], 0.5), quantile(rests[1], 0.5));
     };
     const double given = share(dvec2(1.0), dvec2(0.0));
