@@ -173,18 +173,24 @@ void read_timestamp_bits(DeviceContext& context) {
   }
 }
 
+// Returns whether one of the instance's layers validates. The layers of Vulkan 1.3.239 answer to
+// the name of the extension only.
 bool has_validation_layers(const DeviceHandles& handles) {
-  const auto query = reinterpret_cast<PFN_vkGetPhysicalDeviceToolProperties>(
-      handles.get_instance_proc_addr(handles.instance, "vkGetPhysicalDeviceToolProperties"));
-  std::uint32_t count = 0;
-  if (query == nullptr || query(handles.physical_device, &count, nullptr) != VK_SUCCESS)
-    return false;
-  std::vector<VkPhysicalDeviceToolProperties> tools(
-      count, {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TOOL_PROPERTIES});
-  return query(handles.physical_device, &count, tools.data()) == VK_SUCCESS &&
-         std::any_of(tools.begin(), tools.end(), [](const auto& tool) {
-           return (tool.purposes & VK_TOOL_PURPOSE_VALIDATION_BIT) != 0;
-         });
+  for (const char* name :
+       {"vkGetPhysicalDeviceToolProperties", "vkGetPhysicalDeviceToolPropertiesEXT"}) {
+    const auto query = reinterpret_cast<PFN_vkGetPhysicalDeviceToolProperties>(
+        handles.get_instance_proc_addr(handles.instance, name));
+    std::uint32_t count = 0;
+    if (query == nullptr || query(handles.physical_device, &count, nullptr) != VK_SUCCESS) continue;
+    std::vector<VkPhysicalDeviceToolProperties> tools(
+        count, {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TOOL_PROPERTIES});
+    if (query(handles.physical_device, &count, tools.data()) != VK_SUCCESS) continue;
+    if (std::any_of(tools.begin(), tools.end(), [](const auto& tool) {
+          return (tool.purposes & VK_TOOL_PURPOSE_VALIDATION_BIT) != 0;
+        }))
+      return true;
+  }
+  return false;
 }
 
 Errors missing(std::string what) {
@@ -216,8 +222,7 @@ tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& han
   context.vk.vkGetPhysicalDeviceMemoryProperties(handles.physical_device, &context.memory);
   read_limits(context);
   read_timestamp_bits(context);
-  context.is_validated =
-      context.properties.apiVersion >= VK_API_VERSION_1_3 && has_validation_layers(handles);
+  context.is_validated = has_validation_layers(handles);
   return {};
 }
 
