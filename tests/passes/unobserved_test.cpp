@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "gtao_scenes.h"
+#include "drawing.h"
 #include "pass_fixture.h"
 
 namespace alcove::passes {
@@ -19,8 +19,8 @@ class UnobservedDirectionsPass : public PassTest {
   // `horizons` by little more than the directions that it excludes.
   HostImage visibility(const TestView& view, const Drawing& drawing,
                        AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED,
-                       float radius = kRadius, const HostImage* second_layer = nullptr) {
-    OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
+                       const HostImage* second_layer = nullptr) {
+    OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, kRadius);
     settings.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
     settings.depth_layers = second_layer == nullptr ? 1 : 2;
@@ -164,8 +164,8 @@ TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExc
   const Drawing drawing = draw(view, kWidth, kHeight, scene);
   const HostImage second = draw_second_layer(view, kWidth, kHeight, scene);
   const auto error = [&](const HostImage* layer) {
-    return mean_difference(visibility(view, drawing, ALCOVE_ESTIMATOR_CONNECTED, kRadius, layer),
-                           truth, kWidth / 2 - 4, kWidth / 2);
+    return mean_difference(visibility(view, drawing, ALCOVE_ESTIMATOR_CONNECTED, layer), truth,
+                           kWidth / 2 - 4, kWidth / 2);
   };
   EXPECT_GT(error(nullptr), 0.05);
   EXPECT_LT(error(&second), 0.2 * error(nullptr));
