@@ -258,7 +258,9 @@ TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible)
       return sum / count;
     };
     EXPECT_GT(difference(ALCOVE_ESTIMATOR_HORIZONS), 0.05) << "horizons does not extrapolate";
-    EXPECT_LT(difference(ALCOVE_ESTIMATOR_CONNECTED), 0.0115);
+    // The orthographic view has .0119, which includes directions that are excluded at the border.
+    // Without extrapolation the views have .052 and .066.
+    EXPECT_LT(difference(ALCOVE_ESTIMATOR_CONNECTED), 0.0125);
   }
 }
 
