@@ -266,7 +266,8 @@ Camera ViewFinder::with_fitted_planes(const Camera& camera, double aspect) const
   out.far_plane = reach;
   if (!camera.orthographic)
     out.near_plane = std::clamp(0.5f * look(out, aspect).nearest, 2e-5f * size, 0.01f * size);
-  return out.near_plane < out.far_plane ? out : camera;
+  const bool usable = camera.orthographic || out.near_plane > 0.0f;
+  return usable && out.near_plane < out.far_plane ? out : camera;
 }
 
 RadiusChoice ViewFinder::radius(const Camera& camera, double aspect) const {

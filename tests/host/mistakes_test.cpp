@@ -95,11 +95,12 @@ TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
     for (std::size_t i = 0; i < scene->meshes.size(); i += 4) scene->meshes[i].moves = true;
     EngineCourse course = kQuick;
     course.radius = default_radius(*scene);
-    for (Camera from : scene->cameras) {
+    for (Camera& from : scene->cameras) {
       from.reversed_z = true;
-      // The analytic scenes are small and simple; they have the first courses.
+      // One camera has all courses, and the others the first ones.
       std::vector<RightCourse> courses = right_courses(course);
-      if (std::string_view(name) != "builtin") courses.resize(6);
+      const bool first = std::string_view(name) == "builtin" && &from == scene->cameras.data();
+      if (!first) courses.resize(6);
       for (const RightCourse& right : courses) {
         auto run = EngineRun::create(*gpu_, *scene, from, right.course);
         ASSERT_TRUE(run) << run.error();
