@@ -173,24 +173,20 @@ void read_timestamp_bits(DeviceContext& context) {
   }
 }
 
-// Returns whether one of the instance's layers validates. The layers of Vulkan 1.3.239 answer to
-// the name of the extension only.
+// Returns whether one of the instance's layers validates. The name of the extension may be called
+// with every version of the instance, and the layers of Vulkan 1.3.239 answer to no other.
 bool has_validation_layers(const DeviceHandles& handles) {
-  for (const char* name :
-       {"vkGetPhysicalDeviceToolProperties", "vkGetPhysicalDeviceToolPropertiesEXT"}) {
-    const auto query = reinterpret_cast<PFN_vkGetPhysicalDeviceToolProperties>(
-        handles.get_instance_proc_addr(handles.instance, name));
-    std::uint32_t count = 0;
-    if (query == nullptr || query(handles.physical_device, &count, nullptr) != VK_SUCCESS) continue;
-    std::vector<VkPhysicalDeviceToolProperties> tools(
-        count, {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TOOL_PROPERTIES});
-    if (query(handles.physical_device, &count, tools.data()) != VK_SUCCESS) continue;
-    if (std::any_of(tools.begin(), tools.end(), [](const auto& tool) {
-          return (tool.purposes & VK_TOOL_PURPOSE_VALIDATION_BIT) != 0;
-        }))
-      return true;
-  }
-  return false;
+  const auto query = reinterpret_cast<PFN_vkGetPhysicalDeviceToolProperties>(
+      handles.get_instance_proc_addr(handles.instance, "vkGetPhysicalDeviceToolPropertiesEXT"));
+  std::uint32_t count = 0;
+  if (query == nullptr || query(handles.physical_device, &count, nullptr) != VK_SUCCESS)
+    return false;
+  std::vector<VkPhysicalDeviceToolProperties> tools(
+      count, {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TOOL_PROPERTIES});
+  return query(handles.physical_device, &count, tools.data()) == VK_SUCCESS &&
+         std::any_of(tools.begin(), tools.end(), [](const auto& tool) {
+           return (tool.purposes & VK_TOOL_PURPOSE_VALIDATION_BIT) != 0;
+         });
 }
 
 Errors missing(std::string what) {
