@@ -181,8 +181,7 @@ static void execute(const char* folder, const AlcoveWork* work, const GLuint* te
                           dispatch->parameter_bytes);
       } else if (binding->type == ALCOVE_BINDING_TYPE_STORAGE_IMAGE) {
         glBindImageTexture(binding->number, textures[binding->resource], 0, GL_FALSE, 0,
-                           GL_WRITE_ONLY,
-                           format_of(work->resources[binding->resource].format));
+                           GL_WRITE_ONLY, format_of(work->resources[binding->resource].format));
       } else if (binding->type == ALCOVE_BINDING_TYPE_FETCHED_IMAGE) {
         glBindTextureUnit(binding->number, textures[binding->resource]);
         glBindSampler(binding->number, sampler);

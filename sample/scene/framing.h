@@ -22,8 +22,8 @@ struct RadiusChoice {
 // instances of meshes. A sky, or the shell of a room, contains the rest, and rays from there to the
 // sides and up meet it once, from the front. A ground is flat, below the rest, and at least three
 // times as wide in both horizontal directions. Strays are triangles outside the box that holds
-// 99.9 % of the area, if the subject is clearly larger with them. Scenes of more than 2^23 triangles are
-// judged by boxes alone.
+// 99.9 % of the area, if the subject is clearly larger with them. Scenes of more than 2^23
+// triangles are judged by boxes alone.
 class ViewFinder {
  public:
   explicit ViewFinder(const Scene& scene);

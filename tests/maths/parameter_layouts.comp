@@ -28,6 +28,6 @@ layout(std430, set = 0, binding = 10) buffer Sum { float sum; };
 
 void main() {
   sum = projection.size_px.x + gtao.radius + normals.slope.x + reconstruct.largest_weight +
-        gtso.roughness + multi_bounce.size_px.x + gtao.depth_step + upsample.tolerance + depth_copy.sky + float(linear_depth.origin.x) +
-        float(inspect.has_motion);
+        gtso.roughness + multi_bounce.size_px.x + gtao.depth_step + upsample.tolerance +
+        depth_copy.sky + float(linear_depth.origin.x) + float(inspect.has_motion);
 }

@@ -1,5 +1,5 @@
-#include "alcove/passes/setting_table.h"
 #include "evaluate/recommendation.h"
+#include "alcove/passes/setting_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

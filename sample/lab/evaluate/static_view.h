@@ -27,8 +27,7 @@ struct StaticSetup {
 // Returns the request for a frame of the view: visibility, and bent normals if the settings have
 // them, with motion relative to the frame before.
 [[nodiscard]] FrameRequest frame_request(const StaticSetup& setup,
-                                         const OcclusionSettings& settings,
-                                         std::uint32_t frame);
+                                         const OcclusionSettings& settings, std::uint32_t frame);
 
 // Renders the frames of a view and reads the last one back.
 [[nodiscard]] Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setup,
