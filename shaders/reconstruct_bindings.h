@@ -48,7 +48,7 @@ layout(set = 0, binding = 6) uniform writeonly image2D half_depth_image;  // hal
 layout(set = 0, binding = 5) uniform writeonly image2D visibility_image;
 #endif
 
-// What only a history needs is not used without kHistory.
+// Bindings that only a history needs are not used without kHistory.
 #ifdef HALF
 // half_image and half_depth_image of the previous frame.
 layout(set = 0, binding = 7) uniform texture2D history_image;

@@ -149,7 +149,7 @@ float distance_in_view(const Bounds& bounds, const glm::vec3& back, float fov_y,
 
 }  // namespace
 
-// What a view shows at a low resolution. Depths are distances along the view axis.
+// The picture of a view at a low resolution. Depths are distances along the view axis.
 struct ViewFinder::Picture {
   std::vector<float> depths;                    // of surfaces that are no sky
   float nearest = kInfinity;                    // depth of all surfaces

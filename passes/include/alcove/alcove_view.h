@@ -1,5 +1,5 @@
-// What a view consists of besides the images themselves: its camera, areas and conventions, and the
-// roles of its images. Included by alcove.h and alcove_work.h. It needs no header of Vulkan.
+// The description of a view without the images themselves: its camera, areas and conventions, and
+// the roles of its images. Included by alcove.h and alcove_work.h. It needs no header of Vulkan.
 #ifndef ALCOVE_ALCOVE_VIEW_H_
 #define ALCOVE_ALCOVE_VIEW_H_
 

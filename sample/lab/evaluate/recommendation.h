@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, 3> kSituationNames{"first", "movin
 // The width of a guard band over the height of the image: about the length of a search.
 inline constexpr double kGuardBand = 0.1;
 
-// What a search chooses.
+// One choice of a search.
 struct Choice {
   OcclusionSettings settings;
   // Whether the image is rendered with a guard band of kGuardBand beyond each border, which is not

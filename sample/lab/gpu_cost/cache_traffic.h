@@ -27,7 +27,7 @@ struct CacheTraffic {
   double milliseconds() const { return std::max({texture_ms, l2_ms, memory_ms}); }
 };
 
-// What no published source tells about the parts, and what decides most of the modelled times.
+// Assumptions about the parts that no published source settles. They decide most of the times.
 struct CacheAssumptions {
   std::string_view name;                // of what differs from the first of kCacheAssumptions
   bool flat_tiles = false;              // lines of 8-byte texels are twice as wide, half as high
@@ -37,7 +37,7 @@ struct CacheAssumptions {
   double waves = 1;                     // in flight, of those that the registers allow
   bool hashed_sets = true;              // false: address bits select the set of L2
 };
-// Those of the model, and others that differ in one point each.
+// The assumptions of the model, and others that differ in one point each.
 inline constexpr std::array<CacheAssumptions, 7> kCacheAssumptions{
     {{"the model"},
      {.name = "8-byte texels in flat tiles", .flat_tiles = true},

@@ -37,7 +37,7 @@ using ViewTextures = std::array<framegraph::Texture, ALCOVE_IMAGE_COUNT>;
 // device has finished with them: see Graph::drop_history.
 void drop_view(framegraph::Graph& graph, std::uint32_t id);
 
-// What lighting reads besides the outputs, from a depth texture as add_view() takes it.
+// Textures that lighting reads besides the outputs, from a depth texture as add_view() takes it.
 struct SurfaceTextures {
   // R32_SFLOAT: the distance along the view direction in scene units. Sky, NaN and infinitely far
   // depths are 1e12.
