@@ -6,20 +6,19 @@
 #include <optional>
 
 #include "allocation_counter.h"
-#include "gpu.h"
+#include "executor_fixture.h"
 
 namespace alcove::framegraph {
 namespace {
 
 constexpr std::uint32_t kWords = 8;
 
-class AllocationFailure : public testing::Test {
+class AllocationFailure : public ExecutorTest {
  protected:
   void SetUp() override {
-    ASSERT_EQ(gpu_.problem(), "");
+    ExecutorTest::SetUp();
     host_ = gpu_.make_host_buffer(kWords * sizeof(std::uint32_t));
   }
-  void TearDown() override { EXPECT_EQ(gpu_.messages(), ""); }
 
   // Adds one pass for each word of the host buffer. The pass calls during_ and writes `value` to
   // its word.
@@ -54,20 +53,17 @@ class AllocationFailure : public testing::Test {
     for (std::uint32_t i = 0; i < kWords; ++i) EXPECT_EQ(words[i], value);
   }
 
-  Gpu gpu_;
   HostBuffer host_;
-  ExecutorOptions options_;
   Graph graph_;
   std::function<void()> during_;
 };
 
 TEST_F(AllocationFailure, ExceptionThrownByAPassCallbackReachesTheCaller) {
-  auto executor = Executor::create(gpu_.handles(), options_);
-  ASSERT_TRUE(executor) << to_string(executor.error());
+  Executor executor = make();
   during_ = [] { throw std::bad_alloc(); };
   declare(1);
-  EXPECT_TRUE(throws(*executor));
-  expect_right(*executor, 2);
+  EXPECT_TRUE(throws(executor));
+  expect_right(executor, 2);
 }
 
 // Creates an executor and records its first frame. Repeats this with each allocation failing in
@@ -80,7 +76,7 @@ TEST_F(AllocationFailure, NextFrameIsRecordedCorrectlyAfterAnyHostAllocationFail
     fail_allocation(which);
     std::optional<Executor> executor;
     try {
-      if (auto made = Executor::create(gpu_.handles(), options_)) executor = std::move(*made);
+      if (auto made = Executor::create(gpu_.handles())) executor = std::move(*made);
       declare(1);
     } catch (const std::bad_alloc&) {
     }

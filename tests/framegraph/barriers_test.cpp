@@ -1,8 +1,7 @@
 // Compares the number of barrier commands with an exhaustive search over their positions.
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <iostream>
+#include <string>
 
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/verify.h"
@@ -30,17 +29,10 @@ TEST(Barriers, CompiledPlanHasTheFewestBarrierCommandsOfAllValidPlans) {
     declare_random(graph, dice, options);
     const auto plan = compile(graph.description());
     ASSERT_TRUE(plan) << to_string(plan.error());
-    const auto used = static_cast<int>(plan->batches.size());
-    for (std::uint32_t mask = 0; mask < 2u << plan->passes.size(); ++mask) {
-      if (std::popcount(mask) >= used) continue;
-      ++tried;
-      EXPECT_FALSE(verify(graph.description(), {}, with_barriers_at(*plan, mask)))
-          << "seed " << seed << ": " << used << " commands, but " << std::popcount(mask)
-          << " would be enough, before the positions of mask " << mask;
-    }
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    tried += expect_no_command_too_many(graph.description(), {}, *plan);
   }
   EXPECT_GT(tried, 1000u);
-  std::cerr << tried << " placements of fewer commands refused\n";
 }
 
 // Each face of a cube, and each mip of a face, is written by a different pass. One barrier must be
@@ -72,6 +64,27 @@ TEST(Barriers, LayersAndMipsWrittenByDifferentPassesShareOneBarrierBeforeTheirRe
     EXPECT_EQ(plan->batches[first.batch].count, 1u);
     EXPECT_EQ(plan->passes.back().batch, kNone);
   }
+}
+
+// Each mip is computed from the one before it. Only the last mip still needs a layout change before
+// the reader. A memory barrier makes the other mips visible.
+TEST(Barriers, ReaderOfAMipChainWrittenByOnePassPerMipNeedsAtMostTwoBarriers) {
+  Graph graph;
+  Texture chain = graph.create_texture("chain", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5});
+  chain = graph.add_pass("mip 0").write(chain, access::storage_write_compute, Range::mip(0));
+  for (std::uint32_t mip = 1; mip < 5; ++mip) {
+    PassBuilder down = graph.add_pass("down");
+    down.read(chain, access::sampled_compute, Range::mip(mip - 1));
+    chain = down.write(chain, access::storage_write_compute, Range::mip(mip));
+  }
+  PassBuilder reader = graph.add_pass("reader");
+  reader.read(chain, access::sampled_fragment);
+  reader.side_effect();
+  const auto plan = compile(graph.description());
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  EXPECT_TRUE(verify(graph.description(), {}, *plan));
+  ASSERT_NE(plan->passes[5].batch, kNone);
+  EXPECT_LE(plan->batches[plan->passes[5].batch].count, 2u);
 }
 
 TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
@@ -127,7 +140,7 @@ class InitialStates : public testing::Test {
   Texture import(const State& initial_state, const State& final_state = {}) {
     return graph_.import_texture("import", {.image = fake_handle<VkImage>(),
                                             .desc = {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)},
-                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+                                            .usage = ~VkImageUsageFlags{0},
                                             .initial_state = initial_state,
                                             .final_state = final_state});
   }
@@ -155,6 +168,20 @@ TEST_F(InitialStates, ImportVisibleToOneStageGetsABarrierOnlyIfAnotherStageReads
     EXPECT_EQ(plan.transitions[0].src_stages, initial_state.stages);
     EXPECT_EQ(plan.transitions[0].dst_access, access::sampled_fragment.access);
   }
+}
+
+// The final state of one frame is the initial state of the next.
+TEST_F(InitialStates, ImportLeftInTheStateThatTheNextFrameNeedsGetsNoFurtherBarrier) {
+  const State between = state_of(access::sampled_fragment);
+  (void)graph_.add_pass("draw").write(import({}, between), access::color_attachment, {},
+                                      Contents::discard);
+  EXPECT_EQ(compiled().transitions.size(), 2u);
+  graph_.reset();
+  const Texture texture = import(between);
+  PassBuilder reader = graph_.add_pass("reader");
+  reader.read(texture, access::sampled_fragment);
+  reader.side_effect();
+  EXPECT_EQ(compiled().transitions.size(), 0u);
 }
 
 TEST_F(InitialStates, ImportThatNoPassUsesGetsABarrierFromItsInitialToItsFinalState) {
@@ -228,7 +255,7 @@ TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands)
   Limits limits;
   const auto plan = compile_deferred_frame(graph, limits);
   ASSERT_TRUE(plan) << to_string(plan.error());
-  expect_no_command_too_many("deferred frame", graph.description(), limits, *plan);
+  EXPECT_GT(expect_no_command_too_many(graph.description(), limits, *plan), 0u);
 }
 
 // The earlier write is available by the barrier before the read. It must become visible to the

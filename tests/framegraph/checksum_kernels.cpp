@@ -83,10 +83,7 @@ void ChecksumKernels::run(RecordContext& context, const Kernel& kernel, const Re
   info.descriptorSetCount = 1;
   info.pSetLayouts = &kernel.set_layout;
   VkDescriptorSet set = VK_NULL_HANDLE;
-  {
-    const std::lock_guard lock(mutex_);
-    vkAllocateDescriptorSets(device_, &info, &set);
-  }
+  vkAllocateDescriptorSets(device_, &info, &set);
   VkWriteDescriptorSet writes[kBindings] = {};
   for (std::uint32_t i = 0; i < kBindings; ++i) {
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;

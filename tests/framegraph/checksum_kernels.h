@@ -1,8 +1,6 @@
 // The two compute kernels with which device tests mix contents, and their descriptor sets.
 #pragma once
 
-#include <mutex>
-
 #include "alcove/framegraph/framegraph.h"
 #include "gpu.h"
 
@@ -49,7 +47,6 @@ class ChecksumKernels {
            VkExtent2D groups, std::uint32_t seed, bool keep);
 
   VkDevice device_;
-  std::mutex mutex_;  // of the pool: passes may be recorded by several threads
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   Kernel texture_;
   Kernel buffer_;

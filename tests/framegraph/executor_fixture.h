@@ -1,24 +1,37 @@
-// A device with validation, on which each test creates its executors.
+// A device with validation, whose functions a test can let fail, and on which it creates executors.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 
+#include "failing_device.h"
 #include "gpu.h"
 
 namespace alcove::framegraph {
 
 class ExecutorTest : public testing::Test {
  protected:
-  void SetUp() override { ASSERT_EQ(gpu_.problem(), ""); }
+  void SetUp() override {
+    ASSERT_EQ(gpu_.problem(), "");
+    failing::fail_at(0);
+    failing::lose(false);
+  }
   void TearDown() override { EXPECT_EQ(gpu_.messages(), ""); }
 
-  Executor make(const ExecutorOptions& options = {}) {
-    auto made = Executor::create(gpu_.handles(), options);
-    EXPECT_TRUE(made.has_value());
+  DeviceHandles handles() const {
+    DeviceHandles handles = gpu_.handles();
+    handles.get_instance_proc_addr = failing::get_instance_proc_addr;
+    return handles;
+  }
+  static Executor make(const DeviceHandles& handles,
+                       const ExecutorOptions& options = {.verify = verify, .check_uses = true}) {
+    auto made = Executor::create(handles, options);
+    EXPECT_TRUE(made) << to_string(made.error());
     return std::move(*made);
   }
+  Executor make() const { return make(handles()); }
+
   Gpu gpu_;
 };
 

@@ -49,7 +49,6 @@ using Queries = Wrapped<&vkCreateQueryPool, &vkDestroyQueryPool>;
 using Pool = Wrapped<&vkCreateCommandPool, &vkDestroyCommandPool>;
 using DescriptorPool = Wrapped<&vkCreateDescriptorPool, &vkDestroyDescriptorPool>;
 using Module = Wrapped<&vkCreateShaderModule, &vkDestroyShaderModule>;
-using Event = Wrapped<&vkCreateEvent, &vkDestroyEvent>;
 using Semaphore = Wrapped<&vkCreateSemaphore, &vkDestroySemaphore>;
 
 VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache cache,
@@ -130,7 +129,6 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* 
       ALCOVE_WRAP(View, "vkCreateImageView", "vkDestroyImageView"),
       ALCOVE_WRAP(Queries, "vkCreateQueryPool", "vkDestroyQueryPool"),
       ALCOVE_WRAP(Pool, "vkCreateCommandPool", "vkDestroyCommandPool"),
-      ALCOVE_WRAP(Event, "vkCreateEvent", "vkDestroyEvent"),
       ALCOVE_WRAP(DescriptorPool, "vkCreateDescriptorPool", "vkDestroyDescriptorPool"),
       ALCOVE_WRAP(Module, "vkCreateShaderModule", "vkDestroyShaderModule"),
       {"vkCreateComputePipelines", reinterpret_cast<PFN_vkVoidFunction>(&create_pipelines)},

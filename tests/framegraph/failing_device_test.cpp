@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "executor_fixture.h"
-#include "failing_device.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -12,11 +11,7 @@ class FailingDeviceTest : public ExecutorTest {
  protected:
   void SetUp() override {
     ExecutorTest::SetUp();
-    failing::fail_at(0);
-    failing::lose(false);
     host_ = gpu_.make_host_buffer(4 * sizeof(std::uint32_t));
-    handles_ = gpu_.handles();
-    handles_.get_instance_proc_addr = failing::get_instance_proc_addr;
   }
 
   // Declares a frame with transients, an import and a history. The pass that writes the history
@@ -35,7 +30,6 @@ class FailingDeviceTest : public ExecutorTest {
   }
 
   HostBuffer host_;
-  DeviceHandles handles_;
 };
 
 // Makes each call that creates an object fail in turn. The frame must then return an error, the
@@ -45,12 +39,11 @@ TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyVulkanCallIsAnErrorAndLeaksNothi
   int last = 0;
   for (const bool submits : {false, true}) {
     for (int call = 1; call == 1 || last >= call - 1; ++call) {
-      auto executor = Executor::create(handles_);
-      ASSERT_TRUE(executor) << to_string(executor.error());
+      Executor executor = make();
       Graph graph;
       failing::fail_at(call);
       declare(graph);
-      const auto report = submits ? executor->submit(graph) : gpu_.run(*executor, graph);
+      const auto report = submits ? executor.submit(graph) : gpu_.run(executor, graph);
       last = failing::calls();
       failing::fail_at(0);
       if (last < call) {
@@ -60,11 +53,11 @@ TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyVulkanCallIsAnErrorAndLeaksNothi
         ASSERT_FALSE(report) << "call " << call;
         EXPECT_EQ(report.error()[0].result, VK_ERROR_OUT_OF_DEVICE_MEMORY);
       }
-      ASSERT_TRUE(executor->wait());
+      ASSERT_TRUE(executor.wait());
       declare(graph);
-      const auto again = submits ? executor->submit(graph) : gpu_.run(*executor, graph);
+      const auto again = submits ? executor.submit(graph) : gpu_.run(executor, graph);
       EXPECT_TRUE(again) << to_string(again.error());
-      ASSERT_TRUE(executor->wait());
+      ASSERT_TRUE(executor.wait());
     }
     EXPECT_EQ(failing::alive(), 0);
   }
@@ -74,17 +67,17 @@ TEST_F(FailingDeviceTest, OutOfDeviceMemoryInAnyVulkanCallIsAnErrorAndLeaksNothi
 // Loses the device at each submission in turn. Every later call must return an error, and nothing
 // may leak.
 TEST_F(FailingDeviceTest, LosingTheDeviceAtAnySubmissionIsAnErrorAndLeaksNothing) {
-  handles_.queues[1] = handles_.queues[0];
+  DeviceHandles two = handles();
+  two.queues[1] = two.queues[0];
   int lost = 0;
   for (int submission = 0; submission < 4; ++submission) {
     {
-      auto executor = Executor::create(handles_);
-      ASSERT_TRUE(executor) << to_string(executor.error());
+      Executor executor = make(two);
       Graph graph;
       failing::lose_after(submission);
       for (std::uint32_t frame = 0; frame < 4; ++frame) {
         declare(graph, QueueClass::compute);
-        const auto report = executor->submit(graph, {frame % 2});
+        const auto report = executor.submit(graph, {frame % 2});
         if (report) {
           EXPECT_EQ(lost, 0);
           continue;
@@ -103,17 +96,16 @@ TEST_F(FailingDeviceTest, LosingTheDeviceAtAnySubmissionIsAnErrorAndLeaksNothing
 
 TEST_F(FailingDeviceTest, LosingTheDeviceWhileWaitingForAFrameIsAnErrorAndLeaksNothing) {
   {
-    auto executor = Executor::create(handles_);
-    ASSERT_TRUE(executor) << to_string(executor.error());
+    Executor executor = make();
     Graph graph;
     declare(graph);
-    ASSERT_TRUE(executor->submit(graph));
+    ASSERT_TRUE(executor.submit(graph));
     failing::lose(true);
-    const auto waited = executor->wait();
+    const auto waited = executor.wait();
     ASSERT_FALSE(waited);
     EXPECT_EQ(waited.error()[0].result, VK_ERROR_DEVICE_LOST);
     declare(graph);
-    const auto report = executor->submit(graph);
+    const auto report = executor.submit(graph);
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error()[0].result, VK_ERROR_DEVICE_LOST);
   }

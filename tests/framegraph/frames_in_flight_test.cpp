@@ -1,23 +1,19 @@
 // Tests consecutive frames between which the CPU does not wait for the GPU.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "failing_device.h"
-#include "gpu.h"
+#include "executor_fixture.h"
 
 namespace alcove::framegraph {
 namespace {
 
-class FramesInFlight : public testing::Test {
+class FramesInFlight : public ExecutorTest {
  protected:
   static constexpr std::uint32_t kSlots = 4;
 
   void SetUp() override {
-    ASSERT_EQ(gpu_.problem(), "");
-    failing::fail_at(0);
-    failing::lose(false);
+    ExecutorTest::SetUp();
     const VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
                                        VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                        gpu_.device().queue_family()};
@@ -29,17 +25,12 @@ class FramesInFlight : public testing::Test {
   void TearDown() override {
     wait();
     vkDestroyCommandPool(gpu_.device().device(), pool_, nullptr);
-    EXPECT_EQ(gpu_.messages(), "");
+    ExecutorTest::TearDown();
   }
 
-  Executor make() {
-    DeviceHandles handles = gpu_.handles();
-    handles.get_instance_proc_addr = failing::get_instance_proc_addr;
-    auto made = Executor::create(handles, {.frames_in_flight = kSlots, .timestamps = false});
-    EXPECT_TRUE(made.has_value());
-    return std::move(*made);
+  Executor make() const {
+    return ExecutorTest::make(handles(), {.frames_in_flight = kSlots, .timestamps = false});
   }
-
   tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph, std::uint32_t slot) {
     const VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                         VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
@@ -61,7 +52,6 @@ class FramesInFlight : public testing::Test {
 
   void wait() { vkDeviceWaitIdle(gpu_.device().device()); }
 
-  Gpu gpu_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::array<VkCommandBuffer, kSlots> commands_{};
 };
@@ -152,19 +142,6 @@ TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNoMemoryThatEarlierFramesMayS
   run(executor, graph, 1);
   EXPECT_LT(failing::alive(), alive);
   wait();
-}
-
-TEST_F(FramesInFlight, FrameFailsIfOneOfItsPassesCannotBeRecorded) {
-  Executor executor = make();
-  Graph graph;
-  PassBuilder pass = graph.add_pass("poor");
-  pass.side_effect();
-  pass.record([](RecordContext& c) { c.fail("ladder", VK_ERROR_OUT_OF_POOL_MEMORY); });
-  const auto report = record(executor, graph, 0);
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error()[0].result, VK_ERROR_OUT_OF_POOL_MEMORY);
-  EXPECT_THAT(report.error()[0].message,
-              testing::HasSubstr("pass 'poor' cannot be recorded: no ladder could be made"));
 }
 
 }  // namespace

@@ -157,32 +157,6 @@ void measure(Shape shape, std::uint32_t passes) {
               record / count, steady_allocations, plan.passes.size(), passes);
 }
 
-// Declares passes that each write one texture of random size and read up to three of the last 16
-// textures. No pass is culled.
-void declare_sizes(Graph& graph, std::uint64_t seed, std::uint32_t passes, std::uint32_t width) {
-  graph.reset();
-  Dice dice(seed);
-  std::vector<Texture> textures;
-  for (std::uint32_t i = 0; i < passes; ++i) {
-    const Extent extent = Extent::absolute(1 + dice.roll(1920), 1 + dice.roll(1080));
-    TextureDesc desc{VK_FORMAT_R8G8B8A8_UNORM, extent};
-    if (i == passes / 2 && width != 0) desc.extent.width = width;
-    const Texture texture = graph.create_texture("texture", desc);
-    PassBuilder pass = graph.add_pass("pass");
-    Texture used[3];
-    for (std::uint32_t reads = dice.roll(4); reads > 0 && !textures.empty(); --reads) {
-      const auto count = static_cast<std::uint32_t>(textures.size());
-      const std::uint32_t window = std::min(count, dice.chance(128) ? 4u : 16u);
-      const Texture from = textures[count - 1 - dice.roll(window)];
-      if (std::find(std::begin(used), std::end(used), from) != std::end(used)) continue;
-      used[reads - 1] = from;
-      pass.read(from, access::sampled_compute);
-    }
-    textures.push_back(pass.write(texture, access::storage_write_compute));
-    pass.side_effect();
-  }
-}
-
 void measure_changes(bool all_sizes, std::uint32_t passes) {
   Graph graph;
   Compiler compiler;
@@ -194,8 +168,9 @@ void measure_changes(bool all_sizes, std::uint32_t passes) {
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     times.push_back(time_ns(1,
                             [&] {
-                              declare_sizes(graph, all_sizes ? frame : 1, passes,
-                                            all_sizes ? 0 : 960 + 4 * frame);
+                              graph.reset();
+                              Dice dice(all_sizes ? frame : 1);
+                              declare_sizes(graph, dice, passes, all_sizes ? 0 : 960 + 4 * frame);
                               if (!compiler.compile(graph.description(), limits, plan))
                                 std::abort();
                             }) *

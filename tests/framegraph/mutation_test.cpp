@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/verify.h"
@@ -87,6 +88,27 @@ TEST(Mutation, VerifierRefusesHarmfulMutationsOfPlansOverSeveralQueues) {
     EXPECT_GT(counts.at("drop a wait for the frame before").killed, 50u);
     EXPECT_GT(counts.at("drop a semaphore").killed, 100u);
   }
+}
+
+// Each of 1,000 passes reads some of the most recent textures. framegraph_benchmark prints how long
+// the verifier takes for a plan of this size.
+TEST(Mutation, VerifierAcceptsAPlanOfAThousandPassesAndRefusesItIfOnePassLacksItsBarriers) {
+  Graph graph;
+  std::vector<Texture> textures;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const Texture texture =
+        graph.create_texture("texture", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64)});
+    PassBuilder pass = graph.add_pass("pass");
+    if (i > 0) pass.read(textures[i - 1], access::sampled_compute);
+    if (i > 20) pass.read(textures[i - 2 - i % 20], access::sampled_compute);
+    textures.push_back(pass.write(texture, access::storage_write_compute));
+    pass.side_effect();
+  }
+  auto plan = compile(graph.description());
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  EXPECT_TRUE(verify(graph.description(), {}, *plan));
+  plan->batches[plan->passes[900].batch].count = 0;
+  EXPECT_FALSE(verify(graph.description(), {}, *plan));
 }
 
 // No pass of this frame names a read access. The only one is that of the final state, which stands

@@ -49,7 +49,7 @@ TEST(OcclusionFrame, PlanHasTheFewestBarrierCommandsAndTheLeastPeakMemory) {
     declare(graph, *kernels, image, quality);
     const auto plan = compile(graph.description());
     ASSERT_TRUE(plan) << to_string(plan.error());
-    expect_no_command_too_many("own frame", graph.description(), {}, *plan);
+    EXPECT_GT(expect_no_command_too_many(graph.description(), {}, *plan), 0u);
     for (const Heap& heap : plan->heaps) EXPECT_EQ(heap.size, heap.lower_bound);
   }
 }

@@ -304,4 +304,28 @@ void declare_random(Graph& graph, Dice& dice, const RandomOptions& options) {
   Declarer(graph, dice, options).run();
 }
 
+void declare_sizes(Graph& graph, Dice& dice, std::uint32_t passes, std::uint32_t width) {
+  std::vector<Texture> textures;
+  for (std::uint32_t i = 0; i < passes; ++i) {
+    PassBuilder pass = graph.add_pass("pass");
+    pass.side_effect();
+    Texture used[3];
+    for (std::uint32_t reads = dice.roll(4); reads > 0 && !textures.empty(); --reads) {
+      const auto count = static_cast<std::uint32_t>(textures.size());
+      const std::uint32_t window = std::min(count, dice.chance(128) ? 4u : 16u);
+      const Texture from = textures[count - 1 - dice.roll(window)];
+      if (std::find(std::begin(used), std::end(used), from) != std::end(used)) continue;
+      used[reads - 1] = from;
+      pass.read(from, access::sampled_compute);
+    }
+    const std::uint32_t writes = 1 + dice.roll(2);
+    for (std::uint32_t w = 0; w < writes; ++w) {
+      Extent extent = Extent::absolute(1 + dice.roll(2048), 1 + dice.roll(1080));
+      if (i == passes / 2 && w == 0 && width != 0) extent.width = width;
+      const Texture texture = graph.create_texture("texture", {VK_FORMAT_R8_UNORM, extent});
+      textures.push_back(pass.write(texture, access::storage_write_compute));
+    }
+  }
+}
+
 }  // namespace alcove::framegraph

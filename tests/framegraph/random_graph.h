@@ -59,4 +59,9 @@ struct RandomOptions {
 // Declares a frame. The callbacks record nothing.
 void declare_random(Graph& graph, Dice& dice, const RandomOptions& options = {});
 
+// Declares passes that each read up to three of the last 16 textures and write one or two new ones
+// of random size. No pass is culled. `width` is the width of the first texture of the pass in the
+// middle; 0: it is random too.
+void declare_sizes(Graph& graph, Dice& dice, std::uint32_t passes, std::uint32_t width = 0);
+
 }  // namespace alcove::framegraph

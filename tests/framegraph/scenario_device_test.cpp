@@ -4,9 +4,7 @@
 
 #include <array>
 
-#include "alcove/framegraph/verify.h"
-#include "failing_device.h"
-#include "gpu.h"
+#include "executor_fixture.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -15,12 +13,10 @@ constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr std::uint32_t kRed = 0xff0000ff;
 constexpr VkClearValue kClearRed{{{1.0f, 0.0f, 0.0f, 1.0f}}};
 
-class Scenario : public testing::Test {
+class Scenario : public ExecutorTest {
  protected:
   void SetUp() override {
-    ASSERT_EQ(gpu_.problem(), "");
-    failing::fail_at(0);
-    failing::lose(false);
+    ExecutorTest::SetUp();
     host_ = gpu_.make_host_buffer(64);
   }
   void TearDown() override {
@@ -31,15 +27,9 @@ class Scenario : public testing::Test {
 
   Executor& executor() {
     if (!executor_) {
-      DeviceHandles handles = gpu_.handles();
-      handles.get_instance_proc_addr = failing::get_instance_proc_addr;
-      for (QueueHandle& queue : handles.queues) queue = handles.queues[0];
-      ExecutorOptions options;
-      options.verify = verify;
-      options.check_uses = true;
-      auto made = Executor::create(handles, options);
-      EXPECT_TRUE(made);
-      executor_ = std::make_unique<Executor>(std::move(*made));
+      DeviceHandles three = handles();
+      for (QueueHandle& queue : three.queues) queue = three.queues[0];
+      executor_ = std::make_unique<Executor>(make(three));
     }
     return *executor_;
   }
@@ -76,7 +66,6 @@ class Scenario : public testing::Test {
     return static_cast<const std::uint32_t*>(host_.mapped)[index];
   }
 
-  Gpu gpu_;
   HostBuffer host_;
   std::unique_ptr<Executor> executor_;
   Graph graph_;

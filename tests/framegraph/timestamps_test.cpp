@@ -5,7 +5,7 @@
 #include <array>
 #include <cstring>
 
-#include "gpu.h"
+#include "executor_fixture.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -53,22 +53,18 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance insta
   return vkGetInstanceProcAddr(instance, name);
 }
 
-class TimestampsTest : public testing::Test {
+class TimestampsTest : public ExecutorTest {
  protected:
   void SetUp() override {
-    ASSERT_EQ(gpu_.problem(), "");
+    ExecutorTest::SetUp();
     written = 0;
     host_ = gpu_.make_host_buffer(4);
   }
-  void TearDown() override { EXPECT_EQ(gpu_.messages(), ""); }
-
   Executor make(std::uint32_t bits) {
     valid_bits = bits;
     DeviceHandles handles = gpu_.handles();
     handles.get_instance_proc_addr = get_instance_proc_addr;
-    auto made = Executor::create(handles);
-    EXPECT_TRUE(made) << to_string(made.error());
-    return std::move(*made);
+    return ExecutorTest::make(handles);
   }
   // Declares a frame with one pass.
   Graph& declare() {
@@ -85,7 +81,6 @@ class TimestampsTest : public testing::Test {
     return static_cast<double>(of_ticks) * gpu_.device().properties().limits.timestampPeriod * 1e-6;
   }
 
-  Gpu gpu_;
   HostBuffer host_;
   Graph graph_;
 };

@@ -88,6 +88,18 @@ TEST_F(Validate, PassBuilderUsedAfterGraphResetIsRefused) {
   }
 }
 
+TEST_F(Validate, DepthTestAndSamplingOfOneTextureCanBeDeclaredAsOneAccess) {
+  constexpr Access kBoth = access::depth_test | access::sampled_fragment;
+  static_assert(kBoth.layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+  Texture depth = graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, kDesc.extent});
+  depth = pass("prepass").write(depth, access::depth_attachment);
+  pass("soft particles").read(depth, kBoth);
+  const auto plan = compile(graph_.description());
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  EXPECT_EQ(plan->placements[depth.index].usage,
+            VkFlags{VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT});
+}
+
 TEST_F(Validate, EmptyGraphIsValid) { EXPECT_TRUE(compile(graph_.description())); }
 
 TEST_F(Validate, UseOfAnOutdatedHandleIsReportedWithItsVersionAndTheCurrentOne) {
