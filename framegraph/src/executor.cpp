@@ -32,7 +32,6 @@ struct Executor::Implementation {
   VkResult find_external(const Graph& graph, CachedPlan& cached, std::uint32_t resource);
   tl::expected<FrameReport, Errors> prepare(Graph& graph, const FrameInfo& info, Queues queues,
                                             CachedPlan*& cached);
-  Errors memory_error(VkResult result, std::string what) const;
   tl::expected<void, Errors> check_slot(std::uint32_t slot) const;
   tl::expected<void, Errors> check_call(const FrameInfo& info) const;
   tl::expected<void, Errors> adopt(Graph& graph) const;
@@ -176,12 +175,12 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
                                                                    CachedPlan& cached) {
   const GraphDescription& description = graph.description();
   if (const VkResult result = pool->reserve(cached.plan, frame))
-    return tl::unexpected(memory_error(result, "the frame's transients cannot be allocated"));
+    return tl::unexpected(vulkan_error(result, "the frame's transients cannot be allocated"));
   const bool again = cached.generation == pool->generation();
   if (!again) cached.physical.assign(description.resources.size(), nullptr);
   const auto failed = [&](VkResult result, std::uint32_t r) {
     const bool history = description.resources[r].origin == Origin::history;
-    return tl::unexpected(memory_error(
+    return tl::unexpected(vulkan_error(
         result, std::string(history ? "the history '" : "'").append(description.resource_name(r)) +
                     "' cannot be created"));
   };
@@ -203,11 +202,6 @@ tl::expected<void, Errors> Executor::Implementation::find_physical(const Graph& 
   cached.last_mark = frame;
   cached.generation = pool->generation();
   return {};
-}
-
-Errors Executor::Implementation::memory_error(VkResult result, std::string what) const {
-  if (const std::string why = pool->take_shortage(); !why.empty()) what += " " + why;
-  return vulkan_error(result, std::move(what));
 }
 
 void Executor::Implementation::begin_frame(const FrameInfo& info) {

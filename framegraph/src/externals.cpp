@@ -61,7 +61,11 @@ void Synchroniser::apply_initial_states() {
 
 void Synchroniser::apply_final_states() {
   const auto end = static_cast<std::uint32_t>(plan_.passes.size());
-  if (several()) earliest_ = batch_time(end) - 1;
+  const std::uint32_t last = workspace_.final_submission;
+  if (several()) {
+    if (last != kNone && plan_.submissions[last].pass_count == 0) begin_submission(last);
+    earliest_ = batch_time(end) - 1;
+  }
   for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
     const ResourceRecord& resource = graph_.resources[r];
     if (resource.external == kNone) continue;
@@ -74,7 +78,7 @@ void Synchroniser::apply_final_states() {
     }
     if (used && resource.origin == Origin::history) leave_history_slot(r);
   }
-  plan_.final_submission = workspace_.final_submission;
+  plan_.final_submission = last;
   plan_.final_batch = batch_time_ == batch_time(end) && !plan_.batches.empty()
                           ? static_cast<std::uint32_t>(plan_.batches.size() - 1)
                           : kNone;
@@ -133,8 +137,10 @@ void Synchroniser::leave_history_slot(std::uint32_t resource) {
   bool alike = true;
   bool seen_alike = true;
   const UseState& lead = states_[first];
+  bool elsewhere = false;
   for (std::uint32_t sub = first; sub < last; ++sub) {
     const UseState& state = states_[sub];
+    elsewhere = elsewhere || is_used_elsewhere(sub);
     alike = alike && state.layout == lead.layout;
     seen_alike = seen_alike && state.read_stages == lead.read_stages &&
                  state.seen_stages == lead.seen_stages && state.seen_access == lead.seen_access;
@@ -159,6 +165,7 @@ void Synchroniser::leave_history_slot(std::uint32_t resource) {
                    VK_IMAGE_LAYOUT_GENERAL};
     use(static_cast<std::uint32_t>(plan_.passes.size()), use_outside_frame(resource, final.state));
   }
+  if (elsewhere) add_stages(final.state.stages);
   plan_.finals.push_back(final);
 }
 

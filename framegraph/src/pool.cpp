@@ -46,9 +46,9 @@ Pool::~Pool() {
   for (auto& [handle, physical] : imports_) destroy(*physical);
   for (auto& retired : retired_) {
     if (retired.physical) destroy(*retired.physical);
-    memory_.free(retired.heap);
+    framegraph::free(device_, retired.heap);
   }
-  for (const HeapMemory& heap : heaps_) memory_.free(heap.memory);
+  for (const HeapMemory& heap : heaps_) framegraph::free(device_, heap.memory);
 }
 
 VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
@@ -219,7 +219,7 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
   std::erase_if(retired_, [&](RetiredObject& retired) {
     if (retired.frame > finished) return false;
     if (retired.physical) destroy(*retired.physical);
-    memory_.free(retired.heap);
+    framegraph::free(device_, retired.heap);
     return true;
   });
   const auto destroy_unused = [&](Objects& objects) {
@@ -287,8 +287,9 @@ VkResult Pool::create_bound(Physical& physical, std::string_view name) {
 
 VkResult Pool::allocate(const VkMemoryRequirements& requirements, bool has_addresses,
                         MemoryLifetime lifetime, MemoryRange& memory) {
-  return memory_.allocate(
-      {requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, has_addresses, lifetime}, memory);
+  return framegraph::allocate(
+      device_, {requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, has_addresses, lifetime},
+      memory);
 }
 
 void Pool::destroy(Physical& physical) {
@@ -298,7 +299,7 @@ void Pool::destroy(Physical& physical) {
   if (!physical.owned) return;
   device_.vk.vkDestroyImage(device, physical.image, device_.callbacks());
   device_.vk.vkDestroyBuffer(device, physical.buffer, device_.callbacks());
-  memory_.free(physical.own_memory);
+  framegraph::free(device_, physical.own_memory);
 }
 
 void Pool::set_name(const Physical& physical, std::string_view name) {

@@ -48,7 +48,7 @@ struct Physical {
 
 class Pool {
  public:
-  explicit Pool(const DeviceContext& device) : device_(device), memory_(device) {}
+  explicit Pool(const DeviceContext& device) : device_(device) {}
   ~Pool();
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
@@ -85,9 +85,6 @@ class Pool {
   // Returns the allocated device memory in bytes, including retired objects that are not yet freed.
   VkDeviceSize allocated() const;
   VkDeviceSize history_size() const;
-  // Returns the reason why an allocation of device memory has failed since the last call. It may be
-  // empty.
-  std::string take_shortage() { return memory_.take_reason(); }
 
  private:
   using Objects = std::unordered_multimap<std::uint64_t, std::unique_ptr<Physical>>;
@@ -127,7 +124,6 @@ class Pool {
   void set_name(const Physical& physical, std::string_view name);
 
   const DeviceContext& device_;
-  DeviceAllocator memory_;
   std::vector<HeapMemory> heaps_;
   Objects transients_;  // by offset
   std::vector<HistoryImage> histories_;

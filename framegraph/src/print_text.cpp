@@ -65,9 +65,11 @@ class TextPrinter {
     if (plan_.submissions.size() > 1) {
       std::string text =
           "submission " + std::to_string(index) + " on " + queue_name(submission.queue);
-      for (std::uint32_t w = 0; w < submission.wait_count; ++w)
-        text += (w ? ", " : " waits for ") +
-                std::to_string(plan_.waits[submission.first_wait + w].submission);
+      for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
+        const Wait& wait = plan_.waits[submission.first_wait + w];
+        text += (w ? ", " : " waits for ") + std::to_string(wait.submission) + " in " +
+                stage_names(wait.stages);
+      }
       line(text);
     }
     for (std::uint32_t p = 0; p < submission.pass_count; ++p) pass(submission.first_pass + p);

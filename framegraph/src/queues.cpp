@@ -248,7 +248,7 @@ class QueueAssigner {
   }
 
   void add_wait(std::uint32_t submission) {
-    plan_.waits.push_back({submission});
+    plan_.waits.push_back({submission, 0});
     ++plan_.submissions.back().wait_count;
   }
 
@@ -390,8 +390,9 @@ class QueueAssigner {
   // The last position on each other queue (second index) that is known to be done when a queue
   // (first index) reaches its current pass, or -1.
   std::int32_t known_[kQueueClasses][kQueueClasses] = {};
-  // For each queue: bits of the queues whose opening submission it knows to be done.
-  std::uint8_t known_open_[kQueueClasses] = {};
+  // For each queue: bits of the queues whose opening submission it knows to be done. A pass knows
+  // it of its own queue, and a pass that waits for the pass knows it too.
+  std::uint8_t known_open_[kQueueClasses] = {1, 2, 4};
   const GraphDescription& graph_;
   const Limits& limits_;
   Workspace& workspace_;

@@ -134,16 +134,17 @@ VkResult Submitter::record(const Plan& plan, Recorder& recorder, std::uint32_t s
 
 void Submitter::add_waits(const Plan& plan, std::uint32_t index, std::uint8_t queues_before) {
   const Submission& submission = plan.submissions[index];
-  const auto add = [this](std::size_t queue, std::uint64_t value) {
-    semaphore_infos_.push_back({VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr,
-                                semaphores_[queue], value, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                0});
+  const auto add = [this](std::size_t queue, std::uint64_t value, VkPipelineStageFlags2 stages) {
+    semaphore_infos_.push_back(
+        {VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, semaphores_[queue], value, stages, 0});
   };
   for (std::size_t q = 0; q < kQueueClasses; ++q)
-    if ((queues_before & (1u << q)) != 0 && before_[q] != 0) add(q, before_[q]);
+    if ((queues_before & (1u << q)) != 0 && before_[q] != 0)
+      add(q, before_[q], VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
-    const SubmissionInfo& awaited = submissions_[plan.waits[submission.first_wait + w].submission];
-    add(static_cast<std::size_t>(awaited.queue_class), awaited.value);
+    const Wait& wait = plan.waits[submission.first_wait + w];
+    const SubmissionInfo& awaited = submissions_[wait.submission];
+    add(static_cast<std::size_t>(awaited.queue_class), awaited.value, wait.stages);
   }
 }
 

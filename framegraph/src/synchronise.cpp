@@ -50,6 +50,7 @@ void Synchroniser::run() {
   // Imports and histories get their states from before the frame. A transient gets its state when
   // it takes over memory from other resources.
   s_.states.resize(subs_ * (several() ? kQueueClasses : 1));
+  for (auto& waits : last_waits_) std::fill(std::begin(waits), std::end(waits), kNone);
   apply_initial_states();
   find_last_uses();
   const auto count = static_cast<std::uint32_t>(plan_.passes.size());
@@ -62,7 +63,7 @@ void Synchroniser::run() {
   for (std::uint32_t position = 0; position < count; ++position) {
     PlannedPass& planned = plan_.passes[position];
     set_queue(planned.queue);
-    if (several()) earliest_ = batch_time(plan_.submissions[planned.submission].first_pass) - 1;
+    if (several()) begin_submission(planned.submission);
     for (; start == position; start = next_start()) take_over_memory(*starting++);
     for (const AccessRecord& access : graph_.pass_accesses(planned.pass)) use(position, access);
     if (batch_time_ == batch_time(position))
@@ -70,6 +71,43 @@ void Synchroniser::run() {
     if (several()) end_pass(position);
   }
   apply_final_states();
+  for (std::size_t queue = 0; queue < kQueueClasses && several(); ++queue) {
+    set_queue(static_cast<QueueClass>(queue));
+    add_stages(next_frame_[queue]);
+  }
+}
+
+// Sets the point before which no barrier can be placed, and the last waits of the queue.
+void Synchroniser::begin_submission(std::uint32_t index) {
+  const Submission& submission = plan_.submissions[index];
+  earliest_ = batch_time(submission.first_pass) - 1;
+  auto& waits = last_waits_[static_cast<std::size_t>(submission.queue)];
+  for (std::uint32_t w = submission.first_wait; w < submission.first_wait + submission.wait_count;
+       ++w)
+    waits[static_cast<std::size_t>(plan_.submissions[plan_.waits[w].submission].queue)] = w;
+}
+
+// Returns whether another queue has used the subresource since its last change, or changed it.
+bool Synchroniser::is_used_elsewhere(std::uint32_t sub) const {
+  bool used = states_[sub].by_wait != 0;
+  for_each_other(queue_, [&](QueueClass other) {
+    const UseState& there = s_.states[static_cast<std::size_t>(other) * subs_ + sub];
+    used = used || (there.read_stages | there.write_stages) != 0;
+  });
+  return used;
+}
+
+// Adds stages to the last waits of the current queue. An earlier use on another queue is known to
+// be done by the last wait for that queue, or by the last wait for a third one that waited for it.
+void Synchroniser::add_stages(VkPipelineStageFlags2 stages) {
+  for (const std::uint32_t wait : last_waits_[static_cast<std::size_t>(queue_)])
+    if (wait != kNone) plan_.waits[wait].stages |= stages;
+}
+
+// Makes the waits that order a use in these stages after work of other queues cover the stages.
+void Synchroniser::wait_in(VkPipelineStageFlags2 stages, const UseState& state) {
+  if (state.by_wait != kByLastFrame) add_stages(stages);
+  if (state.by_wait & kByLastFrame) next_frame_[static_cast<std::size_t>(queue_)] |= stages;
 }
 
 // Notes the layouts that the submission of a pass changes at its end, and changes them after its
@@ -195,6 +233,11 @@ inline void Synchroniser::take_over_memory(std::uint32_t resource) {
             });
   for (std::size_t queue = 0; queue < copies; ++queue) {
     UseState* const first = merged + queue * subs_;
+    for_each_other(static_cast<QueueClass>(queue), [&](QueueClass other) {
+      const UseState& there = merged[static_cast<std::size_t>(other) * subs_];
+      if ((there.read_stages | there.write_stages) == 0) return;
+      first->by_wait |= kByWait | kByLastFrame;
+    });
     std::fill(first + 1, first + (subs[resource + 1] - subs[resource]), *first);
   }
 }
@@ -280,8 +323,11 @@ inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& 
   const bool writes = (access.flags & kWrite) != 0;
   if (several() && state.frame_before != 0) wait_for_frame_before(position, state.frame_before);
   const bool changes = access.kind() == ResourceKind::texture && state.layout != access.layout;
+  const bool is_last = position == plan_.passes.size();
+  if (several() && (writes || changes || is_last ? is_used_elsewhere(sub) : state.by_wait != 0))
+    wait_in(waited_stages(access), state);
   if (changes)
-    change_layout(position, access, state, range);
+    change_layout(position, access, sub, range);
   else if (writes)
     write_in_same_layout(position, access, state);
   else
@@ -304,7 +350,8 @@ void Synchroniser::tell_other_queues(std::uint32_t sub, const UseState& state) {
 }
 
 inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
-                                        UseState& state, const Range& range) {
+                                        std::uint32_t sub, const Range& range) {
+  UseState& state = states_[sub];
   Transition& wanted = next_image(std::max(state.read_time, state.write_time), position);
   // Reads come after the write that they read from, so that waiting for the reads is enough. This
   // does not hold for memory that the resource took over from others: there, the reads and the
@@ -314,6 +361,7 @@ inline void Synchroniser::change_layout(std::uint32_t position, const AccessReco
   wanted.src_access = after_reads ? 0 : state.write_access;
   // A semaphore wait covers all stages, so that any stage comes after it.
   if (wanted.src_stages == 0 && state.by_wait) wanted.src_stages = waited_stages(access);
+  if (several() && is_used_elsewhere(sub)) wait_in(wanted.src_stages, state);
   wanted.dst_stages = access.stages;
   wanted.dst_access = access.access;
   wanted.resource = access.resource;

@@ -16,6 +16,9 @@ inline VkPipelineStageFlags2 waited_stages(const AccessRecord& access) {
   return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 }
 
+inline constexpr std::uint8_t kByWait = 1;
+inline constexpr std::uint8_t kByLastFrame = 2;
+
 // The value of UseState::seen_access when every access sees the write.
 inline constexpr VkAccessFlags2 kEveryAccess = ~VkAccessFlags2{0};
 
@@ -58,13 +61,17 @@ class Synchroniser {
   void move_layouts(std::uint32_t last);
   void use_range(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
                  const Range& range);
-  void change_layout(std::uint32_t position, const AccessRecord& access, UseState& state,
+  void change_layout(std::uint32_t position, const AccessRecord& access, std::uint32_t sub,
                      const Range& range);
   void record_transition(std::uint32_t position, const AccessRecord& access, UseState& state);
   void read_in_same_layout(std::uint32_t position, const AccessRecord& access, UseState& state);
   void write_in_same_layout(std::uint32_t position, const AccessRecord& access, UseState& state);
 
   // Functions for frames that use several queues.
+  void begin_submission(std::uint32_t submission);
+  bool is_used_elsewhere(std::uint32_t sub) const;
+  void wait_in(VkPipelineStageFlags2 stages, const UseState& state);
+  void add_stages(VkPipelineStageFlags2 stages);
   std::uint32_t family(QueueClass queue) const {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
   }
@@ -113,6 +120,10 @@ class Synchroniser {
   std::int32_t earliest_ = kBeforeFrame;
   QueueClass queue_ = QueueClass::graphics;  // of the current pass
   UseState* states_ = nullptr;               // on that queue
+  // For each queue and each other queue: the last wait for it, an index into Plan::waits.
+  std::uint32_t last_waits_[kQueueClasses][kQueueClasses] = {};
+  // For each queue: stages that use what the waits of the previous frame have waited for.
+  VkPipelineStageFlags2 next_frame_[kQueueClasses] = {};
   // For each queue: bits of the queues for whose work of the previous frame it has already waited.
   std::uint8_t frame_before_[kQueueClasses] = {};
   std::uint32_t last_position_[kQueueClasses] = {};  // for each queue: position of its last pass

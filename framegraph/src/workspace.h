@@ -37,7 +37,8 @@ struct UseState {
   // Set if other resources occupied this memory before. The recorded reads and writes may then
   // belong to different resources, so that a barrier has to wait for both.
   std::uint8_t reuses_memory = 0;
-  // Set if a semaphore wait over all stages orders the next use after work of another queue.
+  // Says which semaphore waits order the next use after work of another queue: kByWait for those of
+  // this frame, kByLastFrame for those of the previous frame.
   std::uint8_t by_wait = 0;
   QueueClass owner = QueueClass::graphics;  // the queue that changed it last
   bool operator==(const UseState&) const = default;

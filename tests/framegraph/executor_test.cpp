@@ -128,6 +128,32 @@ TEST_F(ExecutorTest, GraphsThatRunInTurnAreCompiledOnceIfThePlanCacheHasRoomForA
   }
 }
 
+// In the first frame previous() has no contents. A pass that uses it must have asked for its
+// validity.
+TEST_F(ExecutorTest, PassThatUsesAHistoryWithoutContentsAndDidNotAskForItsValidityIsReported) {
+  Executor executor = make();
+  for (const bool asks : {false, true}) {
+    Graph graph;
+    const TextureHistory history =
+        graph.create_texture_history("history", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
+    PassBuilder pass = graph.add_pass("reader");
+    pass.read(history.previous(), access::sampled_compute);
+    pass.side_effect();
+    bool has_view = false;
+    pass.record([&](RecordContext& context) {
+      if (asks) (void)context.validity(history.previous());
+      has_view = context.view(history.previous()) != VK_NULL_HANDLE;
+    });
+    graph.output(add_clear(graph, history.current, 1));
+    const auto report = gpu_.record(executor, graph);
+    EXPECT_EQ(report.has_value(), asks);
+    EXPECT_EQ(has_view, asks);
+    if (report) continue;
+    EXPECT_NE(to_string(report.error()).find("ask RecordContext::validity before"),
+              std::string::npos);
+  }
+}
+
 // The pass declares only the second of the texture's four mips.
 TEST_F(ExecutorTest, ImageViewOfMipsOrLayersThatThePassDidNotDeclareIsRefused) {
   struct Case {

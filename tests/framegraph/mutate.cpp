@@ -217,6 +217,11 @@ class Mutator {
       for (Submission& submission : mutant.submissions)
         if (submission.first_wait > at) --submission.first_wait;
       visit_("drop a semaphore", mutant);
+      for (VkPipelineStageFlags2 left = plan_.waits[at].stages; left != 0; left &= left - 1) {
+        mutant = plan_;
+        mutant.waits[at].stages &= ~(left & (~left + 1));
+        visit_("narrow a semaphore wait", mutant);
+      }
     }
   }
 

@@ -221,6 +221,35 @@ TEST_F(Queues, QueuesThatOnlyReadATextureDoNotWaitForEachOther) {
   EXPECT_EQ(plan.waits.size(), 1u);
 }
 
+// `light` reads the result of the compute queue in fragment shaders, and `mirror` reads it in
+// vertex shaders of a later submission. The vertex shaders of `light` must not wait.
+TEST_F(Queues, SubmissionWaitsInTheStagesThatUseWhatItWaitsFor) {
+  for (const bool has_mirror : {false, true}) {
+    graph_.reset();
+    PassBuilder ao = graph_.add_pass("ao", QueueClass::compute);
+    const Texture occlusion =
+        ao.write(make("ao"), access::storage_write_compute, {}, Contents::discard);
+    PassBuilder light = graph_.add_pass("light");
+    light.read(occlusion, access::storage_read_fragment);
+    (void)light.write(make("color"), access::color_attachment, {}, Contents::discard);
+    light.side_effect();
+    PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);
+    const Texture blurred =
+        blur.write(make("blurred"), access::storage_write_compute, {}, Contents::discard);
+    PassBuilder mirror = graph_.add_pass("mirror");
+    mirror.read(blurred, access::sampled_fragment);
+    if (has_mirror)
+      mirror.read(occlusion, access::storage_read(VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT));
+    mirror.side_effect();
+    Plan plan = compiled();
+    ASSERT_EQ(plan.waits.size(), 2u);
+    EXPECT_EQ(plan.waits[0].stages, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+    EXPECT_EQ((plan.waits[1].stages & VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT) != 0, has_mirror);
+    plan.waits[1].stages &= VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT;
+    EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+  }
+}
+
 // Two passes on two queues read a depth attachment, in one other layout:
 //
 //   gbuffer (graphics) -- depth --> ao (compute) ------> light (graphics)

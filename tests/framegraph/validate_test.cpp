@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "alcove/framegraph/compile.h"
 #include "alcove/framegraph/verify.h"
 #include "fake_handle.h"
@@ -229,6 +231,24 @@ TEST_F(Validate, ReadingAHistoryThatNoPassWritesIsRefused) {
   const TextureHistory history = graph_.create_texture_history("h", kDesc);
   pass("reader").read(history.previous(), access::sampled_compute);
   expect(ErrorCode::history_never_written, "write its current slot");
+}
+
+// A write that keeps contents that do not exist is the default of every first write. It must cost
+// nothing: the plan is that of a write that discards.
+TEST_F(Validate, KeepingContentsThatDoNotExistGivesThePlanOfDiscardingThem) {
+  Plan plans[2];
+  for (const Contents contents : {Contents::keep, Contents::discard}) {
+    graph_.reset();
+    const Texture texture = pass("writer").write(graph_.create_texture("t", kDesc),
+                                                 access::storage_write_compute, {}, contents);
+    graph_.output(texture);
+    const auto plan = compile(graph_.description());
+    ASSERT_TRUE(plan) << to_string(plan.error());
+    plans[static_cast<std::size_t>(contents)] = *plan;
+  }
+  ASSERT_EQ(plans[0].transitions.size(), 1u);
+  EXPECT_EQ(std::memcmp(&plans[0].transitions[0], &plans[1].transitions[0], sizeof(Transition)), 0);
+  EXPECT_EQ(plans[0].contents, plans[1].contents);
 }
 
 TEST_F(Validate, HistoryWithOnlyOneSlotIsRefused) {

@@ -123,11 +123,9 @@ void Replay::end_frame() {
 // Returns whether a resource has the contents that the declaration has written to it.
 bool Replay::holds(std::uint32_t resource) const {
   const std::vector<Sub>& subs = resources_[resource].subs;
-  for (std::size_t i = 0; i < subs.size(); ++i) {
-    const std::uint32_t expected = last_[resource][i];
-    if (expected != kGarbage && (subs[i].content != expected || subs[i].spoiled)) return false;
-  }
-  return true;
+  return std::all_of(subs.begin(), subs.end(), [](const Sub& sub) {
+    return sub.declared == kGarbage || (sub.content == sub.declared && !sub.spoiled);
+  });
 }
 
 void Replay::check_final_state(std::uint32_t resource) {
@@ -184,14 +182,14 @@ void Replay::check_histories() {
 }
 
 // Checks that each history ends the frame in the state that the plan names, because the next frame
-// starts from that state, and that all work on it is ordered before the end of the frame on the
-// queue that the plan names, because the next frame waits for that queue only.
+// starts from that state, and that all work on it is ordered before later work in the stages of
+// that state on the queue that the plan names, because the next frame waits for these only.
 void Replay::check_final(const FinalState& final) {
   const Stages stages = expand_stages(final.state.stages);
   const auto queue = static_cast<std::uint8_t>(final.queue);
   const auto check_order = [&](const Operation& operation) {
     if (operation.queue != queue &&
-        !order_.is_ordered(operation, queue, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT))
+        (stages == 0 || !order_.is_ordered(operation, queue, final.state.stages)))
       fail(name(final.resource) + " is left on a queue that does not wait for its last use");
   };
   for (const Sub& sub : resources_[final.resource].subs) {

@@ -21,9 +21,7 @@ constexpr Stages kGraphics =
     VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT |
     VK_PIPELINE_STAGE_2_CONDITIONAL_RENDERING_BIT_EXT |
     VK_PIPELINE_STAGE_2_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
-constexpr Stages kCommands = kGraphics | kTransfer | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
-                             VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR |
-                             VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+constexpr Stages kCommands = kGraphics | kTransfer | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 // Stages of any queue.
 constexpr Stages kAnyQueue =
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
@@ -64,7 +62,7 @@ constexpr struct {
     {VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
      kPreRasterization | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
-         VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR},
+         VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT},
     {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
      VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT},
     {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
@@ -123,8 +121,9 @@ void HappensBefore::signal(std::uint8_t queue, std::uint32_t submission) {
   steps_.push_back({Step::Kind::signal, queue, 0, {}});
 }
 
-void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission) {
-  steps_.push_back({Step::Kind::wait, queue, signals_[submission], {}});
+void HappensBefore::wait(std::uint8_t queue, std::uint32_t submission, Stages stages) {
+  const Barrier after{queue, 0, 0, expand_stages(stages), ~Accesses{0}, true};
+  steps_.push_back({Step::Kind::wait, queue, signals_[submission], {after}});
 }
 
 bool HappensBefore::Part::is_before(const Barrier& barrier) const {
@@ -169,7 +168,7 @@ void HappensBefore::follow(std::size_t from, Reach& reach) const {
       if (step.queue == reach.queue || reach.ordered[step.queue] != 0) signals.push_back(i);
     } else if (step.kind == Step::Kind::wait) {
       if (std::find(signals.begin(), signals.end(), step.signal) != signals.end())
-        reach.add({step.queue, 0, 0, kCommands, ~Accesses{0}, true}, true);
+        reach.add(step.barriers[0], true);
     } else {
       const Part before = reach;
       for (const Barrier& barrier : step.barriers)

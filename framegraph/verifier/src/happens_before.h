@@ -58,10 +58,10 @@ class HappensBefore {
   void apply(const std::vector<Barrier>& barriers) {
     steps_.push_back({Step::Kind::barriers, 0, 0, barriers});
   }
-  // signal() records the signal of a submission, numbered from 0. wait() makes a queue wait for the
-  // last signal of that number.
+  // signal() records the signal of a submission, numbered from 0. wait() makes these stages of a
+  // queue wait for the last signal of that number.
   void signal(std::uint8_t queue, std::uint32_t submission);
-  void wait(std::uint8_t queue, std::uint32_t submission);
+  void wait(std::uint8_t queue, std::uint32_t submission, Stages stages);
 
   // is_before() returns whether the operation is ordered before the barrier's second scope.
   // is_available_by() returns whether its writes are also available there, if the barrier's memory
@@ -85,8 +85,8 @@ class HappensBefore {
     enum class Kind : std::uint8_t { barriers, signal, wait };
     Kind kind = Kind::barriers;
     std::uint8_t queue = 0;
-    std::size_t signal = 0;  // the step that a wait waits for
-    std::vector<Barrier> barriers;
+    std::size_t signal = 0;         // the step that a wait waits for
+    std::vector<Barrier> barriers;  // of a wait: one, whose second scope is that of the wait
   };
   // A part of an operation, and what comes after it. A part is one stage of an access with one of
   // its writes, or without one. A layout change has one part.

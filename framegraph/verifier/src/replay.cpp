@@ -25,22 +25,19 @@ void Replay::run() {
 // Finds the contents that each access must find: those of the last write that is declared before
 // it. Uses the declaration alone and not the plan.
 void Replay::find_expected() {
-  last_.resize(graph_.resources.size());
   for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
     const std::uint32_t external = graph_.resources[r].external;
-    const bool full = external != kNone && graph_.externals[external].has_contents;
-    last_[r].assign(resources_[r].subs.size(), full ? kInitial : kGarbage);
+    if (external == kNone || !graph_.externals[external].has_contents) continue;
+    for (Sub& sub : resources_[r].subs) sub.declared = kInitial;
   }
   for (std::uint32_t pass = 0; pass < graph_.passes.size(); ++pass) {
     for (const AccessRecord& access : graph_.pass_accesses(pass)) {
       const auto index = static_cast<std::uint32_t>(first_expected_.size());
       first_expected_.push_back(expected_.size());
       for_each_sub(access.resource, access.range, [&](Sub& sub) {
-        std::uint32_t& there =
-            last_[access.resource]
-                 [static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
-        expected_.push_back(there);
-        if (access.flags & kWrite) there = plan_.cull_reasons[pass].is_live() ? index : kMissing;
+        expected_.push_back(sub.declared);
+        if (access.flags & kWrite)
+          sub.declared = plan_.cull_reasons[pass].is_live() ? index : kMissing;
       });
     }
   }
@@ -49,11 +46,10 @@ void Replay::find_expected() {
 // Checks that the plan calls each write needed whose result a pass that runs reads, or somebody
 // after the frame. Goes through the declaration backwards and follows which contents are needed.
 void Replay::check_stores() {
-  std::vector<std::vector<bool>> needed(resources_.size());
   for (std::uint32_t r = 0; r < resources_.size(); ++r)
-    needed[r].assign(resources_[r].subs.size(), graph_.resources[r].origin != Origin::transient);
+    for (Sub& sub : resources_[r].subs) sub.needed = graph_.resources[r].external != kNone;
   for (const OutputRecord& output : graph_.outputs)
-    needed[output.resource].assign(needed[output.resource].size(), true);
+    for (Sub& sub : resources_[output.resource].subs) sub.needed = true;
   auto pass = static_cast<std::uint32_t>(graph_.passes.size());
   while (pass-- > 0) {
     if (!plan_.cull_reasons[pass].is_live()) continue;
@@ -61,14 +57,11 @@ void Replay::check_stores() {
       const auto index = static_cast<std::size_t>(&access - graph_.accesses.data());
       bool is_needed = false;
       for_each_sub(access.resource, access.range, [&](Sub& sub) {
-        auto there =
-            needed[access.resource]
-                  [static_cast<std::size_t>(&sub - resources_[access.resource].subs.data())];
-        is_needed = is_needed || there;
+        is_needed = is_needed || sub.needed;
         if (access.flags & kDiscard)
-          there = false;
+          sub.needed = false;
         else if (reads_of(access.access) != 0)
-          there = true;
+          sub.needed = true;
       });
       if ((access.flags & kWrite) && is_needed && !(plan_.contents[index] & kIsNeeded))
         fail("what pass '" + std::string(graph_.pass_name(pass)) + "' writes to " +
@@ -90,9 +83,8 @@ void Replay::begin_frame(bool first) {
       sub.spoiled = sub.written = false;
       if (record.external == kNone) continue;
       const ExternalRecord& external = graph_.externals[record.external];
-      const auto queue = static_cast<std::uint8_t>(external.queue);
       sub.last = {};
-      apply_initial_state(sub, queue, external.initial_state);
+      apply_initial_state(sub, static_cast<std::uint8_t>(external.queue), external.initial_state);
       sub.layout = external.initial_state.layout;
       if (external.has_contents) sub.content = kInitial;
     }
@@ -122,9 +114,14 @@ void Replay::submission(std::uint32_t index) {
   const Submission& submission = plan_.submissions[index];
   const auto queue = static_cast<std::uint8_t>(submission.queue);
   for (std::uint8_t other = 0; other < kQueueClasses && !first_frame_; ++other)
-    if ((submission.frame_before & (1u << other)) != 0) order_.wait(queue, end_signal(other));
-  for (std::uint32_t w = 0; w < submission.wait_count; ++w) {
-    order_.wait(queue, plan_.waits[submission.first_wait + w].submission);
+    if ((submission.frame_before & (1u << other)) != 0)
+      order_.wait(queue, end_signal(other), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  for (std::uint32_t w = submission.first_wait; w < submission.first_wait + submission.wait_count;
+       ++w) {
+    const Wait& wait = plan_.waits[w];
+    if (!supports(submission.queue, wait.stages))
+      fail("a submission waits in a stage that its queue cannot run");
+    order_.wait(queue, wait.submission, wait.stages);
   }
   for (std::uint32_t p = 0; p < submission.pass_count; ++p) {
     const PlannedPass& planned = plan_.passes[submission.first_pass + p];
@@ -270,3 +267,12 @@ std::string Replay::name(std::uint32_t resource) const {
 }
 
 }  // namespace alcove::framegraph::verifier
+
+tl::expected<void, alcove::framegraph::Errors> alcove::framegraph::verify(
+    const GraphDescription& graph, const Limits& limits, const Plan& plan) {
+  Errors errors;
+  if (verifier::check_tables(graph, limits, plan, errors))
+    verifier::Replay(graph, limits, plan, errors).run();
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return {};
+}

@@ -26,10 +26,12 @@ struct Sub {
   History last;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t content = kGarbage;
-  bool spoiled = false;     // a partial write was made over wrong contents
-  bool fresh = false;       // it was not used after the resource took its memory
-  bool written = false;     // a pass of this frame wrote it
-  std::size_t changed = 0;  // the time of its last layout change
+  bool spoiled = false;  // a partial write was made over wrong contents
+  bool fresh = false;    // it was not used after the resource took its memory
+  bool written = false;  // a pass of this frame wrote it
+  bool needed = false;   // a later pass, or somebody after the frame, needs the contents
+  std::uint32_t declared = kGarbage;  // its contents after the declared frame
+  std::size_t changed = 0;            // the time of its last layout change
 };
 
 class Replay {
@@ -120,8 +122,6 @@ class Replay {
   // find. first_expected_ has the index of the first entry of each access.
   std::vector<std::uint32_t> expected_;
   std::vector<std::size_t> first_expected_;
-  std::vector<std::vector<std::uint32_t>>
-      last_;  // by resource: its contents at the end of the frame
   bool first_frame_ = true;
   std::vector<Barrier> barriers_;  // of the current batch
   std::string where_;

@@ -50,18 +50,6 @@ struct MemoryFunctions {
   void* user = nullptr;
 };
 
-// Memory that the caller has allocated, from which one executor takes the memory of its transients
-// and histories. If the block is full, or a resource cannot lie in its memory type, MemoryFunctions
-// provide the rest. If there are no such functions, a full block is an error
-// (VK_ERROR_OUT_OF_DEVICE_MEMORY), and a resource that cannot lie in the memory type is allocated
-// with vkAllocateMemory.
-struct MemoryBlock {
-  VkDeviceMemory memory = VK_NULL_HANDLE;  // null: there is no block
-  VkDeviceSize offset = 0;                 // the first byte that may be used
-  VkDeviceSize size = 0;                   // bytes from there on
-  std::uint32_t memory_type = 0;           // index of the type that the block was allocated from
-};
-
 enum class Severity : std::uint8_t { info, warning, error };
 
 // The caller's log. `write` receives one sentence at a time, terminated by zero and valid during
@@ -75,7 +63,6 @@ struct HostServices {
   // Given to every Vulkan function that creates or destroys an object.
   const VkAllocationCallbacks* allocation_callbacks = nullptr;
   MemoryFunctions memory;
-  MemoryBlock block;
   Log log;
 };
 

@@ -72,10 +72,12 @@ struct Submission {
   std::uint32_t end_batch = kNone;  // into Plan::batches; recorded after its last pass
 };
 
-// A wait for a timeline semaphore: the waiting submission begins after all work of the submission
-// with the index `submission` is done.
+// A wait for a timeline semaphore. Work in `stages` of the waiting submission, and of later ones on
+// its queue, begins after all work of the submission with the index `submission` is done. The
+// stages are those that first use what is waited for.
 struct Wait {
   std::uint32_t submission = 0;
+  VkPipelineStageFlags2 stages = 0;
 };
 
 // The memory of a transient. A resource that no live pass uses has heap == kNone.
