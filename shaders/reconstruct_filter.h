@@ -91,22 +91,22 @@ Sums sum_four(Surface surface, Window window) {
   Sums sums = no_sums();
   TracedPixels around = surface.place.around;
   vec4 offsets = vec4(around.offset, around.offset + float(kTileSize));  // x, y, x, y
-  vec4 roots = clamp(1.0 - offsets * offsets * window.sharpness, 0.0, 1.0);
-  vec4 near = roots * roots;
+  vec4 near = clamp(1.0 - offsets * (offsets * window.sharpness), 0.0, 1.0);
+  float half_factor = 0.5 * window.squared_plane_factor;
   [[unroll]] for (int j = 0; j < 2; ++j) {
     float expected = surface.plane.z + offsets[2 * j + 1] * surface.plane.y;
     [[unroll]] for (int i = 0; i < 2; ++i) {
       TileSample found = load_shared(around.first_tile + j * kSpan + i);
       float off_plane = found.inverse_depth * surface.per_inverse_depth -
                         (expected + offsets[2 * i] * surface.plane.x);
-      float apart = off_plane * off_plane * window.squared_plane_factor;
+      float root = 1.0 - off_plane * (off_plane * half_factor);
       if (kByNormal) {
-        apart +=
-            min(squared_angle(surface.stereographic, found.stereographic), kLargestSquaredAngle);
+        root -= 0.5 * min(squared_angle(surface.stereographic, found.stereographic),
+                          kLargestSquaredAngle);
       }
-      float root = clamp(1.0 - 0.5 * apart, 0.0, 1.0);
-      float on_plane = root * root;
-      add_weighted(sums, found, on_plane * (near[2 * i] * near[2 * j + 1]), surface.lobe);
+      root = clamp(root, 0.0, 1.0);
+      float weight = root * (near[2 * i] * near[2 * j + 1]);  // its root
+      add_weighted(sums, found, weight * weight, surface.lobe);
     }
   }
   return sums;

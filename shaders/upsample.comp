@@ -5,10 +5,10 @@
 
 // Computes pixels from reconstructed texels of 2x2 pixels, without blurring depth edges.
 //
-// A pixel is the weighted mean of the four texels whose centres are around it. A texel's weight is
-// its bilinear weight times a function of the pixel's distance from the texel's tangent plane. The
-// plane is stored with the texel (HalfTexel), so that the only other input of a pixel is its own
-// depth.
+// A pixel is the weighted mean of the three nearest texels. A texel's weight is its barycentric
+// coordinate (1/2 for the nearest, 1/4 for the others) times a function of the pixel's distance
+// from the texel's tangent plane. The plane is stored with the texel (HalfTexel), so that the only
+// other input of a pixel is its own depth.
 //
 // One invocation computes the four pixels between the centres of four texels, so that the texels
 // are unpacked only once. The first invocation begins one pixel before the image.
@@ -60,7 +60,7 @@ float right_of(int i) { return i == 1 || i == 2 ? 1.0 : -1.0; }
 float below_of(int i) { return i < 2 ? 1.0 : -1.0; }
 
 // The largest distance from a texel's plane, in units of the tolerance, up to which weights
-// decrease. The limit keeps the product of the denominators of three weights within the range of a
+// decrease. The limit keeps the product of the denominators of two weights within the range of a
 // float.
 const float kFarthest = 1e5;
 
@@ -106,8 +106,8 @@ Cell fetch_cell(ivec2 index) {
 }
 
 // Returns the weights of the four texels for pixel `j`, which must not be sky. They have a common
-// factor. Each is the bilinear weight / (1 + distance^2), where the distance of the pixel from the
-// texel's tangent plane is in units of the tolerance.
+// factor. Each is the barycentric coordinate / (1 + distance^2), where the distance of the pixel
+// from the texel's tangent plane is in units of the tolerance. The farthest texel has the weight 0.
 vec4 weights_of(Cell cell, int j) {
   float d =
       is_counted_from_zero(kPerspective, kReversed) ? cell.depths_ndc[j] : 1.0 - cell.depths_ndc[j];
@@ -119,15 +119,13 @@ vec4 weights_of(Cell cell, int j) {
     float bounded = min(abs(off_plane), kFarthest);
     levels[i] = 1.0 + bounded * bounded;
   }
-  // Over the product of all denominators, which costs no division.
-  float lower = levels.x * levels.y;
-  float upper = levels.z * levels.w;
-  vec4 weights = vec4(levels.yx * upper, levels.wz * lower);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    // Bilinear: 3/4 on the pixel's side and 1/4 on the other, times 4 along each axis.
-    weights[i] *=
-        (right_of(i) == right_of(j) ? 3.0 : 1.0) * (below_of(i) == below_of(j) ? 3.0 : 1.0);
-  }
+  // Multiplied by the product of the denominators, so that no division is needed.
+  int next = (j + 1) % 4;
+  int last = (j + 3) % 4;
+  vec4 weights = vec4(0.0);
+  weights[j] = 2.0 * levels[next] * levels[last];
+  weights[next] = levels[j] * levels[last];
+  weights[last] = levels[j] * levels[next];
   return weights;
 }
 
@@ -151,7 +149,6 @@ vec3 unit_normal(ivec2 pixel) {
 void main() {
   // The cell with the first pixel that is written, and those after it.
   ivec2 index = ivec2(gl_GlobalInvocationID.xy) + (first_written() + 1) / 2;
-  ivec2 size = size_px();
   if (any(greaterThan(index * 2, last_written() + 1))) return;
   Cell cell = fetch_cell(index);
 #ifdef BENT
@@ -165,8 +162,8 @@ void main() {
 #endif
   [[unroll]] for (int j = 0; j < 4; ++j) {
     ivec2 pixel = cell.first + ivec2(right_of(j) > 0.0 ? 1 : 0, below_of(j) > 0.0 ? 1 : 0);
-    bool inside = kAreas ? is_written(pixel)
-                         : all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
+    // Without areas every pixel counts: stores beyond the border of the image have no effect.
+    bool inside = is_written(pixel);
     ivec2 output_pixel = in_outputs(pixel);
     vec4 weights = weights_of(cell, j);
     float inverse_sum = 1.0 / (weights.x + weights.y + weights.z + weights.w);
