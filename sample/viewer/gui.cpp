@@ -9,8 +9,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 void choose_style(float scale) {
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
@@ -27,8 +25,7 @@ void choose_style(float scale) {
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& window,
-                                                            VkFormat format) {
+Result<std::unique_ptr<Gui>> Gui::create(Gpu& gpu, Window& window, VkFormat format) {
   const VulkanDevice& device = gpu.device();
   std::unique_ptr<Gui> made(new Gui(device));
   made->framebuffers_.resize(gpu.frames_in_flight(), VK_NULL_HANDLE);
@@ -53,7 +50,7 @@ tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& wi
   }
   if (!made->on_window_ || !made->on_device_)
     return device_failure("create what the panel is drawn with", result);
-  auto uploaded = gpu.run([](Graph& graph) -> tl::expected<void, std::string> {
+  auto uploaded = gpu.run([](Graph& graph) -> Result<void> {
     auto pass = graph.add_pass("upload");
     pass.side_effect();  // on an image of ImGui's own, which synchronises it
     pass.record(
@@ -61,7 +58,7 @@ tl::expected<std::unique_ptr<Gui>, std::string> Gui::create(Gpu& gpu, Window& wi
     return {};
   });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
-  if (!uploaded) return Failure(uploaded.error());
+  ALCOVE_TRY_VOID(uploaded);
   return made;
 }
 

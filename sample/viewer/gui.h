@@ -2,11 +2,11 @@
 
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
 #include "gpu/gpu.h"
+#include "support/result.h"
 #include "viewer/window.h"
 
 namespace alcove::sample {
@@ -16,9 +16,8 @@ namespace alcove::sample {
 class Gui {
  public:
   // `format` is the format of the window's images. Both references must outlive the object.
-  [[nodiscard]] static tl::expected<std::unique_ptr<Gui>, std::string> create(Gpu& gpu,
-                                                                              Window& window,
-                                                                              VkFormat format);
+  [[nodiscard]] static Result<std::unique_ptr<Gui>> create(Gpu& gpu, Window& window,
+                                                           VkFormat format);
   // The device must have finished all frames that draw the widgets.
   ~Gui();
   Gui(const Gui&) = delete;

@@ -8,8 +8,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // The stage that waits for an image of the window. Its first barrier must begin with this stage.
 constexpr VkPipelineStageFlags2 kArrivalStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
 
@@ -48,17 +46,14 @@ std::uint32_t choose_count(const VkSurfaceCapabilitiesKHR& can) {
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Presenter>, std::string> Presenter::create(Gpu& gpu,
-                                                                        const Window& window) {
+Result<std::unique_ptr<Presenter>> Presenter::create(Gpu& gpu, const Window& window) {
   std::unique_ptr<Presenter> made(new Presenter(gpu, window));
-  auto done = assign(made->surface_, window.create_surface(gpu.device().instance())).and_then([&] {
-    return made->create_swapchain();
-  });
-  if (!done) return Failure(std::move(done.error()));
+  ALCOVE_TRY(made->surface_, window.create_surface(gpu.device().instance()));
+  ALCOVE_TRY_VOID(made->create_swapchain());
   return made;
 }
 
-tl::expected<void, std::string> Presenter::create_swapchain() {
+Result<void> Presenter::create_swapchain() {
   wait();
   destroy_images();
   window_size_ = window_.size();
@@ -149,14 +144,13 @@ Presenter::~Presenter() {
 
 void Presenter::wait() const { vkDeviceWaitIdle(gpu_.device().device()); }
 
-tl::expected<bool, std::string> Presenter::prepare() {
+Result<bool> Presenter::prepare() {
   const VkExtent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return false;
-  if (outdated_ || size.width != window_size_.width || size.height != window_size_.height) {
-    if (auto made = create_swapchain(); !made) return Failure(std::move(made.error()));
-  }
+  if (outdated_ || size.width != window_size_.width || size.height != window_size_.height)
+    ALCOVE_TRY_VOID(create_swapchain());
   if (acquired_) return true;
-  if (auto waited = gpu_.wait(slot_); !waited) return Failure(std::move(waited.error()));
+  ALCOVE_TRY_VOID(gpu_.wait(slot_));
   timings_.clear();
   for (const framegraph::PassTiming& timing : gpu_.timings(slot_))
     timings_.push_back({std::string(timing.name), timing.milliseconds});
@@ -168,7 +162,7 @@ tl::expected<bool, std::string> Presenter::prepare() {
   return acquired_;
 }
 
-tl::expected<framegraph::FrameReport, std::string> Presenter::draw(const Declare& declare) {
+Result<framegraph::FrameReport> Presenter::draw(const Declare& declare) {
   framegraph::ImportedTexture import;
   import.image = images_[current_];
   import.view = views_[current_];

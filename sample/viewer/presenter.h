@@ -3,10 +3,10 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "gpu/gpu.h"
+#include "support/result.h"
 #include "viewer/window.h"
 
 namespace alcove::sample {
@@ -16,8 +16,7 @@ namespace alcove::sample {
 class Presenter {
  public:
   // Gpu and window must outlive the presenter.
-  [[nodiscard]] static tl::expected<std::unique_ptr<Presenter>, std::string> create(
-      Gpu& gpu, const Window& window);
+  [[nodiscard]] static Result<std::unique_ptr<Presenter>> create(Gpu& gpu, const Window& window);
   ~Presenter();
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
@@ -25,15 +24,14 @@ class Presenter {
   // Creates a new swapchain if the size of the window has changed, waits for the frame's slot, and
   // acquires an image. Returns false if no frame can be drawn now, because the window is minimised
   // or the next call has to create a new swapchain.
-  [[nodiscard]] tl::expected<bool, std::string> prepare();
+  [[nodiscard]] Result<bool> prepare();
   VkExtent2D size() const { return size_; }
   VkFormat format() const { return format_; }
 
   // Declares, submits and presents a frame that draws all of `target`. Call it after prepare().
   // After an error of `declare` or of the graph, another frame may be drawn.
-  using Declare = std::function<tl::expected<void, std::string>(framegraph::Graph&,
-                                                                framegraph::Texture target)>;
-  [[nodiscard]] tl::expected<framegraph::FrameReport, std::string> draw(const Declare& declare);
+  using Declare = std::function<Result<void>(framegraph::Graph&, framegraph::Texture target)>;
+  [[nodiscard]] Result<framegraph::FrameReport> draw(const Declare& declare);
   // Returns the times of the last frame that the device has finished.
   const std::vector<PassTime>& timings() const { return timings_; }
 
@@ -44,7 +42,7 @@ class Presenter {
   Presenter(Gpu& gpu, const Window& window) : gpu_(gpu), window_(window) {}
   // Creates the images of a window of its current size. Errors: the device cannot present to the
   // surface, or the surface has no 8-bit format without conversion.
-  tl::expected<void, std::string> create_swapchain();
+  Result<void> create_swapchain();
   VkResult create_images();
   void destroy_images();
 

@@ -9,8 +9,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // The motion that is shown in full colour, as a fraction of the image's size.
 constexpr float kFullMotion = 0.02f;
 
@@ -29,21 +27,16 @@ bool reads_albedo(Picture picture) {
 
 }  // namespace
 
-tl::expected<std::unique_ptr<SceneFrame>, std::string> SceneFrame::create(
-    Gpu& gpu, const Scene& scene, const EnvironmentImage& environment, NormalSource normals,
-    VkFormat format) {
+Result<std::unique_ptr<SceneFrame>> SceneFrame::create(Gpu& gpu, const Scene& scene,
+                                                       const EnvironmentImage& environment,
+                                                       NormalSource normals, VkFormat format) {
   std::unique_ptr<SceneFrame> made(new SceneFrame(gpu, normals));
-  auto done =
-      assign(made->gbuffer_,
-             GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric))
-          .and_then([&] { return assign(made->light_, Light::create(gpu, environment)); })
-          .and_then([&] {
-            return assign(
-                made->picture_,
-                FullScreenPass::create(
-                    gpu, {"picture", kPicture, 2, sizeof(maths::PictureParameters), {format}}));
-          });
-  if (!done) return Failure(std::move(done.error()));
+  ALCOVE_TRY(made->gbuffer_,
+             GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
+  ALCOVE_TRY(made->light_, Light::create(gpu, environment));
+  ALCOVE_TRY(made->picture_,
+             FullScreenPass::create(
+                 gpu, {"picture", kPicture, 2, sizeof(maths::PictureParameters), {format}}));
   made->exposure_ = exposure_of(environment);
   return made;
 }
@@ -74,8 +67,7 @@ void SceneFrame::advance() {
   ++index_;
 }
 
-tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture target,
-                                                       const ViewState& state) {
+Result<Texture> SceneFrame::declare(Graph& graph, Texture target, const ViewState& state) {
   const VkExtent3D size = graph.extent(target);
   begin(graph, state, size);
   const OcclusionSettings settings = with_outputs(state.settings, state.picture);
@@ -103,13 +95,11 @@ tl::expected<Texture, std::string> SceneFrame::declare(Graph& graph, Texture tar
   environment_ = state.picture == Picture::lit ? light_->import(graph) : Texture();
 
   maths::PictureParameters parameters = picture_parameters(state);
-  auto picture = add_picture(graph, state, surfaces, settings, 0);
-  if (!picture) return picture;
-  Texture shown[2] = {*picture};
+  Texture shown[2];
+  ALCOVE_TRY(shown[0], add_picture(graph, state, surfaces, settings, 0));
   if (compared) {
-    auto other = add_picture(graph, state, surfaces, with_outputs(*compared, state.picture), 1);
-    if (!other) return other;
-    shown[1] = *other;
+    ALCOVE_TRY(shown[1],
+               add_picture(graph, state, surfaces, with_outputs(*compared, state.picture), 1));
     parameters.split = state.split * static_cast<float>(graph.extent(target).width);
   }
   picture_->add(graph, shown, {&target, 1}, parameters);
@@ -149,31 +139,29 @@ maths::PictureParameters SceneFrame::picture_parameters(const ViewState& state) 
 }
 
 // Adds the passes of the picture with `settings`, and returns the texture that is shown.
-tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const ViewState& state,
-                                                           const Surfaces& surfaces,
-                                                           const OcclusionSettings& settings,
-                                                           std::uint32_t view_id) {
+Result<Texture> SceneFrame::add_picture(Graph& graph, const ViewState& state,
+                                        const Surfaces& surfaces, const OcclusionSettings& settings,
+                                        std::uint32_t view_id) {
   const AlcoveViewInfo view = view_info(view_, view_id, static_frames_);
-  const auto outputs = add_occlusion(graph, gpu_, view, index_, surfaces, settings,
-                                     state.picture == Picture::multi_bounce);
-  if (!outputs) return Failure(outputs.error());
+  ALCOVE_TRY(const Occlusion outputs, add_occlusion(graph, gpu_, view, index_, surfaces, settings,
+                                                    state.picture == Picture::multi_bounce));
   // All outputs of the settings are computed, and timed, whether they are shown or not.
-  for (const Texture output : {outputs->visibility, outputs->bent_normal, outputs->specular})
+  for (const Texture output : {outputs.visibility, outputs.bent_normal, outputs.specular})
     if (output) graph.output(output);
   switch (state.picture) {
     case Picture::lit:
       return light_
-          ->add(graph, environment_, view_, surfaces, outputs->normals,
-                {outputs->visibility, outputs->bent_normal, outputs->specular, true})
+          ->add(graph, environment_, view_, surfaces, outputs.normals,
+                {outputs.visibility, outputs.bent_normal, outputs.specular, true})
           .all;
     case Picture::multi_bounce:
-      return outputs->multi_bounce;
+      return outputs.multi_bounce;
     case Picture::bent_normal:
-      return outputs->bent_normal;
+      return outputs.bent_normal;
     case Picture::specular_occlusion:
-      return outputs->specular;
+      return outputs.specular;
     case Picture::normals:
-      return outputs->normals;
+      return outputs.normals;
     case Picture::depth:
       return passes::add_surface(graph, gpu_.kernels(), view.camera, surfaces.gbuffer.depth)
           .map([](const passes::SurfaceTextures& made) { return made.linear_depth; })
@@ -183,7 +171,7 @@ tl::expected<Texture, std::string> SceneFrame::add_picture(Graph& graph, const V
     case Picture::motion:
       return surfaces.gbuffer.motion;
     default:
-      return outputs->visibility;
+      return outputs.visibility;
   }
 }
 

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 
 #include "gpu/gpu.h"
 #include "render/gbuffer.h"
@@ -12,6 +11,7 @@
 #include "render/shaders/picture.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"
+#include "support/result.h"
 #include "viewer/view_state.h"
 
 namespace alcove::sample {
@@ -22,14 +22,14 @@ namespace alcove::sample {
 class SceneFrame {
  public:
   // `format` is the format of the window's images. Both references must outlive the object.
-  [[nodiscard]] static tl::expected<std::unique_ptr<SceneFrame>, std::string> create(
+  [[nodiscard]] static Result<std::unique_ptr<SceneFrame>> create(
       Gpu& gpu, const Scene& scene, const EnvironmentImage& environment, NormalSource normals,
       VkFormat format);
 
   // Adds the passes that draw `target`. Returns the version of the texture after them.
-  [[nodiscard]] tl::expected<framegraph::Texture, std::string> declare(framegraph::Graph& graph,
-                                                                       framegraph::Texture target,
-                                                                       const ViewState& state);
+  [[nodiscard]] Result<framegraph::Texture> declare(framegraph::Graph& graph,
+                                                    framegraph::Texture target,
+                                                    const ViewState& state);
   // Makes the declared frame the previous frame of the next one. Call it after the declared frame
   // was submitted.
   void advance();
@@ -53,11 +53,9 @@ class SceneFrame {
 
   SceneFrame(Gpu& gpu, NormalSource normals) : gpu_(gpu), normals_(normals) {}
   void begin(framegraph::Graph& graph, const ViewState& state, VkExtent3D size);
-  tl::expected<framegraph::Texture, std::string> add_picture(framegraph::Graph& graph,
-                                                             const ViewState& state,
-                                                             const Surfaces& surfaces,
-                                                             const OcclusionSettings& settings,
-                                                             std::uint32_t view_id);
+  Result<framegraph::Texture> add_picture(framegraph::Graph& graph, const ViewState& state,
+                                          const Surfaces& surfaces,
+                                          const OcclusionSettings& settings, std::uint32_t view_id);
   maths::PictureParameters picture_parameters(const ViewState& state) const;
 
   Gpu& gpu_;

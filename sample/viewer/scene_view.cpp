@@ -16,8 +16,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 ViewState first_state(const Session& session, std::optional<float> roughness) {
   ViewState state;
   state.camera = session.camera;
@@ -28,8 +26,8 @@ ViewState first_state(const Session& session, std::optional<float> roughness) {
 
 // Writes an image to view.png in the folder, or to view-2.png and so on if that file exists.
 // Returns the path of the file. Creates the folder; an empty path is the current folder.
-tl::expected<std::filesystem::path, std::string> write_screenshot(
-    const std::filesystem::path& folder, const Image<glm::vec3>& image) {
+Result<std::filesystem::path> write_screenshot(const std::filesystem::path& folder,
+                                               const Image<glm::vec3>& image) {
   if (!folder.empty()) ALCOVE_TRY_VOID(create_folder(folder));
   std::filesystem::path file = folder / "view.png";
   for (int i = 2; std::filesystem::exists(file); ++i)
@@ -39,23 +37,15 @@ tl::expected<std::filesystem::path, std::string> write_screenshot(
 
 }  // namespace
 
-tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(SceneViewRequest wanted) {
+Result<std::unique_ptr<SceneView>> SceneView::create(SceneViewRequest wanted) {
   std::unique_ptr<SceneView> made(new SceneView(std::move(wanted)));
   const SceneViewRequest& request = made->request_;
-  auto done =
-      assign(made->window_, Window::create({request.width, request.height}, request.title))
-          .and_then([&] {
-            return assign(made->session_, request.open_session(Window::instance_extensions()));
-          })
-          .and_then([&] {
-            return assign(made->presenter_, Presenter::create(*made->session_.gpu, *made->window_));
-          })
-          .and_then([&] { return made->create_frame(made->session_.scene); })
-          .and_then([&] {
-            return assign(made->gui_, Gui::create(*made->session_.gpu, *made->window_,
-                                                  made->presenter_->format()));
-          });
-  if (!done) return Failure(std::move(done.error()));
+  ALCOVE_TRY(made->window_, Window::create({request.width, request.height}, request.title));
+  ALCOVE_TRY(made->session_, request.open_session(Window::instance_extensions()));
+  ALCOVE_TRY(made->presenter_, Presenter::create(*made->session_.gpu, *made->window_));
+  ALCOVE_TRY_VOID(made->create_frame(made->session_.scene));
+  ALCOVE_TRY(made->gui_,
+             Gui::create(*made->session_.gpu, *made->window_, made->presenter_->format()));
   made->state_ = first_state(made->session_, request.roughness);
   made->good_ = {made->state_.settings, made->state_.roughness};
   made->facts_.first_settings = made->state_.settings;
@@ -68,24 +58,22 @@ SceneView::~SceneView() {
   if (presenter_) presenter_->wait();
 }
 
-tl::expected<void, std::string> SceneView::create_frame(const Scene& scene) {
+Result<void> SceneView::create_frame(const Scene& scene) {
   const auto print = [](const std::string& note) { std::cerr << "note: " << note << "\n"; };
-  return load_environment(request_.environment, print)
-      .and_then([&](const EnvironmentImage& environment) {
-        presenter_->wait();
-        return assign(frame_, SceneFrame::create(*session_.gpu, scene, environment,
-                                                 request_.normals, presenter_->format()));
-      });
+  ALCOVE_TRY(const auto environment, load_environment(request_.environment, print));
+  presenter_->wait();
+  ALCOVE_TRY(frame_, SceneFrame::create(*session_.gpu, scene, environment, request_.normals,
+                                        presenter_->format()));
+  return {};
 }
 
-tl::expected<void, std::string> SceneView::replace_scene(const std::string& file) {
-  return request_.load_session(file).and_then([&](Session&& loaded) {
-    return create_frame(loaded.scene).map([&] {
-      session_.scene = std::move(loaded.scene);
-      session_.camera = loaded.camera;
-      session_.settings = loaded.settings;
-    });
-  });
+Result<void> SceneView::replace_scene(const std::string& file) {
+  ALCOVE_TRY(Session loaded, request_.load_session(file));
+  ALCOVE_TRY_VOID(create_frame(loaded.scene));
+  session_.scene = std::move(loaded.scene);
+  session_.camera = loaded.camera;
+  session_.settings = loaded.settings;
+  return {};
 }
 
 void SceneView::open(const std::string& file) {
@@ -167,27 +155,26 @@ void SceneView::lay_out() {
   gui_->end();
 }
 
-tl::expected<void, std::string> SceneView::draw_choice(const Choice& choice, ReadBack* read_back) {
+Result<void> SceneView::draw_choice(const Choice& choice, ReadBack* read_back) {
   ViewState state = state_;
   state.camera = camera_around_scene();
   state.settings = choice.settings;
   state.roughness = choice.roughness;
-  auto report = presenter_->draw([&](Graph& graph, Texture target) {
-    return frame_->declare(graph, target, state).and_then([&](Texture drawn) {
-      drawn = gui_->add(graph, drawn);
-      if (read_back == nullptr) return tl::expected<void, std::string>();
-      read_back->add(graph, drawn, [this](const Texels& texels) { screenshot_ = rgb(texels); });
-      return read_back->added();
-    });
-  });
-  if (!report) return Failure(std::move(report.error()));
+  const auto declare = [&](Graph& graph, Texture target) -> Result<void> {
+    ALCOVE_TRY(Texture drawn, frame_->declare(graph, target, state));
+    drawn = gui_->add(graph, drawn);
+    if (read_back == nullptr) return {};
+    read_back->add(graph, drawn, [this](const Texels& texels) { screenshot_ = rgb(texels); });
+    return read_back->added();
+  };
+  ALCOVE_TRY(const auto report, presenter_->draw(declare));
   frame_->advance();
-  facts_.memory = report->memory;
+  facts_.memory = report.memory;
   ++drawn_frames_;
   return {};
 }
 
-tl::expected<void, std::string> SceneView::draw_chosen(ReadBack* read_back) {
+Result<void> SceneView::draw_chosen(ReadBack* read_back) {
   const Choice chosen{state_.settings, state_.roughness};
   if (refused_ == chosen) return draw_choice(good_, read_back);
   auto drawn = draw_choice(chosen, read_back);
@@ -202,7 +189,7 @@ tl::expected<void, std::string> SceneView::draw_chosen(ReadBack* read_back) {
   return draw_choice(good_, read_back);
 }
 
-tl::expected<void, std::string> SceneView::draw_and_read() {
+Result<void> SceneView::draw_and_read() {
   ReadBack read_back(gpu().device());
   return draw_chosen(&read_back).map([&] {
     presenter_->wait();
@@ -210,31 +197,29 @@ tl::expected<void, std::string> SceneView::draw_and_read() {
   });
 }
 
-tl::expected<void, std::string> SceneView::write() {
-  const auto file = write_screenshot(request_.screenshots, screenshot_);
-  if (!file) return Failure(file.error());
+Result<void> SceneView::write() {
+  ALCOVE_TRY(const auto path, write_screenshot(request_.screenshots, screenshot_));
+  const std::string file = path.string();
   const std::string command = request_.command(
       {state_.camera, good_.settings, good_.roughness, screenshot_.width, screenshot_.height});
-  std::cout << file->string() << "\n" << command << std::endl;
+  std::cout << file << "\n" << command << std::endl;
   window_->copy_to_clipboard(command);
-  facts_.message = file->string() + " is written; the clipboard has: " + command;
+  facts_.message = file + " is written; the clipboard has: " + command;
   return {};
 }
 
-tl::expected<bool, std::string> SceneView::draw() {
+Result<bool> SceneView::draw() {
   window_->poll();
   if (window_->is_closed()) return false;
   // Dropped files are handled before the frame acquires an image of the window: version 1.3.239 of
   // the validation layers crashes if a program waits for the device between acquiring an image and
   // submitting its use.
   if (const auto dropped = window_->take_dropped_files(); !dropped.empty()) open(dropped.back());
-  const auto prepared = presenter_->prepare();
-  if (!prepared) return Failure(prepared.error());
-  if (!*prepared) return true;
+  ALCOVE_TRY(const bool prepared, presenter_->prepare());
+  if (!prepared) return true;
   lay_out();
-  auto drawn = std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })
-                                             : draw_chosen(nullptr);
-  if (!drawn) return Failure(std::move(drawn.error()));
+  ALCOVE_TRY_VOID(std::exchange(wanted_, false) ? draw_and_read().and_then([&] { return write(); })
+                                                : draw_chosen(nullptr));
   state_.camera = orbited(state_.camera, request_.orbit);
   return true;
 }

@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
 #include <vector>
 
 #include "render/read_back.h"
 #include "render/session.h"
+#include "support/result.h"
 #include "viewer/budget_fitter.h"
 #include "viewer/gui.h"
 #include "viewer/panel.h"
@@ -32,9 +32,9 @@ struct SceneViewRequest {
   std::filesystem::path environment;  // .exr; empty: the procedural sky
   std::filesystem::path screenshots;  // folder for screenshots; empty: the current folder
   // Loads the scene and opens a device with these instance extensions.
-  std::function<tl::expected<Session, std::string>(const std::vector<const char*>&)> open_session;
+  std::function<Result<Session>(const std::vector<const char*>&)> open_session;
   // Loads another scene with a camera and settings for it. Opens no device.
-  std::function<tl::expected<Session, std::string>(const std::string& file)> load_session;
+  std::function<Result<Session>(const std::string& file)> load_session;
   // Returns the shell command that renders a view without a window.
   std::function<std::string(const Shot&)> command;
 };
@@ -43,12 +43,11 @@ struct SceneViewRequest {
 class SceneView {
  public:
   // Opens the window before it loads the scene, so that a missing display is reported at once.
-  [[nodiscard]] static tl::expected<std::unique_ptr<SceneView>, std::string> create(
-      SceneViewRequest request);
+  [[nodiscard]] static Result<std::unique_ptr<SceneView>> create(SceneViewRequest request);
   ~SceneView();
 
   // Processes input and draws a frame. If the window was closed, draws nothing and returns false.
-  [[nodiscard]] tl::expected<bool, std::string> draw();
+  [[nodiscard]] Result<bool> draw();
   // The number of presented frames. It does not grow while the window is minimised.
   std::uint32_t drawn_frames() const { return drawn_frames_; }
   // Requests a screenshot: the next frame is also written to a file, and the program prints the
@@ -79,8 +78,8 @@ class SceneView {
 
   explicit SceneView(SceneViewRequest request) : request_(std::move(request)) {}
   // Creates the passes that draw a scene. Waits for the frames of the previous scene.
-  tl::expected<void, std::string> create_frame(const Scene& scene);
-  tl::expected<void, std::string> replace_scene(const std::string& file);
+  Result<void> create_frame(const Scene& scene);
+  Result<void> replace_scene(const std::string& file);
   // Returns the camera with its far plane moved behind the whole scene, because the user may have
   // moved the camera away from it.
   Camera camera_around_scene() const;
@@ -88,12 +87,12 @@ class SceneView {
   void take_keys();
   void lay_out();
   // Copies the window's image to `read_back` unless it is null.
-  tl::expected<void, std::string> draw_choice(const Choice& choice, ReadBack* read_back);
+  Result<void> draw_choice(const Choice& choice, ReadBack* read_back);
   // Draws a frame with the chosen settings. If the passes refuse them, uses the last settings that
   // could be drawn.
-  tl::expected<void, std::string> draw_chosen(ReadBack* read_back);
-  tl::expected<void, std::string> draw_and_read();
-  tl::expected<void, std::string> write();
+  Result<void> draw_chosen(ReadBack* read_back);
+  Result<void> draw_and_read();
+  Result<void> write();
 
   SceneViewRequest request_;
   std::unique_ptr<Window> window_;  // outlives the members below

@@ -12,8 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Returns GLFW's own description of the last failure.
 std::string reason() {
   const char* text = nullptr;
@@ -28,8 +26,7 @@ Failure no_window() {
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Window>, std::string> Window::create(VkExtent2D size,
-                                                                  const std::string& title) {
+Result<std::unique_ptr<Window>> Window::create(VkExtent2D size, const std::string& title) {
   if (glfwInit() != GLFW_TRUE) return no_window();
   std::unique_ptr<Window> made(new Window);
   if (glfwVulkanSupported() != GLFW_TRUE) {
@@ -64,7 +61,7 @@ std::vector<const char*> Window::instance_extensions() {
   return {names, names + count};
 }
 
-tl::expected<VkSurfaceKHR, std::string> Window::create_surface(VkInstance instance) const {
+Result<VkSurfaceKHR> Window::create_surface(VkInstance instance) const {
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   const VkResult result = glfwCreateWindowSurface(instance, window_, nullptr, &surface);
   if (result != VK_SUCCESS) {

@@ -4,9 +4,10 @@
 
 #include <memory>
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
 #include <vector>
+
+#include "support/result.h"
 
 struct GLFWwindow;
 
@@ -16,15 +17,15 @@ namespace alcove::sample {
 class Window {
  public:
   // The error says why no window can be opened.
-  [[nodiscard]] static tl::expected<std::unique_ptr<Window>, std::string> create(
-      VkExtent2D size, const std::string& title);
+  [[nodiscard]] static Result<std::unique_ptr<Window>> create(VkExtent2D size,
+                                                              const std::string& title);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
   // The extensions that a Vulkan instance needs to present to a window.
   [[nodiscard]] static std::vector<const char*> instance_extensions();
-  [[nodiscard]] tl::expected<VkSurfaceKHR, std::string> create_surface(VkInstance instance) const;
+  [[nodiscard]] Result<VkSurfaceKHR> create_surface(VkInstance instance) const;
 
   void show();
   // Processes the events since the last call. Waits for an event if the window is minimised.
