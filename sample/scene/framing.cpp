@@ -15,120 +15,81 @@ using Parts = std::span<const MeshInstance>;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// From the middle of the subject to the eyes that are tried, not through edges of boxes.
+constexpr glm::vec3 kSides[] = {
+    {0.6f, 0.45f, 0.85f}, {-0.85f, 0.45f, 0.6f}, {-0.6f, 0.45f, -0.85f}, {0.85f, 0.45f, -0.6f}};
+
 glm::vec3 size_of(const Bounds& bounds) { return bounds.high - bounds.low; }
 glm::vec3 middle(const Bounds& bounds) { return 0.5f * bounds.low + 0.5f * bounds.high; }
 
 bool is_wider(const Bounds& bounds, const Bounds& rest) {
-  constexpr double kMost = 1e4;  // a rest that is smaller is nothing to look at
   const glm::vec3 size = size_of(bounds), least = 3.0f * size_of(rest);
-  return size.x >= least.x && size.z >= least.z && diagonal(bounds) < kMost * diagonal(rest);
+  return size.x >= least.x && size.z >= least.z;
 }
 
 bool is_ground(const Bounds& bounds, const Bounds& rest) {
   constexpr float kFlat = 0.005f;  // of the width; a circuit board is thicker
-  constexpr float kSunk = 0.2f;    // of the height of the rest, in the ground
   const glm::vec3 size = size_of(bounds);
   return is_wider(bounds, rest) && size.y <= kFlat * std::min(size.x, size.z) &&
-         bounds.high.y <= rest.low.y + kSunk * size_of(rest).y;
+         bounds.high.y < middle(rest).y;
 }
 
-// Returns the distance at which a ray meets a mesh if it meets the front of a face, and no other.
-std::optional<float> distance_to_shell(const RayScene& rays, uint32_t mesh, const glm::vec3& from,
-                                       const glm::vec3& direction) {
-  constexpr int kMostHits = 64;
-  std::optional<float> found;
-  float distance = 0.0f;
-  for (int i = 0; i < kMostHits; ++i) {
-    const auto hit = rays.nearest(from + distance * direction, direction, kInfinity, true);
-    if (!hit) return found;
-    distance = 1.0001f * (distance + hit->distance);
-    if (hit->mesh != mesh) continue;
-    if (found || !hit->front) break;
-    found = distance;
-  }
-  return std::nullopt;
+// Returns the first face that a ray from outside of a box, away from its middle, meets.
+std::optional<Hit> beyond(const RayScene& rays, const Bounds& bounds, const glm::vec3& direction) {
+  const float distance = 0.5f * static_cast<float>(diagonal(bounds));
+  auto hit = rays.nearest(middle(bounds) + distance * direction, direction, kInfinity, true);
+  if (hit) hit->distance += distance;
+  return hit;
 }
 
+// A sky shows its front to all sides of the rest. A body with something inside shows its back.
 bool is_sky(const RayScene& rays, const MeshInstance& part, const Bounds& rest) {
-  const glm::vec3 border = 0.1f * size_of(rest);
-  if (!contains(part.bounds_ws, rest.low + border) || !contains(part.bounds_ws, rest.high - border))
-    return false;
-  for (int i = 0; i < 13; ++i) {  // eight rays to the sides, five up
-    const float angle = 0.7854f * static_cast<float>(i) + 0.19f;  // not to the edges of boxes
-    const glm::vec3 to(std::cos(angle), i < 8 ? 0.03f : i < 12 ? 1.1f : 50.0f, std::sin(angle));
-    if (!distance_to_shell(rays, part.mesh, middle(rest), glm::normalize(to))) return false;
-  }
-  return true;
+  return is_wider(part.bounds_ws, rest) && std::ranges::all_of(kSides, [&](const glm::vec3& side) {
+           const auto hit = beyond(rays, rest, glm::normalize(side));
+           return hit && hit->mesh == part.mesh && hit->front;
+         });
 }
 
 // Returns the box of parts without strays, and counts the strays.
 Bounds bounds_without_strays(const Scene& scene, Parts parts, size_t& strays) {
   constexpr double kSamples = 30000.0, kBeyond = 0.001 / 6.0;  // share of the area at each side
-  struct Triangle {
-    Bounds bounds_ws;
-    double area;
-  };
-  std::vector<Triangle> triangles;
+  std::vector<std::pair<Bounds, double>> triangles;            // with their areas
   Bounds all = empty_bounds(), box, core = empty_bounds();
-  double area = 0.0;
+  double area = 0.0, sampled = 0.0, visited = 0.0;
   for (const MeshInstance& part : parts) {
     const Mesh& mesh = scene.meshes[part.mesh];
-    const glm::dmat4x3 world(world_from_mesh(mesh, part.instance));
+    const glm::mat4x3 world = world_from_mesh(mesh, part.instance);
+    const glm::dmat3 normal_from_mesh = cofactor(glm::mat3(world));
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      const auto at = [&](size_t c) {
-        return world * glm::dvec4(mesh.positions[mesh.indices[i + c]], 1.0);
-      };
-      const glm::dvec3 a = at(0), b = at(1), c = at(2);
-      triangles.push_back({{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))},
-                           glm::length(glm::cross(b - a, c - a))});
-      all = united(all, triangles.back().bounds_ws);
-      area += triangles.back().area;
-    }
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<float> lows, highs;  // of triangles, as often as their area is large
-    double sampled = 0.0, visited = 0.0;
-    for (const Triangle& triangle : triangles) {
-      for (visited += triangle.area; sampled < visited; sampled += area / kSamples) {
-        lows.push_back(triangle.bounds_ws.low[axis]);
-        highs.push_back(triangle.bounds_ws.high[axis]);
+      Bounds bounds = empty_bounds();
+      for (size_t c = 0; c < 3; ++c) {
+        const glm::vec3 at = world * glm::vec4(mesh.positions[mesh.indices[i + c]], 1.0f);
+        bounds = united(bounds, {at, at});
       }
+      triangles.emplace_back(bounds, glm::length(normal_from_mesh * area_of(mesh, i)));
+      all = united(all, bounds);
+      area += triangles.back().second;
     }
-    box.low[axis] = percentile(std::move(lows), kBeyond);
-    box.high[axis] = percentile(std::move(highs), 1.0 - kBeyond);
   }
-  for (const Triangle& triangle : triangles) {
-    const glm::vec3 low = glm::max(triangle.bounds_ws.low, box.low);
-    const bool apart = glm::any(glm::lessThan(glm::min(triangle.bounds_ws.high, box.high), low));
+  std::vector<glm::vec3> samples;  // middles of triangles, as often as their area is large
+  for (const auto& [bounds, size] : triangles)
+    for (visited += size; sampled < visited; sampled += area / kSamples)
+      samples.push_back(middle(bounds));
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> values;
+    for (const glm::vec3& sample : samples) values.push_back(sample[axis]);
+    box.low[axis] = percentile(values, kBeyond);
+    box.high[axis] = percentile(values, 1.0 - kBeyond);
+  }
+  for (const auto& [bounds, size] : triangles) {
+    const glm::vec3 low = glm::max(bounds.low, box.low), high = glm::min(bounds.high, box.high);
+    const bool apart = glm::any(glm::lessThan(high, low));
     strays += apart ? 1 : 0;
-    if (!apart) core = united(core, triangle.bounds_ws);
+    if (!apart) core = united(core, bounds);
   }
   if (diagonal(core) < 0.9 * diagonal(all)) return core;
   strays = 0;
   return all;
-}
-
-// Returns a point from which most rays meet front faces, but which few rays from outside meet.
-std::optional<glm::vec3> inside_of_room(const RayScene& rays, const Bounds& bounds) {
-  constexpr int kRays = 64, kPoints = 27;
-  constexpr float kShares[] = {0.5f, 0.25f, 0.75f};
-  const auto reach = static_cast<float>(diagonal(bounds));
-  for (int p = 0; p < kPoints; ++p) {
-    const glm::vec3 share(kShares[p / 3 % 3], kShares[p % 3], kShares[p / 9]);
-    const glm::vec3 at = bounds.low + share * size_of(bounds);
-    int walls = 0, outsides = 0;
-    for (int r = 0; r < kRays; ++r) {  // directions on a spiral
-      const float y = 1.0f - (2.0f * static_cast<float>(r) + 1.0f) / kRays;
-      const float angle = 2.4f * static_cast<float>(r), radius = std::sqrt(1.0f - y * y);
-      const glm::vec3 to(radius * std::cos(angle), y, radius * std::sin(angle));
-      const auto wall = rays.nearest(at, to, reach);
-      const auto outside = rays.nearest(at + reach * to, -to, reach);
-      walls += wall && wall->front && wall->distance > 0.02f * reach ? 1 : 0;
-      outsides += outside && outside->front ? 1 : 0;
-    }
-    if (4 * walls >= 3 * kRays && 3 * outsides <= 2 * walls) return at;
-  }
-  return std::nullopt;
 }
 
 // Returns the least distance of the eye from the centre of a box at which the whole box is in view,
@@ -151,10 +112,10 @@ float distance_in_view(const Bounds& bounds, const glm::vec3& back, float fov_y,
 
 // The picture of a view at a low resolution. Depths are distances along the view axis.
 struct ViewFinder::Picture {
-  std::vector<float> depths;                    // of surfaces that are no sky
-  float nearest = kInfinity;                    // depth of all surfaces
-  size_t pixels = 0, surfaces = 0, fronts = 0;  // fronts: front faces of the subject
-  size_t backs = 0;                             // pixels with nothing but faces that are not drawn
+  std::vector<float> depths;  // of surfaces that are no sky
+  float nearest = kInfinity;  // depth of all surfaces
+  size_t pixels = 0, surfaces = 0;
+  size_t fronts = 0, backs = 0;  // pixels by the side of the first face, drawn or not
 };
 
 ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bounds_ws) {
@@ -192,8 +153,6 @@ ViewFinder::Picture ViewFinder::look(const Camera& camera, double aspect) const 
   if (!rays_) return out;
   const auto width = static_cast<uint32_t>(std::clamp(std::round(kHeight * aspect), 16.0, 1024.0));
   const CameraMatrices matrices = camera_matrices(camera, width, kHeight);
-  const glm::vec3 margin = 0.02f * size_of(subject_ws_);
-  const Bounds subject{subject_ws_.low - margin, subject_ws_.high + margin};
   out.pixels = size_t{width} * kHeight;
   for (uint32_t i = 0; i < out.pixels; ++i) {
     const glm::uvec2 pixel(i % width, i / width);
@@ -202,82 +161,83 @@ ViewFinder::Picture ViewFinder::look(const Camera& camera, double aspect) const 
     const float cosine = -glm::dot(ray.direction_ws, glm::vec3(matrices.world_from_view[2]));
     const glm::vec3 start = ray.origin_ws + ray.direction_ws * (camera.near_plane / cosine);
     const float far = (camera.far_plane - camera.near_plane) / cosine;
-    const auto hit = rays_->nearest(start, ray.direction_ws, far);
-    if (!hit) {
-      out.backs += rays_->nearest(start, ray.direction_ws, far, true) ? 1 : 0;
-      continue;
-    }
+    auto hit = rays_->nearest(start, ray.direction_ws, far, true);
+    if (!hit) continue;
+    ++(hit->front ? out.fronts : out.backs);
+    hit = rays_->nearest(start, ray.direction_ws, far);
+    if (!hit) continue;
     ++out.surfaces;
     const float depth = camera.near_plane + hit->distance * cosine;
     out.nearest = std::min(out.nearest, depth);
-    if (std::ranges::find(skies_, hit->mesh) != skies_.end()) continue;
-    out.depths.push_back(depth);
-    out.fronts += hit->front && contains(subject, start + ray.direction_ws * hit->distance) ? 1 : 0;
+    if (std::ranges::find(skies_, hit->mesh) == skies_.end()) out.depths.push_back(depth);
   }
   return out;
 }
 
 Camera ViewFinder::framing_camera(double aspect) const {
-  constexpr glm::vec3 kSides[] = {
-      {0.6f, 0.45f, 0.85f}, {-0.85f, 0.45f, 0.6f}, {-0.6f, 0.45f, -0.85f}, {0.85f, 0.45f, -0.6f}};
   constexpr float kInside = 0.85f;  // of the distance to a sky or a wall
   const float kFovY = glm::radians(45.0f);
-  const auto room = rays_ && skies_.empty() ? inside_of_room(*rays_, subject_ws_) : std::nullopt;
   Camera camera, best;
   camera.name = "frame";
   camera.origin = scene_.origin;
-  camera.target_ws = room.value_or(middle(subject_ws_));
+  camera.target_ws = middle(subject_ws_);
   camera.near_plane = 0.0f;
   camera.far_plane = kInfinity;
   camera.fit_planes = true;
-  float most = -1.0f;
-  for (const glm::vec3& side : kSides) {
-    const glm::vec3 back = glm::normalize(room ? side * size_of(subject_ws_) : side);
-    float free = kInfinity;
-    for (const uint32_t sky : skies_)
-      free = std::min(free, distance_to_shell(*rays_, sky, camera.target_ws, back).value_or(free));
-    if (room) {
-      const glm::vec3 wall = glm::mix(subject_ws_.low, subject_ws_.high, glm::step(0.0f, back));
-      const glm::vec3 exit = (wall - *room) / back;
-      const auto hit = rays_->nearest(*room, back, std::min({free, exit.x, exit.y, exit.z}));
-      free = hit ? hit->distance : std::min({free, exit.x, exit.y, exit.z});
+  size_t fronts = 0, backs = 0;  // seen from outside
+  for (const bool inside : {false, true}) {
+    // The eye is in a room if those outside see backs of walls, and if it sees fronts there.
+    if (inside && (!skies_.empty() || backs <= 2 * fronts)) break;
+    float most = inside ? 0.0f : -1.0f;
+    for (const glm::vec3& side : kSides) {
+      const glm::vec3 back = glm::normalize(inside ? side * size_of(subject_ws_) : side);
+      float free = kInfinity;
+      if (inside) {
+        free = 0.5f * static_cast<float>(diagonal(subject_ws_));
+        if (const auto wall = rays_->nearest(camera.target_ws, back, free)) free = wall->distance;
+      } else if (!skies_.empty()) {
+        if (const auto sky = beyond(*rays_, subject_ws_, back)) free = sky->distance;
+      }
+      // An eye that cannot go back far enough sees more by a wider angle.
+      const float whole = distance_in_view(subject_ws_, back, kFovY, aspect);
+      const float distance = std::min(kInside * free, whole);
+      camera.fov_y = distance < whole ? 1.45f * kFovY : kFovY;
+      camera.eye_ws = camera.target_ws + distance * back;
+      const Picture picture = look(camera, aspect);
+      fronts += inside ? 0 : picture.fronts;
+      backs += inside ? 0 : picture.backs;
+      // An eye that is too near shows a large part of a subject that is cut off.
+      const float score = distance * static_cast<float>(picture.fronts);
+      if (score <= 1.25f * most) continue;
+      best = camera;
+      most = score;
     }
-    // An eye that cannot go back far enough sees more by a wider angle.
-    const float whole = distance_in_view(subject_ws_, back, kFovY, aspect);
-    const float distance = std::min(kInside * free, whole);
-    camera.fov_y = distance < whole ? 1.45f * kFovY : kFovY;
-    camera.eye_ws = camera.target_ws + distance * back;
-    // An eye that is too near shows a large part of a subject that is cut off.
-    const float score = distance * static_cast<float>(look(camera, aspect).fronts);
-    if (score <= 1.25f * most) continue;
-    best = camera;
-    most = score;
   }
   return best;
 }
 
 Camera ViewFinder::with_fitted_planes(const Camera& camera, double aspect) const {
   const auto size = static_cast<float>(diagonal(subject_ws_));
-  float reach = size;
-  for (const glm::vec3& corner : corners_of(scene_.bounds_ws))
-    reach = std::max(reach, 2.0f * size + glm::distance(corner, camera.eye_ws));
+  if (size == 0.0f) return camera;
   Camera out = camera;
-  out.near_plane = camera.orthographic ? -reach : 0.0f;
-  out.far_plane = reach;
+  out.far_plane = size;
+  for (const glm::vec3& corner : corners_of(scene_.bounds_ws))
+    out.far_plane = std::max(out.far_plane, 2.0f * size + glm::distance(corner, camera.eye_ws));
+  out.near_plane = camera.orthographic ? -out.far_plane : 0.0f;
   if (!camera.orthographic)
     out.near_plane = std::clamp(0.5f * look(out, aspect).nearest, 2e-5f * size, 0.01f * size);
-  const bool usable = camera.orthographic || out.near_plane > 0.0f;
-  return usable && out.near_plane < out.far_plane ? out : camera;
+  return out;
 }
 
 RadiusChoice ViewFinder::radius(const Camera& camera, double aspect) const {
-  const Picture picture = look(camera, aspect);
+  Picture picture = look(camera, aspect);
   RadiusChoice out{scene_.suggested_radius, "the scene suggests it", ""};
   if (out.radius <= 0.0f) {
-    const float depth = picture.depths.empty() ? glm::distance(camera.eye_ws, camera.target_ws)
-                                               : median(picture.depths);
-    const float height =
-        camera.orthographic ? camera.ortho_height : 2.0f * std::tan(0.5f * camera.fov_y) * depth;
+    if (picture.depths.empty())
+      picture.depths.push_back(glm::distance(camera.eye_ws, camera.target_ws));
+    const float height = camera.orthographic
+                             ? camera.ortho_height
+                             : 2.0f * std::tan(0.5f * camera.fov_y) * median(picture.depths);
     out.radius = 0.05f * height * static_cast<float>(aspect);
     out.reason = "a twentieth of the width of the view at the median distance of its surfaces";
   }

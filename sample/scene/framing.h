@@ -19,11 +19,11 @@ struct RadiusChoice {
 // Chooses cameras and radii by rays through a scene, which must outlive it.
 //
 // The subject of a scene is everything but skies, grounds and strays, judged by the boxes of the
-// instances of meshes. A sky, or the shell of a room, contains the rest, and rays from there to the
-// sides and up meet it once, from the front. A ground is flat, below the rest, and at least three
-// times as wide in both horizontal directions. Strays are triangles outside the box that holds
-// 99.9 % of the area, if the subject is clearly larger with them. Scenes of more than 2^23
-// triangles are judged by boxes alone.
+// instances of meshes. A sky, or the shell of a room, contains the rest, is at least three times as
+// large in both horizontal directions, and shows its front inside. A ground is flat, below the
+// rest, and as much wider. Strays are triangles outside the box that holds 99.9 % of the area, if
+// the subject is clearly larger with them. Scenes of more than 2^23 triangles are judged by their
+// box alone.
 class ViewFinder {
  public:
   explicit ViewFinder(const Scene& scene);
@@ -32,8 +32,9 @@ class ViewFinder {
   // A sentence on what the subject lacks, or empty.
   [[nodiscard]] const std::string& left_out() const { return left_out_; }
   // Returns a camera that looks at the whole subject diagonally from above, inside of a sky, from
-  // the first of four sides or one that shows clearly more front faces. In a room whose walls have
-  // no outside, the eye is inside. with_fitted_planes() sets its near and far plane.
+  // the first of four sides or one that shows clearly more front faces. If these views mostly show
+  // the backs of faces, as those of a room, the eye is inside. with_fitted_planes() sets its near
+  // and far plane.
   [[nodiscard]] Camera framing_camera(double aspect) const;
   // Returns the camera with a near and far plane around the surfaces in view.
   [[nodiscard]] Camera with_fitted_planes(const Camera& camera, double aspect) const;

@@ -302,14 +302,10 @@ Result<void> PrimitiveReader::read_normals() {
   }
   ALCOVE_TRY(const auto normals, values("NORMAL", 3));
   for (size_t i = 0; i < vertices_.size(); ++i) {
-    // Normals are transformed by the cofactor matrix, the inverse transpose times the determinant.
-    // It exists even if the determinant is 0. Normals that are zero or not finite become zero.
-    const glm::dmat3 m(transforms_.at(i));
-    const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
-    const glm::dmat3 cofactor(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
-                              side * glm::cross(m[0], m[1]));
+    // Normals that are zero or not finite become zero.
     const float* in = &normals[3 * i];
-    mesh.normals.emplace_back(direction_of(cofactor * glm::dvec3(in[0], in[1], in[2])));
+    mesh.normals.emplace_back(
+        direction_of(cofactor(transforms_.at(i)) * glm::dvec3(in[0], in[1], in[2])));
   }
   mend_normals(mesh);
   if (!mapped || attribute(primitive_.attributes, "TANGENT") < 0) return {};

@@ -133,21 +133,6 @@ bool is_traceable(const glm::vec3& origin, const glm::vec3& direction) {
          std::abs(origin.z) < kFarthestStart && std::isfinite(glm::dot(direction, direction));
 }
 
-// Transforms normals from mesh space to world space.
-class NormalTransform {
- public:
-  explicit NormalTransform(const glm::mat4x3& world_from_mesh) {
-    const glm::dmat3 m{glm::mat3(world_from_mesh)};
-    const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
-    cofactor_ = {side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
-                 side * glm::cross(m[0], m[1])};
-  }
-  glm::dvec3 operator()(const glm::dvec3& normal) const { return cofactor_ * normal; }
-
- private:
-  glm::dmat3 cofactor_;
-};
-
 }  // namespace
 
 struct RayScene::Impl {
@@ -230,8 +215,8 @@ std::optional<Hit> RayScene::nearest(const glm::vec3& origin, const glm::vec3& d
   hit.mesh = hit_geometry.mesh;
   hit.material = mesh.material;
   hit.color = color_within(mesh, query.hit.primID, u, v);
-  const NormalTransform placed(world_from_mesh(mesh, hit_geometry.instance));
-  const glm::dvec3 area = placed(area_of(mesh, size_t{3} * query.hit.primID));
+  const glm::dmat3 placed = cofactor(glm::mat3(world_from_mesh(mesh, hit_geometry.instance)));
+  const glm::dvec3 area = placed * area_of(mesh, size_t{3} * query.hit.primID);
   const double length_of_area = glm::length(area);
   if (!(length_of_area > 0.0) || !std::isfinite(hit.distance)) return std::nullopt;
   const glm::vec3 normal(area / length_of_area);
@@ -241,7 +226,7 @@ std::optional<Hit> RayScene::nearest(const glm::vec3& origin, const glm::vec3& d
   if (!mesh.normals.empty()) {
     const glm::vec3 smooth =
         w * mesh.normals[i[0]] + u * mesh.normals[i[1]] + v * mesh.normals[i[2]];
-    const glm::vec3 smooth_ws(direction_of(placed(glm::dvec3(smooth))));
+    const glm::vec3 smooth_ws(direction_of(placed * glm::dvec3(smooth)));
     // The vertex normal is flipped on a back face, as the triangle's normal is, even if the vertex
     // normal faces the ray already.
     if (glm::length(smooth) > 1e-6f && smooth_ws != glm::vec3(0.0f))

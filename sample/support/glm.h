@@ -17,4 +17,12 @@ namespace alcove::sample {
   return std::isfinite(length) && length > 0.0 ? v / length : glm::dvec3(0.0);
 }
 
+// Returns the matrix that transforms normals as `m` transforms points: the inverse transpose times
+// the absolute value of the determinant, which exists even if that is 0.
+[[nodiscard]] inline glm::dmat3 cofactor(const glm::dmat3& m) {
+  const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
+  return {side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
+          side * glm::cross(m[0], m[1])};
+}
+
 }  // namespace alcove::sample
