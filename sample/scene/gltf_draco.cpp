@@ -168,16 +168,28 @@ Result<void> decompress(tinygltf::Model& model, const tinygltf::Value& extension
   return {};
 }
 
+bool has_data(const tinygltf::Model& model, int accessor) {
+  const auto index = static_cast<size_t>(accessor);
+  return index < model.accessors.size() && model.accessors[index].bufferView >= 0;
+}
+
 }  // namespace
 
-Result<void> decompress_primitives(tinygltf::Model& model) {
+Result<void> decompress_primitives(tinygltf::Model& model, std::vector<std::string>& notes) {
   Budget budget;
   for (tinygltf::Mesh& mesh : model.meshes) {
     for (tinygltf::Primitive& primitive : mesh.primitives) {
       const auto found = primitive.extensions.find("KHR_draco_mesh_compression");
       if (found == primitive.extensions.end()) continue;
-      const tinygltf::Value extension = found->second;
-      ALCOVE_TRY_VOID(decompress(model, extension, budget, primitive));
+      tinygltf::Primitive decompressed = primitive;
+      if (auto done = decompress(model, found->second, budget, decompressed); done) {
+        primitive = std::move(decompressed);
+      } else if (has_data(model, attribute(primitive.attributes, "POSITION")) &&
+                 (primitive.indices < 0 || has_data(model, primitive.indices))) {
+        notes.push_back("Compressed meshes that cannot be read are replaced by their fallback.");
+      } else {
+        return done;
+      }
     }
   }
   return {};

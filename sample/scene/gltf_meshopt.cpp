@@ -87,8 +87,7 @@ Result<void> decompress_views(tinygltf::Model& model, std::vector<std::string>& 
     if (extension == nullptr) continue;
     auto data = decompressed(model, *extension, bytes_left);
     if (!data && view_bytes(model, view)) {
-      notes.push_back(
-          "Compressed buffer views that cannot be read are replaced by their fallback.");
+      notes.push_back("Compressed meshes that cannot be read are replaced by their fallback.");
       continue;
     }
     if (!data) return Failure("compressed buffer view " + std::to_string(i) + " " + data.error());

@@ -223,7 +223,7 @@ Result<GltfModel> read_gltf_model(std::vector<uint8_t> file, const std::filesyst
   ALCOVE_TRY_VOID(fill_buffers(root.value("buffers", json::array()), std::move(file), parts,
                                out.files, out.model));
   ALCOVE_TRY_VOID(decompress_views(out.model, out.warnings));
-  ALCOVE_TRY_VOID(decompress_primitives(out.model));
+  ALCOVE_TRY_VOID(decompress_primitives(out.model, out.warnings));
   return out;
 }
 

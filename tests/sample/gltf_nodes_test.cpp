@@ -279,6 +279,15 @@ TEST(GltfCompression, DamagedDracoPrimitivesAreRefused) {
   }
 }
 
+TEST(GltfCompression, DracoPrimitiveThatCannotBeDecompressedIsReplacedByItsFallback) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
+  const Scene scene = parsed(maker.gltf());
+  EXPECT_EQ(corners(scene)[1], glm::vec3(1, 0, 0));
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("fallback")));
+}
+
 // Ten triangles around the origin, and a camera, moved by `offset`.
 GltfMaker scene_at(const glm::dvec3& offset) {
   GltfMaker maker = GltfMaker::triangle();
