@@ -1,9 +1,9 @@
 #include "gpu/gpu.h"
 
+#include <algorithm>
+#include <bit>
 #include <glm/gtc/packing.hpp>
 #include <utility>
-
-#include "gpu/gpu_image.h"
 
 namespace alcove::sample {
 namespace {
@@ -19,6 +19,38 @@ framegraph::DeviceHandles device_handles(const VulkanDevice& device) {
   handles.queues[static_cast<std::size_t>(framegraph::QueueClass::graphics)] = {
       device.queue(), device.queue_family()};
   return handles;
+}
+
+// Fills all mips but mip 0 of a colour texture.
+void add_mips(Graph& graph, Texture texture, std::uint32_t mips) {
+  for (std::uint32_t mip = 1; mip < mips; ++mip) {
+    auto pass = graph.add_pass("mip");
+    pass.read(texture, framegraph::access::blit_source, framegraph::Range::mip(mip - 1));
+    texture = pass.write(texture, framegraph::access::blit_destination, framegraph::Range::mip(mip),
+                         framegraph::Contents::discard);
+    pass.record([texture, mip](RecordContext& context) {
+      const auto corner = [&](std::uint32_t of) {
+        const VkExtent3D size = context.extent(texture, of);
+        return VkOffset3D{static_cast<std::int32_t>(size.width),
+                          static_cast<std::int32_t>(size.height), 1};
+      };
+      const VkImageBlit2 region{.sType = VK_STRUCTURE_TYPE_IMAGE_BLIT_2,
+                                .srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1},
+                                .srcOffsets = {{}, corner(mip - 1)},
+                                .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1},
+                                .dstOffsets = {{}, corner(mip)}};
+      const VkImage image = context.image(texture);
+      const VkBlitImageInfo2 blit{.sType = VK_STRUCTURE_TYPE_BLIT_IMAGE_INFO_2,
+                                  .srcImage = image,
+                                  .srcImageLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                  .dstImage = image,
+                                  .dstImageLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                  .regionCount = 1,
+                                  .pRegions = &region,
+                                  .filter = VK_FILTER_LINEAR};
+      vkCmdBlitImage2(context.commands, &blit);
+    });
+  }
 }
 
 }  // namespace
@@ -69,8 +101,9 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
     const DeviceOptions& options, const framegraph::ExecutorOptions& executor_options) {
   std::unique_ptr<Gpu> made(new Gpu);
   made->executor_options_ = executor_options;
-  if (auto opened = assign(made->device_, VulkanDevice::create(options)); !opened)
-    return Failure(std::move(opened.error()));
+  auto device = VulkanDevice::create(options);
+  if (!device) return Failure(std::move(device.error()));
+  made->device_ = std::move(*device);
   made->handles_ = device_handles(*made->device_);
   made->handles_.debug_utils = options.validation;
   if (auto started = made->restart(); !started) return Failure(std::move(started.error()));
@@ -128,36 +161,24 @@ Texture add_copy(Graph& graph, const HostBuffer& source, Texture target) {
   return filled;
 }
 
-Texture add_mips(Graph& graph, Texture texture, std::uint32_t mips) {
-  for (std::uint32_t mip = 1; mip < mips; ++mip) {
-    auto pass = graph.add_pass("mip");
-    pass.read(texture, framegraph::access::blit_source, framegraph::Range::mip(mip - 1));
-    texture = pass.write(texture, framegraph::access::blit_destination, framegraph::Range::mip(mip),
-                         framegraph::Contents::discard);
-    pass.record([texture, mip](RecordContext& context) {
-      const auto corner = [&](std::uint32_t of) {
-        const VkExtent3D size = context.extent(texture, of);
-        return VkOffset3D{static_cast<std::int32_t>(size.width),
-                          static_cast<std::int32_t>(size.height), 1};
-      };
-      const VkImageBlit2 region{.sType = VK_STRUCTURE_TYPE_IMAGE_BLIT_2,
-                                .srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1},
-                                .srcOffsets = {{}, corner(mip - 1)},
-                                .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1},
-                                .dstOffsets = {{}, corner(mip)}};
-      const VkImage image = context.image(texture);
-      const VkBlitImageInfo2 blit{.sType = VK_STRUCTURE_TYPE_BLIT_IMAGE_INFO_2,
-                                  .srcImage = image,
-                                  .srcImageLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                  .dstImage = image,
-                                  .dstImageLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                  .regionCount = 1,
-                                  .pRegions = &region,
-                                  .filter = VK_FILTER_LINEAR};
-      vkCmdBlitImage2(context.commands, &blit);
-    });
-  }
-  return texture;
+tl::expected<std::unique_ptr<GpuImage>, std::string> upload_image(
+    Gpu& gpu, VkFormat format, VkExtent2D size, std::span<const std::byte> texels) {
+  const auto mips = static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height)));
+  auto image = GpuImage::create(
+      gpu.device(), {format, framegraph::Extent::absolute(size.width, size.height), mips},
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+          VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  auto source = HostBuffer::create(gpu.device(), texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  if (!image) return image;
+  if (!source) return Failure(std::move(source.error()));
+  std::ranges::copy(texels, (*source)->bytes().begin());
+  auto uploaded = gpu.run([&](Graph& graph) -> tl::expected<void, std::string> {
+    const Texture target = graph.import_texture("image", (*image)->import_to_fill(kSampledState));
+    add_mips(graph, add_copy(graph, **source, target), mips);
+    return {};
+  });
+  if (!uploaded) return Failure(std::move(uploaded.error()));
+  return image;
 }
 
 void add_read_back(Graph& graph, Texture texture, const HostBuffer& target, std::uint32_t mip) {

@@ -12,6 +12,7 @@
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/graph.h"
 #include "alcove/passes/kernels.h"
+#include "gpu/gpu_image.h"
 #include "gpu/vulkan_device.h"
 
 namespace alcove::sample {
@@ -98,12 +99,12 @@ class Gpu {
 framegraph::Texture add_copy(framegraph::Graph& graph, const HostBuffer& source,
                              framegraph::Texture target);
 
-// Adds passes that fill all mips except mip 0 of a colour texture with `mips` mips. Each mip is
-// made from the one before by a linear blit, which the format must support. If width and height are
-// even, each texel is the mean of four texels, for sRGB formats in linear light. Returns the filled
-// version.
-framegraph::Texture add_mips(framegraph::Graph& graph, framegraph::Texture texture,
-                             std::uint32_t mips);
+// Returns an image in kSampledState that has the tightly packed texels in mip 0, and all other
+// mips. Each mip is made from the one before by a linear blit, which the format must support: if
+// width and height are even, each texel is the mean of four texels, for sRGB formats in linear
+// light. Waits for the device.
+[[nodiscard]] tl::expected<std::unique_ptr<GpuImage>, std::string> upload_image(
+    Gpu& gpu, VkFormat format, VkExtent2D size, std::span<const std::byte> texels);
 
 // Adds a pass that copies mip `mip` of `texture` (colour, or the depth of D32_SFLOAT) to `target`,
 // tightly packed, and makes it an output of the frame.

@@ -14,12 +14,12 @@ namespace alcove::sample {
 
 // Options for creating a device.
 struct DeviceOptions {
+  // Index of the physical device in the loader's order, as `alcove doctor` lists them. -1 chooses
+  // the first discrete GPU, else the first integrated GPU, else any device, such as lavapipe.
+  int index = -1;
   // Whether Khronos validation with synchronisation validation is enabled, also across queue
   // submits. Creating the device fails if the layer is not installed.
   bool validation = false;
-  // Index of the physical device in the loader's order. -1 chooses the first discrete GPU, else the
-  // first integrated GPU, else any device, such as lavapipe.
-  int index = -1;
   // Instance extensions of the window system. If there are any, the swapchain extension is enabled
   // too.
   std::vector<const char*> surface_extensions;
@@ -107,12 +107,5 @@ class VulkanDevice {
 // Drivers may crash if they are asked for more.
 [[nodiscard]] tl::unexpected<std::string> too_large(const std::string& what, VkDeviceSize bytes,
                                                     const VulkanDevice& device);
-
-// Moves the value of `result` to `target`, or returns its error.
-template <typename T>
-[[nodiscard]] tl::expected<void, std::string> assign(T& target,
-                                                     tl::expected<T, std::string> result) {
-  return std::move(result).map([&](T&& value) { target = std::move(value); });
-}
 
 }  // namespace alcove::sample

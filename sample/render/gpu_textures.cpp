@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <span>
 #include <utility>
 
 namespace alcove::sample {
 namespace {
-
-constexpr VkImageUsageFlags kUsage =
-    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
 constexpr std::array<std::uint8_t, 4> kWhite{255, 255, 255, 255};
 
@@ -27,12 +23,6 @@ VkSamplerAddressMode address_mode(Wrap wrap) {
 
 VkFilter vulkan_filter(Filter filter) {
   return filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-}
-
-std::span<const std::uint8_t> find_texels(const Scene& scene, std::int32_t image) {
-  return image < 0
-             ? std::span<const std::uint8_t>(kWhite)
-             : std::span<const std::uint8_t>(scene.images[static_cast<std::size_t>(image)].rgba);
 }
 
 }  // namespace
@@ -65,24 +55,21 @@ Result<VkImageView> GpuTextures::add_texture(const Scene& scene, const Use& use)
   });
   if (found != textures_.end()) return found->gpu->view();
   VkExtent2D size{1, 1};
+  std::span<const std::byte> texels = std::as_bytes(std::span(kWhite));
   if (use.image >= 0) {
     const TextureImage& source = scene.images[static_cast<std::size_t>(use.image)];
     size = {source.width, source.height};
+    texels = std::as_bytes(std::span(source.rgba));
   }
-  const std::uint32_t largest = device_.properties().limits.maxImageDimension2D;
+  const std::uint32_t largest = gpu_.device().properties().limits.maxImageDimension2D;
   if (size.width > largest || size.height > largest) {
     return Failure("A texture of " + scene.name + " has " + std::to_string(size.width) + "x" +
                    std::to_string(size.height) + " texels; the device takes at most " +
                    std::to_string(largest) + " a side.");
   }
   // Mips are made by linear blits, which Vulkan guarantees for both formats.
-  ALCOVE_TRY(auto image,
-             GpuImage::create(
-                 device_,
-                 {use.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-                  framegraph::Extent::absolute(size.width, size.height),
-                  static_cast<std::uint32_t>(std::bit_width(std::max(size.width, size.height)))},
-                 kUsage));
+  const VkFormat format = use.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+  ALCOVE_TRY(auto image, upload_image(gpu_, format, size, texels));
   textures_.push_back({use.image, use.srgb, std::move(image)});
   return textures_.back().gpu->view();
 }
@@ -92,7 +79,8 @@ Result<VkSampler> GpuTextures::add_sampler(const Sampler& sampler) {
   // Anisotropic filtering is used only if the file asks for linear filters and mips.
   const bool smooth = sampler.magnify == Filter::linear && sampler.minify == Filter::linear &&
                       sampler.mips == MipFilter::linear;
-  const float anisotropy = smooth ? std::min(kMostAnisotropy, device_.max_anisotropy()) : 1.0f;
+  const float anisotropy =
+      smooth ? std::min(kMostAnisotropy, gpu_.device().max_anisotropy()) : 1.0f;
   const VkSamplerCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
       .magFilter = vulkan_filter(sampler.magnify),
@@ -108,7 +96,7 @@ Result<VkSampler> GpuTextures::add_sampler(const Sampler& sampler) {
       // would disable the minification filter.
       .maxLod = sampler.mips == MipFilter::none ? 0.25f : VK_LOD_CLAMP_NONE};
   VkSampler made = VK_NULL_HANDLE;
-  if (const VkResult result = vkCreateSampler(device_.device(), &info, nullptr, &made);
+  if (const VkResult result = vkCreateSampler(gpu_.device().device(), &info, nullptr, &made);
       result != VK_SUCCESS)
     return device_failure("create a sampler of the scene's textures", result);
   samplers_.push_back(made);
@@ -132,34 +120,16 @@ Result<void> GpuTextures::add_use(const Scene& scene, const Use& use) {
   return {};
 }
 
-Result<void> GpuTextures::upload(Gpu& gpu, const Scene& scene) {
-  // Each texture is uploaded in its own frame, so that only one upload buffer exists at a time.
-  for (const Texture& texture : textures_) {
-    const auto texels = std::as_bytes(find_texels(scene, texture.image));
-    ALCOVE_TRY(auto source,
-               HostBuffer::create(device_, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
-    std::ranges::copy(texels, source->bytes().begin());
-    const auto declare = [&](framegraph::Graph& graph) -> Result<void> {
-      const auto target =
-          graph.import_texture("scene texture", texture.gpu->import_to_fill(kSampledState));
-      add_mips(graph, add_copy(graph, *source, target), texture.gpu->mips());
-      return {};
-    };
-    ALCOVE_TRY_VOID(gpu.run(declare));
-  }
-  return {};
-}
-
 Result<std::unique_ptr<GpuTextures>> GpuTextures::create(Gpu& gpu, const Scene& scene) {
-  std::unique_ptr<GpuTextures> made(new GpuTextures(gpu.device()));
+  std::unique_ptr<GpuTextures> made(new GpuTextures(gpu));
   for (const Material& material : scene.materials)
     for (const Use& use : texture_uses(material)) ALCOVE_TRY_VOID(made->add_use(scene, use));
-  ALCOVE_TRY_VOID(made->upload(gpu, scene));
   return made;
 }
 
 GpuTextures::~GpuTextures() {
-  for (const VkSampler sampler : samplers_) vkDestroySampler(device_.device(), sampler, nullptr);
+  for (const VkSampler sampler : samplers_)
+    vkDestroySampler(gpu_.device().device(), sampler, nullptr);
 }
 
 std::array<VkDescriptorImageInfo, maths::kMaterialTextures> GpuTextures::descriptors_of(

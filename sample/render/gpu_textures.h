@@ -20,7 +20,7 @@ namespace alcove::sample {
 // texel.
 class GpuTextures {
  public:
-  // Uploads the images in separate frames.
+  // Uploads the images in separate frames, so that only one upload buffer exists at a time.
   [[nodiscard]] static Result<std::unique_ptr<GpuTextures>> create(Gpu& gpu, const Scene& scene);
   ~GpuTextures();
   GpuTextures(const GpuTextures&) = delete;
@@ -44,15 +44,14 @@ class GpuTextures {
     std::unique_ptr<GpuImage> gpu;
   };
 
-  explicit GpuTextures(const VulkanDevice& device) : device_(device) {}
+  explicit GpuTextures(Gpu& gpu) : gpu_(gpu) {}
   // Returns the uses of a material's textures, in the order of the g-buffer's shaders.
   static std::array<Use, maths::kMaterialTextures> texture_uses(const Material& material);
   Result<void> add_use(const Scene& scene, const Use& use);
   Result<VkImageView> add_texture(const Scene& scene, const Use& use);
   Result<VkSampler> add_sampler(const Sampler& sampler);
-  Result<void> upload(Gpu& gpu, const Scene& scene);
 
-  const VulkanDevice& device_;
+  Gpu& gpu_;
   std::vector<Texture> textures_;
   std::vector<VkSampler> samplers_;
   std::vector<Use> uses_;  // parallel to the descriptors

@@ -1,8 +1,6 @@
 #include "render/light.h"
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <glm/gtc/packing.hpp>
 
 #include "render/shaders/light.h"
@@ -27,25 +25,11 @@ glm::mat3 world_from_ndc(const GbufferView& view) {
 
 Result<std::unique_ptr<Light>> Light::create(Gpu& gpu, const EnvironmentImage& environment) {
   std::unique_ptr<Light> made(new Light);
-  const std::uint32_t width = environment.width, height = environment.height;
-  ALCOVE_TRY(made->environment_,
-             GpuImage::create(gpu.device(),
-                              {kFormat, framegraph::Extent::absolute(width, height),
-                               static_cast<std::uint32_t>(std::bit_width(std::max(width, height)))},
-                              VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                                  VK_IMAGE_USAGE_TRANSFER_DST_BIT));
-  ALCOVE_TRY(const auto texels, HostBuffer::create(gpu.device(), environment.pixels.size() * 8,
-                                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
-  auto* const halves = reinterpret_cast<std::uint64_t*>(texels->bytes().data());
-  std::ranges::transform(environment.pixels, halves, [](const glm::vec3& radiance) {
-    return glm::packHalf4x16(glm::vec4(radiance, 1.0f));
-  });
-  ALCOVE_TRY_VOID(gpu.run([&](Graph& graph) -> Result<void> {
-    const GpuImage& image = *made->environment_;
-    const Texture target = graph.import_texture("environment", image.import_to_fill(kSampledState));
-    (void)add_mips(graph, add_copy(graph, *texels, target), image.mips());
-    return {};
-  }));
+  std::vector<std::uint64_t> halves;
+  for (const glm::vec3& radiance : environment.pixels)
+    halves.push_back(glm::packHalf4x16(glm::vec4(radiance, 1.0f)));
+  ALCOVE_TRY(made->environment_, upload_image(gpu, kFormat, {environment.width, environment.height},
+                                              std::as_bytes(std::span(halves))));
   ALCOVE_TRY(made->pass_, FullScreenPass::create(gpu, {"light",
                                                        kLight,
                                                        maths::kLightImages,

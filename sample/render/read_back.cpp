@@ -70,12 +70,14 @@ void ReadBack::add(framegraph::Graph& graph, framegraph::Texture texture,
       .format = graph.format(texture), .size = graph.extent(texture), .store = std::move(store)};
   const auto [channels, bytes] = format_layout(copy.format);
   const VkDeviceSize total = VkDeviceSize{copy.size.width} * copy.size.height * channels * bytes;
-  added_ =
-      assign(copy.buffer, HostBuffer::create(device_, total, VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-  if (added_) {
-    add_read_back(graph, texture, *copy.buffer);
-    copies_.push_back(std::move(copy));
+  auto buffer = HostBuffer::create(device_, total, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  if (!buffer) {
+    added_ = Failure(std::move(buffer.error()));
+    return;
   }
+  add_read_back(graph, texture, **buffer);
+  copy.buffer = std::move(*buffer);
+  copies_.push_back(std::move(copy));
 }
 
 void ReadBack::finish() const {

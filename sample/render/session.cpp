@@ -4,14 +4,11 @@
 
 namespace alcove::sample {
 
-Result<std::unique_ptr<Gpu>> open_gpu(const DeviceRequest& request) {
+Result<std::unique_ptr<Gpu>> open_gpu(const DeviceOptions& options) {
   framegraph::ExecutorOptions executor;
-  if (request.validation) executor.verify = framegraph::verify;
-  executor.check_uses = executor.check_uses || request.validation;
-  return Gpu::create({.validation = request.validation,
-                      .index = request.index,
-                      .surface_extensions = request.surface_extensions},
-                     executor);
+  if (options.validation) executor.verify = framegraph::verify;
+  executor.check_uses = executor.check_uses || options.validation;
+  return Gpu::create(options, executor);
 }
 
 Result<void> check_validation(const Gpu& gpu) {

@@ -14,13 +14,6 @@
 
 namespace alcove::sample {
 
-// The Vulkan device to open, and its options.
-struct DeviceRequest {
-  int index = -1;           // As `alcove doctor` lists them; -1 chooses the first suitable one.
-  bool validation = false;  // Turns on the validation layers and the checks of the render graph.
-  std::vector<const char*> surface_extensions;  // Instance extensions of a window, if any.
-};
-
 // A scene with a camera, settings and a device to draw it on.
 struct Session {
   Scene scene;
@@ -28,7 +21,7 @@ struct Session {
   OcclusionSettings settings;
   std::string radius_reason;  // Where the radius comes from.
   double load_seconds = 0.0;  // Of the scene.
-  DeviceRequest device;
+  DeviceOptions device;
   std::unique_ptr<Gpu> gpu;
 };
 
@@ -43,8 +36,9 @@ struct Shot {
   std::uint32_t frames = 0;  // number of frames to draw; 0: as many as the history averages
 };
 
-// Opens the device. Each call creates a new Gpu with its own histories.
-[[nodiscard]] Result<std::unique_ptr<Gpu>> open_gpu(const DeviceRequest& request);
+// Opens the device, with the checks of the render graph if it has validation. Each call creates a
+// new Gpu with its own histories.
+[[nodiscard]] Result<std::unique_ptr<Gpu>> open_gpu(const DeviceOptions& options);
 
 // Returns an error with the first message if the validation layers reported any.
 [[nodiscard]] Result<void> check_validation(const Gpu& gpu);

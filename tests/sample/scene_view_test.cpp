@@ -102,7 +102,7 @@ TEST_F(ViewerWindowTest, ShownVisibilityEqualsThatOfTheOffscreenRenderer) {
   view_->show_panel(false);
   const Image<glm::vec3> seen = draw_and_look();
   const ViewState& state = view_->state();
-  const auto gpu = open_gpu({options_.device, options_.validation, {}});
+  const auto gpu = open_gpu({options_.device, options_.validation});
   ASSERT_TRUE(gpu) << gpu.error();
   const VkExtent2D size{seen.width, seen.height};
   const auto renderer =
