@@ -31,12 +31,13 @@ struct Errors {
 };
 
 // Renders the last camera of an orbit without motion.
-Result<Weave> static_weave(Options options, const Truths& truths) {
-  options.view.orbit_start += options.view.orbit * static_cast<float>(options.view.frames - 1);
-  options.view.orbit = 0.0f;
-  return render(options).map([&](const Rendering& rendering) {
-    return measure_weave(rendering.images.visibility, truths.scene.visibility, truths.surfaces);
-  });
+Result<Weave> static_weave(const Options& options, const Rendering& rendering,
+                           const Truths& truths) {
+  ALCOVE_TRY(const auto gpu, open_gpu({options.device, options.validation}));
+  ALCOVE_TRY(const auto images,
+             draw_static(*gpu, rendering.scene, static_setup(options, rendering.camera),
+                         rendering.settings));
+  return measure_weave(images.visibility, truths.scene.visibility, truths.surfaces);
 }
 
 Errors measure_errors(const Rendering& rendering, const Truths& truths,
@@ -121,7 +122,7 @@ Result<void> run_compare(const Options& options) {
   ALCOVE_TRY(const auto light, compute_indirect_truths(rendering, truth_options(options)));
   Errors errors = measure_errors(rendering, truths, height_field);
   if (options.view.orbit != 0.0f) {
-    ALCOVE_TRY(errors.static_weave, static_weave(options, truths));
+    ALCOVE_TRY(errors.static_weave, static_weave(options, rendering, truths));
   }
   const IndirectErrors indirect_errors = measure_indirect_errors(rendering, truths, light);
   nlohmann::ordered_json report = rendering_report(rendering, options);

@@ -45,7 +45,9 @@ Result<Session> load_session(const Options& options) {
   const double aspect = static_cast<double>(options.view.width) / options.view.height;
   const RadiusChoice radius = finder.radius(session.camera, aspect);
   session.radius_reason = options.occlusion.radius ? "--radius" : radius.reason;
-  for (const std::string& note : {finder.left_out(), radius.advice})
+  // `compare` refuses a view of nothing, and says the same.
+  const std::string advice = options.command == Command::compare ? "" : radius.advice;
+  for (const std::string& note : {finder.left_out(), advice})
     if (!note.empty()) session.scene.warnings.insert(session.scene.warnings.begin(), note);
   print_notes(session.scene.warnings);
   ALCOVE_TRY(const auto settings, occlusion_settings(options.occlusion, radius.radius));
@@ -73,7 +75,6 @@ Result<Rendering> render(const Options& options) {
                            options.view.height,
                            options.view.frames,
                            options.view.orbit,
-                           options.view.orbit_start,
                            options.occlusion.normals,
                            {options.occlusion.roughness, std::move(environment), options.lit}});
   if (rendering && shows_surfaces(*rendering)) std::cout << radius;

@@ -55,7 +55,6 @@ struct ViewOptions {
   uint32_t height = 540;
   uint32_t frames = 1;       // 0: the command `view` runs until its window is closed
   float orbit = 0.0f;        // radians per frame
-  float orbit_start = 0.0f;  // angle of the first frame
 };
 
 struct OcclusionOptions {

@@ -42,7 +42,7 @@ Costs medians(const std::vector<FrameCost>& frames) {
 }
 
 Camera frame_camera(const RenderRequest& request, const Camera& camera, std::uint32_t frame) {
-  return orbited(camera, request.orbit_start + request.orbit * static_cast<float>(frame));
+  return orbited(camera, request.orbit * static_cast<float>(frame));
 }
 
 // The outputs of a frame.

@@ -43,8 +43,7 @@ struct RenderRequest {
   std::uint32_t width = 960;  // pixels
   std::uint32_t height = 540;
   std::uint32_t frames = 1;
-  float orbit = 0.0f;        // angle in radians by which the camera orbits its target per frame
-  float orbit_start = 0.0f;  // angle of the first frame
+  float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
   NormalSource normals = NormalSource::shading;
   IndirectRequest light;
 };
