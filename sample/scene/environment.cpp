@@ -22,12 +22,6 @@ namespace {
 constexpr float kLargestHalf = 65504.0f;  // of the 16-bit floats in which the device stores light
 constexpr uint32_t kLargestSide = 2048;   // pixels, of an environment in memory
 
-glm::vec3 direction_of(double u, double v) {
-  const double angle = u * 2.0 * glm::pi<double>(), fall = v * glm::pi<double>();
-  return glm::vec3(std::sin(fall) * std::sin(angle), std::cos(fall),
-                   -std::sin(fall) * std::cos(angle));
-}
-
 glm::vec3 sky_radiance(const glm::vec3& d) {
   const glm::vec3 sun = glm::normalize(glm::vec3(-0.55f, 0.5f, 0.65f));
   const float near_sun = glm::dot(d, sun) - 1.0f;
@@ -120,10 +114,17 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file, boo
 
 EnvironmentImage procedural_sky() {
   EnvironmentImage sky(512, 256);
-  for (uint32_t y = 0; y < sky.height; ++y)
-    for (uint32_t x = 0; x < sky.width; ++x)
-      sky.at(x, y) = sky_radiance(direction_of((x + 0.5) / sky.width, (y + 0.5) / sky.height));
+  for (size_t i = 0; i < sky.pixels.size(); ++i) sky.pixels[i] = sky_radiance(direction_at(sky, i));
   return sky;
+}
+
+glm::vec3 direction_at(const EnvironmentImage& environment, size_t pixel) {
+  const auto column = static_cast<double>(pixel % environment.width) + 0.5;
+  const auto row = static_cast<double>(pixel / environment.width) + 0.5;
+  const double angle = column / environment.width * 2.0 * glm::pi<double>();
+  const double fall = row / environment.height * glm::pi<double>();
+  return glm::vec3(std::sin(fall) * std::sin(angle), std::cos(fall),
+                   -std::sin(fall) * std::cos(angle));
 }
 
 Result<EnvironmentImage> load_environment(const std::filesystem::path& file,

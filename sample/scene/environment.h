@@ -11,8 +11,7 @@
 namespace alcove::sample {
 
 // Light from infinitely far away, as an equirectangular image of linear RGB radiance, finite and at
-// least
-// 0. The top row is +Y, the left edge is -Z, and a quarter of the width further right is +X.
+// least 0. The top row is +Y, the left edge is -Z, and a quarter of the width further right is +X.
 using EnvironmentImage = Image<glm::vec3>;
 
 // Generates a hazy sky over brown ground, brightest towards a low sun. It has no sun disc, because
@@ -27,6 +26,9 @@ using EnvironmentImage = Image<glm::vec3>;
 // format.
 [[nodiscard]] Result<EnvironmentImage> load_environment(
     const std::filesystem::path& file, const std::function<void(const std::string&)>& note = {});
+
+// Returns the unit direction of the centre of a pixel, given by its index.
+[[nodiscard]] glm::vec3 direction_at(const EnvironmentImage& environment, size_t pixel);
 
 // Returns the radiance from a unit direction in world space, interpolated bilinearly.
 [[nodiscard]] glm::vec3 radiance(const EnvironmentImage& environment, const glm::vec3& direction);

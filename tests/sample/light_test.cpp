@@ -13,20 +13,13 @@ namespace {
 
 using LightTest = GpuTest;
 
-// Returns the direction of the centre of a pixel of an environment.
-glm::vec3 direction(const EnvironmentImage& sky, std::uint32_t pixel) {
-  const float fall = (float(pixel / sky.width) + 0.5f) / float(sky.height) * maths::kPi;
-  const float turn = (float(pixel % sky.width) + 0.5f) / float(sky.width) * 2.0f * maths::kPi;
-  return {std::sin(fall) * std::sin(turn), std::cos(fall), -std::sin(fall) * std::cos(turn)};
-}
-
 // Returns the light that a surface reflects towards `view`, by quadrature over the sky's pixels.
 glm::vec3 integral(const EnvironmentImage& sky, const glm::vec3& normal, const glm::vec3& view,
                    const glm::vec3& base, float roughness, float metallic) {
   const float alpha = roughness * roughness, n_dot_v = std::max(glm::dot(normal, view), 1e-3f);
   glm::vec3 diffuse(0.0f), specular(0.0f), reflectance(0.0f);
   for (std::uint32_t i = 0; i < sky.pixels.size(); ++i) {
-    const glm::vec3 light = direction(sky, i);
+    const glm::vec3 light = direction_at(sky, i);
     const float n_dot_l = glm::dot(normal, light);
     if (n_dot_l <= 0.0f) continue;
     const float angle = std::sqrt(1.0f - light.y * light.y) * 2.0f * maths::kPi * maths::kPi /
@@ -50,7 +43,7 @@ TEST_F(LightTest, UnoccludedLightAgreesWithTheIntegralOfTheBrdfOverTheSky) {
   const CameraMatrices matrices = camera_matrices(camera, kWidth, kHeight);
   EnvironmentImage sky(256, 128);
   for (std::uint32_t i = 0; i < sky.pixels.size(); ++i)
-    sky.pixels[i] = glm::exp(3.0f * direction(sky, i));
+    sky.pixels[i] = glm::exp(3.0f * direction_at(sky, i));
   const auto renderer = FrameRenderer::create(gpu(), scene, {kWidth, kHeight}, {}).value();
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     const IndirectRequest light{{roughness}, sky, true};
@@ -66,14 +59,15 @@ TEST_F(LightTest, UnoccludedLightAgreesWithTheIntegralOfTheBrdfOverTheSky) {
       if (images.depth_ndc.pixels[i] == (camera.reversed_z ? 0.0f : 1.0f)) continue;
       const glm::vec2 pixel(float(i % kWidth) + 0.5f, float(i / kWidth) + 0.5f);
       const Ray ray = camera_ray(matrices, camera.orthographic, pixel, kWidth, kHeight);
+      // Normals of 16 bits are shorter than 1 by up to 6e-4, which widens a lobe.
       const glm::vec3 truth =
-          integral(sky, images.normal_ws.pixels[i], -ray.direction_ws, images.albedo.pixels[i],
-                   roughness, images.metallic.pixels[i]);
+          integral(sky, glm::normalize(images.normal_ws.pixels[i]), -ray.direction_ws,
+                   images.albedo.pixels[i], roughness, images.metallic.pixels[i]);
       const glm::vec3 error = images.lit.unoccluded.pixels[i] - truth;
       squares += glm::dot(error, error);
       sum += glm::dot(truth, truth);
     }
-    EXPECT_LT(std::sqrt(squares / sum), 0.02) << "roughness " << roughness;
+    EXPECT_LT(std::sqrt(squares / sum), 0.015) << "roughness " << roughness;
   }
 }
 
