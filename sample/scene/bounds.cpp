@@ -31,33 +31,20 @@ std::array<glm::vec3, 8> corners_of(const Bounds& bounds) {
   return corners;
 }
 
-Bounds bounds_of_triangles(const Mesh& mesh, size_t first, size_t last) {
-  Bounds bounds = empty_bounds();
-  for (size_t i = first; i < last; ++i) {
-    const glm::vec3& position = mesh.positions[mesh.indices[i]];
-    bounds = united(bounds, {position, position});
-  }
-  return bounds;
-}
-
-Bounds transformed(const Bounds& bounds, const glm::mat4x3& transform) {
-  Bounds out = empty_bounds();
-  for (const glm::vec3& corner : corners_of(bounds)) {
-    const glm::vec3 at = transform * glm::vec4(corner, 1.0f);
-    out = united(out, {at, at});
-  }
-  return out;
-}
-
 std::vector<MeshInstance> instances_of(const std::vector<Mesh>& meshes) {
   std::vector<MeshInstance> out;
   for (uint32_t m = 0; m < meshes.size(); ++m) {
     const Mesh& mesh = meshes[m];
     if (mesh.indices.empty()) continue;
-    const Bounds own = bounds_of_triangles(mesh, 0, mesh.indices.size());
-    if (mesh.instances.empty()) out.push_back({m, 0, own});
-    for (uint32_t i = 0; i < mesh.instances.size(); ++i)
-      out.push_back({m, i, transformed(own, mesh.instances[i])});
+    Bounds own = empty_bounds();
+    for (const uint32_t i : mesh.indices) own = united(own, {mesh.positions[i], mesh.positions[i]});
+    for (uint32_t i = 0; i < instance_count(mesh); ++i) {
+      out.push_back({m, i, empty_bounds()});
+      for (const glm::vec3& corner : corners_of(own)) {
+        const glm::vec3 at = world_from_mesh(mesh, i) * glm::vec4(corner, 1.0f);
+        out.back().bounds_ws = united(out.back().bounds_ws, {at, at});
+      }
+    }
   }
   return out;
 }

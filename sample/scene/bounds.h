@@ -28,12 +28,6 @@ struct Bounds {
 // Returns the corners. Bit c of a corner's index is set if its coordinate c is that of `high`.
 [[nodiscard]] std::array<glm::vec3, 8> corners_of(const Bounds& bounds);
 
-// Returns the box of the triangles whose indices are [first, last), in the space of the mesh's
-// arrays.
-[[nodiscard]] Bounds bounds_of_triangles(const Mesh& mesh, size_t first, size_t last);
-// Returns the smallest axis-aligned box around a transformed box.
-[[nodiscard]] Bounds transformed(const Bounds& bounds, const glm::mat4x3& transform);
-
 // One instance of a mesh with triangles. A mesh whose `instances` is empty has one instance.
 struct MeshInstance {
   uint32_t mesh;      // indexes the meshes

@@ -48,11 +48,6 @@ const Camera* find_camera(const Scene& scene, const std::string& name) {
   return nullptr;
 }
 
-float default_radius(const Scene& scene) {
-  if (scene.suggested_radius > 0.0f) return scene.suggested_radius;
-  return static_cast<float>(0.05 * diagonal(scene.bounds_ws));
-}
-
 MeshUvs uvs_at(const Mesh& mesh, uint32_t vertex) {
   const auto at = [&](const std::vector<glm::vec2>& uvs) {
     return uvs.empty() ? glm::vec2(0.0f) : uvs[vertex];

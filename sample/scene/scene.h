@@ -128,9 +128,6 @@ struct Scene {
 // Returns the camera of a name, or the first for an empty name. Null if there is no such camera.
 [[nodiscard]] const Camera* find_camera(const Scene& scene, const std::string& name);
 
-// Returns the suggested radius, or one that suits the whole scene.
-[[nodiscard]] float default_radius(const Scene& scene);
-
 // Returns the transform of an instance, whose index is below instance_count(). It is the identity
 // for a mesh whose `instances` is empty.
 [[nodiscard]] glm::mat4x3 world_from_mesh(const Mesh& mesh, size_t instance);

@@ -94,7 +94,7 @@ TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
     ASSERT_TRUE(scene) << scene.error();
     for (std::size_t i = 0; i < scene->meshes.size(); i += 4) scene->meshes[i].moves = true;
     EngineCourse course = kQuick;
-    course.radius = default_radius(*scene);
+    course.radius = scene->suggested_radius;
     for (Camera& from : scene->cameras) {
       from.reversed_z = true;
       // One camera has all courses, and the others the first ones.

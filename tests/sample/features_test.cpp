@@ -34,7 +34,7 @@ class FeaturesTest : public GpuTest {
 
   const Scene scene_ = builtin_scene();
   StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::geometric};
-  const OcclusionSettings base_ = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, default_radius(scene_));
+  const OcclusionSettings base_ = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, scene_.suggested_radius);
 };
 
 TEST_F(FeaturesTest, EstimatorConnectedHasASmallerErrorThanHorizons) {

@@ -13,7 +13,7 @@ namespace {
 class Motion : public GpuTest {
  protected:
   static MotionSetup setup() {
-    const float radius = default_radius(builtin_scene());
+    const float radius = builtin_scene().suggested_radius;
     return {.occlusion = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, radius),
             .view = {.width = 240, .height = 135, .normals = NormalSource::geometric},
             .truth = {.spp = 64, .use_cache = false}};
