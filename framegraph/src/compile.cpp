@@ -19,11 +19,11 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
   plan.finals.clear();
   if (validate(graph, limits, workspace, plan, errors)) {
     cull(graph, workspace, plan);
+    chain(graph, limits, workspace, plan);
     assign_queues(graph, limits, workspace, plan);
-    lifetimes(graph, limits, workspace, plan);
     if (check_images(graph, limits, plan, errors)) {
       place(graph, limits, workspace, plan);
-      synchronise(graph, limits, workspace, plan);
+      synchronise(graph, workspace, plan);
       return {};
     }
   }

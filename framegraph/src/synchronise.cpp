@@ -1,464 +1,484 @@
-// Synchronisation: follows every subresource through the passes in order of execution, and adds the
-// barriers. A dependency can be met by a batch of barriers at any position after the work that it
-// waits for, and up to the pass that needs it. It goes into the last batch if that batch is late
-// enough, and otherwise into a new batch immediately before the pass. Placing each new batch as
-// late as possible gives the least number of batches.
-#include "synchronise.h"
-
+// Synchronisation: goes through the passes in order of execution, and orders each use after the
+// group of uses before it in the chain of its subresource, or after the uses of the resources that
+// occupied its memory before. A dependency can be met by a batch of barriers at any position after
+// the work that it waits for, and up to the pass that needs it. It goes into the last batch if that
+// batch is late enough, and otherwise into a new batch immediately before the pass. Placing each
+// new batch as late as possible gives the least number of batches. A barrier covers all uses of its
+// group on its queue, so that later reads need none.
 #include <algorithm>
+#include <utility>
+
+#include "workspace.h"
 
 namespace alcove::framegraph {
 namespace {
 
-// Records a use in a state without adding dependencies.
-void record_use(UseState& state, const AccessRecord& access, std::int32_t time) {
-  if (access.flags & kWrite) {
-    state.write_stages = access.stages;
-    state.write_access = access.access & kWriteBits;
-    state.write_time = time;
-    state.read_stages = 0;
-    state.read_time = kNever;
-    state.seen_stages = 0;
-    state.seen_access = 0;
-    state.transition = kNone;
-    state.reuses_memory = 0;
-    state.by_wait = 0;
-  } else {
-    state.read_stages |= access.stages;
-    state.read_time = time;
+// Points in time within a frame, in half positions: the batch of barriers before the pass at
+// position p has the time 2p, and the pass itself has the time 2p + 1.
+constexpr std::int32_t kBeforeFrame = -1;
+constexpr std::int32_t kNever = -2;
+
+std::int32_t batch_time(std::uint32_t position) { return static_cast<std::int32_t>(2 * position); }
+
+std::int32_t pass_time(std::uint32_t position) {
+  return position == kNone ? kBeforeFrame : batch_time(position) + 1;
+}
+
+// Returns the stages of a use for which a semaphore wait is made.
+VkPipelineStageFlags2 waited_stages(VkPipelineStageFlags2 stages) {
+  stages &= ~(VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT);
+  return stages != 0 ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+}
+
+// Returns an access mask in which the bit that stands for every read is replaced by all bits.
+constexpr VkAccessFlags2 kEveryAccess = ~VkAccessFlags2{0};
+VkAccessFlags2 every_read(VkAccessFlags2 access) {
+  return (access & VK_ACCESS_2_MEMORY_READ_BIT) != 0 ? kEveryAccess : access;
+}
+
+class Synchroniser {
+ public:
+  using Source = Workspace::Source;
+
+  Synchroniser(const GraphDescription& graph, Workspace& workspace, Plan& plan)
+      : graph_(graph),
+        workspace_(workspace),
+        plan_(plan),
+        uses_(workspace.chain.uses),
+        s_(workspace.synchronise),
+        several_(workspace.several_queues) {}
+
+  void run() {
+    for (auto& waits : last_waits_) std::fill(std::begin(waits), std::end(waits), kNone);
+    find_last_owners();
+    const auto count = static_cast<std::uint32_t>(plan_.passes.size());
+    const auto& first_use = workspace_.chain.first_use;
+    const std::uint32_t* starting = workspace_.transients.data();
+    const std::uint32_t* const end = starting + workspace_.transients.size();
+    for (std::uint32_t position = 0; position < count; ++position) {
+      PlannedPass& planned = plan_.passes[position];
+      queue_ = planned.queue;
+      if (several_) begin_submission(planned.submission);
+      for (; starting != end && plan_.placements[*starting].first == position; ++starting)
+        take_over_memory(*starting);
+      const std::uint32_t at = several_ ? workspace_.queues.old_position[position] : position;
+      for (std::uint32_t u = first_use[at]; u < first_use[at + 1]; ++u) order(uses_[u], position);
+      if (batch_time_ == batch_time(position))
+        planned.batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
+      if (several_) end_pass(position, first_use[at], first_use[at + 1]);
+    }
+    end_frame(count);
   }
-  state.layout = access.layout;
-}
 
-// Adds the last uses of a resource that gives up its memory to the state of the one that takes it.
-void merge(UseState& merged, const UseState& state, bool before) {
-  merged.frame_before |= before ? state.frame_before : 0u;
-  merged.by_wait |= state.by_wait;
-  if (state.read_stages != 0) {
-    merged.read_stages |= state.read_stages;
-    merged.read_time = std::max(merged.read_time, state.read_time);
-  } else {
-    merged.write_stages |= state.write_stages;
-    merged.write_access |= state.write_access;
-    merged.write_time = std::max(merged.write_time, state.write_time);
+ private:
+  std::size_t queues() const { return several_ ? kQueueClasses : 1; }
+
+  // Finds, for each byte of the heaps, the last transient that occupies it in a frame: the previous
+  // frame had the same plan. The loop goes from the last transient to the first, and ends when each
+  // byte has an owner.
+  void find_last_owners() {
+    s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
+    for (MemoryMap& map : s_.memory) map.clear();
+    s_.formers.resize(graph_.resources.size() * queues());
+    VkDeviceSize unclaimed = 0;
+    for (const Heap& heap : plan_.heaps) unclaimed += heap.size;
+    const auto& transients = workspace_.transients;
+    for (std::size_t i = transients.size(); i-- > 0 && unclaimed > 0;) {
+      const Placement& placed = plan_.placements[transients[i]];
+      unclaimed -= claim_free(s_.memory[placed.heap],
+                              {placed.offset, placed.offset + placed.size, transients[i], true});
+    }
+    std::fill(std::begin(last_position_), std::end(last_position_), kNone);
+    for (std::uint32_t position = 0; position < plan_.passes.size() && several_; ++position)
+      last_position_[static_cast<std::size_t>(plan_.passes[position].queue)] = position;
   }
-}
 
-}  // namespace
-
-void Synchroniser::run() {
-  // Imports and histories get their states from before the frame. A transient gets its state when
-  // it takes over memory from other resources.
-  s_.states.resize(subs_ * (several() ? kQueueClasses : 1));
-  for (auto& waits : last_waits_) std::fill(std::begin(waits), std::end(waits), kNone);
-  apply_initial_states();
-  find_last_uses();
-  const auto count = static_cast<std::uint32_t>(plan_.passes.size());
-  const std::uint32_t* starting = workspace_.transients.data();
-  const std::uint32_t* const end = starting + workspace_.transients.size();
-  const auto next_start = [&] {
-    return starting == end ? count : plan_.placements[*starting].first;
-  };
-  std::uint32_t start = next_start();
-  for (std::uint32_t position = 0; position < count; ++position) {
-    PlannedPass& planned = plan_.passes[position];
-    set_queue(planned.queue);
-    if (several()) begin_submission(planned.submission);
-    for (; start == position; start = next_start()) take_over_memory(*starting++);
-    for (const AccessRecord& access : graph_.pass_accesses(planned.pass)) use(position, access);
-    if (batch_time_ == batch_time(position))
-      planned.batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
-    if (several()) end_pass(position);
+  // Collects the last uses of all resources that occupied the bytes of a transient before.
+  void take_over_memory(std::uint32_t resource) {
+    const Placement& placed = plan_.placements[resource];
+    Source* const formers = &s_.formers[resource * queues()];
+    std::fill(formers, formers + queues(), Source{.time = kNever});
+    take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, resource, false},
+              [&](const Segment& segment) {
+                const std::uint32_t* const subs = workspace_.first_sub.data() + segment.resource;
+                for (std::uint32_t sub = subs[0]; sub < subs[1]; ++sub)
+                  for (std::size_t queue = 0; queue < queues(); ++queue)
+                    add_group(formers[queue], static_cast<QueueClass>(queue),
+                              workspace_.chain.tails[sub], segment.before);
+              });
   }
-  apply_final_states();
-  for (std::size_t queue = 0; queue < kQueueClasses && several(); ++queue) {
-    set_queue(static_cast<QueueClass>(queue));
-    add_stages(next_frame_[queue]);
-  }
-}
 
-// Sets the point before which no barrier can be placed, and the last waits of the queue.
-void Synchroniser::begin_submission(std::uint32_t index) {
-  const Submission& submission = plan_.submissions[index];
-  earliest_ = batch_time(submission.first_pass) - 1;
-  auto& waits = last_waits_[static_cast<std::size_t>(submission.queue)];
-  for (std::uint32_t w = submission.first_wait; w < submission.first_wait + submission.wait_count;
-       ++w)
-    waits[static_cast<std::size_t>(plan_.submissions[plan_.waits[w].submission].queue)] = w;
-}
-
-// Returns whether another queue has used the subresource since its last change, or changed it.
-bool Synchroniser::is_used_elsewhere(std::uint32_t sub) const {
-  bool used = states_[sub].by_wait != 0;
-  for_each_other(queue_, [&](QueueClass other) {
-    const UseState& there = s_.states[static_cast<std::size_t>(other) * subs_ + sub];
-    used = used || (there.read_stages | there.write_stages) != 0;
-  });
-  return used;
-}
-
-// Adds stages to the last waits of the current queue. An earlier use on another queue is known to
-// be done by the last wait for that queue, or by the last wait for a third one that waited for it.
-void Synchroniser::add_stages(VkPipelineStageFlags2 stages) {
-  for (const std::uint32_t wait : last_waits_[static_cast<std::size_t>(queue_)])
-    if (wait != kNone) plan_.waits[wait].stages |= stages;
-}
-
-// Makes the waits that order a use in these stages after work of other queues cover the stages.
-void Synchroniser::wait_in(VkPipelineStageFlags2 stages, const UseState& state) {
-  if (state.by_wait != kByLastFrame) add_stages(stages);
-  if (state.by_wait & kByLastFrame) next_frame_[static_cast<std::size_t>(queue_)] |= stages;
-}
-
-// Notes the layouts that the submission of a pass changes at its end, and changes them after its
-// last pass.
-void Synchroniser::end_pass(std::uint32_t position) {
-  const PlannedPass& planned = plan_.passes[position];
-  const std::uint32_t first = graph_.passes[planned.pass].first_access;
-  const auto count = static_cast<std::uint32_t>(graph_.pass_accesses(planned.pass).size());
-  for (std::uint32_t i = first; i < first + count; ++i)
-    if (workspace_.queues.moved_layouts[i] != VK_IMAGE_LAYOUT_UNDEFINED) s_.moves.push_back(i);
-  const Submission& submission = plan_.submissions[planned.submission];
-  if (position + 1 != submission.first_pass + submission.pass_count || s_.moves.empty()) return;
-  move_layouts(position);
-  s_.moves.clear();
-}
-
-// Changes what passes of this submission wrote to the layouts in which passes of several queues
-// read it, in a batch after the last pass of the submission. A pass of the submission that reads it
-// may already have changed it.
-void Synchroniser::move_layouts(std::uint32_t last) {
-  const Batch batch{static_cast<std::uint32_t>(plan_.transitions.size()), 0};
-  plan_.batches.push_back(batch);
-  batch_time_ = pass_time(last);
-  s_.batch_memories.clear();
-  for (const std::uint32_t index : s_.moves) {
-    AccessRecord moved = graph_.accesses[index];
-    moved.layout = workspace_.queues.moved_layouts[index];
-    // The barrier needs a second scope, by which the signal of the submission comes after it.
-    moved.access = 0;
-    moved.flags = 0;
-    for_each_part(moved, [&](std::uint32_t sub, const Range& range) {
-      if (states_[sub].layout != moved.layout) use_range(last, moved, sub, range);
-    });
-  }
-  if (plan_.batches.back().count == 0)
-    plan_.batches.pop_back();
-  else
-    plan_.submissions[plan_.passes[last].submission].end_batch =
-        static_cast<std::uint32_t>(plan_.batches.size() - 1);
-  batch_time_ = kNever;  // No later dependency can use this batch.
-}
-
-// Finds the last use, in the previous frame, of each transient that is the last one in a frame to
-// occupy some byte. This frame's plan gives the answer, because the previous frame had the same
-// plan.
-void Synchroniser::find_last_uses() {
-  s_.last_uses.resize(s_.states.size());
-  s_.is_last.assign(graph_.resources.size(), 0);
-  auto from = static_cast<std::uint32_t>(plan_.passes.size());
-  find_last_owners();
-  for (const MemoryMap& map : s_.memory) {
-    for (const Segment& segment : map) {
-      s_.is_last[segment.resource] = 1;
-      from = std::min(from, plan_.placements[segment.resource].first);
-      const auto& first = workspace_.first_sub;
-      for (std::size_t base = 0; base < s_.last_uses.size(); base += subs_) {
-        UseState* const last = s_.last_uses.data() + base;
-        std::fill(last + first[segment.resource], last + first[segment.resource + 1], UseState{});
+  // Adds the uses of a group to the work after which a use on `queue` comes. `before` says that
+  // they are those of the previous frame.
+  void add_group(Source& source, QueueClass queue, std::uint32_t group, bool before) const {
+    for (; group != kNone; group = uses_[group].sibling) {
+      const Use& use = uses_[group];
+      if (use.queue == queue) {
+        source.stages |= use.stages;
+        if (use.writes) source.access |= use.access & kWriteBits;
+        source.time = std::max(source.time, before ? kBeforeFrame : pass_time(use.last));
+      } else if (before && is_known_after_frame(use, queue)) {
+        source.by_last_frame = true;
+      } else if (use.stages != 0) {
+        source.by_wait = true;
+        if (before ||
+            (use.first == kNone && graph_.resources[use.resource].origin == Origin::history))
+          source.frame_before |= static_cast<std::uint8_t>(1u << static_cast<unsigned>(use.queue));
       }
     }
   }
-  std::fill(std::begin(last_position_), std::end(last_position_), kNone);
-  for (std::uint32_t position = 0; position < plan_.passes.size(); ++position)
-    last_position_[static_cast<std::size_t>(plan_.passes[position].queue)] = position;
-  for (std::uint32_t position = from; position < plan_.passes.size(); ++position) {
-    const QueueClass queue = plan_.passes[position].queue;
-    const std::uint32_t frame_before = queues_that_wait(position);
-    UseState* const last_uses = last_uses_on(queue);
-    for (const AccessRecord& access : graph_.pass_accesses(plan_.passes[position].pass)) {
-      if (!s_.is_last[access.resource]) continue;
-      for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-        UseState& last = last_uses[sub];
-        const bool writes = (access.flags & kWrite) != 0;
-        record_use(last, access, kBeforeFrame);
-        last.frame_before = writes ? frame_before : last.frame_before | frame_before;
-        // A write comes after the uses on other queues, ordered by a semaphore.
-        for_each_other(queue, [&](QueueClass other) {
-          UseState& there = last_uses_on(other)[sub];
-          if (writes) there = {};
-          there.by_wait = 1;
-          there.frame_before = last.frame_before;
-        });
-      });
+
+  // Returns whether a queue has waited for a use on another queue by the end of a frame, or does
+  // not run in the frame.
+  bool is_known_after_frame(const Use& use, QueueClass queue) const {
+    const std::uint32_t last = last_position_[static_cast<std::size_t>(queue)];
+    return last == kNone || workspace_.queues.known[last][static_cast<std::size_t>(use.queue)] >=
+                                static_cast<std::int32_t>(use.last);
+  }
+
+  // Orders a use after the group before it.
+  void order(const Use& use, std::uint32_t position) {
+    const Use& head = uses_[use.head];
+    const bool changes = changes_layout(workspace_, head);
+    if (position == plan_.passes.size() && &use != &head) order_after_reads(use, position);
+    if (head.previous == kNone && head.first != kNone) {
+      // It takes its memory from other resources.
+      const Source& former = s_.formers[use.resource * queues() + static_cast<std::size_t>(queue_)];
+      return order_after(former, use, VK_IMAGE_LAYOUT_UNDEFINED, changes && &use == &head, true,
+                         position);
+    }
+    Source source{.time = kNever};
+    if (head.first == kNone) {
+      // The read has the layout of the initial state.
+      add_group(source, queue_, use.head, false);
+      source.access = 0;
+      source.time = kBeforeFrame;
+      if (head.queue == queue_) source.stages = head.stages;
+      return order_after(source, use, head.layout, false,
+                         head.queue == queue_ && !is_visible(use, head), position);
+    }
+    if (changes && &use != &head) {
+      // Another queue has changed the layout, or the barrier of an earlier read covers this one.
+      source.by_wait = head.queue != queue_;
+      return order_after(source, use, head.layout, false, false, position);
+    }
+    Use& before = uses_[head.previous];
+    add_group(source, queue_, head.previous, false);
+    bool moves = false;
+    // After a layout is moved at the end of a submission, the reads on its queue need no barrier.
+    if (before.moved != VK_IMAGE_LAYOUT_UNDEFINED && before.queue == queue_) {
+      if (before.is_moved) return;
+      before.is_moved = moves = true;
+    }
+    order_after(source, use, before.layout, changes || moves, use.writes || before.writes,
+                position);
+  }
+
+  void order_after(const Source& source, const Use& use, VkImageLayout layout, bool changes,
+                   bool needs_barrier, std::uint32_t position) {
+    if (several_) wait_in(use.stages, source, position);
+    // A semaphore wait covers all commands, but not the host.
+    const bool by_host =
+        source.by_wait && source.stages == 0 && (use.stages & VK_PIPELINE_STAGE_2_HOST_BIT) != 0;
+    if (changes)
+      change_layout(use, source, layout, position);
+    else if (by_host)
+      add_memory(source.time, position,
+                 {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, use.stages, use.access});
+    else if (needs_barrier && source.stages != 0 && use.stages != 0)
+      add_memory(source.time, position, {source.stages, source.access, use.stages, use.access});
+  }
+
+  // Returns whether earlier writes are visible to a read because they are visible to the read
+  // accesses of the initial state.
+  static bool is_visible(const Use& use, const Use& initial) {
+    const VkAccessFlags2 access = every_read(initial.access);
+    const bool every_stage = (initial.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) != 0;
+    const VkPipelineStageFlags2 stages =
+        access == kEveryAccess && every_stage ? ~VK_PIPELINE_STAGE_2_HOST_BIT : initial.stages;
+    return initial.access != 0 && (use.stages & ~stages) == 0 && (use.access & ~access) == 0;
+  }
+
+  // Functions for frames that use several queues.
+
+  // Sets the point before which no barrier can be placed, and the last waits of the queue.
+  void begin_submission(std::uint32_t index) {
+    const Submission& submission = plan_.submissions[index];
+    earliest_ = batch_time(submission.first_pass) - 1;
+    auto& waits = last_waits_[static_cast<std::size_t>(submission.queue)];
+    for (std::uint32_t w = submission.first_wait; w < submission.first_wait + submission.wait_count;
+         ++w)
+      waits[static_cast<std::size_t>(plan_.submissions[plan_.waits[w].submission].queue)] = w;
+  }
+
+  // Makes the waits that order a use in these stages after work of other queues cover the stages.
+  void wait_in(VkPipelineStageFlags2 stages, const Source& source, std::uint32_t position) {
+    stages = waited_stages(stages);
+    if (source.frame_before != 0) wait_for_frame_before(position, source.frame_before);
+    if (source.by_wait) add_stages(stages);
+    if (source.by_last_frame) next_frame_[static_cast<std::size_t>(queue_)] |= stages;
+  }
+
+  // Adds stages to the last waits of the current queue. An earlier use on another queue is known to
+  // be done by the last wait for that queue, or by the last wait for a third one that waited for
+  // it.
+  void add_stages(VkPipelineStageFlags2 stages) {
+    for (const std::uint32_t wait : last_waits_[static_cast<std::size_t>(queue_)])
+      if (wait != kNone) plan_.waits[wait].stages |= stages;
+  }
+
+  // Makes a submission wait for the previous frame's work on these queues. The wait is left out for
+  // a queue if an earlier submission has it, or the pass waits for a pass of this frame there.
+  void wait_for_frame_before(std::uint32_t position, std::uint8_t queues) {
+    const bool is_pass = position < plan_.passes.size();
+    for (std::size_t queue = 0; queue < kQueueClasses && is_pass; ++queue)
+      if (workspace_.queues.known[position][queue] >= Workspace::kOpening)
+        queues &= static_cast<std::uint8_t>(~(1u << queue));
+    std::uint8_t& waited = frame_before_[static_cast<std::size_t>(queue_)];
+    const std::uint32_t submission =
+        is_pass ? plan_.passes[position].submission : workspace_.final_submission;
+    plan_.submissions[submission].frame_before |= static_cast<std::uint8_t>(queues & ~waited);
+    waited |= queues;
+  }
+
+  // Notes the writes whose layouts the submission of a pass changes at its end, and changes them
+  // after its last pass, unless a pass of the submission that reads them has.
+  void end_pass(std::uint32_t position, std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t u = first; u < last; ++u)
+      if (uses_[u].moved != VK_IMAGE_LAYOUT_UNDEFINED) s_.moves.push_back(u);
+    Submission& submission = plan_.submissions[plan_.passes[position].submission];
+    if (position + 1 != submission.first_pass + submission.pass_count || s_.moves.empty()) return;
+    const auto batch = static_cast<std::uint32_t>(plan_.batches.size());
+    batch_time_ = kNever;
+    for (std::size_t i = 0, end = 0; i < s_.moves.size(); i = end) {
+      Use moved = uses_[s_.moves[i]];
+      const VkPipelineStageFlags2 stages = std::exchange(moved.stages, 0);
+      moved.access = 0;
+      moved.layout = moved.moved;
+      moved.discards = false;
+      for (end = i; end < s_.moves.size() && uses_[s_.moves[end]].resource == moved.resource; ++end)
+        for (std::uint32_t u = uses_[s_.moves[end]].next; u != kNone; u = uses_[u].sibling)
+          if (uses_[u].queue == queue_) {
+            moved.stages |= uses_[u].stages;
+            moved.access |= uses_[u].access;
+          }
+      // Without readers on this queue, the barrier needs a second scope all the same, by which the
+      // signal of the submission comes after it.
+      if (moved.stages == 0) moved.stages = stages;
+      for (std::size_t k = i; k < end; ++k) {
+        Use& write = uses_[s_.moves[k]];
+        moved.sub = write.sub;
+        if (!std::exchange(write.is_moved, true))
+          change_layout(moved, {write.stages, write.access & kWriteBits, pass_time(position)},
+                        write.layout, position + 1);
+      }
+    }
+    if (batch < plan_.batches.size()) submission.end_batch = batch;
+    s_.moves.clear();
+    batch_time_ = kNever;  // No later dependency can use this batch.
+  }
+
+  void end_frame(std::uint32_t count) {
+    const std::uint32_t final = workspace_.final_submission;
+    queue_ = QueueClass::graphics;
+    if (several_) {
+      if (final != kNone && plan_.submissions[final].pass_count == 0) begin_submission(final);
+      earliest_ = batch_time(count) - 1;
+    }
+    if (!graph_.externals.empty()) apply_final_states(count);
+    for (std::size_t queue = 0; queue < kQueueClasses && several_; ++queue) {
+      queue_ = static_cast<QueueClass>(queue);
+      add_stages(next_frame_[queue]);
+    }
+    plan_.final_submission = final;
+    plan_.final_batch = batch_time_ == batch_time(count) && !plan_.batches.empty()
+                            ? static_cast<std::uint32_t>(plan_.batches.size() - 1)
+                            : kNone;
+  }
+
+  void apply_final_states(std::uint32_t end) {
+    const auto& first_use = workspace_.chain.first_use;
+    s_.written.assign(workspace_.first_sub.back(), 0);
+    for (const Use& use : uses_) s_.written[use.sub] |= use.writes && use.first < end;
+    for (std::uint32_t u = first_use[end]; u < uses_.size(); ++u) order(uses_[u], end);
+    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
+      const ResourceRecord& resource = graph_.resources[r];
+      if (plan_.placements[r].first != kNone && resource.origin == Origin::history)
+        leave_history_slot(r);
     }
   }
-}
 
-// Finds, for each byte of the heaps, the last transient that occupies it in a frame. The loop goes
-// from the last transient to the first, and ends when each byte has an owner.
-void Synchroniser::find_last_owners() {
-  s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
-  for (MemoryMap& map : s_.memory) map.clear();
-  VkDeviceSize unclaimed = 0;
-  for (const Heap& heap : plan_.heaps) unclaimed += heap.size;
-  const auto& transients = workspace_.transients;
-  for (std::size_t i = transients.size(); i-- > 0 && unclaimed > 0;) {
-    const Placement& placed = plan_.placements[transients[i]];
-    unclaimed -= claim_free(s_.memory[placed.heap],
-                            {placed.offset, placed.offset + placed.size, transients[i], true});
-  }
-}
-
-// Orders a transient's first use on each queue after the last uses of all resources that occupied
-// its bytes before.
-inline void Synchroniser::take_over_memory(std::uint32_t resource) {
-  const Placement& placed = plan_.placements[resource];
-  const std::uint32_t* const subs = workspace_.first_sub.data();
-  // The states are merged in place for the first subresource, and then copied to the others.
-  const std::size_t copies = several() ? kQueueClasses : 1;
-  UseState* const merged = s_.states.data() + subs[resource];
-  for (std::size_t queue = 0; queue < copies; ++queue) {
-    merged[queue * subs_] = {};
-    merged[queue * subs_].reuses_memory = 1;
-    merged[queue * subs_].owner = queue_;
-  }
-  take_over(s_.memory[placed.heap], {placed.offset, placed.offset + placed.size, resource, false},
-            [&](const Segment& segment) {
-              const UseState* const all = segment.before ? s_.last_uses.data() : s_.states.data();
-              for (std::size_t queue = 0; queue < copies; ++queue)
-                for (std::uint32_t sub = subs[segment.resource]; sub < subs[segment.resource + 1];
-                     ++sub)
-                  merge(merged[queue * subs_], all[queue * subs_ + sub], segment.before);
-            });
-  for (std::size_t queue = 0; queue < copies; ++queue) {
-    UseState* const first = merged + queue * subs_;
-    for_each_other(static_cast<QueueClass>(queue), [&](QueueClass other) {
-      const UseState& there = merged[static_cast<std::size_t>(other) * subs_];
-      if ((there.read_stages | there.write_stages) == 0) return;
-      first->by_wait |= kByWait | kByLastFrame;
-    });
-    std::fill(first + 1, first + (subs[resource + 1] - subs[resource]), *first);
-  }
-}
-
-// Returns UseState::frame_before for a use at this position in the previous frame. It has a bit for
-// each queue that, by the end of that frame, has not waited for the use.
-std::uint32_t Synchroniser::queues_that_wait(std::uint32_t position) const {
-  if (!several()) return 0;
-  const auto used_on = static_cast<std::size_t>(plan_.passes[position].queue);
-  std::uint32_t bits = 0;
-  for (std::size_t queue = 0; queue < kQueueClasses; ++queue) {
-    const std::uint32_t last = last_position_[queue];
-    if (queue == used_on || last == kNone) continue;
-    const std::int32_t known = workspace_.queues.known[last * kQueueClasses + used_on];
-    if (known < static_cast<std::int32_t>(position))
-      bits |= 1u << (queue * kQueueClasses + used_on);
-  }
-  return bits;
-}
-
-// Makes the pass's submission wait for the previous frame's work on the queues in `frame_before`,
-// because the pass takes over their memory. The wait is left out for a queue if this pass already
-// waits for a pass of this frame on that queue.
-void Synchroniser::wait_for_frame_before(std::uint32_t position, std::uint32_t frame_before) {
-  const auto own = static_cast<std::size_t>(queue_);
-  unsigned queues = frame_before >> (own * kQueueClasses) & ((1u << kQueueClasses) - 1);
-  for (std::size_t queue = 0; queue < kQueueClasses; ++queue)
-    if ((queues & (1u << queue)) != 0 &&
-        workspace_.queues.known[position * kQueueClasses + queue] >= 0)
-      queues &= ~(1u << queue);
-  queues &= ~static_cast<unsigned>(frame_before_[own]);
-  frame_before_[own] |= static_cast<std::uint8_t>(queues);
-  plan_.submissions[plan_.passes[position].submission].frame_before |=
-      static_cast<std::uint8_t>(queues);
-}
-
-void Synchroniser::use(std::uint32_t position, const AccessRecord& access) {
-  const std::uint32_t* const subs = workspace_.first_sub.data() + access.resource;
-  if (subs[1] == subs[0] + 1)
-    use_range(position, access, subs[0], access.range);
-  else
-    use_several(position, access);
-}
-
-void Synchroniser::use_several(std::uint32_t position, const AccessRecord& access) {
-  const ResourceRecord& resource = graph_.resources[access.resource];
-  const std::uint32_t first = workspace_.first_sub[access.resource];
-  const std::uint32_t lead =
-      first + access.range.base_mip + access.range.base_layer * resource.mips;
-  UseState* const states = s_.states.data();
-  bool alike = true;
-  for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-    for (std::size_t base = 0; base < s_.states.size(); base += subs_)
-      alike = alike && states[base + sub] == states[base + lead];
-  });
-  if (alike) {
-    use_range(position, access, lead, access.range);
-    for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-      for (std::size_t base = 0; base < s_.states.size(); base += subs_)
-        states[base + sub] = states[base + lead];
-    });
-    return;
-  }
-  for_each_part(access, [&](std::uint32_t sub, const Range& range) {
-    use_range(position, access, sub, range);
-  });
-}
-
-// Calls f(subresource, its range) for each subresource of an access.
-template <typename Function>
-void Synchroniser::for_each_part(const AccessRecord& access, Function&& f) const {
-  const std::uint32_t first = workspace_.first_sub[access.resource];
-  const std::uint32_t mips = graph_.resources[access.resource].mips;
-  for_each_sub(graph_, workspace_, access, [&](std::uint32_t sub) {
-    f(sub, Range{static_cast<std::uint16_t>((sub - first) % mips), 1,
-                 static_cast<std::uint16_t>((sub - first) / mips), 1});
-  });
-}
-
-inline void Synchroniser::use_range(std::uint32_t position, const AccessRecord& access,
-                                    std::uint32_t sub, const Range& range) {
-  UseState& state = states_[sub];
-  const bool writes = (access.flags & kWrite) != 0;
-  if (several() && state.frame_before != 0) wait_for_frame_before(position, state.frame_before);
-  const bool changes = access.kind() == ResourceKind::texture && state.layout != access.layout;
-  const bool is_last = position == plan_.passes.size();
-  if (several() && (writes || changes || is_last ? is_used_elsewhere(sub) : state.by_wait != 0))
-    wait_in(waited_stages(access), state);
-  if (changes)
-    change_layout(position, access, sub, range);
-  else if (writes)
-    write_in_same_layout(position, access, state);
-  else
-    read_in_same_layout(position, access, state);
-  if (!several() || !(writes || changes)) return;
-  state.owner = queue_;
-  tell_other_queues(sub, state);
-}
-
-// Sets the state of a subresource on the other queues after this queue has changed it. Their next
-// use waits for the change with a semaphore, which covers all commands, but not the host.
-void Synchroniser::tell_other_queues(std::uint32_t sub, const UseState& state) {
-  UseState told;
-  told.by_wait = 1;
-  told.owner = state.owner;
-  told.layout = state.layout;
-  told.seen_stages = ~VkPipelineStageFlags2{VK_PIPELINE_STAGE_2_HOST_BIT};
-  told.seen_access = kEveryAccess;
-  for_each_other(state.owner, [&](QueueClass other) { states_on(other)[sub] = told; });
-}
-
-inline void Synchroniser::change_layout(std::uint32_t position, const AccessRecord& access,
-                                        std::uint32_t sub, const Range& range) {
-  UseState& state = states_[sub];
-  Transition& wanted = next_image(std::max(state.read_time, state.write_time), position);
-  // Reads come after the write that they read from, so that waiting for the reads is enough. This
-  // does not hold for memory that the resource took over from others: there, the reads and the
-  // writes may belong to different resources.
-  const bool after_reads = state.read_stages != 0 && !state.reuses_memory;
-  wanted.src_stages = after_reads ? state.read_stages : state.read_stages | state.write_stages;
-  wanted.src_access = after_reads ? 0 : state.write_access;
-  // A semaphore wait covers all stages, so that any stage comes after it.
-  if (wanted.src_stages == 0 && state.by_wait) wanted.src_stages = waited_stages(access);
-  if (several() && is_used_elsewhere(sub)) wait_in(wanted.src_stages, state);
-  wanted.dst_stages = access.stages;
-  wanted.dst_access = access.access;
-  wanted.resource = access.resource;
-  wanted.old_layout = access.flags & kDiscard ? VK_IMAGE_LAYOUT_UNDEFINED : state.layout;
-  wanted.new_layout = access.layout;
-  wanted.range = range;
-  merge_neighbours();
-  record_transition(position, access, state);
-}
-
-void Synchroniser::read_in_same_layout(std::uint32_t position, const AccessRecord& access,
-                                       UseState& state) {
-  const bool seen =
-      (access.stages & ~state.seen_stages) == 0 && (access.access & ~state.seen_access) == 0;
-  if (!seen && (state.write_time != kNever || state.by_wait)) {
-    if (state.transition != kNone) {
-      plan_.transitions[state.transition].dst_stages |= access.stages;
-      plan_.transitions[state.transition].dst_access |= access.access;
-    } else {
-      Transition wanted;
-      wanted.src_stages = state.by_wait ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : state.write_stages;
-      wanted.src_access = state.write_access;
-      // The state stores the stages and the accesses to which the write is visible as two separate
-      // masks. The barrier makes the write visible to every combination of the two.
-      wanted.dst_stages = access.stages;
-      wanted.dst_access = access.access;
-      const bool new_stages = (access.stages & ~state.seen_stages) != 0;
-      if (new_stages) wanted.dst_access |= reads_in(state.seen_access);
-      // The stages of this access may not be able to make the other accesses.
-      const bool others =
-          state.seen_access != kEveryAccess && (state.seen_access & ~access.access) != 0;
-      if ((access.access & ~state.seen_access) != 0 || (new_stages && others))
-        wanted.dst_stages |= state.seen_stages;
-      add_memory(state.write_time, position, wanted);
+  // Orders the other reads of its group before a state after the frame. Work after the frame waits
+  // only for the stages of that state, so that a barrier from the other reading stages to those
+  // stages is added.
+  void order_after_reads(const Use& use, std::uint32_t end) {
+    Transition wanted;
+    wanted.dst_stages = use.stages;
+    std::int32_t time = kBeforeFrame;
+    for (std::uint32_t u = use.head; u != kNone; u = uses_[u].sibling) {
+      const Use& read = uses_[u];
+      if (&read == &use || read.stages == 0) continue;
+      if (read.queue != queue_) add_stages(waited_stages(use.stages));
+      if (read.queue != queue_ || (read.stages & ~use.stages) == 0) continue;
+      wanted.src_stages |= read.stages & ~use.stages;
+      time = std::max(time, pass_time(read.last));
     }
-    state.seen_stages |= access.stages;
-    state.seen_access |= access.access;
+    if (wanted.src_stages != 0 && use.stages != 0 &&
+        (use.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) == 0)
+      add_memory(time, end, wanted);
   }
-  record_use(state, access, pass_time(position));
-}
 
-void Synchroniser::write_in_same_layout(std::uint32_t position, const AccessRecord& access,
-                                        UseState& state) {
-  Transition wanted;
-  wanted.src_stages = state.read_stages | state.write_stages;
-  wanted.src_access = state.write_access;
-  if (state.read_stages != 0 && !state.reuses_memory) {
-    wanted.src_stages = state.read_stages;
-    wanted.src_access = 0;
+  // Finds the state in which the frame leaves a history slot. Its accesses are those to which the
+  // last write is visible in all of its stages, if they are the same in all subresources.
+  void leave_history_slot(std::uint32_t resource) {
+    const std::uint32_t* const subs = workspace_.first_sub.data() + resource;
+    FinalState final{resource, {}, QueueClass::graphics, WriteCoverage::nothing};
+    if (several_) final.queue = workspace_.queues.last_queue[resource];
+    queue_ = final.queue;
+    std::uint32_t written = 0;
+    bool elsewhere = false;
+    Use seen;
+    bool seen_alike = true;
+    for (std::uint32_t sub = subs[0]; sub < subs[1]; ++sub) {
+      written += s_.written[sub];
+      const Use& tail = uses_[workspace_.chain.tails[sub]];
+      Use own;
+      own.access = kEveryAccess;
+      for (std::uint32_t u = tail.head; u != kNone; u = uses_[u].sibling) {
+        const Use& use = uses_[u];
+        elsewhere = elsewhere || (use.queue != queue_ && use.stages != 0);
+        if (use.queue != queue_) continue;
+        own.stages |= use.stages;
+        if (!is_visible_with_others(use)) own.access &= every_read(use.access);
+      }
+      if (tail.writes && own.stages != 0) final.state.access |= tail.access & kWriteBits;
+      if (sub == subs[0]) seen = own;
+      seen_alike = seen_alike && !tail.writes && own.stages != 0 && seen.stages == own.stages &&
+                   seen.access == own.access;
+      // Work on another queue was waited for by all commands.
+      if (own.stages == 0 && tail.queue != queue_)
+        own.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+      final.state.stages |= own.stages;
+      final.state.layout = tail.layout;
+    }
+    if (written != 0)
+      final.written = written == subs[1] - subs[0] ? WriteCoverage::whole : WriteCoverage::part;
+    if (seen_alike)
+      final.state.access = seen.access == kEveryAccess ? VK_ACCESS_2_MEMORY_READ_BIT : seen.access;
+    if (elsewhere) add_stages(final.state.stages);
+    plan_.finals.push_back(final);
   }
-  wanted.dst_stages = access.stages;
-  wanted.dst_access = access.access;
-  if (wanted.src_stages != 0)
-    add_memory(std::max(state.read_time, state.write_time), position, wanted);
-  record_use(state, access, pass_time(position));
-}
 
-// Extends the barrier `last` to also cover the mips or layers of `next`, if both barriers
-// are of one resource, cover adjacent subresources, and make the same change. Returns whether it
-// did.
-bool Synchroniser::extend(Transition& last, const Transition& next) {
-  const Range& a = last.range;
-  const Range& b = next.range;
-  const bool alike = last.src_stages == next.src_stages && last.src_access == next.src_access &&
-                     last.dst_stages == next.dst_stages && last.dst_access == next.dst_access &&
-                     last.old_layout == next.old_layout && last.new_layout == next.new_layout;
-  const bool next_mips =
-      a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
-  const bool next_layers =
-      a.base_mip == b.base_mip && a.mips == b.mips && a.base_layer + a.layers == b.base_layer;
-  if (!alike || !(next_mips || next_layers)) return false;
-  if (next_mips)
-    last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
-  else
-    last.range.layers = static_cast<std::uint16_t>(a.layers + b.layers);
-  return true;
-}
-
-void Synchroniser::add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted) {
-  Batch& batch = batch_after(time, position);
-  for (const std::uint32_t i : s_.batch_memories) {
-    Transition& there = plan_.transitions[i];
-    if (there.src_stages != wanted.src_stages && there.dst_stages != wanted.dst_stages) continue;
-    there.src_stages |= wanted.src_stages;
-    there.src_access |= wanted.src_access;
-    there.dst_stages |= wanted.dst_stages;
-    there.dst_access |= wanted.dst_access;
-    return;
+  // Returns whether everything that a read can see is seen by another read of its group and queue.
+  bool is_visible_with_others(const Use& use) const {
+    for (std::uint32_t u = use.head; u != kNone; u = uses_[u].sibling)
+      if (&uses_[u] != &use && uses_[u].queue == use.queue && is_visible(use, uses_[u]) &&
+          !is_visible(uses_[u], use))
+        return true;
+    return false;
   }
-  s_.batch_memories.push_back(static_cast<std::uint32_t>(plan_.transitions.size()));
-  plan_.transitions.push_back(wanted);
-  ++batch.count;
-}
 
-void synchronise(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-                 Plan& plan) {
-  Synchroniser(graph, limits, workspace, plan).run();
+  void change_layout(const Use& use, const Source& source, VkImageLayout from,
+                     std::uint32_t position) {
+    Batch& batch = batch_after(source.time, position);
+    Transition& wanted = plan_.transitions.emplace_back();
+    wanted.src_stages = source.stages;
+    wanted.src_access = source.access;
+    if (source.by_wait || source.by_last_frame) {
+      // The change comes after a semaphore wait if it comes after stages in which the wait is made.
+      if (wanted.src_stages == 0) wanted.src_stages = waited_stages(use.stages);
+      wait_in(wanted.src_stages, source, position);
+    }
+    wanted.dst_stages = use.stages;
+    wanted.dst_access = use.access;
+    wanted.resource = use.resource;
+    wanted.old_layout = use.discards ? VK_IMAGE_LAYOUT_UNDEFINED : from;
+    wanted.new_layout = use.layout;
+    wanted.range = {0, 1, 0, 1};
+    if (const std::uint32_t index = use.sub - workspace_.first_sub[use.resource]; index != 0) {
+      const std::uint32_t mips = graph_.resources[use.resource].mips;
+      wanted.range.base_mip = static_cast<std::uint16_t>(index % mips);
+      wanted.range.base_layer = static_cast<std::uint16_t>(index / mips);
+    }
+    ++batch.count;
+    while (batch.count >= 2 && extend(*(plan_.transitions.end() - 2), plan_.transitions.back())) {
+      plan_.transitions.pop_back();
+      --batch.count;
+    }
+  }
+
+  // Extends the barrier `last` to also cover the mips or layers of `next`, if both barriers are of
+  // one resource, cover adjacent subresources, and make the same change. Returns whether it did.
+  static bool extend(Transition& last, const Transition& next) {
+    const Range& a = last.range;
+    const Range& b = next.range;
+    const bool alike = last.resource == next.resource && last.src_stages == next.src_stages &&
+                       last.src_access == next.src_access && last.dst_stages == next.dst_stages &&
+                       last.dst_access == next.dst_access && last.old_layout == next.old_layout &&
+                       last.new_layout == next.new_layout;
+    const bool next_mips =
+        a.base_layer == b.base_layer && a.layers == b.layers && a.base_mip + a.mips == b.base_mip;
+    const bool next_layers =
+        a.base_mip == b.base_mip && a.mips == b.mips && a.base_layer + a.layers == b.base_layer;
+    if (!alike || !(next_mips || next_layers)) return false;
+    if (next_mips)
+      last.range.mips = static_cast<std::uint16_t>(a.mips + b.mips);
+    else
+      last.range.layers = static_cast<std::uint16_t>(a.layers + b.layers);
+    return true;
+  }
+
+  void add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted) {
+    Batch& batch = batch_after(time, position);
+    for (const std::uint32_t i : s_.batch_memories) {
+      Transition& there = plan_.transitions[i];
+      if (there.src_stages != wanted.src_stages && there.dst_stages != wanted.dst_stages) continue;
+      there.src_stages |= wanted.src_stages;
+      there.src_access |= wanted.src_access;
+      there.dst_stages |= wanted.dst_stages;
+      there.dst_access |= wanted.dst_access;
+      return;
+    }
+    s_.batch_memories.push_back(static_cast<std::uint32_t>(plan_.transitions.size()));
+    plan_.transitions.push_back(wanted);
+    ++batch.count;
+  }
+
+  // Returns the batch of barriers for a dependency on work that ends at `time`: the last batch if
+  // it comes after that work, otherwise a new batch before the pass at `position`.
+  Batch& batch_after(std::int32_t time, std::uint32_t position) {
+    time = std::max(time, earliest_);
+    if (batch_time_ < time) {
+      batch_time_ = batch_time(position);
+      plan_.batches.push_back({static_cast<std::uint32_t>(plan_.transitions.size()), 0});
+      s_.batch_memories.clear();
+    }
+    return plan_.batches.back();
+  }
+
+  const GraphDescription& graph_;
+  Workspace& workspace_;
+  Plan& plan_;
+  std::vector<Use>& uses_;
+  Workspace::Synchronise& s_;
+  bool several_;
+  std::int32_t batch_time_ = kNever;  // time of the last batch
+  // The start of the current pass's submission, before which no barrier can be placed.
+  std::int32_t earliest_ = kBeforeFrame;
+  QueueClass queue_ = QueueClass::graphics;  // of the current pass
+  // For each queue and each other queue: the last wait for it, an index into Plan::waits.
+  std::uint32_t last_waits_[kQueueClasses][kQueueClasses] = {};
+  // For each queue: stages that use what the waits of the previous frame have waited for.
+  VkPipelineStageFlags2 next_frame_[kQueueClasses] = {};
+  // For each queue: bits of the queues for whose work of the previous frame it has already waited.
+  std::uint8_t frame_before_[kQueueClasses] = {};
+  std::uint32_t last_position_[kQueueClasses] = {};  // for each queue: position of its last pass
+};
+
+}  // namespace
+
+void synchronise(const GraphDescription& graph, Workspace& workspace, Plan& plan) {
+  Synchroniser(graph, workspace, plan).run();
 }
 
 }  // namespace alcove::framegraph

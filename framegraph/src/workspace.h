@@ -2,6 +2,7 @@
 // reused.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,35 +14,27 @@
 
 namespace alcove::framegraph {
 
-// Points in time within a frame, in half positions: the batch of barriers before the pass at
-// position p has the time 2p, and the pass itself has the time 2p + 1.
-inline constexpr std::int32_t kBeforeFrame = -1;
-inline constexpr std::int32_t kNever = -2;
-
-// The last uses of a subresource, or of a range of bytes of memory, on one queue. If another queue
-// changed it last, the state holds the uses since the wait for that change.
-struct UseState {
-  VkPipelineStageFlags2 write_stages = 0;  // of the last write or layout change
-  VkAccessFlags2 write_access = 0;         // 0 after a layout change, which is available by itself
-  VkPipelineStageFlags2 read_stages = 0;   // of the reads after that write
-  VkPipelineStageFlags2 seen_stages = 0;   // by which the write can be seen
-  VkAccessFlags2 seen_access = 0;
-  std::int32_t write_time = kNever;
-  std::int32_t read_time = kNever;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  std::uint32_t transition = kNone;  // the image barrier that made this layout
-  // The queues that must wait for work of the previous frame before they take over this memory.
-  // There are three bits for each waiting queue class: one for each queue class whose work it must
-  // wait for.
-  std::uint32_t frame_before = 0;
-  // Set if other resources occupied this memory before. The recorded reads and writes may then
-  // belong to different resources, so that a barrier has to wait for both.
-  std::uint8_t reuses_memory = 0;
-  // Says which semaphore waits order the next use after work of another queue: kByWait for those of
-  // this frame, kByLastFrame for those of the previous frame.
-  std::uint8_t by_wait = 0;
-  QueueClass owner = QueueClass::graphics;  // the queue that changed it last
-  bool operator==(const UseState&) const = default;
+// The uses of a subresource by one queue that need not wait for each other: one write, or the reads
+// in one layout between two writes. Uses of several queues that only read form one group.
+struct Use {
+  VkPipelineStageFlags2 stages = 0;
+  VkAccessFlags2 access = 0;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  // of a buffer, always undefined
+  // The layout to which the queue of this write changes the subresource at the end of its
+  // submission, because several queues read it in that layout; otherwise undefined.
+  VkImageLayout moved = VK_IMAGE_LAYOUT_UNDEFINED;
+  std::uint32_t resource = kNone;
+  std::uint32_t sub = 0;
+  std::uint32_t first = kNone;  // positions; kNone for the state before the frame
+  std::uint32_t last = kNone;
+  std::uint32_t head = kNone;      // the first use of its group, which changes the layout if needed
+  std::uint32_t sibling = kNone;   // the next use of its group
+  std::uint32_t previous = kNone;  // of a head: the head of the group before
+  std::uint32_t next = kNone;      // of a head: the head of the group after
+  QueueClass queue = QueueClass::graphics;
+  bool writes = false;
+  bool discards = false;
+  bool is_moved = false;  // the change to `moved` is in the plan
 };
 
 // A transient, with the data that placement needs.
@@ -87,42 +80,27 @@ struct Workspace {
     // For slot 0 of each history, indexed by resource: a live pass that uses one of the slots.
     std::vector<std::uint32_t> history_user;
   } cull;
+  struct Chain {
+    std::vector<Use> uses;
+    std::vector<std::uint32_t> tails;  // by subresource: the head of its last group, or kNone
+    // By position, before regrouping: the first use that begins there. Those at the end are of the
+    // final states.
+    std::vector<std::uint32_t> first_use;
+  } chain;
+  // A position for each queue, or one of these values.
+  using ByQueue = std::array<std::int32_t, kQueueClasses>;
+  static constexpr std::int32_t kOpening = -1;  // the work before the frame
+  static constexpr std::int32_t kNever = -2;
   struct Queues {
-    // The uses of a subresource since it was last changed: written, or moved to another layout.
-    struct Uses {
-      std::uint32_t changed = kNone;  // position of the change, kNone if it was before the frame
-      std::uint32_t last[kQueueClasses] = {kNone, kNone, kNone};  // by queue, with the change
-      VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-      QueueClass owner = QueueClass::graphics;  // that changed it last
-    };
-    // The reads of a subresource between two writes: their layout and their queues, one bit each.
-    struct Reads {
-      static constexpr VkImageLayout kMixed = VK_IMAGE_LAYOUT_MAX_ENUM;
-      VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-      std::uint32_t queues = 0;
-
-      void add(const Reads& more) {
-        if (more.queues != 0) layout = queues == 0 || layout == more.layout ? more.layout : kMixed;
-        queues |= more.queues;
-      }
-    };
-    std::vector<Uses> uses;    // by subresource
-    std::vector<Reads> reads;  // by subresource
-    // By access: the layout to which the queue of the writer changes what the access wrote, at the
-    // end of its submission, or VK_IMAGE_LAYOUT_UNDEFINED.
-    std::vector<VkImageLayout> moved_layouts;
-    std::vector<std::uint32_t> waits;      // by position and queue: the pass waited for
+    std::vector<ByQueue> waits;            // by position: the passes waited for
+    std::vector<ByQueue> known;            // by position: the last passes known to be done
     std::vector<std::uint8_t> waited_for;  // by position
-    std::vector<std::uint8_t> opened;      // by position: bits of opening submissions waited for
-    std::vector<std::uint8_t> opened_at;   // by position: of those known to be done
-    std::vector<std::int32_t> known_at;    // by position and queue, before regrouping
-    std::vector<std::int32_t> known;       // the last position of the queue known to be done
-    std::vector<std::uint32_t> submission_of;
+    std::vector<ByQueue> old_known;        // before regrouping
+    std::vector<PlannedPass> old_passes;
     std::vector<std::uint32_t> new_position;
+    std::vector<std::uint32_t> old_position;
     std::vector<std::uint32_t> taken_until;  // by position
     std::vector<QueueClass> last_queue;      // by resource: on which the frame leaves a history
-    std::vector<PlannedPass> moved;
-    std::uint32_t opening[kQueueClasses] = {kNone, kNone, kNone};  // submission before the passes
   } queues;
   // A range of bytes of a heap that is in use up to and including a position.
   struct UsedRange {
@@ -138,18 +116,38 @@ struct Workspace {
     std::vector<std::uint32_t> order;
     std::vector<VkDeviceSize> offsets;
   } place;
+  // The work after which a use comes: its stages and writes on the queue of the use, and whether
+  // semaphore waits order the use after work of other queues.
+  struct Source {
+    VkPipelineStageFlags2 stages = 0;
+    VkAccessFlags2 access = 0;
+    std::int32_t time = 0;          // see synchronise.cpp
+    std::uint8_t frame_before = 0;  // bits of queues, whose work of the previous frame it is
+    bool by_wait = false;           // a wait of this frame
+    bool by_last_frame = false;     // a wait of the previous frame
+  };
   struct Synchronise {
-    // Both arrays have one entry for each subresource and, if the frame uses several queues, each
-    // queue: first all subresources on the graphics queue, then those on the next one.
-    std::vector<UseState> states;
-    std::vector<UseState> last_uses;            // at the end of a frame, where is_last
-    std::vector<std::uint8_t> is_last;          // by resource: had its memory last
-    std::vector<std::uint8_t> written;          // by subresource: a live pass writes it
-    std::vector<MemoryMap> memory;              // by heap
+    std::vector<Source> formers;    // by resource and queue: of what occupied a transient's memory
+    std::vector<MemoryMap> memory;  // by heap
     std::vector<std::uint32_t> batch_memories;  // memory barriers of the last batch
-    std::vector<std::uint32_t> moves;           // accesses of this submission with moved layouts
+    std::vector<std::uint32_t> moves;           // writes of this submission with moved layouts
+    std::vector<std::uint8_t> written;  // by subresource of histories: a live pass writes it
   } synchronise;
 };
+
+// Returns the queue class, or graphics if the device has no queue of that class.
+inline QueueClass queue_of(const Limits& limits, QueueClass queue) {
+  return limits.queue_families[static_cast<std::size_t>(queue)] == kNone ? QueueClass::graphics
+                                                                         : queue;
+}
+
+// Returns whether the head of a group changes the layout of its subresource.
+inline bool changes_layout(const Workspace& workspace, const Use& head) {
+  if (head.first == kNone || head.previous == kNone)
+    return head.first != kNone && head.layout != VK_IMAGE_LAYOUT_UNDEFINED;
+  const Use& before = workspace.chain.uses[head.previous];
+  return head.layout != (before.moved != VK_IMAGE_LAYOUT_UNDEFINED ? before.moved : before.layout);
+}
 
 // Calls f(subresource index) for each subresource of an access.
 template <typename Function>
@@ -177,12 +175,12 @@ bool validate(const GraphDescription& graph, const Limits& limits, Workspace& wo
 // Finds the passes that are not culled and the writes whose result is needed, and writes
 // plan.cull_reasons and plan.contents.
 void cull(const GraphDescription& graph, Workspace& workspace, Plan& plan);
-// Assigns passes to queues and submissions.
+// Lists the passes that run and the uses of each subresource, and finds the usage of each resource
+// and the positions between which it is in use.
+void chain(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
+// Divides the passes of several queues into submissions, which changes their positions.
 void assign_queues(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                    Plan& plan);
-// Finds the first and last position of each resource, and its usage.
-void lifetimes(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-               Plan& plan);
 // Returns whether the device can create the textures that live passes use, and adds an error for
 // each one that it cannot create.
 bool check_images(const GraphDescription& graph, const Limits& limits, const Plan& plan,
@@ -193,7 +191,6 @@ VkFlags history_usage(const Limits& limits, const ResourceRecord& record);
 // Assigns each live transient an offset in a heap.
 void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
 // Adds barriers, and the waits of submissions.
-void synchronise(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
-                 Plan& plan);
+void synchronise(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 
 }  // namespace alcove::framegraph

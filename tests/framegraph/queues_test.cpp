@@ -144,6 +144,34 @@ TEST_F(Queues, GraphicsQueueWaitsBeforeReusingMemoryThatComputeReadInThePrevious
   EXPECT_FALSE(verify(graph_.description(), limits_, plan));
 }
 
+// A history that the graphics queue wrote was used in an earlier frame. The compute queue waits for
+// that frame, and the graphics queue needs no submission before its passes to be waited for.
+TEST_F(Queues, QueueThatReadsAHistoryOfAnotherQueueWaitsForThePreviousFrame) {
+  Plan plan;
+  for (int frame = 0; frame < 2; ++frame) {
+    graph_.reset();
+    const TextureHistory history = graph_.create_texture_history("history", kDesc);
+    if (frame == 1) {
+      PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);
+      blur.read(history.previous(), access::sampled_compute);
+      blur.side_effect();
+    }
+    PassBuilder draw = graph_.add_pass("draw");
+    (void)draw.write(history.current, access::color_attachment, {}, Contents::discard);
+    draw.side_effect();
+    plan = compiled();
+    graph_.leave_histories(plan.finals);
+  }
+  for (const Submission& submission : plan.submissions)
+    EXPECT_TRUE(submission.pass_count != 0 || submission.wait_count != 0);
+  ASSERT_EQ(plan.submissions[0].queue, QueueClass::compute);
+  const auto graphics =
+      static_cast<std::uint8_t>(1u << static_cast<unsigned>(QueueClass::graphics));
+  EXPECT_EQ(plan.submissions[0].frame_before, graphics);
+  plan.submissions[0].frame_before = 0;
+  EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+}
+
 // Occlusion is computed on the compute queue and read by the lighting on the graphics queue. The
 // history that it is written to must be valid in the next frame.
 TEST_F(Queues, HistoryWrittenOnOneQueueAndReadOnAnotherIsValidInTheNextFrame) {

@@ -116,8 +116,6 @@ void Replay::end_frame() {
     if (!holds(output.resource))
       fail("output " + name(output.resource) + " does not hold what was written for it");
   check_histories();
-  for (std::uint8_t queue = 0; queue < kQueueClasses; ++queue)
-    order_.signal(queue, end_signal(queue));
 }
 
 // Returns whether a resource has the contents that the declaration has written to it.

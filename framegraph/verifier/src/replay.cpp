@@ -16,7 +16,8 @@ void Replay::run() {
   find_expected();
   check_stores();
   for (int frame = 0; frame < 2 && errors_.empty(); ++frame) {
-    begin_frame(frame == 0);
+    where_ = frame == 0 ? "at the start of the frame" : "at the start of the next frame";
+    begin_frame();
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) submission(s);
     end_frame();
   }
@@ -71,12 +72,20 @@ void Replay::check_stores() {
 }
 
 // Sets the contents and states at the start of a frame: transients have no contents, and imports
-// are in the state that the graph declares.
-void Replay::begin_frame(bool first) {
-  where_ = first ? "at the start of the frame" : "at the start of the next frame";
-  first_frame_ = first;
+// and histories are in the state that the graph declares. Histories were used in an earlier frame,
+// and imports may have been used after it.
+void Replay::begin_frame() {
+  begin(Origin::transient);
+  begin(Origin::history);
+  for (std::uint8_t queue = 0; queue < kQueueClasses; ++queue)
+    order_.signal(queue, end_signal(queue));
+  begin(Origin::imported);
+}
+
+void Replay::begin(Origin origin) {
   for (std::uint32_t r = 0; r < resources_.size(); ++r) {
     const ResourceRecord& record = graph_.resources[r];
+    if (record.origin != origin) continue;
     resources_[r].used = false;
     for (Sub& sub : resources_[r].subs) {
       sub.content = kGarbage;
@@ -113,7 +122,7 @@ void Replay::apply_initial_state(Sub& sub, std::uint8_t queue, const State& init
 void Replay::submission(std::uint32_t index) {
   const Submission& submission = plan_.submissions[index];
   const auto queue = static_cast<std::uint8_t>(submission.queue);
-  for (std::uint8_t other = 0; other < kQueueClasses && !first_frame_; ++other)
+  for (std::uint8_t other = 0; other < kQueueClasses; ++other)
     if ((submission.frame_before & (1u << other)) != 0)
       order_.wait(queue, end_signal(other), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   for (std::uint32_t w = submission.first_wait; w < submission.first_wait + submission.wait_count;

@@ -69,7 +69,8 @@ class Replay {
     return static_cast<std::uint32_t>(plan_.submissions.size()) + queue;
   }
   void find_expected();
-  void begin_frame(bool first);
+  void begin_frame();
+  void begin(Origin origin);
   void apply_initial_state(Sub& sub, std::uint8_t queue, const State& initial_state);
   void submission(std::uint32_t index);
   void batch(std::uint32_t index, QueueClass queue);
@@ -122,7 +123,6 @@ class Replay {
   // find. first_expected_ has the index of the first entry of each access.
   std::vector<std::uint32_t> expected_;
   std::vector<std::size_t> first_expected_;
-  bool first_frame_ = true;
   std::vector<Barrier> barriers_;  // of the current batch
   std::string where_;
 };

@@ -1,6 +1,6 @@
 // Compiles a declared frame to a plan. It is a pure function that needs no device. Its phases are:
-// validate, cull, assign queues, lifetimes, place, synchronise. Each phase has a source file
-// of its own.
+// validate, cull, chain, queues, check images, place, synchronise. Each phase has a source file of
+// its own.
 #pragma once
 
 #include <cstdint>

@@ -63,7 +63,7 @@ struct PlannedPass {
 struct Submission {
   QueueClass queue = QueueClass::graphics;
   // A mask with one bit per queue class. The submission waits until all work of the previous frame
-  // on these queues is done, because it reuses memory that this work used.
+  // on these queues is done, because it uses memory or a history that this work used.
   std::uint8_t frame_before = 0;
   std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)
   std::uint32_t pass_count = 0;
