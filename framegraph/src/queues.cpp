@@ -61,7 +61,7 @@ class QueueAssigner {
   // writes have neighbouring uses.
   void find_moved_layouts() {
     auto& uses = chain_.uses;
-    for (std::uint32_t u = 0; u < uses.size(); ++u)
+    for (std::uint32_t u = 0; u < chain_.first_use.back(); ++u)
       if (uses[u].previous != kNone) uses[uses[u].previous].next = u;
     for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
       VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -75,7 +75,7 @@ class QueueAssigner {
         alike = alike && (queues == 0 || uses[next].layout == layout);
         layout = uses[next].layout;
         for (std::uint32_t u = next; u != kNone; u = uses[u].sibling)
-          if (uses[u].first < plan_.passes.size()) queues |= bit(uses[u].queue);
+          if (u < chain_.first_use.back()) queues |= bit(uses[u].queue);
       }
       if (!alike || queues == 0 || std::has_single_bit(queues)) continue;
       for (; i < end; ++i)

@@ -30,7 +30,8 @@ struct Use {
   std::uint32_t head = kNone;      // the first use of its group, which changes the layout if needed
   std::uint32_t sibling = kNone;   // the next use of its group
   std::uint32_t previous = kNone;  // of a head: the head of the group before
-  std::uint32_t next = kNone;      // of a head: the head of the group after
+  std::uint32_t next = kNone;      // of a head: the head of the group after, if in the frame; only
+                                   // with several queues
   QueueClass queue = QueueClass::graphics;
   bool writes = false;
   bool discards = false;

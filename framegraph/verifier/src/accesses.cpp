@@ -215,7 +215,7 @@ void Replay::check_final_write(const FinalState& final, const Operation& write, 
     if (!told) fail(name(final.resource) + " is written in a way not told of");
   } else if (stages != 0) {
     const bool seen = accesses == 0
-                          ? order_.is_before_any(write, queue, final.state.stages)
+                          ? order_.is_available_by(write, {queue, stages, 0, 0, 0, true})
                           : order_.is_available(write, queue, final.state.stages) &&
                                 order_.is_visible(write, queue, final.state.stages, accesses);
     if (!seen) fail(name(final.resource) + " is said to be seen by what does not see it");

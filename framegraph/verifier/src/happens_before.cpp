@@ -228,11 +228,4 @@ bool HappensBefore::is_visible(const Operation& operation, std::uint8_t queue, S
   });
 }
 
-bool HappensBefore::is_before_any(const Operation& operation, std::uint8_t queue,
-                                  Stages stages) const {
-  for (Stages left = expand_stages(stages); left != 0; left &= left - 1)
-    if (is_available(operation, queue, lowest(left))) return true;
-  return false;
-}
-
 }  // namespace alcove::framegraph::verifier

@@ -76,8 +76,6 @@ class HappensBefore {
   bool is_available(const Operation& operation, std::uint8_t queue, Stages stages) const;
   bool is_visible(const Operation& operation, std::uint8_t queue, Stages stages,
                   Accesses accesses) const;
-  // Returns whether the operation happens before the next command of any of these stages.
-  bool is_before_any(const Operation& operation, std::uint8_t queue, Stages stages) const;
 
  private:
   // The barriers of one command, or a signal or wait of a queue.
