@@ -1,9 +1,10 @@
 # alcove_embed_shader(TARGET SHADER [NAME name] [DEFINES a b...])
 #
-# Compiles a GLSL file to SPIR-V with glslang while TARGET is built and makes it includable there as
+# Compiles a GLSL file to SPIR-V with glslang and spirv-opt while TARGET is built and makes it includable there as
 # "spirv/NAME.h", which defines `const uint32_t kName[]`, the words of the module. NAME defaults to the
 # file's stem. A different NAME, together with DEFINES, makes a variant of the same file.
 find_program(ALCOVE_GLSLANG glslangValidator REQUIRED)
+find_program(ALCOVE_SPIRV_OPT spirv-opt REQUIRED)
 
 function(alcove_embed_shader target shader)
   cmake_parse_arguments(arg "" "NAME" "DEFINES" ${ARGN})
@@ -26,10 +27,12 @@ function(alcove_embed_shader target shader)
   list(TRANSFORM arg_DEFINES PREPEND -D)
   add_custom_command(
     OUTPUT ${directory}/${name}.h
-    COMMAND ${ALCOVE_GLSLANG} --quiet -V --target-env vulkan1.2 --vn ${variable}
-      --depfile ${directory}/${name}.d -I${PROJECT_SOURCE_DIR}/shaders ${arg_DEFINES}
-      -o ${directory}/${name}.h ${source}
-    DEPENDS ${source}
+    COMMAND ${ALCOVE_GLSLANG} --quiet -V --target-env vulkan1.2 --depfile ${directory}/${name}.d
+      -I${PROJECT_SOURCE_DIR}/shaders ${arg_DEFINES} -o ${directory}/${name}.spv ${source}
+    COMMAND ${CMAKE_COMMAND} -DMODULE=${directory}/${name}.spv -DNAME=${variable}
+      -DHEADER=${directory}/${name}.h -DOPTIMISER=${ALCOVE_SPIRV_OPT}
+      -P ${PROJECT_SOURCE_DIR}/shaders/embed_spirv.cmake
+    DEPENDS ${source} ${PROJECT_SOURCE_DIR}/shaders/embed_spirv.cmake
     DEPFILE ${directory}/${name}.d
     COMMENT "Compiling ${shader} to SPIR-V"
     VERBATIM)

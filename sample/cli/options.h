@@ -62,9 +62,9 @@ struct OcclusionOptions {
   bool quality_given = false;   // --quality was given
   std::optional<float> radius;  // scene units; none: ViewFinder::radius()
   NormalSource normals = NormalSource::shading;
-  std::vector<std::pair<std::string, std::string>> file;  // settings of --settings
-  std::vector<std::pair<std::string, std::string>> set;   // --set name=value, in order
-  std::vector<float> roughness;                           // overrides the materials; perceptual
+  std::string file;                                      // contents of the file of --settings
+  std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
+  std::vector<float> roughness;                          // overrides the materials; perceptual
   uint32_t spp = 256;                                     // rays per pixel of the truth
 };
 

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/render_command.h"
+#include "cli/settings.h"
 #include "evaluate/output_needs.h"
 #include "evaluate/situations.h"
-#include "render/settings_json.h"
 #include "support/progress.h"
 #include "support/result.h"
 #include "support/whole_file.h"
@@ -60,6 +59,7 @@ std::vector<Camera> other_views(const Session& session) {
 // Prints the errors of the chosen settings in two other views, and whether the tolerance holds.
 void check_other_views(const Options& options, const Session& session,
                        const RecommendationGoal& goal, const Achievement& chosen) {
+  std::cout << "The same settings in other views of the scene:\n";
   for (const Camera& camera : other_views(session)) {
     const auto rmse =
         SituationErrors::create(session, static_setup(options, camera), truth_options(options))
@@ -82,11 +82,9 @@ void check_other_views(const Options& options, const Session& session,
 
 Result<void> write_settings(const Options& options, const OcclusionSettings& settings) {
   if (options.settings_out.empty()) return {};
-  nlohmann::ordered_json json{{"settings", to_json(settings)}};
-  json["settings"].erase("radius");  // it belongs to the scene
-  return write_text(options.settings_out, json.dump(2) + "\n").map([&] {
+  return write_text(options.settings_out, settings_text(settings)).map([&] {
     std::cout << "The settings are in " << options.settings_out.string()
-              << "; --settings reads them\n";
+              << "; --settings and alcoveReadSettings read them\n";
   });
 }
 
@@ -118,16 +116,19 @@ Result<void> run_recommend(const Options& options) {
                                        goal.rmse(chosen), goal.ms(chosen));
   if (goal.met(chosen)) std::cout << text << "\n";
   print_achievement(chosen);
+  std::cout << fmt::format(
+      "RMSE of visibility against ray-traced truth at {}x{}; {}, without the rendering of a second "
+      "depth layer or of back faces\nEach feature, beside the settings to which it was added:\n",
+      options.view.width, options.view.height, clock_text(options, session));
   for (const FeatureEffect& feature : found.features)
     std::cout << "  " << feature.sentence() << "\n";
   ALCOVE_TRY(const auto needs, view_needs(session, errors.truths(), times, goal, chosen));
+  std::cout << "The outputs and inputs that the materials in view need:\n";
   for (const std::string& need : needs) std::cout << "  " << need << "\n";
   std::cout << std::flush;
   if (!goal.met(chosen)) return Failure(unmet_message(goal, text));
   check_other_views(options, session, goal, chosen);
-  std::cout << fmt::format("RMSE of visibility against ray-traced truth at {}x{}; {}\n{}\n",
-                           options.view.width, options.view.height, clock_text(options, session),
-                           render_line(options, session, chosen.choice.settings));
+  std::cout << render_line(options, session, chosen.choice.settings) << "\n";
   return write_settings(options, chosen.choice.settings);
 }
 

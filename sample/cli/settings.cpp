@@ -71,38 +71,37 @@ std::string settings_help() {
 Result<OcclusionSettings> occlusion_settings(const OcclusionOptions& options,
                                              float default_radius) {
   OcclusionSettings settings(options.quality, options.radius.value_or(default_radius));
-  for (const auto* list : {&options.file, &options.set}) {
-    for (const auto& [name, value] : *list)
-      if (const auto wanted = set(settings, name, value))
-        return Failure("--set " + name + "=" + value + ": give " + *wanted);
-  }
+  // The text was checked when it was read.
+  (void)alcoveReadSettings(options.file.data(), options.file.size(), &settings, nullptr);
+  settings.radius = options.radius.value_or(settings.radius);
+  for (const auto& [name, value] : options.set)
+    if (const auto wanted = set(settings, name, value))
+      return Failure("--set " + name + "=" + value + ": give " + *wanted);
   if (const auto good = passes::validate(settings); !good)
     return Failure("--set: " + good.error().message);
   return settings;
 }
 
-Result<std::vector<std::pair<std::string, std::string>>> read_settings(const std::string& file) {
+Result<std::string> read_settings(const std::string& file) {
   constexpr std::size_t kMost = 64 << 10;  // bytes
   const auto opened = open_regular_file(file);
   if (!opened) return Failure("cannot read " + printable(file) + ": " + opened.error());
-  std::string text(kMost + 1, '\0');
+  std::string text(kMost, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), opened->get()));
-  std::vector<std::pair<std::string, std::string>> found;
-  std::istringstream lines(text);
-  std::string name, equals, value;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    if (text.size() > kMost || !(words >> name >> equals >> value) || equals != "=") {
-      return Failure(printable(file) +
-                     " holds no settings; give a file that `alcove recommend --out` wrote");
-    }
-    if (const auto wanted = wanted_instead(name, value)) {
-      return Failure(printable(file) + ": " + printable(name) + " is " + printable(value) +
-                     "; give " + *wanted);
-    }
-    found.emplace_back(name, value);
+  OcclusionSettings settings;
+  char message[ALCOVE_MAX_MESSAGE];
+  if (alcoveReadSettings(text.data(), text.size(), &settings, message) != ALCOVE_SUCCESS) {
+    return Failure(printable(file) + ": " + message +
+                   " Give a file that `alcove recommend --out` wrote.");
   }
-  return found;
+  return text;
+}
+
+std::string settings_text(const OcclusionSettings& settings) {
+  std::string text(alcovePrintSettings(&settings, nullptr, 0) + 1, '\0');
+  text.resize(alcovePrintSettings(&settings, text.data(), text.size()));
+  const std::size_t radius = text.find("radius = ");
+  return text.erase(radius, text.find('\n', radius) + 1 - radius);
 }
 
 std::vector<AlcoveQuality> chosen_presets(const OcclusionOptions& options) {

@@ -26,11 +26,11 @@ namespace alcove::sample {
 // Returns a text with one line for each setting: name, meaning, range, default.
 [[nodiscard]] std::string settings_help();
 
-// Reads the names and values of settings from a file that `alcove recommend --out` wrote: a line
-// `name = value` for each name of --set. Errors: the file cannot be read, a line has another form,
-// or a name or value is not allowed.
-[[nodiscard]] Result<std::vector<std::pair<std::string, std::string>>> read_settings(
-    const std::string& file);
+// Reads a file that `alcove recommend --out` wrote, in the form of alcoveReadSettings(). Errors: the
+// file cannot be read, a line has another form, or a name or value is not allowed.
+[[nodiscard]] Result<std::string> read_settings(const std::string& file);
+// Returns the contents of such a file: every setting but the radius, which belongs to the scene.
+[[nodiscard]] std::string settings_text(const OcclusionSettings& settings);
 
 // The preset of --quality, or all presets for frames in real time if it was not given.
 [[nodiscard]] std::vector<AlcoveQuality> chosen_presets(const OcclusionOptions& options);

@@ -24,7 +24,7 @@ static_assert(kGuardBand == 0.1);
 constexpr Feature kFeatures[] = {
     {"a second depth layer", [](Choice& c) { c.settings.depth_layers = 2; }},
     {"a guard band of 10 % of the height", [](Choice& c) { c.guard_band = true; }},
-    {"thickness from back faces",
+    {"thickness from back faces, whose time differs most between GPUs",
      [](Choice& c) { c.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; }},
     {"a thickness of 0.05", [](Choice& c) { c.settings.thickness = 0.05f; }},
     {"a thickness of 0.5", [](Choice& c) { c.settings.thickness = 0.5f; }},
