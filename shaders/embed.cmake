@@ -1,8 +1,8 @@
 # alcove_embed_shader(TARGET SHADER [NAME name] [DEFINES a b...])
 #
-# Compiles a GLSL file to SPIR-V with glslang and spirv-opt while TARGET is built and makes it includable there as
-# "spirv/NAME.h", which defines `const uint32_t kName[]`, the words of the module. NAME defaults to the
-# file's stem. A different NAME, together with DEFINES, makes a variant of the same file.
+# Compiles a GLSL file to SPIR-V with glslang and spirv-opt while TARGET is built and makes it includable
+# there as "spirv/NAME.h", which defines `const uint32_t kName[]`, the words of the module. NAME defaults
+# to the file's stem. A different NAME, together with DEFINES, makes a variant of the same file.
 find_program(ALCOVE_GLSLANG glslangValidator REQUIRED)
 find_program(ALCOVE_SPIRV_OPT spirv-opt REQUIRED)
 
