@@ -1,6 +1,6 @@
 // Tests randomly generated extreme views: eyes in walls and far away, the narrowest and widest
 // angles, near and far planes millions of units apart, tiny and huge radii. Every output must be
-// finite and in range.
+// finite and in range. An open ground must be open.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "gpu_test.h"
 #include "render/frame_renderer.h"
 #include "scene/builtin_scene.h"
+#include "scene/shapes.h"
 
 namespace alcove::sample {
 namespace {
@@ -98,6 +99,31 @@ TEST(ExtremeViews, OutputsOfRandomExtremeViewsAreFiniteAndInRange) {
     }
     for (const glm::vec3& normal : images->bent_normal_ws.pixels)
       ASSERT_TRUE(std::isfinite(glm::length(normal)) && glm::length(normal) < 1.01f);
+  }
+}
+
+TEST(ExtremeViews, OpenGroundIsUnoccludedInANarrowViewOverALargeDepthRange) {
+  const ValidatedGpu gpu = open_validated();
+  ASSERT_TRUE(gpu);
+  SceneBuilder builder;
+  builder.add_material("ground", glm::vec3(0.5f), 0.5f);
+  for (float z = -2000.0f; z < 2000.0f; z += 100.0f)
+    for (float x = -2000.0f; x < 2000.0f; x += 100.0f)
+      builder.quad({x, 0, z}, {x, 0, z + 100}, {x + 100, 0, z + 100}, {x + 100, 0, z});
+  const Scene scene = builder.finish("ground");
+  const VkExtent2D size{160, 90};
+  auto renderer = FrameRenderer::create(*gpu, scene, size, NormalSource::shading);
+  ASSERT_TRUE(renderer) << renderer.error();
+  Camera camera = scene_camera("high", {0, 60, 0}, {0, 0, -500}, 3.0f, 5000.0f);
+  camera.near_plane = 0.01f;
+  for (const bool reversed : {true, false}) {
+    camera.reversed_z = reversed;
+    const FrameRequest request{.view = gbuffer_view(camera, camera, size),
+                               .occlusion = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, 1.0f)};
+    const auto images = (*renderer)->draw_and_read(request);
+    ASSERT_TRUE(images) << images.error();
+    EXPECT_GT(std::ranges::min(images->visibility.pixels), 0.99f) << reversed;
+    EXPECT_EQ(std::ranges::count(images->depth_ndc.pixels, reversed ? 0.0f : 1.0f), 0);
   }
 }
 

@@ -27,7 +27,7 @@ TEST(GltfNotes, TexturesAndExtensionsThatAreLeftOutAreReported) {
           "texture 0 has no image that is read here and is left out."));
 }
 
-TEST(GltfNotes, BlendedMaterialIsDrawnOpaqueOrCutOutAndTheChoiceIsReported) {
+TEST(GltfNotes, MaterialsAreDrawnAsChosenAndBlendedOnesAreReported) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["materials"] = {{{"name", "leaf"}, {"alphaMode", "BLEND"}}};
   maker.primitive()["material"] = 0;
@@ -39,7 +39,9 @@ TEST(GltfNotes, BlendedMaterialIsDrawnOpaqueOrCutOutAndTheChoiceIsReported) {
     EXPECT_EQ(scene->materials[0].alpha_mode, cut ? AlphaMode::mask : AlphaMode::blend);
     EXPECT_THAT(scene->warnings,
                 testing::ElementsAre(HasSubstr(cut ? "cut out elsewhere" : "--cut-blends")));
+    EXPECT_FALSE(scene->materials[0].double_sided);
   }
+  EXPECT_TRUE(load_scene(file, {.both_sides = true})->materials[0].double_sided);
 }
 
 TEST(GltfNotes, WarningsAndErrorsStayShortForLongNamesAndUris) {
