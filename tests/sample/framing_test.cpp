@@ -78,12 +78,6 @@ Triangles strays() {
   return out;
 }
 
-Triangles pole() {
-  Triangles out;
-  out.add_lathe({0, 0, 0}, 2.6f, {0.0f, 0.03f, 0.03f, 0.0f});
-  return out;
-}
-
 const nlohmann::json kDoubleSided = {{"doubleSided", true}};
 
 // Single- and double-sided meshes at one place of the file.
@@ -115,7 +109,8 @@ std::vector<File> files() {
   const auto board = box({0, 0, 0}, {1, 0.03f, 1});
   const auto phone = box({0, 0, 0}, {0.07f, 0.15f, 0.008f});
   const auto hull = box({-4, 0, -3}, {4, 3, 3});
-  const auto banner = joined(box({-0.6f, 0.3f, -0.01f}, {0.6f, 2.4f, 0.01f}), pole());
+  const auto cloth = box({-0.6f, 0.3f, -0.01f}, {0.6f, 2.4f, 0.01f});
+  const auto pole = box({-0.03f, 0, -0.03f}, {0.03f, 2.6f, 0.03f});
   std::vector<File> out{
       {"House", house(), scene_of({house()})},
       {"HouseOf1e-5", house(1e-5f), scene_of({house(1e-5f)})},
@@ -135,8 +130,7 @@ std::vector<File> files() {
       {"HouseWithALampInside", hull, scene_of({}, {hull, moved(ball(0.2f, false), {1, 1, 0})})},
       {"HouseWithADoor", hull,
        scene_of({}, {hull, quad({0, 0, 3}, {1, 0, 3}, {1, 2, 3}, {0, 2, 3})})},
-      {"BannerWithARod", banner,
-       scene_of({box({-0.6f, 0.3f, -0.01f}, {0.6f, 2.4f, 0.01f}), pole()})},
+      {"BannerWithARod", joined(cloth, pole), scene_of({cloth, pole})},
       {"BoardWithABox", joined(board, box({0.4f, 0.03f, 0.4f}, {0.48f, 0.11f, 0.48f})),
        scene_of({board, box({0.4f, 0.03f, 0.4f}, {0.48f, 0.11f, 0.48f})})},
       {"PhoneWithACamera", joined(phone, box({0.005f, 0.11f, -0.002f}, {0.035f, 0.14f, 0})),
