@@ -22,8 +22,7 @@
 
 namespace {
 
-namespace framegraph = alcove::framegraph;
-namespace passes = alcove::passes;
+using namespace alcove;
 
 constexpr std::uint32_t kWidth = 480, kHeight = 270, kFrames = 32;
 constexpr float kNear = 0.1f;     // The projection is reversed and infinite: depth = near / z.
@@ -40,12 +39,11 @@ void check(VkResult result, const std::string& what) {
   require(result == VK_SUCCESS, what + " failed");
 }
 
-std::string text(const framegraph::Errors& errors) { return framegraph::to_string(errors); }
-std::string text(const passes::Error& error) { return error.message; }
+std::string to_string(const passes::Error& error) { return error.message; }
 
 template <typename Result>
 auto value_of(Result result) {
-  require(result.has_value(), result ? "" : text(result.error()));
+  require(result.has_value(), result ? "" : to_string(result.error()));
   if constexpr (!std::is_void_v<typename Result::value_type>) return std::move(*result);
 }
 
@@ -156,7 +154,6 @@ constexpr VkBufferImageCopy kWholeImage{.imageSubresource = {VK_IMAGE_ASPECT_COL
 // Declares a frame. Every image of it is a transient, which shares memory with the others.
 void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffer& upload,
              const HostBuffer& result, std::uint32_t index) {
-  using framegraph::RecordContext;
   graph.reset();
   const auto from = graph.import_buffer("upload", upload.import);
   auto draw = graph.add_pass("depth");  // An engine draws its depth here.
@@ -165,7 +162,7 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
   const auto depth =
       draw.write(graph.create_texture("depth", {VK_FORMAT_R32_SFLOAT, size}),
                  framegraph::access::transfer_destination, {}, framegraph::Contents::discard);
-  draw.record([=](RecordContext& context) {
+  draw.record([=](framegraph::RecordContext& context) {
     vkCmdCopyBufferToImage(context.commands, context.buffer(from), context.image(depth),
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &kWholeImage);
   });
@@ -187,11 +184,12 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
   auto copy = graph.add_pass("read back");
   copy.read(images[ALCOVE_IMAGE_VISIBILITY], framegraph::access::transfer_source);
   const auto filled = copy.write(target, framegraph::buffer_access::transfer_destination);
-  copy.record([visibility = images[ALCOVE_IMAGE_VISIBILITY], filled](RecordContext& context) {
-    vkCmdCopyImageToBuffer(context.commands, context.image(visibility),
-                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1,
-                           &kWholeImage);
-  });
+  copy.record(
+      [visibility = images[ALCOVE_IMAGE_VISIBILITY], filled](framegraph::RecordContext& context) {
+        vkCmdCopyImageToBuffer(context.commands, context.image(visibility),
+                               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1,
+                               &kWholeImage);
+      });
 }
 
 }  // namespace
@@ -217,8 +215,7 @@ int main(int argc, char** argv) {
   std::ofstream file(argv[1], std::ios::binary);
   file << "P5\n" << kWidth << " " << kHeight << "\n255\n";
   file.write(static_cast<const char*>(result.mapped), kWidth * kHeight);
-  file.close();
-  require(file.good(), std::string(argv[1]) + " cannot be written");
+  require(file.flush().good(), std::string(argv[1]) + " cannot be written");
 
   for (const HostBuffer& buffer : {upload, result}) {
     vkDestroyBuffer(handles.device, buffer.import.buffer, nullptr);

@@ -57,9 +57,7 @@ Result<void> FrameRenderer::draw_gbuffer(const FrameRequest& request, FrameCost&
     return {};
   };
   // The first drawing also compiles shaders, so that only a second one is timed.
-  const int drawings = compiled_ && compiled_->covers(hidden) ? 1 : 2;
-  for (int i = 0; i < drawings; ++i) ALCOVE_TRY_VOID(gpu_.run(declare));
-  compiled_ = hidden.with(compiled_.value_or(hidden));
+  for (int i = drawn_view_ ? 1 : 0; i < 2; ++i) ALCOVE_TRY_VOID(gpu_.run(declare));
   append_times(cost, false);
   drawn_view_ = request.view;
   drawn_depths_ = hidden;

@@ -125,9 +125,7 @@ class FrameRenderer {
   std::unique_ptr<GbufferRenderer> gbuffer_;
   // The view that the targets were drawn with; null before the first drawing.
   std::optional<GbufferView> drawn_view_;
-  HiddenDepths drawn_depths_;  // the hidden depths that were drawn for that view
-  // All hidden depths that were ever drawn; null: nothing was drawn yet.
-  std::optional<HiddenDepths> compiled_;
+  HiddenDepths drawn_depths_;            // the hidden depths that were drawn for that view
   std::vector<PassTime> gbuffer_times_;  // times of the last drawing of the g-buffer
   std::array<std::unique_ptr<GpuImage>, kGbufferTargets.size()> targets_;
   framegraph::MemoryStatistics memory_;

@@ -46,9 +46,8 @@ Lit Light::add(Graph& graph, Texture environment, const GbufferView& view, const
       gbuffer.albedo,        gbuffer.emissive,  occlusion.visibility,
       occlusion.bent_normal, occlusion.specular};
   std::array<Texture, 3> lit;
-  const VkExtent3D size = graph.extent(gbuffer.depth);
   for (Texture& target : lit)
-    target = graph.create_texture("light", {kFormat, {size.width, size.height}});
+    target = graph.create_texture("light", {kFormat, extent_of(graph, gbuffer.depth)});
   const glm::mat3 world_from_normal = surfaces.normals == NormalSource::depth
                                           ? glm::transpose(glm::mat3(view.view_from_world))
                                           : glm::mat3(1.0f);

@@ -60,7 +60,6 @@ vec3 irradiance(vec3 normal) {
 
 // `reflectance` is the light in a white environment.
 vec3 specular_light(vec3 normal, vec3 view_ws, vec3 f0, float alpha, out vec3 reflectance) {
-  const vec3 up = vec3(0.0, 0.0, 1.0);
   mat3 frame = frame_of(normal);
   vec3 view = view_ws * frame;
   view = normalize(vec3(view.xy, max(view.z, 1e-3)));
@@ -73,7 +72,7 @@ vec3 specular_light(vec3 normal, vec3 view_ws, vec3 f0, float alpha, out vec3 re
     float schlick = pow(1.0 - saturate(dot(view, half_vector)), 5.0);
     vec3 share = mix(f0, vec3(1.0), schlick) * ggx_shadowing(view.z, light.z, alpha) /
                  (ggx_masking(view.z, alpha) * float(kSamples));
-    float density = ggx_reflection_density(up, view, light, alpha);
+    float density = ggx_reflection_density(vec3(0.0, 0.0, 1.0), view, light, alpha);
     sum += share * environment(frame * light, 1.0 / (density * float(kSamples)));
     reflectance += share;
   }

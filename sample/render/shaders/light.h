@@ -7,8 +7,7 @@
 ALCOVE_MATHS_BEGIN
 
 // The images in the descriptor set, by index. The occlusion is read only if `uses` has its bits.
-const uint kLightEnvironment = 0u;  // equirectangular: -Z at the left edge, +Y at the top, +X at a
-                                    // quarter of the width
+const uint kLightEnvironment = 0u;  // an EnvironmentImage
 const uint kLightDepth = 1u;        // as the projection wrote it
 const uint kLightNormal = 2u;       // xyz
 const uint kLightAlbedo = 3u;       // linear RGB, alpha roughness
