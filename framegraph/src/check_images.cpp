@@ -15,10 +15,6 @@ bool needs_no_query(const ResourceRecord& record) {
 }
 
 std::string problem_with(const ResourceRecord& record, const ImageLimits& limits) {
-  const auto at_most = [](const char* what, std::uint32_t has, std::uint32_t most) {
-    return std::string("the device allows at most ") + std::to_string(most) + " " + what +
-           " for it, not " + std::to_string(has);
-  };
   if (limits.samples == 0) return "the device does not support it";
   if ((limits.samples & record.samples) == 0) {
     std::string allowed;
@@ -27,14 +23,19 @@ std::string problem_with(const ResourceRecord& record, const ImageLimits& limits
     return "the device allows " + allowed + " sample(s) for it, not " +
            std::to_string(record.samples);
   }
-  if (record.layers > limits.layers) return at_most("layers", record.layers, limits.layers);
-  if (record.mips > limits.mips) return at_most("mips", record.mips, limits.mips);
-  if (record.width > limits.extent.width)
-    return at_most("texels of width", record.width, limits.extent.width);
-  if (record.height > limits.extent.height)
-    return at_most("texels of height", record.height, limits.extent.height);
-  if (record.depth > limits.extent.depth)
-    return at_most("slices", record.depth, limits.extent.depth);
+  const struct {
+    const char* what;
+    std::uint32_t has;
+    std::uint32_t most;
+  } numbers[] = {{"layers", record.layers, limits.layers},
+                 {"mips", record.mips, limits.mips},
+                 {"texels of width", record.width, limits.extent.width},
+                 {"texels of height", record.height, limits.extent.height},
+                 {"slices", record.depth, limits.extent.depth}};
+  for (const auto& [what, has, most] : numbers)
+    if (has > most)
+      return std::string("the device allows at most ") + std::to_string(most) + " " + what +
+             " for it, not " + std::to_string(has);
   return {};
 }
 

@@ -27,8 +27,7 @@ class Replay {
     begin();
     for (std::uint32_t pass = 0; pass < v_.graph.passes.size(); ++pass) {
       forbidden_ = forbidden_stages(v_.graph.passes[pass].queue);
-      for (const AccessRecord& access : v_.graph.pass_accesses(pass))
-        if (!follow(pass, access)) visit(pass, access);
+      for (const AccessRecord& access : v_.graph.pass_accesses(pass)) visit(pass, access);
     }
     for (const OutputRecord& output : v_.graph.outputs) check_output(output);
   }
@@ -47,66 +46,59 @@ class Replay {
     }
   }
 
-  // Follows a valid access of the usual kind: to all of a transient that has one subresource, once
-  // in the pass, and not as an attachment. Returns false, and does nothing, for any other access.
-  bool follow(std::uint32_t pass, const AccessRecord& access) {
+  // Returns whether an access is valid and of the usual kind: to all of a transient.
+  bool is_usual(const AccessRecord& access) const {
     constexpr std::uint32_t kProblems = kNull | kForeign | kClosed;
-    if ((access.flags & (kProblems | kWhole)) != kWhole || (access.access & kAttachmentBits) != 0)
-      return false;
+    if ((access.flags & (kProblems | kWhole)) != kWhole) return false;
     const ResourceRecord& r = v_.graph.resources[access.resource];
-    const std::uint32_t* const subs = v_.workspace.first_sub.data() + access.resource;
     const FormatOracle& formats = v_.limits.formats;
-    const bool writes = (access.flags & kWrite) != 0;
-    if (r.external != kNone || access.kind() != r.kind || subs[1] != subs[0] + 1 ||
-        access.stages == 0 || (access.stages & forbidden_) != 0 || access.access == 0 ||
-        ((access.access & kWriteBits) != 0) != writes ||
-        (r.kind == ResourceKind::texture &&
-         (!layout_is_usable(access.layout) ||
-          (formats.query && access.usage & ~formats.query(formats.context, r.format)))))
-      return false;
-    std::uint32_t& version = s_.versions[access.resource];
-    Workspace::Touch& touched = s_.touches[subs[0]];
-    if (access.version != version || touched.stamp == pass + 1 ||
-        !(touched.written || !reads_contents(access)))
-      return false;
-    version += writes;
-    touched = {pass + 1, access.layout, !writes, writes, true};
-    return true;
+    return r.external == kNone && access.kind() == r.kind && access.stages != 0 &&
+           (access.stages & forbidden_) == 0 && access.access != 0 &&
+           ((access.access & kWriteBits) != 0) == ((access.flags & kWrite) != 0) &&
+           (r.kind == ResourceKind::buffer ||
+            (layout_is_usable(access.layout) &&
+             !(formats.query && access.usage & ~formats.query(formats.context, r.format))));
   }
 
   void visit(std::uint32_t pass, const AccessRecord& access) {
-    if (!validate_access(v_, pass, access)) return;
+    if (!is_usual(access) && !validate_access(v_, pass, access)) return;
     std::uint32_t& version = s_.versions[access.resource];
     if (access.version != version) stale(pass, access, version);
     if (access.flags & kWrite) ++version;
     const auto& first = v_.workspace.first_sub;
     if (first[access.resource] == first[access.resource + 1]) return;  // its description is invalid
-    unwritten_ = conflict_ = written_ = false;
+    Found found;
     for_each_sub(v_.graph, v_.workspace, access,
-                 [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub]); });
+                 [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub], found); });
     // The contents are those of passes that run, because an attachment also reads them.
-    if ((access.access & kAttachmentBits) != 0 && written_ && !(access.flags & kDiscard))
+    if ((access.access & kAttachmentBits) != 0 && found.written && !(access.flags & kDiscard))
       v_.plan.contents[static_cast<std::size_t>(&access - v_.graph.accesses.data())] = kHasContents;
-    if (conflict_) report_conflict(pass, access);
-    if (unwritten_) report_unwritten(pass, access);
+    if (found.conflict) report_conflict(pass, access);
+    if (found.unwritten) report_unwritten(pass, access);
   }
 
-  void touch(std::uint32_t pass, const AccessRecord& access, Workspace::Touch& touched) {
-    if (touched.stamp != pass + 1) {
-      touched.stamp = pass + 1;
-      touched.reads = touched.writes = false;
-    }
-    written_ |= touched.written;
+  // What an access finds in its range.
+  struct Found {
+    bool unwritten = false;  // it reads contents that nothing wrote
+    bool conflict = false;   // its pass has another access that it excludes
+    bool written = false;    // there are contents
+  };
+
+  static void touch(std::uint32_t pass, const AccessRecord& access, Workspace::Touch& touched,
+                    Found& found) {
+    const bool again = touched.stamp == pass + 1;
+    const bool reads = again && touched.reads;
+    const bool writes = again && touched.writes;
+    found.written |= touched.written;
     if (access.flags & kWrite) {
-      conflict_ |= touched.reads || touched.writes;
-      unwritten_ |= !touched.written && reads_contents(access);
-      touched.writes = touched.written = true;
+      found.conflict |= reads || writes;
+      found.unwritten |= !touched.written && reads_contents(access);
+      touched = {pass + 1, access.layout, reads, true, true};
     } else {
-      conflict_ |= touched.writes || (touched.reads && touched.layout != access.layout);
-      unwritten_ |= !touched.written;
-      touched.reads = true;
+      found.conflict |= writes || (reads && touched.layout != access.layout);
+      found.unwritten |= !touched.written;
+      touched = {pass + 1, access.layout, true, writes, touched.written};
     }
-    touched.layout = access.layout;
   }
 
   void report_conflict(std::uint32_t pass, const AccessRecord& access) {
@@ -213,9 +205,6 @@ class Replay {
 
   Validation& v_;
   Workspace::Validate& s_;
-  bool unwritten_ = false;
-  bool conflict_ = false;
-  bool written_ = false;                 // the range of the access has contents
   VkPipelineStageFlags2 forbidden_ = 0;  // of this pass
 };
 
