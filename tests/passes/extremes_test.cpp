@@ -104,8 +104,9 @@ TEST_P(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
       const std::vector<Images> found =
           strafe(view, shifted(scene.scene, {0.0, 0.0, shift}), 0.05, settings, 4);
       if (shift == 0.0) expected = found;
+      // At a distance of 1024 depths are rounded more; the largest difference is .0020.
       for (std::size_t i = 0; i < found.size(); ++i)
-        EXPECT_LT(rms(found[i].visibility, expected[i].visibility), 0.003) << "frame " << i;
+        EXPECT_LT(rms(found[i].visibility, expected[i].visibility), 0.0025) << "frame " << i;
     }
   }
 }
