@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "work/view_parameters.h"
+#include "alcove/alcove.h"
 
 namespace alcove::passes {
 
@@ -16,22 +16,35 @@ enum class Mistake : std::uint8_t {
 #define ALCOVE_MISTAKE(name, sentence) name,
 #include "diagnose/mistakes.inc"
 #undef ALCOVE_MISTAKE
-  count,
+  count,  // also: no mistake
 };
 
-inline constexpr std::size_t kMistakes = static_cast<std::size_t>(Mistake::count);
+// The frames of a view that could show a mistake.
+struct Sighting {
+  std::uint32_t frames = 0;  // a bit for each of them, the newest first: whether it showed
+  float measure = 0.0f;      // the number of the sentence, where there is one
+};
 
-// The findings of one frame: for each mistake whether it could be seen, and whether it was.
-struct Findings {
-  std::uint64_t judged = 0;  // a bit for each mistake
-  std::uint64_t seen = 0;
-  std::array<float, kMistakes> measures{};  // the number of the sentence, where there is one
+class Sightings {
+ public:
+  void note(Mistake mistake, bool is_seen, double measure = 0.0) {
+    Sighting& sighting = of_.at(static_cast<std::size_t>(mistake));
+    sighting.frames = sighting.frames << 1 | (is_seen ? 1 : 0);
+    if (is_seen) sighting.measure = static_cast<float>(measure);
+  }
+  // Notes that a frame shows `found`, and no other mistake from `first` to `last`.
+  void note_all(Mistake first, Mistake last, Mistake found, double measure = 0.0) {
+    for (int i = static_cast<int>(first); i <= static_cast<int>(last); ++i)
+      note(static_cast<Mistake>(i), static_cast<Mistake>(i) == found, measure);
+  }
+  const Sighting& operator[](std::size_t mistake) const { return of_.at(mistake); }
 
-  void set(Mistake mistake, bool is_seen, double measure = 0.0);
+ private:
+  std::array<Sighting, static_cast<std::size_t>(Mistake::count)> of_{};
 };
 
 // A sampled pixel: its depth and those of its four neighbours, its normal and its motion vector,
-// all as they are stored in the textures.
+// all as they are stored in the textures, and in the order in which inspect.comp writes them.
 struct PixelSample {
   std::uint32_t x = 0;
   std::uint32_t y = 0;
@@ -47,26 +60,28 @@ struct PixelSample {
 // A frame of a view as the engine describes it, and its samples. They lie on the grid of
 // inspect.comp, row by row.
 struct InspectedFrame {
-  AlcoveCamera camera{};
-  AlcoveCamera previous_camera{};
+  std::uint32_t serial = 0;  // counts the frames of the context
+  AlcoveViewInfo info{};     // its settings are these, and no longer those of the engine
+  AlcoveSettings settings{};
   VkExtent2D size{};        // of the part of the images that is in use
   VkExtent2D depth_size{};  // of the whole images, as the device reports them
   VkExtent2D normals_size{};
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   bool has_normals = false;
   bool has_motion = false;
-  NormalConvention normals;
-  MotionConvention motion;
-  float radius = 0.0f;
-  bool is_static = false;          // static_frames is not 0
-  bool continues_history = false;  // there is a history, which reset_history does not discard
-  bool has_largest_size = false;
-  bool has_area = false;  // the view says which part of the images is in use
   std::vector<PixelSample> samples;
+
+  // There is a history, which reset_history does not discard.
+  [[nodiscard]] bool continues_history() const {
+    return info.reset_history == 0 && settings.history_frames > 0;
+  }
 };
 
-// Returns what a frame shows. `frames` begins with this frame, followed by up to two earlier frames
-// of the view, the newest first. With too few samples, nothing is judged.
-[[nodiscard]] Findings inspect(std::span<const InspectedFrame> frames);
+// Returns whether two cameras differ in their translation and projection at most.
+[[nodiscard]] bool same_rotation(AlcoveCamera a, const AlcoveCamera& b);
+
+// Notes what a frame shows. `frames` begins with this frame, followed by up to two earlier frames
+// of the view, the newest first. A mistake that its samples are too few to show is not noted.
+void inspect(std::span<const InspectedFrame> frames, Sightings& sightings);
 
 }  // namespace alcove::passes

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "work/number_text.h"
+#include "work/rigid_transform.h"
 
 namespace alcove::passes {
 namespace {
@@ -23,22 +25,17 @@ bool same(const AlcoveCamera& a, const AlcoveCamera& b) {
   return same(a.clip_from_view, b.clip_from_view) && same(a.view_from_world, b.view_from_world);
 }
 
-bool same_rotation(AlcoveCamera a, const AlcoveCamera& b) {
-  std::copy_n(b.view_from_world + 12, 3, a.view_from_world + 12);
-  return same(a.view_from_world, b.view_from_world);
-}
-
-constexpr std::array<const char*, kMistakes> kSentences{
+constexpr const char* kSentences[] = {
 #define ALCOVE_MISTAKE(name, sentence) sentence,
 #include "diagnose/mistakes.inc"
 #undef ALCOVE_MISTAKE
 };
 
 VkExtent2D read_size(const AlcoveView& view) {
-  return view.info.read_area.width > 0
-             ? VkExtent2D{view.info.read_area.width, view.info.read_area.height}
-             : VkExtent2D{view.images[ALCOVE_IMAGE_DEPTH].width,
-                          view.images[ALCOVE_IMAGE_DEPTH].height};
+  const AlcoveArea& read = view.info.read_area;
+  const AlcoveImage& depth = view.images[ALCOVE_IMAGE_DEPTH];
+  return read.width > 0 ? VkExtent2D{read.width, read.height}
+                        : VkExtent2D{depth.width, depth.height};
 }
 
 // `seen` has a bit for each frame that could show the mistake.
@@ -57,15 +54,16 @@ bool is_reported(Mistake mistake, std::uint32_t seen) {
   }
 }
 
-std::array<float, 3> eye_of(const AlcoveCamera& camera) {
-  const float* const m = camera.view_from_world;
-  std::array<float, 3> eye{};
-  for (std::size_t i = 0; i < 3; ++i)
-    eye.at(i) = -(m[4 * i] * m[12] + m[4 * i + 1] * m[13] + m[4 * i + 2] * m[14]);
-  return eye;
+maths::dvec3 eye_of(const AlcoveCamera& camera) {
+  return maths::inverse(to_rigid(camera.view_from_world))[3];
 }
 
 }  // namespace
+
+bool same_rotation(AlcoveCamera a, const AlcoveCamera& b) {
+  std::copy_n(b.view_from_world + 12, 3, a.view_from_world + 12);
+  return same(a.view_from_world, b.view_from_world);
+}
 
 const char* const MistakeFinder::kTooManyViews =
     "More views have a history than an engine could mean; give a view the same AlcoveViewInfo::id "
@@ -97,45 +95,39 @@ void MistakeFinder::drop_view(std::uint32_t id) {
   }
 }
 
-Findings MistakeFinder::judge(const View& view, const AlcoveView& given, std::uint32_t index) {
-  Findings result;
-  const bool reset = given.info.reset_history != VK_FALSE;
-  const bool reads_index =
-      given.info.settings->static_noise == 0 || given.info.settings->history_frames > 0;
-  result.set(Mistake::index_repeats, reads_index && index == view.index);
-  result.set(Mistake::index_goes_back, reads_index && index < view.index);
-  result.set(Mistake::history_reset, reset);
-  if (reset || given.info.settings->history_frames == 0) return result;
+void MistakeFinder::judge(View& view, const AlcoveView& given, std::uint32_t index) {
+  const AlcoveViewInfo& info = given.info;
+  const AlcoveSettings& settings = *info.settings;
+  const auto note = [&](Mistake mistake, bool seen) { view.sightings.note(mistake, seen); };
+  const bool reset = info.reset_history != VK_FALSE;
+  const bool reads_index = settings.static_noise == 0 || settings.history_frames > 0;
+  note(Mistake::index_repeats, reads_index && index == view.index);
+  note(Mistake::index_goes_back, reads_index && index < view.index);
+  note(Mistake::history_reset, reset);
+  if (reset || settings.history_frames == 0) return;
   // Two steps in opposite directions.
-  float both = 0.0f, step = 0.0f, last_step = 0.0f;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const float now = eye_of(given.info.camera).at(i) - view.eyes[0].at(i);
-    const float last = view.eyes[0].at(i) - view.eyes[1].at(i);
-    both += now * last;
-    step += now * now;
-    last_step += last * last;
-  }
-  const float least = 1e-3f * given.info.settings->radius;
-  result.set(Mistake::eyes_alternate, std::min(step, last_step) > least * least &&
-                                          both < -0.7f * std::sqrt(step * last_step));
-  if (!same(given.info.camera, view.camera)) {
-    const bool is_this = same(given.info.previous_camera, given.info.camera);
-    const bool other_projection = same_rotation(given.info.previous_camera, view.camera);
+  const maths::dvec3 step = eye_of(info.camera) - view.eyes[0];
+  const maths::dvec3 last_step = view.eyes[0] - view.eyes[1];
+  const double length = maths::length(step), last_length = maths::length(last_step);
+  note(Mistake::eyes_alternate, std::min(length, last_length) > 1e-3 * settings.radius &&
+                                    maths::dot(step, last_step) < -0.7 * length * last_length);
+  if (!same(info.camera, view.camera)) {
+    const bool is_this = same(info.previous_camera, info.camera);
+    const bool other_projection = same_rotation(info.previous_camera, view.camera);
     // The translation may differ: cameras may be relative to an origin that moves.
-    const bool is_last = other_projection && same(given.info.previous_camera.clip_from_view,
-                                                  view.camera.clip_from_view);
-    result.set(Mistake::previous_is_this, is_this);
-    result.set(Mistake::projection_is_another, !is_last && !is_this && other_projection);
-    result.set(Mistake::previous_is_another, !is_last && !is_this && !other_projection);
-    result.set(Mistake::static_in_motion, given.info.static_frames > 0);
+    const bool is_last =
+        other_projection && same(info.previous_camera.clip_from_view, view.camera.clip_from_view);
+    note(Mistake::previous_is_this, is_this);
+    note(Mistake::projection_is_another, !is_last && !is_this && other_projection);
+    note(Mistake::previous_is_another, !is_last && !is_this && !other_projection);
+    note(Mistake::static_in_motion, info.static_frames > 0);
   }
   const VkExtent2D size = read_size(given);
   const bool resized = size.width != view.size.width || size.height != view.size.height;
-  if (resized && given.info.largest_width > 0) {
-    result.set(Mistake::previous_size_is_wrong, given.info.previous_width != view.size.width ||
-                                                    given.info.previous_height != view.size.height);
+  if (resized && info.largest_width > 0) {
+    note(Mistake::previous_size_is_wrong,
+         info.previous_width != view.size.width || info.previous_height != view.size.height);
   }
-  return result;
 }
 
 bool MistakeFinder::observe(const AlcoveFrame& frame) {
@@ -146,7 +138,7 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
     if (view == nullptr)
       view = &create(given);
     else
-      observe(given.info.id, judge(*view, given, frame.index));
+      judge(*view, given, frame.index);
     view->last_frame = frames_;
     view->has_history = given.info.settings->history_frames > 0;
     view->index = frame.index;
@@ -159,32 +151,24 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
   return too_many_views_ && !std::exchange(told_of_views_, true);
 }
 
-void MistakeFinder::observe(std::uint32_t view_id, const Findings& findings) {
+Sightings* MistakeFinder::sightings(std::uint32_t view_id) {
   View* const view = find(view_id);
-  for (std::size_t i = 0; view != nullptr && i < kMistakes; ++i) {
-    if ((findings.judged >> i & 1u) != 0) {
-      view->seen.at(i) =
-          view->seen.at(i) << 1 | static_cast<std::uint32_t>(findings.seen >> i & 1u);
-      view->measures.at(i) =
-          (findings.seen >> i & 1u) != 0 ? findings.measures.at(i) : view->measures.at(i);
-    }
-  }
+  return view == nullptr ? nullptr : &view->sightings;
 }
 
 std::string MistakeFinder::describe() const {
   std::string text = too_many_views_ ? std::string(kTooManyViews) + "\n" : std::string();
   for (const View& view : views_) {
-    for (std::size_t i = 0; view.used && i < kMistakes; ++i) {
-      if (is_reported(static_cast<Mistake>(i), view.seen.at(i))) {
-        std::string sentence = kSentences.at(i);
-        if (const std::size_t at = sentence.find('#'); at != std::string::npos) {
-          const float measure = view.measures.at(i);
-          // One digit, so that the sentence stays the same from frame to frame.
-          const float unit = std::pow(10.0f, std::floor(std::log10(std::max(measure, 1e-3f))));
-          sentence.replace(at, 1, number_text(std::round(measure / unit) * unit));
-        }
-        text += "View " + std::to_string(view.id) + ": " + sentence + "\n";
+    for (std::size_t i = 0; view.used && i < std::size(kSentences); ++i) {
+      const auto& [seen, measure] = view.sightings[i];
+      if (!is_reported(static_cast<Mistake>(i), seen)) continue;
+      std::string sentence = kSentences[i];
+      if (const std::size_t at = sentence.find('#'); at != std::string::npos) {
+        // One digit, so that the sentence stays the same from frame to frame.
+        const float unit = std::pow(10.0f, std::floor(std::log10(std::max(measure, 1e-3f))));
+        sentence.replace(at, 1, number_text(std::round(measure / unit) * unit));
       }
+      text += "View " + std::to_string(view.id) + ": " + sentence + "\n";
     }
   }
   return text;

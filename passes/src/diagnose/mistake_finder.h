@@ -3,11 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string>
 
-#include "alcove/alcove.h"
 #include "diagnose/inspect.h"
+#include "maths/language.h"
 
 namespace alcove::passes {
 
@@ -21,7 +20,8 @@ class MistakeFinder {
   // Observes the arguments of a frame that was recorded. Returns true the first time that there are
   // more views with a history than an engine could mean.
   bool observe(const AlcoveFrame& frame);
-  void observe(std::uint32_t view_id, const Findings& findings);
+  // Returns what the recent frames of a view show, or null if the view is unknown.
+  Sightings* sightings(std::uint32_t view_id);
   void drop_view(std::uint32_t id);
 
   // Returns a line for each mistake, or an empty text if there is none.
@@ -36,15 +36,13 @@ class MistakeFinder {
     // Values of the last recorded frame:
     std::uint32_t index = 0;
     AlcoveCamera camera{};
-    std::array<std::array<float, 3>, 2> eyes{};  // of the last two records
+    std::array<maths::dvec3, 2> eyes{};  // of the last two records
     VkExtent2D size{};
-    // A bit for each frame in which the mistake could be seen, the newest first: whether it was.
-    std::array<std::uint32_t, kMistakes> seen{};
-    std::array<float, kMistakes> measures{};
+    Sightings sightings;
   };
   View* find(std::uint32_t id);
   View& create(const AlcoveView& given);
-  static Findings judge(const View& view, const AlcoveView& given, std::uint32_t index);
+  static void judge(View& view, const AlcoveView& given, std::uint32_t index);
 
   std::array<View, std::size_t{4} * ALCOVE_MAX_VIEWS> views_;
   std::uint32_t frames_ = 0;

@@ -20,15 +20,16 @@ using maths::dvec4;
 inline constexpr std::size_t kEnoughSamples = 100;
 // The least number of samples of some kind, for example of one direction, among enough samples.
 inline constexpr std::size_t kEnoughOfSome = 12;
+// The largest jitter of a camera from one frame to the next, in pixels.
+inline constexpr double kLargestJitter = 1.5;
 
 // A hypothesis of how the inputs are meant.
 struct Reading {
   NormalConvention normals;
+  bool transposed_normals = false;   // rotated by world_from_view instead of view_from_world
   dvec2 tangent_scale = dvec2(1.0);  // of the tangents of half the angles of view
   bool invert_view = false;          // view_from_world is world_from_view
   bool whole_image = false;          // the whole image is in use
-  bool transposed_normals = false;   // rotated by world_from_view instead of view_from_world
-  std::optional<dvec3> translation;  // of the camera from frame to frame; else the cameras'
 };
 
 inline bool is_sky(float depth) { return !(depth > 0.0f && depth < 1.0f); }
@@ -50,41 +51,46 @@ double share_of(const Values& values, const Predicate& predicate) {
 
 inline dvec2 to_vector(VkExtent2D size) { return {size.width, size.height}; }
 
+inline bool is_smaller(VkExtent2D size, VkExtent2D than) {
+  return size.width < than.width || size.height < than.height;
+}
+
+// The matrices of a frame and the size of its image under a hypothesis.
+struct Eye {
+  dmat4 clip_from_view;
+  dmat4 view_from_world;
+  dvec2 size;
+
+  dvec2 ndc(const PixelSample& s) const { return 2.0 * dvec2(s.x + 0.5, s.y + 0.5) / size - 1.0; }
+};
+
 // A frame with its matrices, and the gradients of depth at its samples.
 class Picture {
  public:
   explicit Picture(const InspectedFrame& of)
       : frame(of),
-        clip_from_view(to_mat4(of.camera.clip_from_view)),
+        clip_from_view(to_mat4(of.info.camera.clip_from_view)),
         view_from_clip(maths::inverse(clip_from_view)),
-        view_from_world(to_rigid(of.camera.view_from_world)),
-        perspective(of.camera.clip_from_view[15] == 0.0f) {
+        view_from_world(to_rigid(of.info.camera.view_from_world)),
+        perspective(of.info.camera.clip_from_view[15] == 0.0f) {
     gradients.reserve(of.samples.size());
     for (const PixelSample& sample : of.samples) gradients.push_back(gradient(sample));
+  }
+
+  Eye eye(const Reading& reading) const {
+    Eye eye{clip_from_view, reading.invert_view ? maths::inverse(view_from_world) : view_from_world,
+            to_vector(reading.whole_image ? frame.depth_size : frame.size)};
+    for (int column = 0; column < 4; ++column) {
+      eye.clip_from_view[column][0] /= reading.tangent_scale.x;
+      eye.clip_from_view[column][1] /= reading.tangent_scale.y;
+    }
+    return eye;
   }
 
   // The distance from the eye along the view axis.
   double distance(double depth) const {
     const dvec4 p = view_from_clip * dvec4(0.0, 0.0, depth, 1.0);
     return -p.z / p.w;
-  }
-
-  dvec2 size(const Reading& reading) const {
-    return to_vector(reading.whole_image ? frame.depth_size : frame.size);
-  }
-  dvec2 ndc(const PixelSample& s, const Reading& reading) const {
-    return 2.0 * dvec2(s.x + 0.5, s.y + 0.5) / size(reading) - 1.0;
-  }
-  dmat4 clip_from_view_by(const Reading& reading) const {
-    dmat4 clip = clip_from_view;
-    for (int column = 0; column < 4; ++column) {
-      clip[column][0] /= reading.tangent_scale.x;
-      clip[column][1] /= reading.tangent_scale.y;
-    }
-    return clip;
-  }
-  dmat4 view_by(const Reading& reading) const {
-    return reading.invert_view ? maths::inverse(view_from_world) : view_from_world;
   }
 
   // The shift of the image by the jitter, in pixels.
@@ -133,10 +139,6 @@ class Picture {
   }
 };
 
-inline bool is_smaller(VkExtent2D size, VkExtent2D than) {
-  return size.width < than.width || size.height < than.height;
-}
-
 // Calls `call` with each hypothesis about the projection of a picture.
 template <typename Call>
 void for_projections(const Picture& picture, const Reading& given, const Call& call) {
@@ -158,11 +160,19 @@ void for_projections(const Picture& picture, const Reading& given, const Call& c
   }
 }
 
-// The largest jitter of a camera from one frame to the next, in pixels.
-inline constexpr double kLargestJitter = 1.5;
+// What depth of successive frames says of the cameras.
+struct CameraFit {
+  Mistake mistake = Mistake::count;
+  double measure = 0.0;  // the number of the mistake's sentence
+  double share = 0.0;    // of the samples that lie where the cameras expect them
+};
 
-// Compares a frame with the frames before it. `pictures` begins with the frame, and `given` is how
-// its inputs are described. Stores the mistakes of its cameras and motion vectors in `findings`.
-void inspect_motion(const std::vector<Picture>& pictures, const Reading& given, Findings& findings);
+// `pictures` begins with the frame that is inspected, followed by one or two earlier frames, and
+// `given` is how their inputs are described.
+CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given);
+// Returns the mistake of the motion vectors, or Mistake::count, or nothing if the cameras do not
+// fit or do not move. `share` is that of fit_cameras().
+std::optional<Mistake> mistake_of_motion(const std::vector<Picture>& pictures, const Reading& given,
+                                         double share);
 
 }  // namespace alcove::passes

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "inspect_parameters.h"
+#include "work/view_parameters.h"
 #include "work/view_work.h"
 
 namespace alcove::passes {
@@ -45,23 +46,13 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Kernels& 
   const VkExtent2D size =
       read.width > 0 ? VkExtent2D{read.width, read.height} : VkExtent2D{image.width, image.height};
   pending.declared = true;
-  pending.serial = serial_;
-  pending.id = info.id;
-  pending.frame = {
-      .camera = info.camera,
-      .previous_camera = info.previous_camera,
-      .size = size,
-      .depth_format = image.format,
-      .has_normals = bool(normals),
-      .has_motion = bool(motion),
-      .normals = normals_of(info, bool(normals)),
-      .motion = motion_of(info),
-      .radius = info.settings->radius,
-      .is_static = info.static_frames > 0,
-      .continues_history = info.reset_history == 0 && info.settings->history_frames > 0,
-      .has_largest_size = info.largest_width > 0,
-      .has_area = info.read_area.width > 0,
-      .samples = {}};
+  pending.frame = {.serial = serial_,
+                   .info = info,
+                   .settings = *info.settings,
+                   .size = size,
+                   .depth_format = image.format,
+                   .has_normals = bool(normals),
+                   .has_motion = bool(motion)};
   Texture samples = graph.create_texture(
       "samples",
       {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kInspectColumns, kTexelRows)});
@@ -111,10 +102,11 @@ void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
   if (!std::exchange(pending.recorded, false)) return;
   std::uint32_t finished = 0;
   std::memcpy(&finished, pending.buffer->bytes() + kTexelBytes, sizeof finished);
-  Findings reused;
-  reused.set(Mistake::slot_reused, finished != pending.serial);
-  finder.observe(pending.id, reused);
-  if (finished != pending.serial) return;
+  InspectedFrame& frame = pending.frame;
+  Sightings* const sightings = finder.sightings(frame.info.id);
+  if (sightings == nullptr) return;
+  sightings->note(Mistake::slot_reused, finished != frame.serial);
+  if (finished != frame.serial) return;
   const auto texel = [&](std::uint32_t x, std::uint32_t y) {
     Texel result;
     std::memcpy(result.data(),
@@ -122,41 +114,36 @@ void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
                 sizeof result);
     return result;
   };
-  InspectedFrame& frame = pending.frame;
-  const Texel sizes = texel(0, kTexelsOfASample * kInspectRows);
   const auto whole = [](float number) { return static_cast<std::uint32_t>(number); };
+  const Texel sizes = texel(0, kTexelsOfASample * kInspectRows);
   frame.depth_size = {whole(sizes[0]), whole(sizes[1])};
-  if (frame.has_area) {  // the images are known to be larger
+  if (frame.info.read_area.width > 0) {  // the images are known to be larger
     frame.depth_size = {std::min(frame.depth_size.width, frame.size.width),
                         std::min(frame.depth_size.height, frame.size.height)};
   }
   frame.normals_size = {whole(sizes[2]), whole(sizes[3])};
-  frame.samples.reserve(std::size_t{kInspectColumns} * kInspectRows);
+  const auto pixel = [&](std::uint32_t cell, std::uint32_t cells, std::uint32_t size) {
+    return whole((static_cast<float>(cell) + 0.5f) / static_cast<float>(cells) *
+                 static_cast<float>(size));
+  };
   for (std::uint32_t y = 0; y < kInspectRows; ++y) {
     for (std::uint32_t x = 0; x < kInspectColumns; ++x) {
-      const std::uint32_t row = kTexelsOfASample * y;
-      const Texel a = texel(x, row), b = texel(x, row + 1), c = texel(x, row + 2);
-      const auto pixel = [](std::uint32_t cell, std::uint32_t cells, std::uint32_t size) {
-        return static_cast<std::uint32_t>((static_cast<float>(cell) + 0.5f) /
-                                          static_cast<float>(cells) * static_cast<float>(size));
-      };
-      frame.samples.push_back({pixel(x, kInspectColumns, frame.size.width),
-                               pixel(y, kInspectRows, frame.size.height),
-                               a[0],
-                               a[1],
-                               a[2],
-                               a[3],
-                               b[0],
-                               {b[1], b[2], b[3]},
-                               {c[0], c[1]}});
+      const std::array<Texel, kTexelsOfASample> stored{texel(x, 3 * y), texel(x, 3 * y + 1),
+                                                       texel(x, 3 * y + 2)};
+      PixelSample sample{.x = pixel(x, kInspectColumns, frame.size.width),
+                         .y = pixel(y, kInspectRows, frame.size.height)};
+      constexpr std::size_t kFirst = offsetof(PixelSample, depth);
+      std::memcpy(reinterpret_cast<std::byte*>(&sample) + kFirst, stored.data(),
+                  sizeof sample - kFirst);
+      frame.samples.push_back(sample);
     }
   }
-  if (pending.id != view_ || pending.serial != newest_ + 1) frames_.clear();
-  view_ = pending.id;
-  newest_ = pending.serial;
+  if (!frames_.empty() &&
+      (frame.info.id != frames_.front().info.id || frame.serial != frames_.front().serial + 1))
+    frames_.clear();
   frames_.insert(frames_.begin(), std::move(frame));
   frames_.resize(std::min(frames_.size(), kFrames));
-  finder.observe(view_, inspect(frames_));
+  inspect(frames_, *sightings);
 }
 
 }  // namespace alcove::passes

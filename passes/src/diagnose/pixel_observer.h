@@ -34,8 +34,6 @@ class PixelObserver {
   struct Pending {
     bool declared = false;
     bool recorded = false;
-    std::uint32_t serial = 0;
-    std::uint32_t id = 0;
     InspectedFrame frame;
     std::unique_ptr<HostBuffer> buffer;
   };
@@ -44,7 +42,6 @@ class PixelObserver {
   const framegraph::VulkanFunctions& vk_;
   std::array<Pending, ALCOVE_MAX_FRAMES_IN_FLIGHT> pending_;
   std::vector<InspectedFrame> frames_;  // successive frames of a view, the newest first
-  std::uint32_t view_ = 0;              // the id of the view
   std::uint32_t newest_ = 0;            // the serial number of the newest of these frames
   std::uint32_t serial_ = 0;            // of the frame that is recorded now
 };
