@@ -95,13 +95,35 @@ Result<std::vector<Texel>> EngineRun::read(const AlcoveImage& image) {
       });
 }
 
-Result<std::unique_ptr<EngineRun>> EngineRun::create(Gpu& gpu, const Scene& scene,
-                                                     const Camera& camera,
+Result<GbufferRenderer*> Engine::gbuffer(bool geometric) {
+  std::unique_ptr<GbufferRenderer>& gbuffer = gbuffers_.at(geometric ? 1 : 0);
+  if (!gbuffer) {
+    ALCOVE_TRY(gbuffer, GbufferRenderer::create(gpu_, scene_, geometric));
+  }
+  return gbuffer.get();
+}
+
+Result<AlcoveContext*> Engine::context() {
+  if (context_) return context_.get();
+  AlcoveContextInfo info{.struct_size = sizeof info};
+  info.queue_family = gpu_.device().queue_family();
+  info.instance = gpu_.device().instance();
+  info.physical_device = gpu_.device().physical_device();
+  info.device = gpu_.device().device();
+  info.get_instance_proc_addr = vkGetInstanceProcAddr;
+  info.frames_in_flight = kEngineSlots;
+  AlcoveContext* context = nullptr;
+  std::array<char, ALCOVE_MAX_MESSAGE> message{};
+  if (alcoveCreateContext(&info, &context, message.data()) != ALCOVE_SUCCESS)
+    return Failure(message.data());
+  context_.reset(context);
+  return context;
+}
+
+Result<std::unique_ptr<EngineRun>> EngineRun::create(Engine& engine, const Camera& camera,
                                                      const EngineCourse& course) {
-  std::unique_ptr<EngineRun> run(new EngineRun(gpu, camera, course));
+  std::unique_ptr<EngineRun> run(new EngineRun(engine, camera, course));
   ALCOVE_TRY_VOID(run->create_commands());
-  ALCOVE_TRY(run->gbuffer_, GbufferRenderer::create(gpu, scene, course.geometric));
-  ALCOVE_TRY_VOID(run->create_context());
   for (std::uint32_t frame = 0; frame < course.frames; ++frame)
     ALCOVE_TRY_VOID(run->draw_frame(frame));
   return run;
@@ -109,6 +131,8 @@ Result<std::unique_ptr<EngineRun>> EngineRun::create(Gpu& gpu, const Scene& scen
 
 EngineRun::~EngineRun() {
   vkDeviceWaitIdle(gpu_.device().device());
+  if (const auto context = engine_.context())
+    for (const auto& image : images_) alcoveForgetImage(*context, image->image());
   vkDestroyCommandPool(gpu_.device().device(), pool_, nullptr);
 }
 
@@ -122,25 +146,9 @@ Result<void> EngineRun::create_commands() {
   const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                          .commandPool = pool_,
                                          .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                         .commandBufferCount = kSlots};
+                                         .commandBufferCount = kEngineSlots};
   return check(vkAllocateCommandBuffers(device, &info, commands_.data()),
                "create a command buffer");
-}
-
-Result<void> EngineRun::create_context() {
-  AlcoveContextInfo info{.struct_size = sizeof info};
-  info.queue_family = gpu_.device().queue_family();
-  info.instance = gpu_.device().instance();
-  info.physical_device = gpu_.device().physical_device();
-  info.device = gpu_.device().device();
-  info.get_instance_proc_addr = vkGetInstanceProcAddr;
-  info.frames_in_flight = kSlots;
-  AlcoveContext* context = nullptr;
-  std::array<char, ALCOVE_MAX_MESSAGE> message{};
-  if (alcoveCreateContext(&info, &context, message.data()) != ALCOVE_SUCCESS)
-    return Failure(message.data());
-  context_.reset(context);
-  return {};
 }
 
 VkExtent2D EngineRun::size_at(std::uint32_t frame) const {
@@ -187,6 +195,7 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
                          .reversed_z = camera_.reversed_z,
                          .world_from_moving = world_from_moving_at(frame),
                          .previous_world_from_moving = world_from_moving_at(previous)};
+  ALCOVE_TRY(GbufferRenderer * gbuffer, engine_.gbuffer(course_.geometric));
   DrawnFrame drawn;
   AlcoveView& view = drawn.view;
   struct Target {
@@ -211,13 +220,13 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   drawn.other.half_depth.width = size.width;
   drawn.other.half_depth.height = size.height;
   const auto report = gpu_.run([&](Graph& graph) -> Result<void> {
-    (void)gbuffer_->add(graph, seen,
-                        {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH], true),
-                         .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS], true),
-                         .albedo = import(graph, drawn.other.albedo, true),
-                         .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION], true)});
+    (void)gbuffer->add(graph, seen,
+                       {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH], true),
+                        .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS], true),
+                        .albedo = import(graph, drawn.other.albedo, true),
+                        .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION], true)});
     if (course_.other_inputs)
-      (void)gbuffer_->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
+      (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
     return {};
   });
   if (!report) return Failure(report.error());
@@ -313,7 +322,7 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
   result.right_first = frames_.front().view;
   result.frame.struct_size = sizeof result.frame;
   result.frame.index = frame;
-  result.frame.slot = frame % kSlots;
+  result.frame.slot = frame % kEngineSlots;
   result.frame.view_count = 1;
   result.frame.diagnose_pixels = VK_TRUE;
   return result;
@@ -329,7 +338,7 @@ VkResult EngineRun::submit(VkCommandBuffer recorded) const {
 
 Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
                                      bool submit_late) {
-  AlcoveContext* const context = context_.get();
+  ALCOVE_TRY(AlcoveContext * context, engine_.context());
   EngineResult result;
   VkCommandBuffer waiting = VK_NULL_HANDLE;  // recorded and not submitted
   AlcoveImage visibility{};
@@ -344,7 +353,7 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
     visibility = frames_.at(i).view.images[ALCOVE_IMAGE_VISIBILITY];
     described.view.info.settings = &described.settings;
     described.frame.views = &described.view;
-    const VkCommandBuffer commands = commands_.at(i % kSlots);
+    const VkCommandBuffer commands = commands_.at(i % kEngineSlots);
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     device = vkBeginCommandBuffer(commands, &info);
     for (std::uint32_t record = 0; device == VK_SUCCESS && record < described.records; ++record) {
@@ -371,7 +380,7 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
   ++next_id_;
   if (submit_late) {
     // Memory of a slot that is recorded too early may be freed too early.
-    ALCOVE_TRY_VOID(create_context());
+    engine_.drop_context();
   } else {
     for (const std::uint32_t id : ids) alcoveDropView(context, id);
   }

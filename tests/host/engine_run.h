@@ -18,6 +18,8 @@
 
 namespace alcove::sample {
 
+inline constexpr std::uint32_t kEngineSlots = 2;  // frames in flight
+
 // The frames that an engine draws: how the camera moves, and what else changes.
 struct EngineCourse {
   VkExtent2D size{240, 135};
@@ -77,12 +79,34 @@ struct EngineResult {
   std::string said;
 };
 
+// A scene on a device and a context of the library, which several runs share.
+class Engine {
+ public:
+  // Both must outlive the object.
+  Engine(Gpu& gpu, const Scene& scene) : gpu_(gpu), scene_(scene) {}
+
+  [[nodiscard]] Gpu& gpu() const { return gpu_; }
+  // Creates the renderer when it is first needed.
+  [[nodiscard]] Result<GbufferRenderer*> gbuffer(bool geometric);
+  [[nodiscard]] Result<AlcoveContext*> context();
+  void drop_context() { context_.reset(); }
+
+ private:
+  struct DestroyContext {
+    void operator()(AlcoveContext* context) const { alcoveDestroyContext(context); }
+  };
+  Gpu& gpu_;
+  const Scene& scene_;
+  std::array<std::unique_ptr<GbufferRenderer>, 2> gbuffers_;
+  std::unique_ptr<AlcoveContext, DestroyContext> context_;
+};
+
 // Draws the g-buffers of a course once, and records their occlusion through the C interface as
 // often as a caller wants, as an engine does.
 class EngineRun {
  public:
-  // `gpu` and `scene` must outlive the object.
-  [[nodiscard]] static Result<std::unique_ptr<EngineRun>> create(Gpu& gpu, const Scene& scene,
+  // `engine` must outlive the object.
+  [[nodiscard]] static Result<std::unique_ptr<EngineRun>> create(Engine& engine,
                                                                  const Camera& camera,
                                                                  const EngineCourse& course);
 
@@ -97,20 +121,15 @@ class EngineRun {
                                           bool submit_late = false);
 
  private:
-  static constexpr std::uint32_t kSlots = 2;
   // A frame of the course, before a mistake is made.
   struct DrawnFrame {
     AlcoveView view{};
     OtherInputs other;
   };
-  struct DestroyContext {
-    void operator()(AlcoveContext* context) const { alcoveDestroyContext(context); }
-  };
 
-  EngineRun(Gpu& gpu, const Camera& camera, const EngineCourse& course)
-      : gpu_(gpu), camera_(camera), course_(course) {}
+  EngineRun(Engine& engine, const Camera& camera, const EngineCourse& course)
+      : engine_(engine), gpu_(engine.gpu()), camera_(camera), course_(course) {}
   Result<void> create_commands();
-  Result<void> create_context();
   Result<AlcoveImage> create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usage);
   template <typename Texel>
   Result<AlcoveImage> create_filled(VkFormat format, VkExtent2D size,
@@ -126,16 +145,15 @@ class EngineRun {
   EngineFrame describe(std::uint32_t frame) const;
   VkResult submit(VkCommandBuffer recorded) const;  // and waits until it has finished
 
+  Engine& engine_;
   Gpu& gpu_;
   Camera camera_;
   EngineCourse course_;
-  std::unique_ptr<GbufferRenderer> gbuffer_;
   std::vector<std::unique_ptr<GpuImage>> images_;
   std::vector<DrawnFrame> frames_;
-  std::unique_ptr<AlcoveContext, DestroyContext> context_;
   std::uint32_t next_id_ = 0;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::array<VkCommandBuffer, kSlots> commands_{};
+  std::array<VkCommandBuffer, kEngineSlots> commands_{};
 };
 
 }  // namespace alcove::sample

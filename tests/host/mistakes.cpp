@@ -444,7 +444,7 @@ Result<EngineRun*> MistakeRun::run_of(PlantedMistake::Frames frames) {
     course.straight = frames == PlantedMistake::straight;
     course.stereo = frames == PlantedMistake::stereo;
     course.orbit = course.straight ? 0.0f : 0.02f;
-    ALCOVE_TRY(run, EngineRun::create(gpu_, scene_, from, course));
+    ALCOVE_TRY(run, EngineRun::create(engine_, from, course));
   }
   return run.get();
 }

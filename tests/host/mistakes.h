@@ -39,8 +39,8 @@ struct RightCourse {
 class MistakeRun {
  public:
   // `course` has the size and the radius, and says when the size changes.
-  MistakeRun(Gpu& gpu, const Scene& scene, const Camera& camera, const EngineCourse& course)
-      : gpu_(gpu), scene_(scene), camera_(camera), course_(course) {}
+  MistakeRun(Engine& engine, const Camera& camera, const EngineCourse& course)
+      : engine_(engine), camera_(camera), course_(course) {}
 
   // Makes a mistake from the frame `begin` on.
   [[nodiscard]] Result<EngineResult> draw(const PlantedMistake& mistake, std::uint32_t begin);
@@ -49,8 +49,7 @@ class MistakeRun {
  private:
   Result<EngineRun*> run_of(PlantedMistake::Frames frames);
 
-  Gpu& gpu_;
-  const Scene& scene_;
+  Engine& engine_;
   Camera camera_;
   EngineCourse course_;
   std::array<std::unique_ptr<EngineRun>, PlantedMistake::kinds> runs_;  // made when needed
