@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <set>
@@ -54,6 +56,21 @@ TEST(Settings, TableHasUniqueNamesSentencesOfHelpAndSliders) {
 TEST(Settings, EveryPresetIsAccepted) {
   for (std::size_t i = 0; i < kQualityNames.size(); ++i)
     EXPECT_TRUE(validate(preset(static_cast<AlcoveQuality>(i)))) << kQualityNames[i];
+}
+
+// A test that fails prints the row that passes/README.md must have.
+TEST(Settings, ReadmeHasTheRowOfEachSettingWithTheValuesOfThePresets) {
+  std::ifstream file(ALCOVE_PASSES_README);
+  const std::string readme(std::istreambuf_iterator<char>(file), {});
+  for (const SettingInfo& info : setting_table()) {
+    std::string row = std::string("| `").append(info.name) + "` | " + allowed_text(info) + " |";
+    for (std::size_t i = 0; i < kQualityNames.size(); ++i) {
+      const bool is_radius = info.offset == offsetof(AlcoveSettings, radius);
+      const AlcoveSettings settings = preset(static_cast<AlcoveQuality>(i));
+      row.append(" ").append(is_radius ? "" : setting_text(settings, info)).append(" |");
+    }
+    EXPECT_NE(readme.find(row + "\n"), std::string::npos) << row;
+  }
 }
 
 // Returns the error of validate() if a setting has `value`, or an empty text if it is accepted.
