@@ -143,12 +143,12 @@ Texture PassTest::fill(Graph& graph, Texture target, const HostImage& image) {
   return sample::add_copy(graph, *uploads_.back(), target);
 }
 
-void PassTest::read_back(Graph& graph, Texture texture, std::uint32_t mip) {
+void PassTest::read_back(Graph& graph, Texture texture) {
   const VkExtent3D extent = graph.extent(texture);
   const VkFormat format = graph.format(texture);
   HostImage image;
-  image.width = std::max(extent.width >> mip, 1u);
-  image.height = std::max(extent.height >> mip, 1u);
+  image.width = extent.width;
+  image.height = extent.height;
   image.channels = find_layout(format).channels;
   image.texels.resize(std::size_t{image.width} * image.height * image.channels);
   auto buffer = sample::HostBuffer::create(gpu().device(),
@@ -157,7 +157,7 @@ void PassTest::read_back(Graph& graph, Texture texture, std::uint32_t mip) {
   ASSERT_TRUE(buffer) << buffer.error();
   downloads_.push_back({std::move(*buffer), format});
   results_.push_back(std::move(image));
-  sample::add_read_back(graph, texture, *downloads_.back().buffer, mip);
+  sample::add_read_back(graph, texture, *downloads_.back().buffer);
 }
 
 void PassTest::run(const std::function<void(Graph&)>& declare) {

@@ -74,7 +74,7 @@ class PassTest : public testing::Test {
                            const HostImage& image);
   // Adds a copy of `texture` to host memory. The texture may have any format that the passes write.
   // After the frame, result() returns its contents as floats.
-  void read_back(framegraph::Graph& graph, framegraph::Texture texture, std::uint32_t mip = 0);
+  void read_back(framegraph::Graph& graph, framegraph::Texture texture);
   // Returns an image that the last frame read back. They are numbered in the order of read_back()
   // calls.
   const HostImage& result(std::size_t index = 0) const { return results_[index]; }

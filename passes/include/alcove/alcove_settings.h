@@ -60,8 +60,7 @@ typedef enum AlcoveThicknessUnit {
   // AlcoveSettings::thickness, in radii.
   ALCOVE_THICKNESS_UNIT_RADIUS = 0,
   // The back faces in ALCOVE_IMAGE_BACK_DEPTH, at which occluders end. At pixels without a back
-  // face
-  // the thickness is that of RADIUS.
+  // face the thickness is that of RADIUS.
   ALCOVE_THICKNESS_UNIT_BACK_FACES = 1,
   ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
 } AlcoveThicknessUnit;

@@ -67,8 +67,7 @@ bool same_rotation(AlcoveCamera a, const AlcoveCamera& b) {
 
 const char* const MistakeFinder::kTooManyViews =
     "More views have a history than an engine could mean; give a view the same AlcoveViewInfo::id "
-    "in "
-    "every frame, and call alcoveDropView for one that is no longer drawn.";
+    "in every frame, and call alcoveDropView for one that is no longer drawn.";
 
 MistakeFinder::View* MistakeFinder::find(std::uint32_t id) {
   const auto found =
