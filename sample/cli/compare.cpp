@@ -10,7 +10,6 @@
 #include "evaluate/indirect_truths.h"
 #include "evaluate/lit_errors.h"
 #include "evaluate/truths.h"
-#include "evaluate/weave.h"
 #include "support/image_io.h"
 #include "support/result.h"
 #include "support/whole_file.h"
@@ -25,20 +24,7 @@ struct Errors {
   AngleSummary bent_normal;
   AngleSummary surface_normal;  // the surface normal as the bent normal
   OpenSurfaceSummary open;
-  Weave weave;  // against scene truth
-  // With --orbit, of the same number of frames without motion at the last camera.
-  std::optional<Weave> static_weave;
 };
-
-// Renders the last camera of an orbit without motion.
-Result<Weave> static_weave(const Options& options, const Rendering& rendering,
-                           const Truths& truths) {
-  ALCOVE_TRY(const auto gpu, open_gpu({options.device, options.validation}));
-  ALCOVE_TRY(const auto images,
-             draw_static(*gpu, rendering.scene, static_setup(options, rendering.camera),
-                         rendering.settings));
-  return measure_weave(images.visibility, truths.scene.visibility, truths.surfaces);
-}
 
 Errors measure_errors(const Rendering& rendering, const Truths& truths,
                       const HeightFieldTruth& height_field) {
@@ -49,21 +35,16 @@ Errors measure_errors(const Rendering& rendering, const Truths& truths,
           compare_images(height_field.visibility, scene, truths.surfaces),
           compare_directions(images.bent_normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
           compare_directions(images.normal_ws, truths.scene.bent_normal_ws, truths.surfaces),
-          open_surfaces(images.visibility, scene, truths.surfaces),
-          measure_weave(images.visibility, scene, truths.surfaces),
-          std::nullopt};
+          open_surfaces(images.visibility, scene, truths.surfaces)};
 }
 
 nlohmann::ordered_json errors_json(const Errors& errors) {
-  nlohmann::ordered_json json{{"scene_truth", to_json(errors.scene)},
-                              {"height_field_truth", to_json(errors.height_field)},
-                              {"height_field_limit", to_json(errors.limit)},
-                              {"bent_normal", to_json(errors.bent_normal)},
-                              {"surface_normal", to_json(errors.surface_normal)},
-                              {"open_surfaces", to_json(errors.open)},
-                              {"weave", to_json(errors.weave)}};
-  if (errors.static_weave) json["static_weave"] = to_json(*errors.static_weave);
-  return json;
+  return {{"scene_truth", to_json(errors.scene)},
+          {"height_field_truth", to_json(errors.height_field)},
+          {"height_field_limit", to_json(errors.limit)},
+          {"bent_normal", to_json(errors.bent_normal)},
+          {"surface_normal", to_json(errors.surface_normal)},
+          {"open_surfaces", to_json(errors.open)}};
 }
 
 std::string error_table(const Errors& errors) {
@@ -78,9 +59,7 @@ std::string error_table(const Errors& errors) {
              "Open surfaces: mean visibility {:.4f}, {:.2f} % of pixels below 0.95\n",
              errors.bent_normal.mean_degrees, errors.bent_normal.percentile_95_degrees,
              errors.surface_normal.mean_degrees, errors.surface_normal.percentile_95_degrees,
-             errors.open.mean_visibility, 100.0 * errors.open.fraction_below_95) +
-         (errors.static_weave ? "Moving: " : "") + weave_line(errors.weave) +
-         (errors.static_weave ? "Static: " + weave_line(*errors.static_weave) : "");
+             errors.open.mean_visibility, 100.0 * errors.open.fraction_below_95);
 }
 
 Result<void> write_truths(const Rendering& rendering, const Truths& truths,
@@ -120,10 +99,7 @@ Result<void> run_compare(const Options& options) {
   ALCOVE_TRY(const auto truths, compute_truths(frame, truth_options(options)));
   const HeightFieldTruth height_field = compute_height_field_truth(frame, truth_options(options));
   ALCOVE_TRY(const auto light, compute_indirect_truths(rendering, truth_options(options)));
-  Errors errors = measure_errors(rendering, truths, height_field);
-  if (options.view.orbit != 0.0f) {
-    ALCOVE_TRY(errors.static_weave, static_weave(options, rendering, truths));
-  }
+  const Errors errors = measure_errors(rendering, truths, height_field);
   const IndirectErrors indirect_errors = measure_indirect_errors(rendering, truths, light);
   nlohmann::ordered_json report = rendering_report(rendering, options);
   report["spp"] = options.occlusion.spp;

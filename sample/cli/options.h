@@ -53,8 +53,8 @@ struct ViewOptions {
   std::optional<bool> reversed_z;
   uint32_t width = 960;
   uint32_t height = 540;
-  uint32_t frames = 1;       // 0: the command `view` runs until its window is closed
-  float orbit = 0.0f;        // radians per frame
+  uint32_t frames = 1;  // 0: the command `view` runs until its window is closed
+  float orbit = 0.0f;   // radians per frame
 };
 
 struct OcclusionOptions {
@@ -65,7 +65,7 @@ struct OcclusionOptions {
   std::string file;                                      // contents of the file of --settings
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
   std::vector<float> roughness;                          // overrides the materials; perceptual
-  uint32_t spp = 256;                                     // rays per pixel of the truth
+  uint32_t spp = 256;                                    // rays per pixel of the truth
 };
 
 struct CostOptions {

@@ -26,8 +26,8 @@ namespace alcove::sample {
 // Returns a text with one line for each setting: name, meaning, range, default.
 [[nodiscard]] std::string settings_help();
 
-// Reads a file that `alcove recommend --out` wrote, in the form of alcoveReadSettings(). Errors: the
-// file cannot be read, a line has another form, or a name or value is not allowed.
+// Reads a file that `alcove recommend --out` wrote, in the form of alcoveReadSettings(). Errors:
+// the file cannot be read, a line has another form, or a name or value is not allowed.
 [[nodiscard]] Result<std::string> read_settings(const std::string& file);
 // Returns the contents of such a file: every setting but the radius, which belongs to the scene.
 [[nodiscard]] std::string settings_text(const OcclusionSettings& settings);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "gpu_test.h"
 #include "scene/builtin_scene.h"
@@ -15,13 +17,24 @@ namespace {
 
 class ErrorSplitTest : public GpuTest {
  protected:
-  // Splits the error of `settings` in the scene's first camera.
-  ErrorSplit split(const Scene& scene, const OcclusionSettings& settings, std::uint32_t frames) {
-    const StaticSetup setup{scene.cameras.front(), 160, 90, frames, NormalSource::geometric};
-    const auto images = draw_static(gpu(), scene, setup, settings);
+  // The scene's first camera.
+  static StaticSetup setup_of(const Scene& scene, std::uint32_t frames) {
+    return {scene.cameras.front(), 160, 90, frames, NormalSource::geometric};
+  }
+  FrameImages draw(const Scene& scene, const StaticSetup& setup,
+                   const OcclusionSettings& settings) {
+    auto images = draw_static(gpu(), scene, setup, settings);
     EXPECT_TRUE(images) << images.error();
-    const TracedTruth truth = trace_truth(scene, setup.camera, settings.radius, *images);
-    const auto found = split_error(gpu(), scene, setup, settings, truth.visibility, truth.surfaces);
+    return std::move(*images);
+  }
+  TracedTruth truth_of(const Scene& scene, const OcclusionSettings& settings) {
+    const StaticSetup setup = setup_of(scene, 1);
+    return trace_truth(scene, setup.camera, settings.radius, draw(scene, setup, settings));
+  }
+  ErrorSplit split(const Scene& scene, const OcclusionSettings& settings, std::uint32_t frames) {
+    const TracedTruth truth = truth_of(scene, settings);
+    const auto found = split_error(gpu(), scene, setup_of(scene, frames), settings,
+                                   truth.visibility, truth.surfaces);
     EXPECT_TRUE(found) << found.error();
     double sum = 0;
     for (const ErrorCause& cause : found->causes) sum += std::max(cause.share, 0.0);
@@ -48,12 +61,27 @@ Scene scene_of(SceneBuilder& builder, const Camera& camera) {
   return scene;
 }
 
-TEST_F(ErrorSplitTest, SingleSliceInEachPixelWithoutHistoryHasNoise) {
+// Of the squared error of single frames, the mean of many frames lacks the noise only.
+TEST_F(ErrorSplitTest, NoiseIsTheErrorThatTheMeanOfManyFramesLacks) {
   OcclusionSettings settings = medium_settings(0.5f);
   settings.tile_size = 1;
   settings.slices = 1;
   settings.history_frames = 0;
-  EXPECT_GT(split(builtin_scene(), settings, 1).causes.front().share, 0.1);
+  const Scene scene = builtin_scene();
+  const ErrorSplit found = split(scene, settings, 1);
+  const TracedTruth truth = truth_of(scene, settings);
+  constexpr std::uint32_t kFrames = 16;
+  StaticSetup setup = setup_of(scene, 1);
+  Image<float> mean(setup.width, setup.height);
+  double single = 0;
+  for (; setup.first_frame < kFrames; ++setup.first_frame) {
+    const Image<float> frame = draw(scene, setup, settings).visibility;
+    single += std::pow(truth.rmse(frame), 2) / kFrames;
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i)
+      mean.pixels[i] += frame.pixels[i] / kFrames;
+  }
+  const double noise = single - std::pow(truth.rmse(mean), 2);
+  EXPECT_NEAR(found.causes.front().share * std::pow(found.rmse, 2), noise, 0.2 * noise);
 }
 
 TEST_F(ErrorSplitTest, OnePixelInSixtyFourOfThinBarsIsMostlyFilterAndTiles) {

@@ -9,7 +9,6 @@
 
 #include "evaluate/errors.h"
 #include "evaluate/static_view.h"
-#include "evaluate/weave.h"
 #include "gpu_test.h"
 #include "scene/builtin_scene.h"
 #include "traced_truth.h"
@@ -45,19 +44,6 @@ TEST_F(FeaturesTest, EstimatorConnectedHasASmallerErrorThanHorizons) {
   OcclusionSettings horizons = base_;
   horizons.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   EXPECT_GT(truth.rmse(draw(horizons).visibility), 1.02 * connected);
-}
-
-// The noise of few traces per pixel must not form a regular pattern. The limit is an eighth of the
-// weave that a lattice of directions over the whole image has here, .019.
-TEST_F(FeaturesTest, FirstFramesOfAHistoryHaveNoWeave) {
-  setup_.width = 480;
-  setup_.height = 270;
-  setup_.frames = 8;
-  const FrameImages images = draw(base_);
-  const TracedTruth truth = truth_of(images);
-  const Weave weave = measure_weave(images.visibility, truth.visibility, truth.surfaces);
-  EXPECT_GT(weave.windows, 30u);
-  EXPECT_LT(weave.rms(), 0.0024);
 }
 
 // Back faces may increase the error by 2 % in this scene; the second layer must reduce it by 10 %.

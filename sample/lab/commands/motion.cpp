@@ -53,7 +53,6 @@ Json to_json(const MotionReport& report) {
   json["flicker"] = {{"with_history", report.flicker.with_history},
                      {"without_history", report.flicker.without_history},
                      {"ratio", report.flicker.ratio()}};
-  json["weave"] = {{"moving", to_json(report.weave)}, {"static", to_json(report.static_weave)}};
   return json;
 }
 
@@ -78,11 +77,10 @@ std::string format_table(MotionKind kind, const MotionReport& report) {
   return out + fmt::format(
                    "  bent normals, mean degrees        {:6.2f}   {:6.2f}\n"
                    "  Change of visibility per frame at the same surface: {:.4f}, without history "
-                   "{:.4f}; ratio {:.2f}\n  Moving: {}  Static: {}",
+                   "{:.4f}; ratio {:.2f}\n",
                    report.bent_normal_degrees, report.static_bent_normal_degrees,
                    report.flicker.with_history, report.flicker.without_history,
-                   report.flicker.ratio(), weave_line(report.weave),
-                   weave_line(report.static_weave));
+                   report.flicker.ratio());
 }
 
 }  // namespace

@@ -170,8 +170,6 @@ class MotionRun {
     };
     report.bent_normal_degrees += degrees(compared.images);
     report.static_bent_normal_degrees += degrees(still);
-    report.weave += measure_weave(compared.images.visibility, true_visibility, truths.surfaces);
-    report.static_weave += measure_weave(still.visibility, true_visibility, truths.surfaces);
     report.pictures.push_back({compared.frame, compared.images.visibility,
                                std::move(still.visibility), std::move(truths.scene.visibility)});
     return {};

@@ -9,7 +9,6 @@
 #include "evaluate/motion_paths.h"
 #include "evaluate/static_view.h"
 #include "evaluate/truths.h"
-#include "evaluate/weave.h"
 #include "gpu/gpu.h"
 #include "gpu/occlusion.h"
 #include "scene/scene.h"
@@ -82,8 +81,6 @@ struct MotionReport {
   double bent_normal_degrees = 0;         // mean angle to the truth with motion
   double static_bent_normal_degrees = 0;  // and without
   Flicker flicker;
-  Weave weave;                       // in the frames with motion
-  Weave static_weave;                // in the same views without motion
   std::vector<CutErrors> after_cut;  // after 1, 2, 4, ... frames
   // After a cut, `static_camera` holds the image of the restarted history.
   std::vector<MotionPicture> pictures;
