@@ -49,7 +49,9 @@ class ScenePage {
 
  private:
   std::string name_of_scene() const {
-    return options_.scene.empty() ? "builtin" : printable(options_.scene);
+    return options_.scene.empty()
+               ? "builtin"
+               : printable(std::filesystem::path(options_.scene).filename().string());
   }
 
   void add_point(const std::string& name, const Achievement& of, bool preset, bool recommended) {
@@ -71,8 +73,8 @@ class ScenePage {
   // The presets, and numbers of samples between them.
   Result<void> add_points() {
     const std::vector<Variant> variants = preset_sweep(session_.settings);
-    std::cout << fmt::format("{:43}RMSE moving  standing    first  ms moving   standing\n",
-                             name_of_scene());
+    std::cout << fmt::format("{}\n{:43}RMSE moving  standing    first  ms moving   standing\n",
+                             name_of_scene(), "");
     const Progress progress = print_progress("settings");
     std::optional<Achievement> last_preset;
     for (std::size_t i = 0; i < variants.size(); ++i) {
@@ -109,6 +111,7 @@ class ScenePage {
   Result<void> add_requirements() {
     OcclusionSettings medium = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, session_.settings.radius);
     ALCOVE_TRY(const auto limit, times_({medium}));
+    ALCOVE_TRY(const auto medium_rmse, errors_.measure({medium}));
     RecommendationGoal goal;
     goal.budget_ms = goal.ms({{medium}, {}, limit});
     const RecommendationWorld world{[&](const Choice& choice) { return errors_.measure(choice); },
@@ -116,7 +119,8 @@ class ScenePage {
     ALCOVE_TRY(const auto found, recommend(medium, goal, world));
     add_point("recommended within the time of medium", found.chosen, false, true);
     json_["summary"] =
-        fmt::format("Within the time of medium ({:.4f} ms): {}; RMSE {:.4f}.", *goal.budget_ms,
+        fmt::format("Within the time of medium ({:.4f} ms, RMSE {:.4f}): {}; RMSE {:.4f}.",
+                    *goal.budget_ms, goal.rmse({{medium}, medium_rmse, limit}),
                     choice_text(found.chosen.choice), goal.rmse(found.chosen));
     json_["requirements"] = Json::array();
     for (const FeatureEffect& feature : found.features)

@@ -133,7 +133,7 @@ class Search {
   // Considers `choice` with the most samples that take at most `ms_limit`, `most` of them.
   Result<void> consider_within(const Choice& choice, std::size_t rungs, double ms_limit,
                                std::size_t most, double margin) {
-    constexpr std::size_t kOutOfOrder = 1;  // faster ones among those with more samples
+    constexpr std::size_t kOutOfOrder = 3;  // faster ones among those with more samples
     const auto is_within = [&](const OcclusionSettings& samples) -> Result<bool> {
       ALCOVE_TRY(const Values values, ms(with_samples(choice, samples)));
       return weighted(values, goal_.weights) <= ms_limit;
