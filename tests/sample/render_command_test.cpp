@@ -10,6 +10,7 @@
 #include "cli/option_value.h"
 #include "cli/settings.h"
 #include "scene/builtin_scene.h"
+#include "temporary_folder.h"
 
 namespace alcove::sample {
 namespace {
@@ -168,6 +169,23 @@ TEST(PrintedRenderCommand, PrintedCommandOfAnUnchangedPresetHasNoSetOption) {
 TEST(PrintedRenderCommand, ArgumentsOfAPrintedCommandAreQuotedForTheShell) {
   EXPECT_EQ(shell_line({"alcove", "it's a file.glb", "", "$x"}),
             R"(alcove 'it'\''s a file.glb' '' '$x')");
+}
+
+TEST(Settings, FileOfRecommendedSettingsIsReadBackExceptForTheRadius) {
+  OcclusionSettings written(ALCOVE_QUALITY_ULTRA, 3.0f);
+  written.steps = 13;
+  written.hidden_occlusion = 0.1f;
+  const TemporaryFolder folder;
+  const std::string file = folder.write("settings.txt", settings_text(written));
+  const auto options = parse({"alcove", "render", "--settings", file, "--set", "slices=7"});
+  ASSERT_TRUE(options) << options.error().text;
+  written.radius = 0.5f;
+  written.slices = 7;
+  EXPECT_EQ(occlusion_settings(options->occlusion, 0.5f), written);
+  const std::string bad = folder.write("bad.txt", std::string("steps = 1000\n"));
+  const auto wrong = parse({"alcove", "render", "--settings", bad});
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().text.find("steps"), std::string::npos) << wrong.error().text;
 }
 
 }  // namespace

@@ -71,8 +71,8 @@ Result<Image<float>> Splitter::draw(const StaticSetup& setup, const OcclusionSet
 Result<void> Splitter::add_noise(const StaticSetup& setup, const OcclusionSettings& settings) {
   ALCOVE_TRY(const Image<float> own, draw(setup, settings));
   StaticSetup other_setup = setup;
-  // An odd number of frames, after which the golden pattern has turned the directions by a quarter of
-  // their period (and by .19 if it moves), so that the noise of both is hardly correlated.
+  // An odd number of frames, after which the golden pattern has turned the directions by a quarter
+  // of their period (and by .19 if it moves), so that the noise of both is hardly correlated.
   other_setup.first_frame += 1023;
   ALCOVE_TRY(Image<float> other, draw(other_setup, settings));
   const double noise = 0.5 * mean_squared_error(own, other, surfaces_);

@@ -152,7 +152,7 @@ class Search {
   // Considers the numbers of samples that nearly use the budget up, or those around the fewest that
   // meet the tolerance.
   Result<void> choose_samples() {
-    constexpr std::size_t kMost = 4;
+    constexpr std::size_t kMost = 3;
     const Choice base{base_};
     if (goal_.budget_ms) {
       ALCOVE_TRY_VOID(consider_within(base, ladder_.size(), *goal_.budget_ms, kMost, 0));

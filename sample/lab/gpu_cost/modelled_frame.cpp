@@ -1,8 +1,11 @@
 #include "gpu_cost/modelled_frame.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
+#include <utility>
 
 namespace alcove::sample {
 namespace {
@@ -55,16 +58,6 @@ double wave_latency(const ShaderStatistics& statistics, const WaveWork& work, do
 double waves_held(const GpuPart& part, const ShaderStatistics& statistics, double wave) {
   return part.rdna ? std::floor(statistics.subgroups_per_simd * 32 / wave)
                    : statistics.subgroups_per_simd;
-}
-
-// Whether two dispatches do the same work, because they run the same pipeline on the same images.
-bool is_same(const AlcoveWork& work_a, const AlcoveWorkDispatch& a, const AlcoveWork& work_b,
-             const AlcoveWorkDispatch& b) {
-  return std::string_view(a.shader) == b.shader && std::ranges::equal(a.groups, b.groups) &&
-         std::ranges::equal(std::span(a.constants).first(a.constant_count),
-                            std::span(b.constants).first(b.constant_count), {},
-                            &AlcoveWorkConstant::value, &AlcoveWorkConstant::value) &&
-         dispatch_images(work_a, a) == dispatch_images(work_b, b);
 }
 
 // Fills in what the caches contribute.
@@ -138,6 +131,29 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
   return cost;
 }
 
+// Returns the cost of a dispatch, which is kept until the process ends: frames of all states, and
+// settings that differ little, have passes in common, that run one pipeline on the same images.
+Result<ModelledPass> model_once(const GpuPart& part, const NullDevice& device,
+                                const CostInputs& inputs, const AlcoveWork& frame,
+                                const AlcoveWorkDispatch& dispatch, FrameState state,
+                                const CacheAssumptions* assumptions) {
+  static std::map<std::string, ModelledPass> known;
+  std::string key = fmt::format("{} {} {} {} {} {}", part.name, fmt::ptr(assumptions), inputs.width,
+                                inputs.height, dispatch.shader, dispatch.label);
+  for (const std::uint32_t groups : dispatch.groups) key += fmt::format(" {}", groups);
+  for (const AlcoveWorkConstant& constant :
+       std::span(dispatch.constants).first(dispatch.constant_count))
+    key += fmt::format(" {}", constant.value);
+  for (const PassImage& image : dispatch_images(frame, dispatch)) {
+    key += fmt::format(" {} {} {} {}x{}", image.name, static_cast<int>(image.direction),
+                       image.texel_bytes, image.width, image.height);
+  }
+  if (const auto found = known.find(key); found != known.end()) return found->second;
+  auto modelled = model(part, device, inputs, frame, dispatch, state, assumptions);
+  if (modelled) known.emplace(std::move(key), *modelled);
+  return modelled;
+}
+
 }  // namespace
 
 std::string_view ModelledPass::limit() const {
@@ -159,7 +175,7 @@ Result<ModelledFrame> modelled_frame(const GpuPart& part, const NullDevice& devi
   ModelledFrame cost{state, {}};
   for (const AlcoveWorkDispatch& dispatch :
        std::span(frame.dispatches).first(frame.dispatch_count)) {
-    ALCOVE_TRY(auto pass, model(part, device, inputs, frame, dispatch, state, assumptions));
+    ALCOVE_TRY(auto pass, model_once(part, device, inputs, frame, dispatch, state, assumptions));
     cost.passes.push_back(std::move(pass));
   }
   return cost;
@@ -168,28 +184,10 @@ Result<ModelledFrame> modelled_frame(const GpuPart& part, const NullDevice& devi
 Result<std::vector<ModelledFrame>> modelled_frames(const GpuPart& part, const NullDevice& device,
                                                    const CostInputs& inputs,
                                                    const CacheAssumptions* assumptions) {
-  ALCOVE_TRY(const auto frames, describe_frames(inputs));
   std::vector<ModelledFrame> costs;
-  // Returns the cost of a dispatch of an earlier frame that does the same work, or null.
-  const auto find_same = [&](const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch) {
-    for (std::size_t i = 0; i < costs.size(); ++i) {
-      for (std::size_t j = 0; j < costs[i].passes.size(); ++j)
-        if (is_same(frames[i], frames[i].dispatches[j], frame, dispatch))
-          return &costs[i].passes[j];
-    }
-    return static_cast<ModelledPass*>(nullptr);
-  };
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const AlcoveWork& frame = frames[i];
-    ModelledFrame cost{static_cast<FrameState>(i), {}};
-    for (const AlcoveWorkDispatch& dispatch :
-         std::span(frame.dispatches).first(frame.dispatch_count)) {
-      const ModelledPass* const same = find_same(frame, dispatch);
-      ALCOVE_TRY(auto modelled, same != nullptr ? *same
-                                                : model(part, device, inputs, frame, dispatch,
-                                                        cost.state, assumptions));
-      cost.passes.push_back(std::move(modelled));
-    }
+  for (std::size_t i = 0; i < kFrameStates; ++i) {
+    ALCOVE_TRY(auto cost,
+               modelled_frame(part, device, inputs, static_cast<FrameState>(i), assumptions));
     costs.push_back(std::move(cost));
   }
   return costs;
