@@ -98,6 +98,28 @@ TEST_F(Reconstruct, AccumulatedVisibilityDoesNotDriftOverHundredsOfEqualFrames) 
   }
 }
 
+// A wall is replaced by another behind it, at depths near both ends of the view's range.
+TEST_F(Reconstruct, SurfaceThatReplacesAnotherTakesNothingFromItsHistory) {
+  const HostImage closed = constant_raw_occlusion(kWidth, kHeight, 0.0f);
+  const HostImage open = constant_raw_occlusion(kWidth, kHeight, 1.0f);
+  for (const TestView& view : {test_views()[2], orthographic_view("", 3.0, 2.0, 0.1, 20.0)}) {
+    for (const auto& [before, after] : {std::pair{2.0, 3.0}, {12.0, 17.0}}) {
+      SCOPED_TRACE(testing::Message() << view.name << " " << before);
+      const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(0.0, before)});
+      const Drawing replaced = draw(view, kWidth, kHeight, {tilted_plane(0.0, after)});
+      for (const Drawing* second : {&drawing, &replaced}) {
+        (void)reconstruct({.drawing = drawing, .raw_occlusion = closed}, precise(32));
+        const HostImage result =
+            reconstruct({.drawing = *second, .raw_occlusion = open, .index = 1}, precise(32));
+        if (second == &drawing)
+          EXPECT_LT(mean(result), 0.7);
+        else
+          EXPECT_NEAR(mean(result), 1.0, 0.001);
+      }
+    }
+  }
+}
+
 TEST_F(Reconstruct, ResetOrChangedImageSizeDiscardsTheHistory) {
   const Drawing drawing = draw_plane(30.0);
   const Drawing smaller = draw(test_views()[2], kWidth - 3, kHeight, {tilted_plane(30.0, 4.0)});
