@@ -109,6 +109,26 @@ TEST_F(Queues, UpdatingAPartOfAHistoryOnTheQueueThatOwnsItGivesAVerifiedPlan) {
   (void)compiled();
 }
 
+// Two queues read one of the history's two mips, so that the frame leaves the mips in different
+// layouts. The final barriers bring both into one layout, and no barrier changes a layout twice.
+TEST_F(Queues, HistoryWhoseMipsSeveralQueuesReadIsLeftInOneLayout) {
+  for (int frame = 0; frame < 3; ++frame) {
+    graph_.reset();
+    const TextureHistory history =
+        graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
+    PassBuilder writer = graph_.add_pass("writer");
+    const Texture written = writer.write(history.current, access::storage_write_compute);
+    for (const QueueClass queue : {QueueClass::graphics, QueueClass::compute}) {
+      PassBuilder reader = graph_.add_pass("reader", queue);
+      reader.read(written, access::sampled_compute, Range::mip(1));
+      reader.side_effect();
+    }
+    const Plan plan = compiled();
+    for (const FinalState& left : plan.finals) EXPECT_NE(left.written, WriteCoverage::part);
+    graph_.leave_histories(plan.finals);
+  }
+}
+
 // Particles are simulated on the compute queue while the scene is drawn on the graphics queue. The
 // two share no memory, so that neither queue waits for the previous frame of the other.
 TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForEachOthersPreviousFrame) {

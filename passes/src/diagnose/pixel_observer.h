@@ -42,7 +42,6 @@ class PixelObserver {
   const framegraph::VulkanFunctions& vk_;
   std::array<Pending, ALCOVE_MAX_FRAMES_IN_FLIGHT> pending_;
   std::vector<InspectedFrame> frames_;  // successive frames of a view, the newest first
-  std::uint32_t newest_ = 0;            // the serial number of the newest of these frames
   std::uint32_t serial_ = 0;            // of the frame that is recorded now
 };
 
