@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <iomanip>
-#include <ranges>
 #include <sstream>
 #include <utility>
 
@@ -22,11 +21,8 @@ using Failure = tl::unexpected<std::string>;
 // The output that --set turns on beside the settings of the passes.
 constexpr std::string_view kBentNormal = "bent_normal";
 
-// Returns whether --set accepts a setting: those of materials have options of their own, such as
-// --roughness.
-bool is_option(const SettingInfo& info) { return !info.of_material; }
-
-// Changes one setting by its name. If that fails, returns the allowed names or values.
+// Changes one setting by its name. If that fails, returns the allowed names or values. The settings
+// of materials have options of their own, such as --roughness.
 std::optional<std::string> set(OcclusionSettings& settings, const std::string& name,
                                const std::string& value) {
   if (name == kBentNormal) {
@@ -34,7 +30,8 @@ std::optional<std::string> set(OcclusionSettings& settings, const std::string& n
     return value == "true" || value == "false" ? std::nullopt : std::optional("false or true");
   }
   std::string names;
-  for (const SettingInfo& info : passes::setting_table() | std::views::filter(is_option)) {
+  for (const SettingInfo& info : passes::setting_table()) {
+    if (info.of_material) continue;
     if (name == info.name) {
       return passes::parse_setting(settings, name, value)
                  ? std::nullopt
@@ -57,7 +54,8 @@ std::string settings_help() {
   std::ostringstream text;
   text << "Settings, for --set NAME=VALUE. Brackets hold what it may be, and the default:";
   const OcclusionSettings settings;
-  for (const SettingInfo& info : passes::setting_table() | std::views::filter(is_option)) {
+  for (const SettingInfo& info : passes::setting_table()) {
+    if (info.of_material) continue;
     text << "\n  " << std::left << std::setw(kColumn) << info.name << info.help << " ["
          << (info.kind == SettingInfo::Kind::choice ? allowed_text(info) : info.range.text())
          << "; " << setting_text(settings, info) << "]";

@@ -19,6 +19,8 @@ struct OcclusionSettings : AlcoveSettings {
 
   friend bool operator==(const OcclusionSettings& a, const OcclusionSettings& b) {
     const AlcoveSettings& plain = a;
+    // Settings have no padding, and equal numbers have equal bytes but for zeros of another sign.
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
     return std::memcmp(&plain, &static_cast<const AlcoveSettings&>(b), sizeof plain) == 0 &&
            a.visibility == b.visibility && a.bent_normal == b.bent_normal;
   }

@@ -174,7 +174,7 @@ GltfMaker with_images(const std::vector<uint32_t>& sides) {
 
 TEST(GltfImage, LargestImagesAreHalvedUntilAllFitInMemory) {
   GltfLimits limits;
-  limits.images.kept = 3 * 32 * 32;
+  limits.images.kept = 3u * 32 * 32;
   const Scene scene = parsed(with_images({128, 16, 64, 16}).gltf(), limits);
   std::vector<uint32_t> sides;
   for (const TextureImage& image : scene.images) sides.push_back(image.width);
@@ -185,7 +185,7 @@ TEST(GltfImage, LargestImagesAreHalvedUntilAllFitInMemory) {
 
 TEST(GltfImage, ImagesAfterThoseThatReachTheDecodingLimitAreLeftOut) {
   GltfLimits limits;
-  limits.images.decoded = 2 * 64 * 64;
+  limits.images.decoded = 2u * 64 * 64;
   const Scene scene = parsed(with_images({64, 64, 64}).gltf(), limits);
   std::vector<int32_t> images;
   for (const Material& material : scene.materials)
@@ -218,7 +218,8 @@ TEST(GltfImage, DamagedJpegIsLeftOutWithAWarning) {
   // bits. It gets more codes of one bit than there are: a decoder that does not check that writes
   // past the end of its table.
   const uint8_t marker[] = {0xff, 0xc4};
-  const auto counts = std::ranges::search(jpeg, marker).begin() + 5;
+  const auto counts =
+      std::search(jpeg.begin(), jpeg.end(), std::begin(marker), std::end(marker)) + 5;
   std::swap(counts[0], counts[2]);
   const Scene scene = parsed(with_image(GltfMaker::base64(jpeg)).gltf());
   EXPECT_THAT(scene.warnings,

@@ -56,7 +56,7 @@ TEST_F(LightTest, UnoccludedLightAgreesWithTheIntegralOfTheBrdfOverTheSky) {
     double squares = 0.0, sum = 0.0;
     for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
       if (images.depth_ndc.pixels[i] == 1.0f) continue;
-      const glm::vec2 pixel(float(i % kWidth) + 0.5f, float(i / kWidth) + 0.5f);
+      const glm::vec2 pixel = glm::vec2(glm::uvec2(i % kWidth, i / kWidth)) + 0.5f;
       const Ray ray = camera_ray(matrices, camera.orthographic, pixel, kWidth, kHeight);
       // Normals of 16 bits are shorter than 1 by up to 6e-4, which widens a lobe.
       const glm::vec3 truth =

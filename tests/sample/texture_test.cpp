@@ -203,7 +203,7 @@ TEST_F(TextureTest, MaterialsReadTheirOwnTexturesEvenIfThereAreMoreThanVulkanGua
   for (std::uint32_t i = 0; i < kCells * kCells; ++i) {
     Mesh cell = whole;
     cell.material = i;
-    const glm::vec2 centre(static_cast<float>(i % kCells), static_cast<float>(i / kCells));
+    const glm::vec2 centre(glm::uvec2(i % kCells, i / kCells));
     for (glm::vec3& position : cell.positions) {
       position.x = (2.0f * centre.x + 1.0f + position.x) / kCells - 1.0f;
       position.y = 1.0f - (2.0f * centre.y + 1.0f - position.y) / kCells;

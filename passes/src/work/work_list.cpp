@@ -135,7 +135,8 @@ tl::expected<void, Error> WorkList::add_dispatch(const DispatchInfo& info) {
     }
   }
   made.parameter_bytes = static_cast<std::uint32_t>(info.parameters.size());
-  std::memcpy(made.parameters, info.parameters.data(), info.parameters.size());
+  if (!info.parameters.empty())
+    std::memcpy(made.parameters, info.parameters.data(), info.parameters.size());
   ++work_.dispatch_count;
   return {};
 }
