@@ -64,6 +64,7 @@ class Search {
   Result<Recommendation> run() {
     for (Variant& variant : preset_sweep(base_)) ladder_.push_back(variant.settings);
     std::ranges::stable_sort(ladder_, {}, samples_per_pixel);
+    if (goal_.budget_ms) ALCOVE_TRY_VOID(sort_by_time());
     ALCOVE_TRY_VOID(choose_samples());
     constexpr double kSamples = 0.3, kAllFeatures = 0.5;  // parts of the progress
     for (std::size_t i = 0; i < std::size(kFeatures); ++i) {
@@ -117,12 +118,32 @@ class Search {
            consider(choice, margin).has_value();
   }
 
-  // Returns the number of the first rungs of the ladder, at most `count`, of which `is_within` is
-  // true. It is nearly monotone.
+  // Sorts the ladder by time and leaves out rungs that are slower with fewer samples than others of
+  // the same resolution. Features hardly change this order.
+  Result<void> sort_by_time() {
+    std::vector<std::pair<double, OcclusionSettings>> timed;
+    for (const OcclusionSettings& samples : ladder_) {
+      ALCOVE_TRY(const Values values, ms(with_samples({base_}, samples)));
+      timed.emplace_back(weighted(values, goal_.weights), samples);
+      advance(0.1 * static_cast<double>(timed.size()) / static_cast<double>(ladder_.size()));
+    }
+    std::ranges::stable_sort(timed, {}, &std::pair<double, OcclusionSettings>::first);
+    ladder_.clear();
+    std::array<double, 2> most{};  // samples of the faster rungs, by resolution
+    for (const auto& [time, samples] : timed) {
+      double& faster = most.at(samples.half_resolution);
+      if (samples_per_pixel(samples) >= faster) ladder_.push_back(samples);
+      faster = std::max(faster, samples_per_pixel(samples));
+    }
+    return {};
+  }
+
+  // Returns the number of the first rungs of the ladder of which `is_within` is true. It is nearly
+  // monotone.
   template <typename IsWithin>
-  Result<std::size_t> rungs_within(std::size_t count, const IsWithin& is_within) const {
+  Result<std::size_t> rungs_within(const IsWithin& is_within) const {
     std::size_t low = 0;
-    for (std::size_t high = count; low < high;) {
+    for (std::size_t high = ladder_.size(); low < high;) {
       const std::size_t middle = (low + high) / 2;
       ALCOVE_TRY(const bool within, is_within(ladder_[middle]));
       (within ? low : high) = within ? middle + 1 : middle;
@@ -131,15 +152,15 @@ class Search {
   }
 
   // Considers `choice` with the most samples that take at most `ms_limit`, `most` of them.
-  Result<void> consider_within(const Choice& choice, std::size_t rungs, double ms_limit,
-                               std::size_t most, double margin) {
-    constexpr std::size_t kOutOfOrder = 3;  // faster ones among those with more samples
+  Result<void> consider_within(const Choice& choice, double ms_limit, std::size_t most,
+                               double margin) {
+    constexpr std::size_t kOutOfOrder = 3;  // faster ones among slower ones
     const auto is_within = [&](const OcclusionSettings& samples) -> Result<bool> {
       ALCOVE_TRY(const Values values, ms(with_samples(choice, samples)));
       return weighted(values, goal_.weights) <= ms_limit;
     };
-    ALCOVE_TRY(const std::size_t within, rungs_within(rungs, is_within));
-    std::size_t i = std::min(within + kOutOfOrder, rungs);
+    ALCOVE_TRY(const std::size_t within, rungs_within(is_within));
+    std::size_t i = std::min(within + kOutOfOrder, ladder_.size());
     for (std::size_t count = 0; i-- > 0 && count < most;) {
       ALCOVE_TRY(const bool fits, is_within(ladder_[i]));
       if (!fits) continue;
@@ -155,12 +176,12 @@ class Search {
     constexpr std::size_t kMost = 3;
     const Choice base{base_};
     if (goal_.budget_ms) {
-      ALCOVE_TRY_VOID(consider_within(base, ladder_.size(), *goal_.budget_ms, kMost, 0));
+      ALCOVE_TRY_VOID(consider_within(base, *goal_.budget_ms, kMost, 0));
       if (!measured_.empty()) return {};
       return consider(with_samples(base, ladder_.front())).map([](const Achievement&) {});
     }
     ALCOVE_TRY(const std::size_t unmet,
-               rungs_within(ladder_.size(), [&](const OcclusionSettings& samples) -> Result<bool> {
+               rungs_within([&](const OcclusionSettings& samples) -> Result<bool> {
                  ALCOVE_TRY(const auto result, consider(with_samples(base, samples)));
                  return !goal_.met(result);
                }));
@@ -195,14 +216,14 @@ class Search {
   // Tries `with` at fewer samples: the most within a budget, or as few as a tolerance allows.
   void try_with_fewer_samples(const Choice& with, double margin = 0) {
     constexpr std::size_t kMost = 3;
+    if (goal_.budget_ms) {
+      (void)consider_within(with, *goal_.budget_ms, kMost, margin);
+      return;
+    }
     const auto rungs = static_cast<std::size_t>(
         std::ranges::count_if(ladder_, [&](const OcclusionSettings& samples) {
           return samples_per_pixel(samples) <= samples_per_pixel(with.settings);
         }));
-    if (goal_.budget_ms) {
-      (void)consider_within(with, rungs, *goal_.budget_ms, kMost, margin);
-      return;
-    }
     std::size_t missed = 0;
     for (std::size_t i = rungs; i-- > 0 && missed < kMost;) {
       const Choice fewer = with_samples(with, ladder_[i]);
@@ -243,7 +264,8 @@ class Search {
   OcclusionSettings base_;
   const RecommendationGoal& goal_;
   const RecommendationWorld& world_;
-  std::vector<OcclusionSettings> ladder_;  // from few samples per pixel to many
+  // From few samples per pixel to many; within a budget from fast to slow.
+  std::vector<OcclusionSettings> ladder_;
   std::vector<Achievement> measured_;
   std::vector<std::pair<Choice, Values>> timed_;
   Recommendation found_;
