@@ -191,8 +191,9 @@ TEST(Recommendation, FeatureThatFailsIsNamedAndTheOthersAreStillTried) {
   };
   const auto found = recommend({}, within_ms(4), functions);
   ASSERT_TRUE(found) << found.error();
-  const auto back =
-      std::ranges::find(found->features, "thickness from back faces, whose time differs most between GPUs", &FeatureEffect::name);
+  const auto back = std::ranges::find(
+      found->features, "thickness from back faces, whose time differs most between GPUs",
+      &FeatureEffect::name);
   ASSERT_NE(back, found->features.end());
   EXPECT_THAT(back->sentence(), testing::HasSubstr("not measured (no back faces)"));
   EXPECT_GT(found->features.size(), 6u);

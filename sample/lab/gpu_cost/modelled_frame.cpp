@@ -90,6 +90,7 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
       inputs.height};
   std::vector<Loop> loops = find_loops(blocks);
   std::vector<CompiledLoop> summaries;
+  summaries.reserve(loops.size());
   for (const Loop& loop : loops) summaries.push_back(loop.summary);
   ALCOVE_TRY(const auto iterations, loop_iterations(work, summaries));
   for (std::size_t i = 0; i < iterations.size(); ++i) loops[i].iterations = iterations[i];
