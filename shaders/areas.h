@@ -1,7 +1,7 @@
-// The parts of images that are read and written (AlcoveViewInfo::read_area and written_area). Pixels count
-// from the corner of the area that is read. A shader that includes this file must define the
-// constant kAreas, depth_image, and the members of its parameters that are named below. Without
-// kAreas all images have the size of depth_image, and are read and written as a whole.
+// The parts of images that are read and written (AlcoveViewInfo::read_area and written_area).
+// Pixels count from the corner of the area that is read. A shader that includes this file must
+// define the constant kAreas, depth_image, and the members of its parameters that are named below.
+// Without kAreas all images have the size of depth_image, and are read and written as a whole.
 #ifndef ALCOVE_AREAS_H
 #define ALCOVE_AREAS_H
 

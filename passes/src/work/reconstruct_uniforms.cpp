@@ -108,8 +108,8 @@ maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& vie
 
 // Returns 1 / ReconstructParameters::wide_sharpness. The four traced pixels around a pixel are
 // needed less the more slices each of them has. A static image averages ever more frames, which
-// make the samples of neighbours dispensable. Fitted to error and grain of `alcove compare --frames
-// 8`, 24 and 32, with and without --orbit.
+// make the samples of neighbours dispensable. Fitted to the error that `alcove compare --frames 8`,
+// 24 and 32, with and without --orbit, prints, and to the noise that its pictures show.
 float near_sharpness(const ViewWork& view, bool is_static, float texel) {
   if (!is_static) {
     const float one_slice = texel > 1.0f ? 1.0f : 1.3f;
@@ -124,7 +124,8 @@ float near_sharpness(const ViewWork& view, bool is_static, float texel) {
 // blurs there anyway. With tiles of 4 texels few samples are a texel's own even in time, so the
 // window stays wider. With one slice, whose noise is large, it then widens more between centres: a
 // surface that moves over the image meets other directions in each frame than the pattern has
-// prepared for one pixel. Fitted to error and grain (`alcove compare --orbit 0.4`).
+// prepared for one pixel. Fitted to the error that `alcove compare --orbit 0.4` prints, and to the
+// noise that its pictures show.
 maths::vec2 smallest_window(const AlcoveSettings& settings, float texel) {
   const bool wide = static_cast<float>(settings.tile_size) > 2.0f * texel;
   const float own = wide ? 1.45f : 0.58f;
