@@ -98,8 +98,8 @@ TEST_F(GtaoTruth, EstimatorConnectedAgreesWithBruteForceIfVolumeBehindOccludersI
     SCOPED_TRACE(scene.name);
     const Errors errors = errors_of(ALCOVE_ESTIMATOR_CONNECTED, test_views()[2], scene.scene);
     EXPECT_LT(errors.mean, 0.02);
-    // At the border of the image a share of the directions is excluded. The ball has .121, the other
-    // scenes have up to .093.
+    // At the border of the image a share of the directions is excluded. The ball has .121, the
+    // other scenes have up to .093.
     EXPECT_LT(errors.largest, scene.name == "ball" ? 0.15 : 0.1);
   }
 }
