@@ -67,7 +67,7 @@ class Replay {
     if (access.flags & kWrite) ++version;
     const auto& first = v_.workspace.first_sub;
     if (first[access.resource] == first[access.resource + 1]) return;  // its description is invalid
-    Found found;
+    EarlierContents found;
     for_each_sub(v_.graph, v_.workspace, access,
                  [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub], found); });
     // The contents are those of passes that run, because an attachment also reads them.
@@ -77,15 +77,15 @@ class Replay {
     if (found.unwritten) report_unwritten(pass, access);
   }
 
-  // What an access finds in its range.
-  struct Found {
+  // The contents of the range of an access, before the access.
+  struct EarlierContents {
     bool unwritten = false;  // it reads contents that nothing wrote
     bool conflict = false;   // its pass has another access that it excludes
     bool written = false;    // there are contents
   };
 
   static void touch(std::uint32_t pass, const AccessRecord& access, Workspace::Touch& touched,
-                    Found& found) {
+                    EarlierContents& found) {
     const bool again = touched.stamp == pass + 1;
     const bool reads = again && touched.reads;
     const bool writes = again && touched.writes;

@@ -14,27 +14,28 @@ constexpr float kFar = 50.0f;  // how far a surface that stands for an endless o
 
 // Closed forms of the cosine-weighted visibility of a point. Lengths may have any unit.
 
-// Of a point under a sphere whose centre is at `distance`, in a direction with this cosine to the
-// normal. The whole sphere must be above the horizon (cosine >= radius / distance).
+// The visibility of a point under a sphere whose centre is at `distance`, in a direction with this
+// cosine to the normal. The whole sphere must be above the horizon (cosine >= radius / distance).
 double visibility_under_sphere(double radius, double distance, double cosine) {
   const double sine = radius / distance;
   return 1.0 - cosine * sine * sine;
 }
 
-// Of any point on a wall of a V-shaped groove with infinite walls. The angle is in radians.
+// The visibility of any point on a wall of a V-shaped groove with infinite walls. The angle is in
+// radians.
 double visibility_in_groove(double opening_angle) { return 0.5 * (1.0 - std::cos(opening_angle)); }
 
-// Of a point on a floor beside an infinitely long wall.
+// The visibility of a point on a floor beside an infinitely long wall.
 double visibility_beside_wall(double distance, double height) {
   return 0.5 * (1.0 + distance / std::hypot(distance, height));
 }
 
-// Of a point on a floor at distances a and b from two infinitely long walls of this height, which
-// meet at a right angle. Each wall occludes the azimuths from its open end to the corner with the
-// other wall. In the direction of an azimuth, a wall with the elevation e occludes the fraction
-// sin^2 e of the cosine-weighted directions. At the azimuth t from the perpendicular of the wall at
-// distance a, tan e = h cos t / a. The occluded part is therefore the mean over t of h^2 cos^2 t /
-// (h^2 cos^2 t + a^2), which has a closed antiderivative.
+// The visibility of a point on a floor at distances a and b from two infinitely long walls of this
+// height, which meet at a right angle. Each wall occludes the azimuths from its open end to the
+// corner with the other wall. In the direction of an azimuth, a wall with the elevation e occludes
+// the fraction sin^2 e of the cosine-weighted directions. At the azimuth t from the perpendicular
+// of the wall at distance a, tan e = h cos t / a. The occluded part is therefore the mean over t of
+// h^2 cos^2 t / (h^2 cos^2 t + a^2), which has a closed antiderivative.
 double visibility_in_corner(double a, double b, double height) {
   const auto blocked = [&](double distance, double azimuth) {
     const double root = std::hypot(distance, height);

@@ -330,7 +330,7 @@ TEST_F(Queues, ReadersOfAnAttachmentOnTwoQueuesDoNotWaitForEachOther) {
       light.read(color, access::sampled_fragment);
       light.side_effect();
       Plan plan = compiled();
-      // Of four submissions, [gbuffer] [ao] [decals] [light], two wait: ao and light.
+      // Two of the submissions [gbuffer] [ao] [decals] [light] wait: ao and light.
       ASSERT_EQ(plan.submissions.size(), 4u);
       for (const PlannedPass& planned : plan.passes) {
         const std::string_view name = graph_.description().pass_name(planned.pass);
