@@ -21,8 +21,9 @@ namespace alcove::passes {
 
 class WorkExecutor {
  public:
-  WorkExecutor(VkPhysicalDevice physical_device, VkDevice device)
-      : physical_device_(physical_device), device_(device) {
+  // With `own_shader`, every dispatch runs it instead of the library's shader.
+  WorkExecutor(VkPhysicalDevice physical_device, VkDevice device, AlcoveShader own_shader = {})
+      : physical_device_(physical_device), device_(device), own_shader_(own_shader) {
     const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -221,8 +222,10 @@ class WorkExecutor {
                                             .setLayoutCount = 1,
                                             .pSetLayouts = &made.set_layout};
     check(vkCreatePipelineLayout(device_, &layout, nullptr, &made.layout));
-    AlcoveShader shader{};
-    EXPECT_EQ(alcoveGetShader(dispatch.shader, &shader), ALCOVE_SUCCESS);
+    AlcoveShader shader = own_shader_;
+    if (shader.code == nullptr) {
+      EXPECT_EQ(alcoveGetShader(dispatch.shader, &shader), ALCOVE_SUCCESS);
+    }
     const VkShaderModuleCreateInfo code{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                         .codeSize = shader.code_size,
                                         .pCode = shader.code};
@@ -376,6 +379,7 @@ class WorkExecutor {
 
   VkPhysicalDevice physical_device_;
   VkDevice device_;
+  AlcoveShader own_shader_;
   VkSampler sampler_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   std::map<std::string, Pipeline> pipelines_;  // by shader and constants

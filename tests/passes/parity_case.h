@@ -14,15 +14,18 @@
 
 ALCOVE_MATHS_BEGIN
 
-// `a` is a random point of [0,1)^4.
-ALCOVE_INLINE vec4 parity_case(uint which, vec4 a) {
+ALCOVE_INLINE vec4 parity_case(uvec2 texel) {
+  // A point of [0,1)^4 of Roberts's R4 sequence.
+  uint index = texel.y * 256u + texel.x;
+  vec4 a =
+      vec4((index * uvec4(3679390609u, 3152041523u, 2700274805u, 2313257605u)) >> 8u) / 16777216.0f;
   vec3 normal = octahedral_decode(vec2(a.x * 2.0f - 1.0f, a.y * 2.0f - 1.0f));
   uvec2 pixel = uvec2(uint(a.x * 3840.0f), uint(a.y * 2160.0f));
   SliceNoise pattern = golden_pattern(pixel, uint(a.z * 1e4f), a.w < 0.5f);
   RawOcclusion lobe;
   lobe.visible = a.x * a.y;
   lobe.open = a.x;
-  switch (which) {
+  switch (index % 4u) {
     case 0u:
       return vec4(pattern.direction, pattern.offset, float(pack_unorm(a.x, 12u)),
                   float(bitCount(sectors_beyond(biased_position(a.z, a.y)))));
