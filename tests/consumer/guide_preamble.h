@@ -21,7 +21,6 @@ extern char message[ALCOVE_MAX_MESSAGE];
 extern double milliseconds[32];
 extern uint32_t time_count;
 extern const AlcoveWork* work;
-extern uint64_t transients, history;
 void write_log(void* user, AlcoveSeverity severity, const char* sentence);
 void fail(const char* sentence);
-void submit_and_wait_for_slot(uint32_t slot);
+void submit_and_wait(void);

@@ -16,16 +16,16 @@
 // Threads. Only one thread at a time may call functions on a context, because a context takes no
 // lock. Contexts share nothing, not even on one device.
 //
-// Errors. A call that fails records nothing and changes no history, and alcoveGetMessage describes
-// the error in a sentence. If memory runs out or the device is lost in the middle of a frame,
-// discard the command buffer. After running out of memory, the next frame can be tried; after
-// losing the device, destroy the context. No exception leaves the library. It prints nothing: all
-// sentences go to AlcoveContextInfo::log.
+// Errors. A call that fails changes no history, and alcoveGetMessage describes the error in a
+// sentence. It records nothing, unless memory runs out or the device is lost in the middle of a
+// frame: discard the command buffer then. After running out of memory, the next frame can be tried;
+// after losing the device, destroy the context. No exception leaves the library. It prints nothing:
+// all sentences go to AlcoveContextInfo::log.
 //
 // Versions. A struct that may grow begins with struct_size, which the caller sets to the sizeof of
 // the struct. It tells the library which version of this header the caller was compiled with. From
-// the first release on, structs grow only at their end, fields that an older caller does not have
-// are off, and values of enums do not change.
+// the first release on, such structs grow only at their end, fields that an older caller does not
+// have are off, and values of enums and structs without struct_size do not change.
 #ifndef ALCOVE_ALCOVE_H_
 #define ALCOVE_ALCOVE_H_
 
@@ -143,7 +143,7 @@ typedef struct AlcoveImage {
   // The last use of the image before the frame, and its layout at that time. For an input it is the
   // last write, for an output the last read or write. The first barrier waits for these stages. The
   // layout of an output may be VK_IMAGE_LAYOUT_UNDEFINED, because all of its pixels are
-  // overwritten. It may not be if only one channel is written.
+  // overwritten, unless other frames write other areas of it.
   AlcoveState initial_state;
   // The next use of the image after the frame, and the layout that it needs. The last barrier
   // changes the layout and makes the image visible to these stages, even if no pass reads it.
@@ -161,7 +161,9 @@ typedef struct AlcoveView {
 
 typedef struct AlcoveFrame {
   uint32_t struct_size;
-  // The number of the frame: it rotates the noise and selects the traced pixels. Must count up.
+  // The number of the frame: it rotates the noise and selects the traced pixels. It should grow by
+  // 1 from frame to frame of a view, because a history of every second number has half of the
+  // pixels.
   uint32_t index;
   // The number of the frame in flight, below frames_in_flight. The device must have finished the
   // last frame that was recorded with this slot. Frames that are recorded separately, for example

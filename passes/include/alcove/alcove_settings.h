@@ -115,8 +115,8 @@ typedef struct AlcoveSettings {
   // The actual fraction grows with the occluder's width in the image: it is larger behind a wall
   // than behind a twig. [0.286]
   float hidden_occlusion;
-  uint32_t depth_layers;  // the depth layers that are searched: 1, or 2 with second_depth [1, but 2
-                          // for ULTRA]
+  uint32_t depth_layers;  // the depth layers that are searched: 1, or 2 with
+                          // ALCOVE_IMAGE_SECOND_DEPTH [1, but 2 for ULTRA]
   // The largest number of frames that the history averages, 0 to 127. Raising it reduces noise, and
   // lets the image follow changes more slowly. After 16 frames without a change (static_frames) the
   // limit is 127. With 0 there is no history, and no memory for one.

@@ -47,7 +47,7 @@ typedef enum AlcoveResourceKind {
   ALCOVE_RESOURCE_KIND_TRANSIENT = 2,  // contents are not needed before or after its lifetime
   ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS = 3,  // written in the last frame; see AlcoveWorkHistory
   ALCOVE_RESOURCE_KIND_HISTORY_CURRENT = 4,   // written in this frame and kept for the next one
-  ALCOVE_RESOURCE_KIND_TABLE = 5,             // a constant buffer with the bytes of `data`
+  ALCOVE_RESOURCE_KIND_TABLE = 5,             // a storage buffer with the bytes of `data`
   ALCOVE_RESOURCE_KIND_MAX_ENUM = 0x7fffffff
 } AlcoveResourceKind;
 
@@ -88,7 +88,7 @@ typedef struct AlcoveWorkResource {
   // do not overlap may share memory. Both are ALCOVE_WORK_NONE if no dispatch binds it.
   uint32_t first_dispatch;
   uint32_t last_dispatch;
-  uint64_t size;     // in bytes: of a table, or of the texels of an image that is not the engine's
+  uint64_t size;  // in bytes: of a table, or of the texels of an image; 0 for the engine's images
   const void* data;  // static; null for images
 } AlcoveWorkResource;
 
@@ -133,7 +133,8 @@ typedef struct AlcoveWorkHistory {
   uint32_t current;
 } AlcoveWorkHistory;
 
-// The work of one view in one frame. Elements beyond the counts are undefined.
+// The work of one view in one frame, 30 KiB: too large for small stacks. Elements beyond the counts
+// are undefined.
 typedef struct AlcoveWork {
   AlcoveCamera camera;  // of AlcoveWorkInfo
   uint32_t width;       // of the depth image, or of the area that is read
