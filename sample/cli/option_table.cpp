@@ -201,8 +201,8 @@ std::span<const OptionRow> option_rows() {
       {kMotion, "Motion", "--frames", "N",
        "number of frames of each path, which begins at the given view. Three of them are compared "
        "with the ray-traced truth. Default: 48",
-       // With fewer than 12 frames there is nothing to compare.
-       [](O& o, const V& v) { read_frames(o, v, 12); }},
+       // Surfaces of the first compared frame are followed over the four frames before it.
+       [](O& o, const V& v) { read_frames(o, v, 15); }},
 
       {kOnDevice, kViewing, "--camera", "NAME",
        "name of a camera of the scene. Default: the first one, or a view of the whole scene if the "

@@ -62,32 +62,23 @@ TEST(MotionErrors, StaticSurfaceIsReprojectedCorrectlyAfterAnyCameraStep) {
   }
 }
 
-TEST(MotionErrors, AgeOfAPixelIsTheNumberOfFramesInWhichItsSurfaceWasVisible) {
-  // The camera moves to the right, so that the near wall leaves to the left and uncovers the far
-  // one.
-  RenderedFrame before = walls(camera_at(0.0f), 0.0f);
-  Image<std::uint32_t> ages = first_ages(before);
-  EXPECT_EQ(ages.at(3, 3), 1u);
+TEST(MotionErrors, SurfacesThatWereHiddenOrOutsideTheImageHaveNoTexelsBefore) {
+  // The camera moves to the right, so that the near wall leaves to the left and uncovers a stripe
+  // of the far one.
+  const RenderedFrame before = walls(camera_at(0.0f), 0.0f);
   const float step = 0.8f;
-  for (std::uint32_t frame = 1; frame <= 3; ++frame) {
-    RenderedFrame now = walls(camera_at(step * static_cast<float>(frame)), 0.0f);
-    ages = next_ages(now, reproject(now, before, unmoved), ages);
-    before = std::move(now);
-  }
-  // `unit` is the length in pixels of one unit of the scene at distance 1. `each` is the number of
-  // pixels by which the image of the near wall moves per frame relative to that of the far wall.
+  const RenderedFrame now = walls(camera_at(step), 0.0f);
+  const Reprojection reprojection = reproject(now, before, unmoved);
+  // The length in pixels of one unit of the scene at distance 1.
   const float unit = 0.5f * kHeight / std::tan(0.5f * before.camera.fov_y);
-  const float near_edge = 0.5f * kWidth - 3.0f * step * unit / 4.0f;
-  const float each = step * unit * (1.0f / 4.0f - 1.0f / 10.0f);
+  const float near_edge = 0.5f * kWidth - step * unit / 4.0f;
+  const float stripe = step * unit * (1.0f / 4.0f - 1.0f / 10.0f);
   const auto y = kHeight / 2;
-  // The pixel in the middle of the stripe that frame `age` frames ago uncovered.
-  for (std::uint32_t age = 1; age <= 3; ++age) {
-    const float x = near_edge + (static_cast<float>(age) - 0.5f) * each;
-    EXPECT_EQ(ages.at(static_cast<std::uint32_t>(x), y), age);
-  }
-  EXPECT_EQ(ages.at(kWidth - 1, y), 1u) << "it was outside the image before";
-  EXPECT_EQ(ages.at(kWidth / 2 + 5, y), 4u) << "it was always visible";
-  EXPECT_EQ(ages.at(1, y), 4u);
+  const auto x = static_cast<std::uint32_t>(near_edge + 0.5f * stripe);
+  EXPECT_EQ(reprojection.texels.at(x, y), 0u) << "it was hidden";
+  EXPECT_EQ(reprojection.texels.at(kWidth - 1, y), 0u) << "it was outside the image";
+  EXPECT_EQ(reprojection.texels.at(kWidth / 2 + 5, y), kAllTexels);
+  EXPECT_EQ(reprojection.texels.at(1, y), kAllTexels);
 }
 
 TEST(MotionErrors, MovingSurfaceIsReprojectedFromItsPreviousPosition) {
@@ -104,11 +95,11 @@ TEST(MotionErrors, MovingSurfaceIsReprojectedFromItsPreviousPosition) {
   EXPECT_NEAR(change(unmoved), 0.03, 1e-5);
 }
 
-TEST(MotionErrors, SkyPixelsHaveNoAgeNoVisibilityChangeAndNoSpeed) {
+TEST(MotionErrors, SkyPixelsHaveNoTexelsNoVisibilityChangeAndNoSpeed) {
   RenderedFrame sky = walls(camera_at(0.0f), -100.0f);
   std::ranges::fill(sky.depth.pixels, std::numeric_limits<float>::infinity());
   const Reprojection reprojection = reproject(sky, sky, unmoved);
-  EXPECT_EQ(next_ages(sky, reprojection, first_ages(sky)).at(2, 2), 0u);
+  EXPECT_EQ(reprojection.texels.at(2, 2), 0u);
   EXPECT_EQ(visibility_change(sky.visibility, sky.visibility, reprojection).count, 0u);
   EXPECT_EQ(measure_speed(reprojection).count, 0u);
 }

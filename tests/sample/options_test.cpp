@@ -125,7 +125,7 @@ TEST(Options, MistakesAreRefusedInASentenceThatNamesTheOption) {
       {"view --out ''", "--out '': give the name of a folder, such as out"},
       {"report --clock sundial", "--clock"},
       {"motion --path spiral", "--path"},
-      {"motion --frames 11", "--frames"},
+      {"motion --frames 14", "--frames"},
       {"recommend", "--budget-ms"},
       {"recommend --tolerance 0.05 --budget-ms 1", "--budget-ms"},
       {"recommend --tolerance 0", "--tolerance"},

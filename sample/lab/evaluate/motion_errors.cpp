@@ -87,21 +87,6 @@ std::uint8_t same_surface(const Eye& eye, const RenderedFrame& before, glm::vec2
   return found;
 }
 
-// The texel of the same surface with the largest bilinear weight.
-std::size_t nearest_texel(const Reprojection& reprojection, std::size_t pixel,
-                          const Image<std::uint32_t>& before) {
-  const Texels texels(reprojection.position_px.pixels[pixel]);
-  std::size_t nearest = 0;
-  float most = -1.0f;
-  for (int i = 0; i < 4; ++i) {
-    if ((reprojection.texels.pixels[pixel] >> i & 1) != 0 && texels.weight(i) > most) {
-      most = texels.weight(i);
-      nearest = static_cast<std::size_t>(texels.index(i, before));
-    }
-  }
-  return nearest;
-}
-
 }  // namespace
 
 Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
@@ -127,22 +112,6 @@ Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
     }
   });
   return reprojection;
-}
-
-Image<std::uint32_t> first_ages(const RenderedFrame& now) {
-  Image<std::uint32_t> ages(now.depth.width, now.depth.height);
-  for (std::size_t i = 0; i < ages.pixels.size(); ++i)
-    ages.pixels[i] = std::isfinite(now.depth.pixels[i]) ? 1 : 0;
-  return ages;
-}
-
-Image<std::uint32_t> next_ages(const RenderedFrame& now, const Reprojection& reprojection,
-                               const Image<std::uint32_t>& before) {
-  Image<std::uint32_t> ages = first_ages(now);
-  for (std::size_t i = 0; i < ages.pixels.size(); ++i)
-    if (reprojection.texels.pixels[i] != 0)
-      ages.pixels[i] = before.pixels[nearest_texel(reprojection, i, before)] + 1;
-  return ages;
 }
 
 RunningMean& RunningMean::operator+=(const RunningMean& more) {

@@ -18,7 +18,7 @@ struct RenderedFrame {
   Image<float> visibility;
 };
 
-// Where the surfaces of a frame were on the image of the previous frame.
+// Where the surfaces of a frame were on the image of an earlier frame.
 struct Reprojection {
   Image<glm::vec2> position_px;  // from the top left corner; may lie outside the image
   // Which of the four texels around position_px (x first, then y) show the same surface: bit i is
@@ -27,17 +27,10 @@ struct Reprojection {
 };
 inline constexpr std::uint8_t kAllTexels = 0xf;
 
-// `position_before` gives the world-space position, one frame earlier, of a point of this frame.
+// `position_before` gives the world-space position in the earlier frame of a point of this frame.
 using PositionBefore = std::function<glm::vec3(const glm::vec3& position_ws)>;
 [[nodiscard]] Reprojection reproject(const RenderedFrame& now, const RenderedFrame& before,
                                      const PositionBefore& position_before);
-
-// Returns the number of consecutive frames in which the surface of each pixel has been visible,
-// this frame included; 0 in the sky. In the first frame, and in a later frame from the ages before.
-[[nodiscard]] Image<std::uint32_t> first_ages(const RenderedFrame& now);
-[[nodiscard]] Image<std::uint32_t> next_ages(const RenderedFrame& now,
-                                             const Reprojection& reprojection,
-                                             const Image<std::uint32_t>& before);
 
 // A mean over the pixels of many frames.
 struct RunningMean {

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "render/frame_renderer.h"
@@ -16,11 +14,10 @@ namespace {
 constexpr std::uint32_t kCompared = 3;  // frames of a path
 
 // A frame of the path.
-struct ComparedFrame {
+struct PathFrame {
   std::uint32_t frame = 0;
   FrameImages images;
-  RenderedFrame seen;
-  Image<std::uint32_t> ages;
+  Mask uncovered;  // surfaces that came into view kNewFrames ago
 };
 
 // Root mean squares over several images.
@@ -48,32 +45,56 @@ class MotionRun {
   Result<MotionReport> run() {
     if (path_.cut()) return run_cut();
     MotionReport report;
-    RunningMean change, unfiltered, speed;
-    std::vector<ComparedFrame> compared;
-    const auto measure = [&](const ComparedFrame& now, const RunningMean& changed,
-                             const Reprojection& reprojection) {
-      speed += measure_speed(reprojection);
-      if (now.frame >= first_converged()) change += changed;
-      if (is_compared(now.frame)) compared.push_back(now);
-    };
-    ALCOVE_TRY_VOID(render_path(setup_.occlusion, measure));
+    std::vector<RenderedFrame> seen(path_.frames());
+    std::vector<PathFrame> compared;
+    RunningMean speed, change, unfiltered;
+    ALCOVE_TRY(const auto renderer, create_renderer());
+    const Progress progress = print_progress(std::string(name_of(path_.kind())));
+    for (std::uint32_t frame = 0; frame < path_.frames(); ++frame) {
+      progress(static_cast<double>(frame) / path_.frames());
+      if (!is_compared(frame, kNewFrames)) {
+        ALCOVE_TRY_VOID(renderer->draw(request(setup_.occlusion, frame)));
+        continue;
+      }
+      ALCOVE_TRY(auto images, renderer->draw_and_read(request(setup_.occlusion, frame)));
+      seen[frame] = rendered(frame, images);
+      if (!is_compared(frame)) continue;
+      const Reprojection last = reprojection(seen, frame, 1);
+      speed += measure_speed(last);
+      change += visibility_change(seen[frame].visibility, seen[frame - 1].visibility, last);
+      // In view in each of the last kNewFrames frames, and not in the frame before them.
+      Mask uncovered = surfaces_where(seen[frame], [](const glm::vec3&) { return true; });
+      for (std::uint32_t ago = 1; ago <= kNewFrames; ++ago) {
+        const Reprojection then = reprojection(seen, frame, ago);
+        for (std::size_t i = 0; i < uncovered.pixels.size(); ++i)
+          if ((then.texels.pixels[i] != 0) != (ago < kNewFrames)) uncovered.pixels[i] = 0;
+      }
+      compared.push_back({frame, std::move(images), std::move(uncovered)});
+    }
+    progress(1.0);
     OcclusionSettings no_history = setup_.occlusion;
     no_history.history_frames = 0;
-    ALCOVE_TRY_VOID(render_path(no_history, [&](const ComparedFrame&, const RunningMean& changed,
-                                                const Reprojection&) { unfiltered += changed; }));
+    for (const PathFrame& now : compared) {
+      ALCOVE_TRY_VOID(compare(now, seen[now.frame], report));
+      ALCOVE_TRY(const auto before, renderer->draw_and_read(request(no_history, now.frame - 1)));
+      ALCOVE_TRY(const auto after, renderer->draw_and_read(request(no_history, now.frame)));
+      unfiltered +=
+          visibility_change(after.visibility, before.visibility, reprojection(seen, now.frame, 1));
+    }
     report.speed = speed.mean();
     report.flicker = {change.mean(), unfiltered.mean()};
-    for (const ComparedFrame& frame : compared) ALCOVE_TRY_VOID(compare(frame, report));
     for (std::size_t i = 0; i < report.errors.size(); ++i)
       report.errors[i] = {moving_[i].count, moving_[i].root(), static_[i].root()};
     return report;
   }
 
  private:
-  std::uint32_t first_converged() const { return path_.frames() / kCompared; }
-  bool is_compared(std::uint32_t frame) const {
-    for (std::uint32_t i = 1; i <= kCompared; ++i)
-      if (frame + 1 == i * path_.frames() / kCompared) return true;
+  // Whether this frame, or one of the `later` frames after it, is compared with the truth.
+  bool is_compared(std::uint32_t frame, std::uint32_t later = 0) const {
+    for (std::uint32_t i = 1; i <= kCompared; ++i) {
+      const std::uint32_t end = i * path_.frames() / kCompared;
+      if (frame < end && frame + 1 + later >= end) return true;
+    }
     return false;
   }
 
@@ -95,38 +116,18 @@ class MotionRun {
     return request;
   }
 
-  // Called for each frame but the first with its change of visibility since the frame before.
-  using Visit = std::function<void(const ComparedFrame& now, const RunningMean& changed,
-                                   const Reprojection& reprojection)>;
+  RenderedFrame rendered(std::uint32_t frame, const FrameImages& images) const {
+    const Camera camera = path_.camera(frame);
+    return {camera, linear_depth(camera, images.depth_ndc), images.normal_ws, images.visibility};
+  }
 
-  // Draws the frames of the path. The frames before the first measured one are drawn only if there
-  // is a history to fill.
-  Result<void> render_path(const OcclusionSettings& settings, const Visit& visit) {
-    const bool history = settings.history_frames > 0;
-    const Progress progress =
-        print_progress(std::string(name_of(path_.kind())) + (history ? "" : " without history"));
-    const std::uint32_t first = history ? 0 : first_converged() - 1;
-    ALCOVE_TRY(const auto renderer, create_renderer());
-    std::optional<ComparedFrame> last;
-    for (std::uint32_t frame = first; frame < path_.frames(); ++frame) {
-      ALCOVE_TRY(auto images, renderer->draw_and_read(request(settings, frame)));
-      const Camera camera = path_.camera(frame);
-      RenderedFrame seen{camera, linear_depth(camera, images.depth_ndc), images.normal_ws,
-                         images.visibility};
-      ComparedFrame now{frame, std::move(images), std::move(seen), {}};
-      now.ages = first_ages(now.seen);
-      if (last) {
-        const Reprojection reprojection = reproject(
-            now.seen, last->seen,
-            [&](const glm::vec3& position) { return path_.position_before(position, frame); });
-        now.ages = next_ages(now.seen, reprojection, last->ages);
-        visit(now, visibility_change(now.seen.visibility, last->seen.visibility, reprojection),
-              reprojection);
-      }
-      last = std::move(now);
-      progress(static_cast<double>(frame + 1 - first) / (path_.frames() - first));
-    }
-    return {};
+  // Where the surfaces of a frame were on the image `ago` frames earlier.
+  Reprojection reprojection(const std::vector<RenderedFrame>& seen, std::uint32_t frame,
+                            std::uint32_t ago) const {
+    return reproject(seen[frame], seen[frame - ago], [&](glm::vec3 position) {
+      for (std::uint32_t i = 0; i < ago; ++i) position = path_.position_before(position, frame - i);
+      return position;
+    });
   }
 
   // Draws a number of frames of the view of `frame` without motion.
@@ -146,7 +147,7 @@ class MotionRun {
   }
 
   // Adds a compared frame to the sums and to `report`.
-  Result<void> compare(const ComparedFrame& compared, MotionReport& report) {
+  Result<void> compare(const PathFrame& compared, const RenderedFrame& seen, MotionReport& report) {
     ALCOVE_TRY(auto still, draw_without_motion(compared.frame, compared.frame + 1));
     ALCOVE_TRY(auto truths, truth(compared.frame, compared.images));
     const Image<float>& true_visibility = truths.scene.visibility;
@@ -155,12 +156,9 @@ class MotionRun {
       moving_[i].add(compare_images(compared.images.visibility, true_visibility, mask));
       static_[i].add(compare_images(still.visibility, true_visibility, mask));
     };
-    Mask uncovered(truths.surfaces.width, truths.surfaces.height);
-    std::ranges::transform(compared.ages.pixels, uncovered.pixels.begin(),
-                           [](std::uint32_t age) { return age == kNewFrames ? 1 : 0; });
     add(MotionError::all, truths.surfaces);
-    add(MotionError::uncovered, uncovered);
-    add(MotionError::near_object, surfaces_where(compared.seen, [&](const glm::vec3& position) {
+    add(MotionError::uncovered, compared.uncovered);
+    add(MotionError::near_object, surfaces_where(seen, [&](const glm::vec3& position) {
           return path_.is_near_object(position, compared.frame, kTrailFrames);
         }));
     const auto degrees = [&](const FrameImages& images) {
@@ -180,13 +178,19 @@ class MotionRun {
     MotionReport report;
     const std::uint32_t cut = path_.cut().value_or(0);
     ALCOVE_TRY(const auto renderer, create_renderer());
+    // All frames with the history kept come first, because the device has one history.
+    std::vector<PathFrame> compared;
     for (std::uint32_t frame = 0; frame < path_.frames(); ++frame) {
       const std::uint32_t since = frame + 1 - std::min(cut, frame + 1);
       if (since == 0 || (since & (since - 1)) != 0) {
         ALCOVE_TRY_VOID(renderer->draw(request(setup_.occlusion, frame)));
         continue;
       }
-      ALCOVE_TRY(auto kept, renderer->draw_and_read(request(setup_.occlusion, frame)));
+      ALCOVE_TRY(auto images, renderer->draw_and_read(request(setup_.occlusion, frame)));
+      compared.push_back({frame, std::move(images), {}});
+    }
+    for (auto& [frame, kept, uncovered] : compared) {
+      const std::uint32_t since = frame + 1 - cut;
       ALCOVE_TRY(auto restarted, draw_without_motion(frame, since));
       ALCOVE_TRY(auto truths, truth(frame, kept));
       const auto rmse = [&](const FrameImages& images) {

@@ -76,7 +76,7 @@ struct CutErrors {
 
 // The results of a path. Those of a cut are `after_cut` and the pictures only.
 struct MotionReport {
-  double speed = 0;  // of surfaces on the image, pixels per frame; mean over the frames
+  double speed = 0;  // of surfaces on the image, pixels per frame
   std::array<ErrorPair, kMotionErrorNames.size()> errors;
   double bent_normal_degrees = 0;         // mean angle to the truth with motion
   double static_bent_normal_degrees = 0;  // and without
@@ -91,8 +91,8 @@ struct MotionReport {
 };
 
 // Renders a path. Unless it is a cut, three of its frames are compared with the truth: one after a
-// third of the path, one after two thirds, and the last. Flicker is measured over the last two
-// thirds.
+// third of the path, one after two thirds, and the last. Speed and flicker are measured between
+// each of them and the frame before. A path has at least 15 frames.
 [[nodiscard]] Result<MotionReport> run_motion(Gpu& gpu, const Scene& scene, const MotionPath& path,
                                               const MotionSetup& setup);
 
