@@ -16,7 +16,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool kRoughnessTexture = false;
 layout(constant_id = 1) const int kRoughnessChannel = 0;
-layout(constant_id = 2) const uint kNormalEncoding = 0;  // NormalEncoding of normal_image
+layout(constant_id = 2) const uint kNormalEncoding = 0;  // AlcoveNormalEncoding of normal_image
 layout(constant_id = 3) const bool kAreas = false;       // images are read or written in part
 
 layout(set = 0, binding = 0) uniform Parameters { GtsoParameters parameters; };

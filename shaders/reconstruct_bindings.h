@@ -19,7 +19,7 @@ layout(constant_id = 6) const bool kRoughnessTexture = false;
 layout(constant_id = 7) const int kRoughnessChannel = 0;
 layout(constant_id = 8) const bool kFresh = true;         // there is no history to read yet
 layout(constant_id = 9) const bool kVisibility = true;    // whether visibility_image is written
-layout(constant_id = 10) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 10) const uint kNormalEncoding = 0;  // an AlcoveNormalEncoding
 layout(constant_id = 11) const bool kShaped = false;      // power or intensity is not 1
 layout(constant_id = 12) const bool kReversed = false;    // raw depth is 1 at the near plane
 layout(constant_id = 13) const bool kAreas = false;  // images are read or written in part (areas.h)

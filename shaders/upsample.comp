@@ -28,7 +28,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool kPerspective = true;
 layout(constant_id = 1) const bool kVisibility = true;   // whether visibility_image is written
 layout(constant_id = 2) const bool kShaped = false;      // power or intensity is not 1
-layout(constant_id = 3) const uint kNormalEncoding = 0;  // as NormalEncoding has them
+layout(constant_id = 3) const uint kNormalEncoding = 0;  // an AlcoveNormalEncoding
 layout(constant_id = 4) const bool kReversed = false;    // raw depth is 1 at the near plane
 layout(constant_id = 5) const bool kAreas = false;  // images are read or written in part (areas.h)
 

@@ -14,8 +14,8 @@ struct LightOcclusion {
   framegraph::Texture visibility;
   framegraph::Texture bent_normal;
   framegraph::Texture specular;
-  // Whether occluders reflect light: visibility is raised as in passes::add_multi_bounce(), and the
-  // occluded part of specular light shows this reflected light instead of black.
+  // Whether occluders reflect light: visibility is raised by the polynomial of multi-bounce, and
+  // the occluded part of specular light shows this reflected light instead of black.
   bool multi_bounce = false;
 };
 

@@ -9,11 +9,11 @@ ALCOVE_MATHS_BEGIN
 // The encoding if there is no texture of normals.
 const uint kNoNormals = 4u;
 
-// Returns the normal that a texel encodes, which may have any length. `encoding` is a
-// NormalEncoding: 0 is xyz, 1 is xyz packed into [0,1], 2 is the octahedral map in xy, and 3 is the
-// octahedral map packed into [0,1]. With kNoNormals the result is 0, like that of a texel without a
-// valid normal. `encoding` is a constant in shaders, so that the branches and the load of a texel
-// that is not used cost nothing.
+// Returns the normal that a texel encodes, which may have any length. `encoding` is an
+// AlcoveNormalEncoding: 0 is xyz, 1 is xyz packed into [0,1], 2 is the octahedral map in xy, and 3
+// is the octahedral map packed into [0,1]. With kNoNormals the result is 0, like that of a texel
+// without a valid normal. `encoding` is a constant in shaders, so that the branches and the load of
+// a texel that is not used cost nothing.
 ALCOVE_INLINE vec3 decode_normal(vec3 texel, uint encoding) {
   if (encoding == kNoNormals) return vec3(0.0f);
   bool packed = encoding == 1u || encoding == 3u;

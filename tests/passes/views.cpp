@@ -18,7 +18,7 @@ AlcoveCamera view_of(const glm::dmat4& clip_from_view) {
 }
 
 // Returns a perspective projection for a right-handed view space with the camera along -Z, y down
-// on the image, depth `near_depth` at `near` and `far_depth` at `far`, which may be infinite.
+// on the image, depth 0 at `near` and 1 at `far`, which may be infinite, or reversed.
 glm::dmat4 perspective(double scale_x, double scale_y, double near, double far, bool reversed) {
   glm::dmat4 m(0.0);
   m[0][0] = scale_x;

@@ -37,7 +37,7 @@ namespace alcove::passes {
   return precision == ALCOVE_PRECISION_UNORM8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
 }
 
-// Returns the format of the raw occlusion that add_gtao() writes: two 32-bit words, or four if it
+// Returns the format of the raw occlusion that gtao.comp writes: two 32-bit words, or four if it
 // also holds a GGX lobe.
 [[nodiscard]] inline VkFormat raw_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
