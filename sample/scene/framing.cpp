@@ -200,17 +200,14 @@ Camera ViewFinder::framing_camera(double aspect) const {
       }
       // An eye that cannot go back far enough sees more by a wider angle.
       const float whole = distance_in_view(subject_ws_, back, kFovY, aspect);
-      const float distance = std::min(kInside * free, whole);
-      camera.fov_y = distance < whole ? 1.45f * kFovY : kFovY;
-      camera.eye_ws = camera.target_ws + distance * back;
+      camera.fov_y = kInside * free < whole ? 1.45f * kFovY : kFovY;
+      camera.eye_ws = camera.target_ws + std::min(kInside * free, whole) * back;
       const Picture picture = look(camera, aspect);
       fronts += inside ? 0 : picture.fronts;
       backs += inside ? 0 : picture.backs;
-      // An eye that is too near shows a large part of a subject that is cut off.
-      const float score = distance * static_cast<float>(picture.fronts);
-      if (score <= 1.25f * most) continue;
+      if (static_cast<float>(picture.fronts) <= 1.25f * most) continue;
       best = camera;
-      most = score;
+      most = static_cast<float>(picture.fronts);
     }
   }
   return best;
