@@ -1,5 +1,6 @@
 #include "render/frame_renderer.h"
 
+#include <algorithm>
 #include <ctime>
 #include <utility>
 
@@ -15,16 +16,13 @@ double processor_ms() {
 
 }  // namespace
 
-Result<void> FrameRenderer::create_target(std::size_t target) {
-  const VkFormat format = kGbufferTargets[target].format;
+Result<std::unique_ptr<GpuImage>> FrameRenderer::create_target(VkFormat format) {
   const VkImageUsageFlags attachment = format == kDepthFormat
                                            ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                            : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-  ALCOVE_TRY(targets_[target],
-             GpuImage::create(
-                 gpu_.device(), {format, framegraph::Extent::absolute(size_.width, size_.height)},
-                 attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
-  return {};
+  return GpuImage::create(
+      gpu_.device(), {format, framegraph::Extent::absolute(size_.width, size_.height)},
+      attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
 }
 
 bool FrameRenderer::is_drawn(const GbufferTarget& target, const HiddenDepths& hidden) {
@@ -41,27 +39,37 @@ void FrameRenderer::append_times(FrameCost& cost, bool occlusion) {
 
 Result<void> FrameRenderer::draw_gbuffer(const FrameRequest& request, FrameCost& cost) {
   const HiddenDepths hidden = hidden_depths_of(request.occlusion);
-  if (drawn_view_ == request.view && drawn_depths_.covers(hidden)) {
-    cost.gpu = gbuffer_times_;
+  const auto same = std::ranges::find(kept_, request.view, &Drawn::view);
+  const bool first = !kept_.front().view;
+  if (same != kept_.end())
+    current_ = static_cast<std::size_t>(same - kept_.begin());
+  else if (!first)
+    current_ = (current_ + 1) % kept_.size();
+  Drawn& drawn = kept_[current_];
+  if (same != kept_.end() && drawn.depths.covers(hidden)) {
+    cost.gpu = drawn.times;
     return {};
   }
-  for (std::size_t i = 0; i < targets_.size(); ++i)
-    if (is_drawn(kGbufferTargets[i], hidden) && !targets_[i]) ALCOVE_TRY_VOID(create_target(i));
+  for (std::size_t i = 0; i < drawn.targets.size(); ++i) {
+    if (is_drawn(kGbufferTargets[i], hidden) && !drawn.targets[i]) {
+      ALCOVE_TRY(drawn.targets[i], create_target(kGbufferTargets[i].format));
+    }
+  }
   const auto declare = [&](Graph& graph) -> Result<void> {
     Gbuffer gbuffer;
-    for (std::size_t i = 0; i < targets_.size(); ++i)
+    for (std::size_t i = 0; i < drawn.targets.size(); ++i)
       if (is_drawn(kGbufferTargets[i], hidden))
         gbuffer.*kGbufferTargets[i].texture =
-            graph.import_texture("g-buffer", targets_[i]->import_to_fill(kSampledState));
+            graph.import_texture("g-buffer", drawn.targets[i]->import_to_fill(kSampledState));
     (void)gbuffer_->add(graph, request.view, gbuffer);
     return {};
   };
   // The first drawing also compiles shaders, so that only a second one is timed.
-  for (int i = drawn_view_ ? 1 : 0; i < 2; ++i) ALCOVE_TRY_VOID(gpu_.run(declare));
+  for (int i = first ? 0 : 1; i < 2; ++i) ALCOVE_TRY_VOID(gpu_.run(declare));
   append_times(cost, false);
-  drawn_view_ = request.view;
-  drawn_depths_ = hidden;
-  gbuffer_times_ = cost.gpu;
+  drawn.view = request.view;
+  drawn.depths = hidden;
+  drawn.times = cost.gpu;
   return {};
 }
 
@@ -71,10 +79,11 @@ Result<FrameRenderer::DeclaredFrame> FrameRenderer::declare_occlusion(Graph& gra
   const std::vector<float> roughness =
       request.light != nullptr ? request.light->roughness : std::vector<float>();
   Surfaces surfaces{.normals = normals_, .motion_vectors = request.motion_vectors};
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
+  const Drawn& drawn = kept_[current_];
+  for (std::size_t i = 0; i < drawn.targets.size(); ++i) {
     if (is_drawn(kGbufferTargets[i], hidden)) {
       surfaces.gbuffer.*kGbufferTargets[i].texture =
-          graph.import_texture("g-buffer", targets_[i]->import_to_read(kSampledState));
+          graph.import_texture("g-buffer", drawn.targets[i]->import_to_read(kSampledState));
     }
   }
   if (!roughness.empty()) surfaces.roughness = roughness.front();
@@ -144,13 +153,11 @@ void FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
 }
 
 Result<std::unique_ptr<FrameRenderer>> FrameRenderer::create(Gpu& gpu, const Scene& scene,
-                                                             VkExtent2D size,
-                                                             NormalSource normals) {
-  std::unique_ptr<FrameRenderer> made(new FrameRenderer(gpu, size, normals));
+                                                             VkExtent2D size, NormalSource normals,
+                                                             std::size_t kept_views) {
+  std::unique_ptr<FrameRenderer> made(new FrameRenderer(gpu, size, normals, kept_views));
   ALCOVE_TRY(made->gbuffer_,
              GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
-  for (std::size_t i = 0; i < made->targets_.size(); ++i)
-    if (is_drawn(kGbufferTargets[i], {})) ALCOVE_TRY_VOID(made->create_target(i));
   return made;
 }
 

@@ -82,9 +82,11 @@ struct FrameImages {
 // Each is submitted separately, so that the time of the occlusion can be measured.
 class FrameRenderer {
  public:
+  // The g-buffers of the last `kept_views` views are kept for frames that show them again.
   [[nodiscard]] static Result<std::unique_ptr<FrameRenderer>> create(Gpu& gpu, const Scene& scene,
                                                                      VkExtent2D size,
-                                                                     NormalSource normals);
+                                                                     NormalSource normals,
+                                                                     std::size_t kept_views = 1);
 
   // Draws a frame without reading images back. It is used for the frames before the one whose
   // images are needed.
@@ -103,12 +105,20 @@ class FrameRenderer {
     std::vector<framegraph::Texture> specular_occlusion;
   };
 
-  FrameRenderer(Gpu& gpu, VkExtent2D size, NormalSource normals)
-      : gpu_(gpu), size_(size), normals_(normals) {}
-  Result<void> create_target(std::size_t target);
+  // A g-buffer that was drawn.
+  struct Drawn {
+    std::optional<GbufferView> view;  // null before the first drawing
+    HiddenDepths depths;              // the hidden depths that were drawn for that view
+    std::vector<PassTime> times;      // of the drawing
+    std::array<std::unique_ptr<GpuImage>, kGbufferTargets.size()> targets;
+  };
+
+  FrameRenderer(Gpu& gpu, VkExtent2D size, NormalSource normals, std::size_t kept_views)
+      : gpu_(gpu), size_(size), normals_(normals), kept_(kept_views) {}
+  Result<std::unique_ptr<GpuImage>> create_target(VkFormat format);
   // Returns whether the texture of this target is drawn for these hidden depths.
   static bool is_drawn(const GbufferTarget& target, const HiddenDepths& hidden);
-  // Draws the g-buffer, unless it was already drawn with the same view and the same previous view.
+  // Draws the g-buffer, unless one with the same view and the same previous view is kept.
   Result<void> draw_gbuffer(const FrameRequest& request, FrameCost& cost);
   Result<DeclaredFrame> declare_occlusion(framegraph::Graph& graph, const FrameRequest& request);
   // Reads back the textures of declare_occlusion() and, below, of the passes that it adds.
@@ -123,11 +133,8 @@ class FrameRenderer {
   VkExtent2D size_;
   NormalSource normals_;
   std::unique_ptr<GbufferRenderer> gbuffer_;
-  // The view that the targets were drawn with; null before the first drawing.
-  std::optional<GbufferView> drawn_view_;
-  HiddenDepths drawn_depths_;            // the hidden depths that were drawn for that view
-  std::vector<PassTime> gbuffer_times_;  // times of the last drawing of the g-buffer
-  std::array<std::unique_ptr<GpuImage>, kGbufferTargets.size()> targets_;
+  std::vector<Drawn> kept_;
+  std::size_t current_ = 0;  // the g-buffer of the last frame
   framegraph::MemoryStatistics memory_;
 };
 

@@ -90,9 +90,14 @@ Result<FrameRenderer*> SituationErrors::renderer(bool guard_band) {
   std::unique_ptr<FrameRenderer>& renderer = renderers_.at(guard_band ? 1 : 0);
   if (!renderer) {
     const std::uint32_t band = guard_band ? guard_band_pixels(setup_.height) : 0;
-    ALCOVE_TRY(renderer, FrameRenderer::create(*session_->gpu, session_->scene,
-                                               {setup_.width + 2 * band, setup_.height + 2 * band},
-                                               setup_.normals));
+    const VkExtent2D size{setup_.width + 2 * band, setup_.height + 2 * band};
+    // All choices show the same views: those of the orbit, and the static one. Their g-buffers are
+    // kept if they are small.
+    constexpr std::size_t kMostPixels = 4'000'000;
+    const std::size_t views = kMovingFrames + 1;
+    const bool kept = views * size.width * size.height <= kMostPixels;
+    ALCOVE_TRY(renderer, FrameRenderer::create(*session_->gpu, session_->scene, size,
+                                               setup_.normals, kept ? views : 1));
   }
   return renderer.get();
 }
