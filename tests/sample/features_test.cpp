@@ -112,6 +112,23 @@ TEST_F(FeaturesTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThe
   EXPECT_NE(images[1].pixels, images[3].pixels);
 }
 
+TEST_F(FeaturesTest, KeptGbuffersGiveTheImagesOfGbuffersThatAreDrawnAgain) {
+  setup_.frames = 3;
+  setup_.orbit = 0.05f;
+  std::vector<Image<float>> images;
+  for (const std::size_t kept_views : {1u, 3u}) {
+    const auto renderer = FrameRenderer::create(gpu(), scene_, {setup_.width, setup_.height},
+                                                setup_.normals, kept_views);
+    ASSERT_TRUE(renderer) << renderer.error();
+    for (int round = 0; round < 2; ++round) {
+      const auto drawn = draw_frames(**renderer, setup_, base_);
+      ASSERT_TRUE(drawn) << drawn.error();
+      images.push_back(drawn->visibility);
+    }
+  }
+  for (const Image<float>& image : images) EXPECT_EQ(image.pixels, images.front().pixels);
+}
+
 // At twice the size, the same number of steps covers twice as many pixels.
 TEST_F(FeaturesTest, ImageOfTwiceTheSizeIsNearlyTheSame) {
   StaticSetup large = setup_;
