@@ -122,7 +122,7 @@ ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bo
   constexpr uint64_t kMostTriangles = uint64_t{1} << 23;
   constexpr size_t kMostSurroundings = 4;
   if (scene.meshes.empty() || triangle_count(scene) > kMostTriangles) return;
-  if (auto rays = RayScene::create(scene, RayScene::Build::quick)) rays_ = std::move(*rays);
+  if (auto rays = RayScene::create(scene)) rays_ = std::move(*rays);
   std::vector<MeshInstance> parts = instances_of(scene.meshes);
   const auto width = [](const MeshInstance& part) { return size_of(part.bounds_ws).x; };
   std::ranges::stable_sort(parts, std::greater<>(), width);

@@ -92,18 +92,17 @@ RTCGeometry triangles_of(RTCDevice device, const Material& material, FilteredMes
   return geometry;
 }
 
-RTCScene new_tree(RTCDevice device, RayScene::Build build) {
+RTCScene new_tree(RTCDevice device) {
   RTCScene tree = rtcNewScene(device);
   rtcSetSceneFlags(tree, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(
-      tree, build == RayScene::Build::quick ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
+  rtcSetSceneBuildQuality(tree, RTC_BUILD_QUALITY_HIGH);
   return tree;
 }
 
 // One geometry of `tree` for each instance of the mesh, all with the same triangles.
 void attach_instances(RTCDevice device, RTCScene tree, RTCGeometry triangles, uint32_t mesh_index,
-                      const Mesh& mesh, RayScene::Build build, std::vector<Attached>& attached) {
-  RTCScene shared = new_tree(device, build);
+                      const Mesh& mesh, std::vector<Attached>& attached) {
+  RTCScene shared = new_tree(device);
   rtcAttachGeometryByID(shared, triangles, 0);
   rtcCommitScene(shared);
   for (uint32_t i = 0; i < mesh.instances.size(); ++i) {
@@ -155,7 +154,7 @@ RayScene::~RayScene() = default;
 
 const Scene& RayScene::scene() const { return *impl_->scene; }
 
-Result<RayScene> RayScene::create(const Scene& scene, Build build) {
+Result<RayScene> RayScene::create(const Scene& scene) {
   if (is_too_large(scene.bounds_ws)) {
     return tl::unexpected("the scene " + scene.name +
                           " reaches further than 1e12 from its origin, too far for rays to be "
@@ -166,7 +165,7 @@ Result<RayScene> RayScene::create(const Scene& scene, Build build) {
   impl.scene = &scene;
   impl.device = rtcNewDevice(nullptr);
   if (!impl.device) return tl::unexpected<std::string>("Embree, the ray tracer, cannot start");
-  impl.tree = new_tree(impl.device, build);
+  impl.tree = new_tree(impl.device);
   impl.filtered.reserve(scene.meshes.size());  // Embree keeps their addresses
   bool room = true;
   for (uint32_t m = 0; room && m < scene.meshes.size(); ++m) {
@@ -181,7 +180,7 @@ Result<RayScene> RayScene::create(const Scene& scene, Build build) {
       rtcAttachGeometryByID(impl.tree, triangles, static_cast<unsigned>(impl.attached.size()));
       impl.attached.push_back({m, 0});
     } else {
-      attach_instances(impl.device, impl.tree, triangles, m, mesh, build, impl.attached);
+      attach_instances(impl.device, impl.tree, triangles, m, mesh, impl.attached);
     }
     rtcReleaseGeometry(triangles);
   }

@@ -26,10 +26,8 @@ struct Hit {
 // may trace. The scene must outlive it.
 class RayScene {
  public:
-  enum class Build { thorough, quick };  // quick: built in less time, and slower to trace
-
   // Errors: Embree has no device or no memory; the scene extends further than 1e12 from its origin.
-  [[nodiscard]] static Result<RayScene> create(const Scene& scene, Build build = Build::thorough);
+  [[nodiscard]] static Result<RayScene> create(const Scene& scene);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
