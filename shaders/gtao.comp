@@ -57,7 +57,7 @@ RawOcclusion not_negative(RawOcclusion sum) {
 SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   Slice slice = make_slice(surface.normal, direction, surface.view);
   SearchLine search_line = make_search_line(surface, direction);
-  vec2 border = border_offsets(centre_of(surface), search_line);
+  vec2 border = border_offsets(surface, search_line);
   SliceSum sum = no_sum(surface);
   uint i = 0u;
   [[dont_unroll]] do {

@@ -19,6 +19,7 @@ layout(constant_id = 11) const bool kInfiniteFar = false;  // the far plane is i
 layout(constant_id = 12) const bool kAreas = false;        // images are read in part (areas.h)
 layout(constant_id = 13) const bool kMask = false;         // depth_image has kNoOccluder
 layout(constant_id = 14) const bool kUniform = false;      // directions have no cosine weight
+layout(constant_id = 15) const bool kHalfSearch = false;   // depth samples are of search_image
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it
@@ -40,6 +41,9 @@ layout(set = 0, binding = 6) uniform texture2D second_image;
 // Depth with sky in the place of surfaces that do not receive occlusion. Without kMask it is never
 // read, and another image is bound in its place.
 layout(set = 0, binding = 8) uniform texture2D receiver_image;
+// Every second pixel of the area of depth_image that is read, along x and y: those with the traced
+// pixels among them. Without kHalfSearch it is never read, and another image is bound in its place.
+layout(set = 0, binding = 9) uniform texture2D search_image;
 #ifdef SPECULAR
 layout(set = 0, binding = 7) uniform texture2D roughness_image;  // perceptual
 const bool kLobe = true;

@@ -2,7 +2,8 @@
 //
 // maths/slice_line.h explains the points (x w, y w, w) of a slice's plane. Here x and y are in
 // units of the radius, so that a point lies within the radius if (x w)^2 + (y w)^2 <= w^2.
-// Distances along the line, which are called offsets, are x w.
+// Distances along the line, which are called offsets, are x w. Pixels (px) are texels of the image
+// that is searched: with kHalfSearch each stands for 2x2 pixels of the depth buffer.
 //
 // Each sample is snapped to the centre of a texel, and then lies beside the line. If it lies on the
 // tangent plane of the shaded point, its depth is moved to the line along that plane, so that a
@@ -38,12 +39,16 @@ struct SearchLine {
   float y_at_zero;      // y w of a sample at the shaded pixel with inverse depth 0
 };
 
+const float kSearchScale = kHalfSearch ? 2.0 : 1.0;         // pixels of the depth buffer in a px
+const float kNearestPx = kHalfSearch ? 1.1 : kNearestStep;  // least distance of a sample
+
 SearchLine make_search_line(Surface surface, vec3 direction) {
-  SliceLine slice_line = make_slice_line(parameters.slope.xy, direction, surface.view);
+  vec2 per_px = parameters.slope.xy * kSearchScale;
+  SliceLine slice_line = make_slice_line(per_px, direction, surface.view);
   // The tangent plane is computed anew for each slice, because it would hold registers through all
   // slices.
-  TangentPlane tangent = make_tangent_plane(parameters.slope.xy, surface.normal, surface.view,
-                                            surface.depth, kPerspective);
+  TangentPlane tangent =
+      make_tangent_plane(per_px, surface.normal, surface.view, surface.depth, kPerspective);
   DepthStep depth_step = DepthStep(parameters.depth_step, parameters.depth_step_per_inverse_depth);
   float step = depth_step_at(depth_step, surface.inverse_depth);
   float per_radius = 1.0 / parameters.radius;
@@ -67,6 +72,9 @@ SearchLine make_search_line(Surface surface, vec3 direction) {
   // that may be a rounding error, and must not occlude.
   float in_front = kPerspective ? step * depth + 1.0 : step - surface.inverse_depth;
   search_line.y_at_zero = -slice_line.y_per_depth * per_radius * in_front;
+  // The image's border can move the traced pixel to one that search_image does not have.
+  ivec2 moved = (ivec2(parameters.interleave_offset) & 1) - (surface.pixel & 1);
+  if (kHalfSearch) search_line.y_at_zero += 0.5 * dot(vec2(moved), search_line.y_per_px);
   return search_line;
 }
 
@@ -82,12 +90,12 @@ SearchLine opposite(SearchLine search_line) {
 // Returns false for surfaces so far away that the radius ends before the first sample in every
 // direction. Slices need no search then.
 bool reaches_samples(Surface surface) {
-  vec2 per_px = abs(parameters.slope.xy);
+  vec2 per_px = abs(parameters.slope.xy * kSearchScale);
   // The least length of a pixel on the surface. The factor allows for the part of the sphere that
   // is nearer to the eye.
   float length_per_px =
       0.9 * min(per_px.x, per_px.y) * surface.view.z * (kPerspective ? surface.depth : 1.0);
-  return parameters.radius >= kNearestStep * length_per_px;
+  return parameters.radius >= kNearestPx * length_per_px;
 }
 
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded
@@ -100,20 +108,22 @@ struct HalfSlice {
                          // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
   vec2 border;           // offset of the image's border in this direction (x) and the other (y)
-  ivec2 texel_bias;      // the shaded pixel in depth_image, minus kRoundingBits
+  ivec2 texel_bias;      // the shaded pixel in the image that is searched, minus kRoundingBits
   float inverse_depth;   // of the shaded point
   vec2 height;           // gradient of the height over the tangent plane in the slice's plane
   float tangent_cosine;  // cosine of the tangent plane's horizon
   float slice_cosine;    // cos(gamma), Slice::cosine
 };
 
-// Offsets from `centre`, in pixels from the image's corner, to the border of the image: along the
-// line (x) and against it (y).
-vec2 border_offsets(vec2 centre, SearchLine search_line) {
+// Offsets from the surface's pixel to the border of the image that is searched: along the line (x)
+// and against it (y).
+vec2 border_offsets(Surface surface, SearchLine search_line) {
+  vec2 centre = kHalfSearch ? vec2(surface.pixel >> 1) + 0.5 : centre_of(surface);
+  vec2 size = vec2(kHalfSearch ? textureSize(search_image, 0) : size_px());
   vec2 direction = search_line.px_per_offset;
   vec2 inverse = 1.0 / mix(direction, vec2(1e-9), equal(direction, vec2(0.0)));
   vec2 low = -centre * inverse;
-  vec2 high = (vec2(size_px()) - centre) * inverse;
+  vec2 high = (size - centre) * inverse;
   vec2 along = max(low, high);
   vec2 against = min(low, high);
   return vec2(min(along.x, along.y), -max(against.x, against.y)) - 0.01 * search_line.offset_per_px;
@@ -121,7 +131,7 @@ vec2 border_offsets(vec2 centre, SearchLine search_line) {
 
 // Offset of the nearest possible sample.
 float nearest_offset(HalfSlice half_slice) {
-  return kNearestStep * half_slice.search_line.offset_per_px;
+  return kNearestPx * half_slice.search_line.offset_per_px;
 }
 
 // Samples in one iteration of the loop over samples. An iteration costs as many instructions as
@@ -198,7 +208,8 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.growth = empty ? 0.0 : reach * (1.0 / (steps * steps));
   half_slice.border = border;
   half_slice.step_offset = step_offset;
-  half_slice.texel_bias = in_inputs(surface.pixel) - kRoundingBits;
+  half_slice.texel_bias =
+      (kHalfSearch ? surface.pixel >> 1 : in_inputs(surface.pixel)) - kRoundingBits;
   half_slice.inverse_depth = surface.inverse_depth;
   return half_slice;
 }
@@ -265,8 +276,9 @@ SliceSample fetch_sample(HalfSlice half_slice, uint layer, float offset) {
   SamplePlace place = place_of(half_slice, offset);
   vec2 px = place.px;
   SliceSample found;
-  float depth_ndc = layer == 0u ? texelFetch(depth_image, place.texel, 0).r
-                                : texelFetch(second_image, place.texel, 0).r;
+  float depth_ndc = layer == 1u   ? texelFetch(second_image, place.texel, 0).r
+                    : kHalfSearch ? texelFetch(search_image, place.texel, 0).r
+                                  : texelFetch(depth_image, place.texel, 0).r;
   found.inverse_depth = sample_inverse_depth(depth_ndc);
   float y = found.inverse_depth * search_line.y_per_depth + search_line.y_at_zero;
   float y_of_texel = offset * search_line.level_rise + y;

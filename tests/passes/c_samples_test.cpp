@@ -149,10 +149,14 @@ class CSamples : public CInterface {
   }
 };
 
-TEST_F(CSamples, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
+class CTileSize : public CSamples, public testing::WithParamInterface<std::uint32_t> {};
+INSTANTIATE_TEST_SUITE_P(Samples, CTileSize, testing::Values(4u, 8u));
+
+TEST_P(CTileSize, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
   HostView from = draw_view(kSize.width, kSize.height, step(0.3, 0.6));
   request_all_outputs(from);
   from.settings.radius = 3.0f;
+  from.settings.tile_size = GetParam();
   from.settings.specular = ALCOVE_SPECULAR_TABLE;
   const TestCamera camera(from.view, kSize.width, kSize.height);
   const auto depth_at = [&](double distance) {

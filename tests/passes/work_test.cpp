@@ -201,6 +201,24 @@ TEST_F(WorkOfView, TransientsLiveFromTheDispatchThatWritesThemToTheLastThatReads
   EXPECT_EQ(made.work->dispatches[0].groups[0], 2u);
 }
 
+TEST_F(WorkOfView, LargestTilesSearchACopyOfEverySecondPixelOfDepth) {
+  const auto searched = [&](std::uint32_t tile_size) -> std::string_view {
+    settings_.tile_size = tile_size;
+    const Description made = describe();
+    EXPECT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
+    const AlcoveWorkDispatch& search = made.work->dispatches[made.work->dispatch_count - 2];
+    EXPECT_STREQ(search.label, "gtao");
+    const AlcoveWorkBinding* const image = std::ranges::find(
+        search.bindings, std::string_view("search_image"), &AlcoveWorkBinding::name);
+    return made.work->resources[image->resource].name;
+  };
+  EXPECT_EQ(searched(8), "half depth");
+  EXPECT_EQ(searched(4), "depth");
+  settings_.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  image(ALCOVE_IMAGE_BACK_DEPTH) = image(ALCOVE_IMAGE_DEPTH);
+  EXPECT_EQ(searched(8), "depth");
+}
+
 TEST_F(WorkOfView, HistoryContinuesOnlyFromAListWithTheSameHistories) {
   const Description first = describe();
   EXPECT_EQ(first.work->history_valid, 0u);

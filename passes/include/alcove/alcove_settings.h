@@ -15,7 +15,7 @@ extern "C" {
 // depth_layers to 2, and REFERENCE sets the precision FLOAT32 and the paper's estimator HORIZONS.
 //
 //              slices  steps  tile_size  history_frames  depth fetches per pixel and frame
-//   CONSOLE         1      8        8              32                                0.25
+//   CONSOLE         1     10        8              32                                0.31
 //   LOW             1      8        4              32                                1
 //   MEDIUM          2     12        4              32                                3
 //   HIGH            2     12        2              32                               12

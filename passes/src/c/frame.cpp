@@ -21,7 +21,7 @@ using passes::ViewPasses;
 namespace {
 
 // The most dispatches of a view.
-constexpr std::uint32_t kPassesOfAView = 9;
+constexpr std::uint32_t kPassesOfAView = 10;
 static_assert(ALCOVE_MAX_FRAMES_IN_FLIGHT == passes::Kernels::kMaxFramesInFlight);
 static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView + 1 <= passes::Kernels::kMaxDispatches,
               "and one that samples pixels");

@@ -98,7 +98,7 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
       [[fallthrough]];
     case ALCOVE_QUALITY_LOW:
       preset.slices = 1;
-      preset.steps = 8;
+      preset.steps = preset.half_resolution != 0 ? 10 : 8;
       break;
     case ALCOVE_QUALITY_MEDIUM:
       break;

@@ -24,7 +24,7 @@ Texture roughness_of(const ViewWork& view) {
   return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : Texture{};
 }
 
-std::array<NamedConstant, 15> constants_of(const ViewWork& view) {
+std::array<NamedConstant, 16> constants_of(const ViewWork& view, const Depths& depths) {
   const AlcoveSettings& settings = view.settings;
   const bool horizons = settings.estimator == ALCOVE_ESTIMATOR_HORIZONS;
   const bool rough = bool(roughness_of(view));
@@ -42,7 +42,8 @@ std::array<NamedConstant, 15> constants_of(const ViewWork& view) {
            {"kInfiniteFar", flag(has_infinite_far(view.projection))},
            {"kAreas", flag(view.in_part)},
            {"kMask", flag(bool(view.image(ALCOVE_IMAGE_MASK)))},
-           {"kUniform", flag(horizons && settings.weighting == ALCOVE_WEIGHTING_UNIFORM)}}};
+           {"kUniform", flag(horizons && settings.weighting == ALCOVE_WEIGHTING_UNIFORM)},
+           {"kHalfSearch", flag(bool(depths.halved))}}};
 }
 
 // Returns the invocations of the dispatch. The image is divided into strips of about 16 rows of
@@ -120,11 +121,12 @@ RawOcclusion describe_gtao(const ViewWork& view, const Depths& depths) {
       {"back_image", or_depth(needs_back_depth(view.settings), ALCOVE_IMAGE_BACK_DEPTH)},
       {"second_image", or_depth(needs_second_depth(view.settings), ALCOVE_IMAGE_SECOND_DEPTH)},
       {"receiver_image", depths.receivers},
+      {"search_image", or_else(depths.halved, depths.occluders)},
       {"roughness_image", or_else(roughness_of(view), depths.occluders)}};
   const AlcoveArea traced = traced_tiles(view);
   view.list.dispatch({.label = "gtao",
                       .shader = variant(Shader::gtao, view.bent_normal(), view.lobe()),
-                      .constants = constants_of(view),
+                      .constants = constants_of(view, depths),
                       .images = images,
                       .parameters = bytes_of(parameters_of(view, traced)),
                       .size = in_strips({traced.width, traced.height})});

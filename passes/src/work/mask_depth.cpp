@@ -1,5 +1,7 @@
+#include "alcove/passes/setting_table.h"
 #include "depth_copy_parameters.h"
 #include "work/bindings.h"
+#include "work/interleave_offset.h"
 
 namespace alcove::passes {
 
@@ -53,12 +55,35 @@ Depths describe_mask(const ViewWork& view, Texture depth) {
   return made;
 }
 
+// Of each 2x2 pixels of the area that is read, the one with the parity of the traced pixels.
+Texture describe_half(const ViewWork& view, Texture depth) {
+  const VkExtent2D size{(view.size.width + 1) / 2, (view.size.height + 1) / 2};
+  const InterleaveOffset traced = interleave_offset_of(view.settings.tile_size, view.index);
+  maths::DepthCopyParameters parameters = copy_parameters(view);
+  const maths::ivec2 parity = maths::uvec2(traced.x % 2, traced.y % 2);
+  parameters.first += parity;
+  parameters.size -= parity;
+  const Texture half = view.list.add_transient("half depth", VK_FORMAT_R32_SFLOAT, size);
+  const NamedTexture images[] = {{"depth_image", depth}, {"resolved_image", half}};
+  view.list.dispatch({.label = "halve depth",
+                      .shader = Shader::halve_depth,
+                      .images = images,
+                      .parameters = bytes_of(parameters),
+                      .size = {size.width, size.height, 1}});
+  return half;
+}
+
 }  // namespace
 
 Depths describe_depths(const ViewWork& view) {
   const Texture given = view.image(ALCOVE_IMAGE_DEPTH);
   const Texture depth = view.list.samples(given) > 1 ? describe_resolve(view) : given;
-  return view.image(ALCOVE_IMAGE_MASK) ? describe_mask(view, depth) : Depths{depth, depth, depth};
+  const AlcoveSettings& settings = view.settings;
+  Depths depths =
+      view.image(ALCOVE_IMAGE_MASK) ? describe_mask(view, depth) : Depths{depth, depth, depth};
+  if (settings.tile_size == 8 && !needs_back_depth(settings) && !needs_second_depth(settings))
+    depths.halved = describe_half(view, depths.occluders);
+  return depths;
 }
 
 }  // namespace alcove::passes

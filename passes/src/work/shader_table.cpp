@@ -10,6 +10,7 @@
 #include "spirv/gtao_bent_specular.h"
 #include "spirv/gtao_specular.h"
 #include "spirv/gtso.h"
+#include "spirv/halve_depth.h"
 #include "spirv/inspect.h"
 #include "spirv/linear_depth.h"
 #include "spirv/mask_depth.h"
@@ -58,6 +59,7 @@ constexpr ShaderSource kSources[] = {
     {"upsample_specular", kUpsampleSpecular},
     {"upsample_bent_specular", kUpsampleBentSpecular},
     {"resolve_depth", kResolveDepth},
+    {"halve_depth", kHalveDepth},
     {"mask_depth", kMaskDepth},
     {"mask_depth_integer", kMaskDepthInteger},
     {"multi_bounce", kMultiBounce},

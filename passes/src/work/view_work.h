@@ -70,6 +70,7 @@ struct Depths {
   framegraph::Texture all;        // with one sample per pixel
   framegraph::Texture receivers;  // with sky in the place of surfaces that do not receive occlusion
   framegraph::Texture occluders;  // with kNoOccluder in the place of surfaces that do not occlude
+  framegraph::Texture halved{};   // every second pixel of `occluders`, for the search; or null
 };
 [[nodiscard]] Depths describe_depths(const ViewWork& view);
 

@@ -25,13 +25,16 @@ maths::SliceNoise noise_of(Texel tile, bool moves) {
 ImageAccess depth_sample(const PassImage& image, const OcclusionSettings& settings, float radius_px,
                          std::uint32_t slice, float side, std::uint32_t step) {
   const auto tile_size = static_cast<std::int32_t>(settings.tile_size);
+  const std::int32_t scale = image.name == "half depth" ? 2 : 1;
+  radius_px /= static_cast<float>(scale);
   const auto texel = [=, slices = settings.slices,
                       steps = static_cast<float>(settings.steps)](Texel tile) {
     const maths::SliceNoise noise = noise_of(tile, tile_size > 1);
     const float angle = maths::slice_angle(slice, slices, noise.direction);
     const float part = (static_cast<float>(step) + noise.offset) / steps;
     const float px = side * (maths::kNearestStep + (radius_px - maths::kNearestStep) * part * part);
-    const Texel traced{tile.x * tile_size + tile_size / 2, tile.y * tile_size + tile_size / 4};
+    const Texel traced{(tile.x * tile_size + tile_size / 2) / scale,
+                       (tile.y * tile_size + tile_size / 4) / scale};
     return along_slice(traced, angle, px);
   };
   return {image, 1, texel};
@@ -46,8 +49,9 @@ Accesses gtao_accesses(const PassWork& work) {
   Accesses accesses;
   std::vector<const PassImage*> depths;
   for (const PassImage& image : work.images) {
+    if (image.name == "half depth") depths.clear();
     if (image.name.find("depth") != std::string::npos) depths.push_back(&image);
-    if (image.direction == Direction::read && depths.size() < 2)
+    if (image.direction == Direction::read && depths.size() < 2 && image.name != "half depth")
       accesses.push_back(at_invocation(image, tile, traced));
   }
   for (std::uint32_t slice = 0; slice < settings.slices; ++slice) {
@@ -238,6 +242,8 @@ DispatchAccesses accesses_of(const PassWork& work) {
     dispatch.accesses = upsample_accesses(work);
   } else if (work.pass == "normals") {
     dispatch.accesses = normals_accesses(work);
+  } else if (work.pass == "halve depth") {
+    dispatch.accesses = {at_invocation(work.images[0], 2), at_invocation(work.images[1])};
   } else {
     for (const PassImage& image : work.images) dispatch.accesses.push_back(at_invocation(image));
   }

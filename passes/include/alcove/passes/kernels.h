@@ -46,6 +46,7 @@ enum class Shader : std::uint8_t {
   upsample_specular,
   upsample_bent_specular,
   resolve_depth,
+  halve_depth,
   mask_depth,
   mask_depth_integer,
   multi_bounce,
@@ -73,7 +74,7 @@ struct NamedConstant {
 // function.
 class Kernels {
  public:
-  static constexpr std::uint32_t kMaxDispatches = 80;  // in a frame
+  static constexpr std::uint32_t kMaxDispatches = 88;  // in a frame
   static constexpr std::uint32_t kMaxFramesInFlight = 8;
 
   // Creates the kernels of a device. `device` must have been created with the feature
