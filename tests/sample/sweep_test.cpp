@@ -43,7 +43,7 @@ TEST(PresetSweep, SweepContainsHalfResolutionWithSeveralTileSizesAndSteps) {
           << variant.name;
     }
   }
-  EXPECT_THAT(half, testing::IsSupersetOf({std::pair(8u, 4u), std::pair(8u, 8u), std::pair(4u, 8u),
+  EXPECT_THAT(half, testing::IsSupersetOf({std::pair(8u, 4u), std::pair(8u, 10u), std::pair(4u, 8u),
                                            std::pair(2u, 10u)}));
 }
 
