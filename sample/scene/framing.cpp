@@ -77,6 +77,7 @@ Bounds bounds_without_strays(const Scene& scene, Parts parts, size_t& strays) {
       samples.push_back(middle(bounds));
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> values;
+    values.reserve(samples.size());
     for (const glm::vec3& sample : samples) values.push_back(sample[axis]);
     box.low[axis] = percentile(values, kBeyond);
     box.high[axis] = percentile(values, 1.0 - kBeyond);

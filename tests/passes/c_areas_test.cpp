@@ -41,7 +41,7 @@ struct Case {
   AlcoveQuality quality;
   void (*change)(HostView& view) = [](HostView&) {};
 };
-void PrintTo(const Case& of, std::ostream* out) { *out << of.name; }
+std::ostream& operator<<(std::ostream& out, const Case& of) { return out << of.name; }
 
 class CAreas : public CInterface, public testing::WithParamInterface<Case> {
  protected:

@@ -36,7 +36,7 @@ struct Case {
   bool area_and_mask = false;
 };
 
-void PrintTo(const Case& of, std::ostream* out) { *out << of.name; }
+std::ostream& operator<<(std::ostream& out, const Case& of) { return out << of.name; }
 
 class WorkExecution : public CInterface, public testing::WithParamInterface<Case> {
  protected:
@@ -62,7 +62,7 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
   AlcoveImage create_mask() {
     const AlcoveImage image = engine().make_image(
         VK_FORMAT_R8_UNORM, 37, 26, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    Bytes bytes(37 * 26);
+    Bytes bytes(37UL * 26);
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i % 37 / 10);
     write_bytes(image, bytes);
     return image;

@@ -17,6 +17,7 @@ tl::expected<Options, Stop> parse(const std::string& line) {
   std::istringstream text(line);
   for (std::string word; text >> word;) words.push_back(word == "''" ? "" : word);
   std::vector<const char*> arguments;
+  arguments.reserve(words.size());
   for (const std::string& word : words) arguments.push_back(word.c_str());
   return parse_options(static_cast<int>(arguments.size()), arguments.data());
 }
