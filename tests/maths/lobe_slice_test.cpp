@@ -277,6 +277,15 @@ TEST(LobeSlice, BitmaskOccludedBelowAHorizonLeavesTheLobeVisibleAboveThatHorizon
                    maths::lobe_arc(s, half, cosine)) /
                   lobe.open);
       }
+      // A run of occluded sectors, and visible ones behind it.
+      const unsigned begin = random.bits() % 31, end = begin + 1 + random.bits() % (31 - begin);
+      const auto arc = [&](unsigned sector) {
+        return maths::lobe_light_arc(half,
+                                     maths::diamond_angle_light(float(sector) / per_diamond_angle));
+      };
+      error.add((maths::visible_lobe(half, per_diamond_angle, (1u << end) - (1u << begin), 0.4f) -
+                 arc(begin) - 0.6f * (half.whole - arc(end))) /
+                lobe.open);
       EXPECT_FLOAT_EQ(maths::visible_lobe(half, per_diamond_angle, 0u, 0.4f), half.whole);
       EXPECT_LT(maths::visible_lobe(half, per_diamond_angle, ~0u, 0.4f), 2e-3f * lobe.open);
     }
