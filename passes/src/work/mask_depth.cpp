@@ -55,7 +55,8 @@ Depths describe_mask(const ViewWork& view, Texture depth) {
   return made;
 }
 
-// Of each 2x2 pixels of the area that is read, the one with the parity of the traced pixels.
+// Copies one of each 2x2 pixels of the area that is read: that with the parity of the traced
+// pixels.
 Texture describe_half(const ViewWork& view, Texture depth) {
   const VkExtent2D size{(view.size.width + 1) / 2, (view.size.height + 1) / 2};
   const InterleaveOffset traced = interleave_offset_of(view.settings.tile_size, view.index);
