@@ -13,7 +13,7 @@ layout(constant_id = 5) const bool kRoughnessTexture = false;
 layout(constant_id = 6) const int kRoughnessChannel = 0;
 layout(constant_id = 7) const bool kBackFaces = false;     // back_image tells the thickness
 layout(constant_id = 8) const bool kSecondLayer = false;   // second_image occludes too
-layout(constant_id = 9) const uint kNormalEncoding = 0;    // of AlcoveNormalEncoding
+layout(constant_id = 9) const uint kNormalEncoding = 0;    // an AlcoveNormalEncoding
 layout(constant_id = 10) const bool kReversed = false;     // raw depth is 1 at the near plane
 layout(constant_id = 11) const bool kInfiniteFar = false;  // the far plane is infinitely far away
 layout(constant_id = 12) const bool kAreas = false;        // images are read in part (areas.h)

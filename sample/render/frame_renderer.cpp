@@ -39,37 +39,37 @@ void FrameRenderer::append_times(FrameCost& cost, bool occlusion) {
 
 Result<void> FrameRenderer::draw_gbuffer(const FrameRequest& request, FrameCost& cost) {
   const HiddenDepths hidden = hidden_depths_of(request.occlusion);
-  const auto same = std::ranges::find(kept_, request.view, &Drawn::view);
-  const bool first = !kept_.front().view;
-  if (same != kept_.end())
-    current_ = static_cast<std::size_t>(same - kept_.begin());
+  const auto same = std::ranges::find(stored_, request.view, &StoredGbuffer::view);
+  const bool first = !stored_.front().view;
+  if (same != stored_.end())
+    current_ = static_cast<std::size_t>(same - stored_.begin());
   else if (!first)
-    current_ = (current_ + 1) % kept_.size();
-  Drawn& drawn = kept_[current_];
-  if (same != kept_.end() && drawn.depths.covers(hidden)) {
-    cost.gpu = drawn.times;
+    current_ = (current_ + 1) % stored_.size();
+  StoredGbuffer& stored = stored_[current_];
+  if (same != stored_.end() && stored.depths.covers(hidden)) {
+    cost.gpu = stored.times;
     return {};
   }
-  for (std::size_t i = 0; i < drawn.targets.size(); ++i) {
-    if (is_drawn(kGbufferTargets[i], hidden) && !drawn.targets[i]) {
-      ALCOVE_TRY(drawn.targets[i], create_target(kGbufferTargets[i].format));
+  for (std::size_t i = 0; i < stored.targets.size(); ++i) {
+    if (is_drawn(kGbufferTargets[i], hidden) && !stored.targets[i]) {
+      ALCOVE_TRY(stored.targets[i], create_target(kGbufferTargets[i].format));
     }
   }
   const auto declare = [&](Graph& graph) -> Result<void> {
     Gbuffer gbuffer;
-    for (std::size_t i = 0; i < drawn.targets.size(); ++i)
+    for (std::size_t i = 0; i < stored.targets.size(); ++i)
       if (is_drawn(kGbufferTargets[i], hidden))
         gbuffer.*kGbufferTargets[i].texture =
-            graph.import_texture("g-buffer", drawn.targets[i]->import_to_fill(kSampledState));
+            graph.import_texture("g-buffer", stored.targets[i]->import_to_fill(kSampledState));
     (void)gbuffer_->add(graph, request.view, gbuffer);
     return {};
   };
   // The first drawing also compiles shaders, so that only a second one is timed.
   for (int i = first ? 0 : 1; i < 2; ++i) ALCOVE_TRY_VOID(gpu_.run(declare));
   append_times(cost, false);
-  drawn.view = request.view;
-  drawn.depths = hidden;
-  drawn.times = cost.gpu;
+  stored.view = request.view;
+  stored.depths = hidden;
+  stored.times = cost.gpu;
   return {};
 }
 
@@ -79,11 +79,11 @@ Result<FrameRenderer::DeclaredFrame> FrameRenderer::declare_occlusion(Graph& gra
   const std::vector<float> roughness =
       request.light != nullptr ? request.light->roughness : std::vector<float>();
   Surfaces surfaces{.normals = normals_, .motion_vectors = request.motion_vectors};
-  const Drawn& drawn = kept_[current_];
-  for (std::size_t i = 0; i < drawn.targets.size(); ++i) {
+  const StoredGbuffer& stored = stored_[current_];
+  for (std::size_t i = 0; i < stored.targets.size(); ++i) {
     if (is_drawn(kGbufferTargets[i], hidden)) {
       surfaces.gbuffer.*kGbufferTargets[i].texture =
-          graph.import_texture("g-buffer", drawn.targets[i]->import_to_read(kSampledState));
+          graph.import_texture("g-buffer", stored.targets[i]->import_to_read(kSampledState));
     }
   }
   if (!roughness.empty()) surfaces.roughness = roughness.front();

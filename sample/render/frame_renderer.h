@@ -105,8 +105,8 @@ class FrameRenderer {
     std::vector<framegraph::Texture> specular_occlusion;
   };
 
-  // A g-buffer that was drawn.
-  struct Drawn {
+  // A g-buffer and the view that it shows.
+  struct StoredGbuffer {
     std::optional<GbufferView> view;  // null before the first drawing
     HiddenDepths depths;              // the hidden depths that were drawn for that view
     std::vector<PassTime> times;      // of the drawing
@@ -114,7 +114,7 @@ class FrameRenderer {
   };
 
   FrameRenderer(Gpu& gpu, VkExtent2D size, NormalSource normals, std::size_t kept_views)
-      : gpu_(gpu), size_(size), normals_(normals), kept_(kept_views) {}
+      : gpu_(gpu), size_(size), normals_(normals), stored_(kept_views) {}
   Result<std::unique_ptr<GpuImage>> create_target(VkFormat format);
   // Returns whether the texture of this target is drawn for these hidden depths.
   static bool is_drawn(const GbufferTarget& target, const HiddenDepths& hidden);
@@ -133,7 +133,7 @@ class FrameRenderer {
   VkExtent2D size_;
   NormalSource normals_;
   std::unique_ptr<GbufferRenderer> gbuffer_;
-  std::vector<Drawn> kept_;
+  std::vector<StoredGbuffer> stored_;
   std::size_t current_ = 0;  // the g-buffer of the last frame
   framegraph::MemoryStatistics memory_;
 };

@@ -187,8 +187,11 @@ Camera ViewFinder::framing_camera(double aspect) const {
   camera.fit_planes = true;
   size_t fronts = 0, backs = 0;  // seen from outside
   for (const bool inside : {false, true}) {
-    // The eye is in a room if those outside see backs of walls, and if it sees fronts there.
-    if (inside && (!skies_.empty() || backs <= 2 * fronts)) break;
+    // The eye is in a room if those outside see backs of walls, and if it sees fronts there. A flat
+    // subject has no inside.
+    const glm::vec3 size = size_of(subject_ws_);
+    const bool flat = std::min({size.x, size.y, size.z}) <= 0.005f * std::max(size.x, size.z);
+    if (inside && (flat || !skies_.empty() || backs <= 2 * fronts)) break;
     float most = inside ? 0.0f : -1.0f;
     for (const glm::vec3& side : kSides) {
       const glm::vec3 back = glm::normalize(inside ? side * size_of(subject_ws_) : side);

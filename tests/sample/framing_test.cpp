@@ -243,6 +243,11 @@ TEST(ViewAdvice, NamesARemedyIfTheViewShowsFewSurfaces) {
               testing::HasSubstr("back faces, which are not drawn: draw them by --both-sides"));
 }
 
+TEST(FirstPicture, PlaneThatFacesDownIsSeenFromAboveAndNotAsARoom) {
+  const Scene plane = scene_of({quad({-5, 0, 5}, {-5, 0, -5}, {5, 0, -5}, {5, 0, 5})});
+  EXPECT_GT(ViewFinder(plane).framing_camera(kAspect).eye_ws.y, 1.0f);
+}
+
 TEST(FirstPicture, SceneOfManyTrianglesIsFramedByItsBox) {
   Scene scene = scene_of({ball(0.4f, false)});
   for (int i = 0; i < 200'000; ++i) {
