@@ -51,6 +51,14 @@ class HostBuffer {
 struct PassTime {
   std::string pass;
   double milliseconds;
+  bool of_view = false;  // in the window: the pass belongs to the view with the chosen settings
+};
+
+// Some passes of a frame, which were declared one after the other: see PassBuilder::index().
+struct PassRange {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+  bool contains(std::uint32_t pass) const { return begin <= pass && pass < end; }
 };
 
 // A render graph with its executor and kernels. The sample and the tests run their frames with it.

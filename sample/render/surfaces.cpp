@@ -55,19 +55,23 @@ Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& vi
   }
   if (multi_bounce) {
     textures[ALCOVE_IMAGE_ALBEDO] = gbuffer.albedo;
-    const VkFormat format = settings.precision == ALCOVE_PRECISION_UNORM8 ? VK_FORMAT_R8G8B8A8_UNORM
-                            : settings.precision == ALCOVE_PRECISION_FLOAT16
-                                ? VK_FORMAT_R16G16B16A16_SFLOAT
-                                : VK_FORMAT_R32G32B32A32_SFLOAT;
+    const VkFormat format = passes::output_format(ALCOVE_IMAGE_MULTI_BOUNCE, settings.precision);
     textures[ALCOVE_IMAGE_MULTI_BOUNCE] =
         graph.create_texture("multi-bounce", {format, extent_of(graph, gbuffer.depth)});
   }
   const auto message = [](const passes::Error& error) { return error.message; };
+  const auto pass_count = [&] {
+    return static_cast<std::uint32_t>(graph.description().passes.size());
+  };
+  const std::uint32_t first_pass = pass_count();
   ALCOVE_TRY_VOID(
       add_occlusion(graph, gpu.kernels(), view, index, settings, textures).map_error(message));
-  Occlusion result{textures[ALCOVE_IMAGE_VISIBILITY], textures[ALCOVE_IMAGE_BENT_NORMAL],
-                   textures[ALCOVE_IMAGE_SPECULAR], textures[ALCOVE_IMAGE_MULTI_BOUNCE],
-                   gbuffer.normal};
+  Occlusion result{textures[ALCOVE_IMAGE_VISIBILITY],
+                   textures[ALCOVE_IMAGE_BENT_NORMAL],
+                   textures[ALCOVE_IMAGE_SPECULAR],
+                   textures[ALCOVE_IMAGE_MULTI_BOUNCE],
+                   gbuffer.normal,
+                   {first_pass, pass_count()}};
   if (!has_normals) {
     ALCOVE_TRY(
         const auto made,

@@ -43,6 +43,7 @@ struct Occlusion {
   framegraph::Texture specular;
   framegraph::Texture multi_bounce;
   framegraph::Texture normals;  // those that the passes used
+  PassRange passes;             // of the view
 };
 
 // Adds the occlusion passes. The roughness of the surfaces replaces that of the settings.

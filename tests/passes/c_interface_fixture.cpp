@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "alcove/passes/setting_table.h"
+
 namespace alcove::passes {
 namespace {
 
@@ -233,16 +235,17 @@ AlcoveView CInterface::create_view(const HostView& from) {
                            .depth_format = from.depth_format,
                            .normals_in_view_space = from.normals_in_view_space ? 1u : 0u}};
   for (const Input& each : kInputs) view.images[each.role] = input(from.*each.texels);
-  const bool bytes = from.settings.precision == ALCOVE_PRECISION_UNORM8;
-  const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
-  const VkFormat direction = bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
-  const auto request = [&](bool wanted, AlcoveImageRole role, VkFormat format) {
-    if (wanted) view.images[role] = output(format, from.depth_ndc.width, from.depth_ndc.height);
+  const auto request = [&](bool wanted, AlcoveImageRole role, AlcovePrecision precision) {
+    if (wanted) {
+      view.images[role] =
+          output(output_format(role, precision), from.depth_ndc.width, from.depth_ndc.height);
+    }
   };
-  request(from.settings.visibility, ALCOVE_IMAGE_VISIBILITY, scalar);
-  request(from.settings.bent_normal, ALCOVE_IMAGE_BENT_NORMAL, direction);
-  request(from.settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR, scalar);
-  request(from.multi_bounce, ALCOVE_IMAGE_MULTI_BOUNCE, VK_FORMAT_R32G32B32A32_SFLOAT);
+  const auto& settings = from.settings;
+  request(settings.visibility, ALCOVE_IMAGE_VISIBILITY, settings.precision);
+  request(settings.bent_normal, ALCOVE_IMAGE_BENT_NORMAL, settings.precision);
+  request(settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR, settings.precision);
+  request(from.multi_bounce, ALCOVE_IMAGE_MULTI_BOUNCE, ALCOVE_PRECISION_FLOAT32);
   return view;
 }
 

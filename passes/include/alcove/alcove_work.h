@@ -1,9 +1,8 @@
 // The work of a view as data, for engines that schedule compute passes themselves: with a render
 // graph of their own, or on another API than Vulkan. alcoveDescribeWork turns settings, cameras,
 // sizes and formats into a list of resources and dispatches. It is a pure function: it needs no
-// context and no device, and keeps no state. Its first call in a process allocates memory for the
-// interfaces of the shaders; later calls allocate only if they fail. This header needs no header of
-// Vulkan. passes/ENGINES.md shows how engines execute the list.
+// context and no device, keeps no state, and allocates memory only if it fails. This header needs
+// no header of Vulkan. passes/ENGINES.md shows how engines execute the list.
 //
 //   Each frame: alcoveDescribeWork with the list of the last frame that was executed.
 //               For each transient, a texture that is used from first_dispatch to last_dispatch.
@@ -204,7 +203,8 @@ typedef struct AlcoveShader {
 } AlcoveShader;
 
 // Fills `shader` with the SPIR-V of a shader, by the name that AlcoveWorkDispatch::shader has.
-// `cmake --install` also writes it to share/alcove/shaders, with the interfaces of all shaders.
+// `cmake --install` also writes it to share/alcove/shaders, with its debug names and with the
+// interfaces of all shaders.
 AlcoveResult alcoveGetShader(const char* name, AlcoveShader* shader);
 
 #ifdef __cplusplus

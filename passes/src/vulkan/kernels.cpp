@@ -116,7 +116,7 @@ tl::expected<void, Error> Kernels::State::create_sampler() {
 }
 
 tl::expected<void, Error> Kernels::State::create_layout(std::size_t shader) {
-  const std::vector<ShaderBinding>& bindings = interface_of(shader).bindings;
+  const std::span<const ShaderBinding> bindings = interface_of(shader).bindings;
   std::array<VkDescriptorSetLayoutBinding, kMaxBindings> described{};
   for (std::size_t i = 0; i < bindings.size(); ++i) {
     const bool samples = bindings[i].type == VK_DESCRIPTOR_TYPE_SAMPLER;

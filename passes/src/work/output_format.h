@@ -1,41 +1,11 @@
-// The formats of results for each precision.
+// The formats of intermediate results.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
 
-#include "alcove/alcove_settings.h"
-
 namespace alcove::passes {
-
-[[nodiscard]] inline VkFormat scalar_format(AlcovePrecision precision) {
-  switch (precision) {
-    case ALCOVE_PRECISION_UNORM8:
-      return VK_FORMAT_R8_UNORM;
-    case ALCOVE_PRECISION_FLOAT16:
-      return VK_FORMAT_R16_SFLOAT;
-    default:
-      return VK_FORMAT_R32_SFLOAT;
-  }
-}
-
-// Returns the format of colours from 0 to 1.
-[[nodiscard]] inline VkFormat colour_format(AlcovePrecision precision) {
-  switch (precision) {
-    case ALCOVE_PRECISION_UNORM8:
-      return VK_FORMAT_R8G8B8A8_UNORM;
-    case ALCOVE_PRECISION_FLOAT16:
-      return VK_FORMAT_R16G16B16A16_SFLOAT;
-    default:
-      return VK_FORMAT_R32G32B32A32_SFLOAT;
-  }
-}
-
-// Returns the format of unit vectors.
-[[nodiscard]] inline VkFormat direction_format(AlcovePrecision precision) {
-  return precision == ALCOVE_PRECISION_UNORM8 ? VK_FORMAT_R8G8B8A8_SNORM : colour_format(precision);
-}
 
 // Returns the format of the raw occlusion that gtao.comp writes: two 32-bit words, or four if it
 // also holds a GGX lobe.

@@ -72,11 +72,13 @@ Textures add_textures(const ViewWork& view) {
   Textures textures;
   if (view.visibility()) {
     textures.results.visibility =
-        image_or_transient(view, ALCOVE_IMAGE_VISIBILITY, "visibility", scalar_format(precision));
+        image_or_transient(view, ALCOVE_IMAGE_VISIBILITY, "visibility",
+                           output_format(ALCOVE_IMAGE_VISIBILITY, precision));
   }
   if (view.bent_normal()) {
-    textures.results.bent_normal = image_or_transient(view, ALCOVE_IMAGE_BENT_NORMAL, "bent normal",
-                                                      direction_format(precision));
+    textures.results.bent_normal =
+        image_or_transient(view, ALCOVE_IMAGE_BENT_NORMAL, "bent normal",
+                           output_format(ALCOVE_IMAGE_BENT_NORMAL, precision));
   }
   if (view.lobe()) textures.results.specular = view.image(ALCOVE_IMAGE_SPECULAR);
   textures.valid = has_history(view);
@@ -110,30 +112,31 @@ std::array<NamedTexture, 18> images_of(const ViewWork& view, Texture depth, cons
   const Results& out = textures.results;  // at half resolution the upsampling pass writes it
   // At half resolution only the weights of GGX lobes need normals.
   const Texture normals = half && !view.lobe() ? Texture{} : view.image(ALCOVE_IMAGE_NORMALS);
+  const VkFormat visibility_format =
+      output_format(ALCOVE_IMAGE_VISIBILITY, view.settings.precision);
   const auto unused = [&](bool bound, Texture texture, VkFormat format) {
     return bound ? or_unused(view, texture, format) : texture;
   };
-  return {
-      {{"raw_image", raw.sums},
-       {"bent_image", raw.bent},
-       {"depth_image", depth},
-       {"normal_image", or_else(normals, depth)},
-       {"half_image", textures.texels.current},
-       {"half_depth_image", textures.depth.current},
-       {"visibility_image", unused(!half, out.visibility, scalar_format(view.settings.precision))},
-       {"bent_normal_image", out.bent_normal},
-       {"history_image", or_else(textures.texels.previous, depth)},
-       {"history_depth_image", or_else(textures.depth.previous, depth)},
-       {"next_history_image", unused(!half, textures.texels.current, kHistoryFormat)},
-       {"motion_image", or_else(motion, depth)},
-       {"bent_history_image", or_else(textures.bent.previous, depth)},
-       {"next_bent_history_image",
-        unused(view.bent_normal(), textures.bent.current, kBentHistoryFormat)},
-       {"roughness_image", or_else(roughness_of(view), depth)},
-       {"specular_image", out.specular},
-       {"lobe_history_image", or_else(textures.lobe.previous, raw.sums)},
-       {"next_lobe_history_image",
-        unused(view.lobe(), textures.lobe.current, kLobeHistoryFormat)}}};
+  return {{{"raw_image", raw.sums},
+           {"bent_image", raw.bent},
+           {"depth_image", depth},
+           {"normal_image", or_else(normals, depth)},
+           {"half_image", textures.texels.current},
+           {"half_depth_image", textures.depth.current},
+           {"visibility_image", unused(!half, out.visibility, visibility_format)},
+           {"bent_normal_image", out.bent_normal},
+           {"history_image", or_else(textures.texels.previous, depth)},
+           {"history_depth_image", or_else(textures.depth.previous, depth)},
+           {"next_history_image", unused(!half, textures.texels.current, kHistoryFormat)},
+           {"motion_image", or_else(motion, depth)},
+           {"bent_history_image", or_else(textures.bent.previous, depth)},
+           {"next_bent_history_image",
+            unused(view.bent_normal(), textures.bent.current, kBentHistoryFormat)},
+           {"roughness_image", or_else(roughness_of(view), depth)},
+           {"specular_image", out.specular},
+           {"lobe_history_image", or_else(textures.lobe.previous, raw.sums)},
+           {"next_lobe_history_image",
+            unused(view.lobe(), textures.lobe.current, kLobeHistoryFormat)}}};
 }
 
 // Returns the invocations of the shader.

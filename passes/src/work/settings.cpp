@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <locale>
+#include <sstream>
+#include <string>
 #include <cmath>
 #include <iterator>
 
@@ -199,6 +202,22 @@ std::string allowed_text(const SettingInfo& info) {
   return all;
 }
 
+// Reads a number in the C locale's notation. Returns whether it is the whole text.
+template <class Number>
+bool read_number(std::string_view text, Number& number) {
+#if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 200000  // has no std::from_chars for float
+  if constexpr (std::is_floating_point_v<Number>) {
+    std::istringstream in{std::string(text)};
+    in.imbue(std::locale::classic());
+    return in >> std::noskipws >> number && in.peek() == std::istringstream::traits_type::eof();
+  } else
+#endif
+  {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size();
+  }
+}
+
 tl::expected<void, Error> parse_setting(AlcoveSettings& settings, std::string_view name,
                                         std::string_view value) {
   const auto* const info = std::ranges::find(kTable, name, &SettingInfo::name);
@@ -206,9 +225,9 @@ tl::expected<void, Error> parse_setting(AlcoveSettings& settings, std::string_vi
     return tl::unexpected(Error{"There is no setting '" + std::string(name) + "'."});
   AlcoveSettings changed = settings;
   const auto parse = [&](auto number) {
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+    const bool whole = read_number(value, number);
     set_setting(changed, *info, number);
-    return error == std::errc() && end == value.data() + value.size();
+    return whole;
   };
   bool good = false;
   if (info->kind == Kind::choice) {

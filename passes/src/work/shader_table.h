@@ -16,6 +16,7 @@ namespace alcove::passes {
 struct ShaderSource {
   std::string_view name = {};           // a literal
   std::span<const std::uint32_t> code;  // words of the SPIR-V module
+  ShaderInterface interface;
   // Contents of the shader's storage buffer. Empty if the shader has none.
   std::span<const std::uint32_t> table = {};
 };
@@ -25,7 +26,6 @@ struct ShaderSource {
 // Returns the shader of a name, or Shader::count.
 [[nodiscard]] Shader shader_of_name(std::string_view name);
 
-// Returns the interface of a shader. The first call reads those of all shaders, and allocates.
 [[nodiscard]] const ShaderInterface& shader_interface(Shader shader);
 
 // Returns the element of `given` whose name is `name`, or null. Looks at the index `expected`

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "alcove/passes/setting_table.h"
 #include "maths/half_texel.h"
 #include "upsample_parameters.h"
 #include "work/bindings.h"
@@ -59,7 +60,8 @@ void describe_upsample(const ViewWork& view, Texture depth, const HalfTexels& te
       {"normal_image", or_else(normals, depth)},
       {"residual_image", texels.residuals},
       {"visibility_image",
-       or_unused(view, results.visibility, scalar_format(view.settings.precision))},
+       or_unused(view, results.visibility,
+                 output_format(ALCOVE_IMAGE_VISIBILITY, view.settings.precision))},
       {"bent_normal_image", results.bent_normal},
       {"lobe_image", texels.lobes},
       {"specular_image", results.specular}};

@@ -146,7 +146,7 @@ tl::expected<void, Error> WorkList::add_dispatch(const DispatchInfo& info) {
 bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding, Texture given,
                     std::span<const std::uint32_t> table) {
   AlcoveWorkBinding& bound = dispatch.bindings[dispatch.binding_count++];
-  bound = {.name = binding.name.empty() ? "" : binding.name.data(),
+  bound = {.name = binding.name.data(),
            .number = binding.number,
            .type = binding_type(binding.type),
            .access = binding.access,

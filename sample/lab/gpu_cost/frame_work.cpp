@@ -53,12 +53,12 @@ AlcoveWorkInfo work_info(const CostInputs& inputs) {
   add(inputs.motion, ALCOVE_IMAGE_MOTION, VK_FORMAT_R16G16_SFLOAT);
   add(passes::needs_back_depth(settings), ALCOVE_IMAGE_BACK_DEPTH, VK_FORMAT_D32_SFLOAT);
   add(passes::needs_second_depth(settings), ALCOVE_IMAGE_SECOND_DEPTH, VK_FORMAT_D32_SFLOAT);
-  const bool bytes = settings.precision == ALCOVE_PRECISION_UNORM8;
-  const VkFormat scalar = bytes ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT;
-  add(settings.visibility, ALCOVE_IMAGE_VISIBILITY, scalar);
-  add(settings.bent_normal, ALCOVE_IMAGE_BENT_NORMAL,
-      bytes ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R32G32B32A32_SFLOAT);
-  add(settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR, scalar);
+  const auto add_output = [&](bool wanted, AlcoveImageRole role) {
+    add(wanted, role, passes::output_format(role, settings.precision));
+  };
+  add_output(settings.visibility, ALCOVE_IMAGE_VISIBILITY);
+  add_output(settings.bent_normal, ALCOVE_IMAGE_BENT_NORMAL);
+  add_output(settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR);
   return info;
 }
 
@@ -70,6 +70,8 @@ std::uint32_t texel_bytes(const AlcoveWorkResource& resource) {
                                         (std::uint64_t{resource.width} * resource.height));
     case VK_FORMAT_R8_UNORM:
       return 1;
+    case VK_FORMAT_R16_SFLOAT:
+      return 2;
     case VK_FORMAT_R16G16B16A16_SFLOAT:
       return 8;
     case VK_FORMAT_R32G32B32A32_SFLOAT:
