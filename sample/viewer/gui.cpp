@@ -50,6 +50,7 @@ Result<std::unique_ptr<Gui>> Gui::create(Gpu& gpu, Window& window, VkFormat form
   }
   if (!made->on_window_ || !made->on_device_)
     return device_failure("create what the panel is drawn with", result);
+#if IMGUI_VERSION_NUM < 19000  // later versions upload the font by themselves
   auto uploaded = gpu.run([](Graph& graph) -> Result<void> {
     auto pass = graph.add_pass("upload");
     pass.side_effect();  // on an image of ImGui's own, which synchronises it
@@ -59,6 +60,7 @@ Result<std::unique_ptr<Gui>> Gui::create(Gpu& gpu, Window& window, VkFormat form
   });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
   ALCOVE_TRY_VOID(uploaded);
+#endif
   return made;
 }
 

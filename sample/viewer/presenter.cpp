@@ -153,7 +153,8 @@ Result<bool> Presenter::prepare() {
   ALCOVE_TRY_VOID(gpu_.wait(slot_));
   timings_.clear();
   for (const framegraph::PassTiming& timing : gpu_.timings(slot_))
-    timings_.push_back({std::string(timing.name), timing.milliseconds});
+    timings_.push_back(
+        {std::string(timing.name), timing.milliseconds, view_passes_[slot_].contains(timing.pass)});
   const VkResult result = vkAcquireNextImageKHR(gpu_.device().device(), swapchain_, UINT64_MAX,
                                                 arrived_[slot_], VK_NULL_HANDLE, &current_);
   acquired_ = result == VK_SUCCESS || result == VK_SUBOPTIMAL_KHR;
@@ -173,7 +174,10 @@ Result<framegraph::FrameReport> Presenter::draw(const Declare& declare) {
   const framegraph::QueueSemaphore arrived{.semaphore = arrived_[slot_], .stages = kArrivalStage};
   const framegraph::QueueSemaphore drawn{.semaphore = drawn_[current_]};
   auto report = gpu_.submit(
-      [&](Graph& graph) { return declare(graph, graph.import_texture("window", import)); },
+      [&](Graph& graph) -> Result<void> {
+        ALCOVE_TRY(view_passes_[slot_], declare(graph, graph.import_texture("window", import)));
+        return {};
+      },
       {.slot = slot_, .waits = {&arrived, 1}, .signals = {&drawn, 1}});
   if (!report) return report;
   slot_ = (slot_ + 1) % gpu_.frames_in_flight();

@@ -28,9 +28,10 @@ class Presenter {
   VkExtent2D size() const { return size_; }
   VkFormat format() const { return format_; }
 
-  // Declares, submits and presents a frame that draws all of `target`. Call it after prepare().
-  // After an error of `declare` or of the graph, another frame may be drawn.
-  using Declare = std::function<Result<void>(framegraph::Graph&, framegraph::Texture target)>;
+  // Declares, submits and presents a frame that draws all of `target`. `declare` returns the passes
+  // that PassTime::of_view marks. Call it after prepare(). After an error of `declare` or of the
+  // graph, another frame may be drawn.
+  using Declare = std::function<Result<PassRange>(framegraph::Graph&, framegraph::Texture target)>;
   [[nodiscard]] Result<framegraph::FrameReport> draw(const Declare& declare);
   // Returns the times of the last frame that the device has finished.
   const std::vector<PassTime>& timings() const { return timings_; }
@@ -39,7 +40,8 @@ class Presenter {
   void wait() const;
 
  private:
-  Presenter(Gpu& gpu, const Window& window) : gpu_(gpu), window_(window) {}
+  Presenter(Gpu& gpu, const Window& window)
+      : gpu_(gpu), window_(window), view_passes_(gpu.frames_in_flight()) {}
   // Creates the images of a window of its current size. Errors: the device cannot present to the
   // surface, or the surface has no 8-bit format without conversion.
   Result<void> create_swapchain();
@@ -57,11 +59,12 @@ class Presenter {
   std::vector<VkSemaphore> arrived_;  // by frame slot
   // By image, because only presentation tells when the semaphore is free again.
   std::vector<VkSemaphore> drawn_;
-  std::uint32_t current_ = 0;  // index of the acquired image
-  VkExtent2D window_size_{};   // the size that the swapchain was made for
-  std::uint32_t slot_ = 0;     // slot of the next frame
-  bool acquired_ = false;      // the swapchain has an image for it
-  bool outdated_ = false;      // the swapchain no longer suits the window
+  std::uint32_t current_ = 0;           // index of the acquired image
+  VkExtent2D window_size_{};            // the size that the swapchain was made for
+  std::uint32_t slot_ = 0;              // slot of the next frame
+  bool acquired_ = false;               // the swapchain has an image for it
+  bool outdated_ = false;               // the swapchain no longer suits the window
+  std::vector<PassRange> view_passes_;  // by frame slot
   std::vector<PassTime> timings_;
 };
 

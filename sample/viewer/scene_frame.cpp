@@ -145,6 +145,7 @@ Result<Texture> SceneFrame::add_picture(Graph& graph, const ViewState& state,
   const AlcoveViewInfo view = view_info(view_, view_id, static_frames_);
   ALCOVE_TRY(const Occlusion outputs, add_occlusion(graph, gpu_, view, index_, surfaces, settings,
                                                     state.picture == Picture::multi_bounce));
+  if (view_id == 0) view_passes_ = outputs.passes;
   // All outputs of the settings are computed, and timed, whether they are shown or not.
   for (const Texture output : {outputs.visibility, outputs.bent_normal, outputs.specular})
     if (output) graph.output(output);

@@ -30,6 +30,8 @@ class SceneFrame {
   [[nodiscard]] Result<framegraph::Texture> declare(framegraph::Graph& graph,
                                                     framegraph::Texture target,
                                                     const ViewState& state);
+  // Returns the passes of the declared frame that belong to the view with ViewState::settings.
+  const PassRange& view_passes() const { return view_passes_; }
   // Makes the declared frame the previous frame of the next one. Call it after the declared frame
   // was submitted.
   void advance();
@@ -68,6 +70,7 @@ class SceneFrame {
   std::uint32_t index_ = 0;
   std::uint32_t static_frames_ = 0;  // see AlcoveViewInfo
   GbufferView view_;                 // of the declared frame
+  PassRange view_passes_;            // of the declared frame
   Choices choices_;
   std::optional<GbufferView> previous_view_;
   std::optional<Choices> previous_choices_;

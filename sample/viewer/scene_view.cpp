@@ -160,12 +160,14 @@ Result<void> SceneView::draw_choice(const Choice& choice, ReadBack* read_back) {
   state.camera = camera_around_scene();
   state.settings = choice.settings;
   state.roughness = choice.roughness;
-  const auto declare = [&](Graph& graph, Texture target) -> Result<void> {
+  const auto declare = [&](Graph& graph, Texture target) -> Result<PassRange> {
     ALCOVE_TRY(Texture drawn, frame_->declare(graph, target, state));
     drawn = gui_->add(graph, drawn);
-    if (read_back == nullptr) return {};
-    read_back->add(graph, drawn, [this](const Texels& texels) { screenshot_ = rgb(texels); });
-    return read_back->added();
+    if (read_back != nullptr) {
+      read_back->add(graph, drawn, [this](const Texels& texels) { screenshot_ = rgb(texels); });
+      ALCOVE_TRY_VOID(read_back->added());
+    }
+    return frame_->view_passes();
   };
   ALCOVE_TRY(const auto report, presenter_->draw(declare));
   frame_->advance();

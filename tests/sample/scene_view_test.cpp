@@ -16,6 +16,7 @@
 namespace alcove::sample {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 class ViewerWindowTest : public testing::Test {
@@ -167,6 +168,25 @@ TEST_F(ViewerWindowTest, PassTimesAndMemoryOfTheFrameAreReported) {
   draw(4);
   EXPECT_GT(view_->facts().times.total_ms(), 0.0);
   EXPECT_GT(view_->facts().memory.aliased, 0u);
+}
+
+// The view beside it and the lighting have passes of the same names.
+TEST_F(ViewerWindowTest, PassesOfTheViewWithTheChosenSettingsAreMarkedInTheTimes) {
+  options_.occlusion.normals = NormalSource::depth;
+  ASSERT_NO_FATAL_FAILURE(open());
+  view_->state().picture = Picture::lit;
+  view_->state().settings.specular = ALCOVE_SPECULAR_TABLE;
+  view_->state().comparison = Comparison::saved;  // without specular occlusion by table
+  draw(8);
+  std::vector<std::string> of_view;
+  std::size_t searches = 0;
+  for (const PassTime& time : view_->facts().times.passes()) {
+    if (time.of_view) of_view.push_back(time.pass);
+    searches += time.pass == "gtao" ? 1 : 0;
+  }
+  EXPECT_THAT(of_view,
+              ElementsAre("linear depth", "normals", "gtao", "reconstruct", "specular occlusion"));
+  EXPECT_EQ(searches, 2u);
 }
 
 // The targets are out of reach on any device, so that no measured time decides.
