@@ -174,7 +174,8 @@ tl::expected<void, std::string> VulkanDevice::create_instance(const DeviceOption
 #ifndef _WIN32
     setenv("VK_LAYER_ENABLES", kQueueSubmitCheck, 1);
 #endif
-    layers.push_back(kValidationLayer);
+    // Under wine the layer is one of the host's, which VK_INSTANCE_LAYERS names; wine knows no layers.
+    if (std::getenv("ALCOVE_LAYERS_OF_THE_HOST") == nullptr) layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
   const VkInstanceCreateInfo info{

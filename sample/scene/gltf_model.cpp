@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "scene/gltf_container.h"
@@ -131,9 +132,17 @@ void convert(const json& root, const char* name, std::vector<Element>& out,
 // Converts the JSON to tinygltf's model by tinygltf's own functions, so that it is parsed once.
 Result<void> fill_model(const json& root, tinygltf::Model& model) {
   std::string error;
-  const auto by = [&](auto parse) {
-    return [&error, parse](auto* out, const json& from) {
-      return error.empty() && parse(out, &error, from, false);
+  // From tinygltf 2.9 on some functions also return warnings and take a strictness, of which {} is the least.
+  const auto by = [&](auto parse, auto... more) {
+    return [&error, parse, more...](auto* out, const json& from) {
+      if (!error.empty()) return false;
+      if constexpr (std::is_invocable_v<decltype(parse), decltype(out), decltype(more)...,
+                                        std::string*, const json&, bool>) {
+        return parse(out, more..., &error, from, false);
+      } else {
+        std::string warning;
+        return parse(out, more..., &error, &warning, from, false, {});
+      }
     };
   };
   convert(root, "accessors", model.accessors, by(tinygltf::ParseAccessor));
@@ -142,9 +151,7 @@ Result<void> fill_model(const json& root, tinygltf::Model& model) {
   convert(root, "materials", model.materials, by(tinygltf::ParseMaterial));
   convert(root, "samplers", model.samplers, by(tinygltf::ParseSampler));
   convert(root, "cameras", model.cameras, by(tinygltf::ParseCamera));
-  convert(root, "meshes", model.meshes, [&](tinygltf::Mesh* out, const json& from) {
-    return tinygltf::ParseMesh(out, &model, &error, from, false);
-  });
+  convert(root, "meshes", model.meshes, by(tinygltf::ParseMesh, &model));
   convert(root, "textures", model.textures, [&](tinygltf::Texture* out, const json& from) {
     return tinygltf::ParseTexture(out, &error, from, false, "");
   });

@@ -1,6 +1,10 @@
 #include "scene/ray_scene.h"
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +28,35 @@ struct Attached {
   uint32_t instance;
 };
 
-struct Context : RTCIntersectContext {
+#if RTC_VERSION_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+void initialise(EmbreeContext& context) { rtcInitRayQueryContext(&context); }
+void intersect(RTCScene tree, EmbreeContext& context, RTCRayHit& query) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  rtcIntersect1(tree, &query, &arguments);
+}
+void occluded(const int* valid, RTCScene tree, EmbreeContext& context, RTCRay16& rays) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  rtcOccluded16(valid, tree, &rays, &arguments);
+}
+#else
+using EmbreeContext = RTCIntersectContext;
+void initialise(EmbreeContext& context) { rtcInitIntersectContext(&context); }
+void intersect(RTCScene tree, EmbreeContext& context, RTCRayHit& query) {
+  rtcIntersect1(tree, &context, &query);
+}
+void occluded(const int* valid, RTCScene tree, EmbreeContext& context, RTCRay16& rays) {
+  rtcOccluded16(valid, tree, &context, &rays);
+}
+#endif
+
+struct Context : EmbreeContext {
   explicit Context(bool hits_both_sides = false) : both_sides(hits_both_sides) {
-    rtcInitIntersectContext(this);
+    initialise(*this);
   }
   bool both_sides;
 };
@@ -201,7 +231,7 @@ std::optional<Hit> RayScene::nearest(const glm::vec3& origin, const glm::vec3& d
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   Context context(both_sides);
-  rtcIntersect1(impl_->tree, &context, &query);
+  intersect(impl_->tree, context, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
   const Attached& hit_geometry =
@@ -256,7 +286,7 @@ uint32_t RayScene::blocked(const glm::vec3& origin, std::span<const glm::vec3> d
     rays.flags[i] = 0;
   }
   Context context;
-  rtcOccluded16(valid, impl_->tree, &context, &rays);
+  occluded(valid, impl_->tree, context, rays);
   uint32_t bits = 0;
   for (uint32_t i = 0; i < directions.size(); ++i)
     if (rays.tfar[i] < 0.0f) bits |= 1u << i;

@@ -19,6 +19,11 @@ extern "C" const char __executable_start;  // NOLINT: the linker's names
 extern "C" const char etext;
 bool is_own(const void* caller) { return caller >= &__executable_start && caller < &etext; }
 #define ALCOVE_CALLER() __builtin_return_address(0)
+#elif defined(__MINGW32__)
+extern "C" const char __ImageBase;  // NOLINT: the linker's names
+extern "C" const char etext;
+bool is_own(const void* caller) { return caller >= &__ImageBase && caller < &etext; }
+#define ALCOVE_CALLER() __builtin_return_address(0)
 #else
 bool is_own(const void*) { return false; }
 #define ALCOVE_CALLER() nullptr

@@ -50,13 +50,21 @@ struct HostMemory {
   void* allocate(std::size_t size, std::size_t alignment) {
     ++allocations;
     const std::size_t unit = std::max(alignment, sizeof(void*));
+#ifdef _WIN32
+    void* const memory = _aligned_malloc(size, unit);
+#else
     void* const memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+#endif
     alive[memory] = size;
     return memory;
   }
   void free(void* memory) {
     EXPECT_EQ(alive.erase(memory), memory == nullptr ? 0u : 1u) << "freed what was not allocated";
+#ifdef _WIN32
+    _aligned_free(memory);
+#else
     std::free(memory);
+#endif
   }
 };
 

@@ -6,6 +6,7 @@
 #include <vulkan/vulkan.h>
 
 #include <functional>
+#include <cstdint>
 #include <string>
 #include <vector>
 

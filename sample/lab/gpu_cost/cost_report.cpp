@@ -175,7 +175,7 @@ Json to_json(std::span<const SettingsCost> costs) {
       const CostInputs& size = cost.settings.inputs;
       for (const XeGtao& peer : kXeGtao)
         peers[std::string(peer.name)] = xegtao_ms(part, peer, size.width, size.height);
-      settings.push_back(to_json(cost, peers[std::string(kXeGtaoHigh.name)]));
+      settings.push_back(to_json(cost, peers[std::string(kXeGtaoHigh.name)].get<double>()));
     }
     if (!settings.empty()) {
       parts.push_back({{"gpu", part.name},
