@@ -72,7 +72,11 @@ class TextPrinter {
       }
       line(text);
     }
-    for (std::uint32_t p = 0; p < submission.pass_count; ++p) pass(submission.first_pass + p);
+    std::uint32_t position = submission.first_pass;
+    for (std::uint32_t left = submission.pass_count; left > 0; --left) {
+      pass(position);
+      position = plan_.passes[position].next;
+    }
     batch(submission.end_batch);
     if (index == plan_.final_submission) batch(plan_.final_batch);
     line("");

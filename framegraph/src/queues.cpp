@@ -36,11 +36,11 @@ class QueueAssigner {
       find_waits();
       cut();
       close();
-      regroup();
       find_taken();
-      move_lifetimes();
+      extend_lifetimes();
     } else {
       plan_.submissions.push_back({.pass_count = count});
+      for (std::uint32_t i = 0; i + 1 < count; ++i) plan_.passes[i].next = i + 1;
     }
     // The memory of an output is in use until the end of the frame.
     for (const OutputRecord& output : graph_.outputs) {
@@ -162,13 +162,18 @@ class QueueAssigner {
                     [](const ByQueue& waits) { return waits[0] == Workspace::kOpening; }))
       plan_.submissions.push_back({});
     std::uint32_t open[kQueueClasses] = {kNone, kNone, kNone};
+    std::uint32_t last[kQueueClasses] = {};
     for (std::uint32_t position = 0; position < plan_.passes.size(); ++position) {
       PlannedPass& planned = plan_.passes[position];
-      std::uint32_t& current = open[static_cast<std::size_t>(planned.queue)];
+      const auto own = static_cast<std::size_t>(planned.queue);
+      std::uint32_t& current = open[own];
       if (current == kNone || s_.waits[position] != kNothing) {
         current = static_cast<std::uint32_t>(plan_.submissions.size());
-        add_submission(planned.queue, 0, s_.waits[position]);
+        add_submission(planned.queue, position, s_.waits[position]);
+      } else {
+        plan_.passes[last[own]].next = position;
       }
+      last[own] = position;
       planned.submission = current;
       ++plan_.submissions[current].pass_count;
       if (s_.waited_for[position]) current = kNone;
@@ -186,33 +191,6 @@ class QueueAssigner {
             {wait < 0 ? 0 : plan_.passes[static_cast<std::size_t>(wait)].submission, 0});
     submission.wait_count = static_cast<std::uint32_t>(plan_.waits.size()) - submission.first_wait;
     plan_.submissions.push_back(submission);
-  }
-
-  // Reorders the passes by submission, so that each submission is a range of positions.
-  void regroup() {
-    std::uint32_t next = 0;
-    for (Submission& submission : plan_.submissions) {
-      submission.first_pass = next;
-      next += submission.pass_count;
-      submission.pass_count = 0;
-    }
-    s_.new_position.clear();
-    s_.old_position.resize(plan_.passes.size());
-    for (const PlannedPass& planned : plan_.passes) {
-      Submission& submission = plan_.submissions[planned.submission];
-      const std::uint32_t to = submission.first_pass + submission.pass_count++;
-      s_.old_position[to] = static_cast<std::uint32_t>(s_.new_position.size());
-      s_.new_position.push_back(to);
-    }
-    s_.old_passes = plan_.passes;
-    s_.old_known = s_.known;
-    for (std::uint32_t to = 0; to < plan_.passes.size(); ++to) {
-      plan_.passes[to] = s_.old_passes[s_.old_position[to]];
-      s_.known[to] = s_.old_known[s_.old_position[to]];
-      for (std::int32_t& known : s_.known[to])
-        if (known >= 0)
-          known = static_cast<std::int32_t>(s_.new_position[static_cast<std::size_t>(known)]);
-    }
   }
 
   // Chooses the queue on which the frame leaves each history, and the submission of the graphics
@@ -294,34 +272,15 @@ class QueueAssigner {
     }
   }
 
-  // Changes uses and lifetimes to the new positions. A resource is in use up to the last pass of
-  // another queue that may run at the same time as its last use.
-  void move_lifetimes() {
-    const auto end = static_cast<std::uint32_t>(plan_.passes.size());
-    for (Placement& placement : plan_.placements) {
-      if (placement.first != kNone) placement.last = 0;
-      placement.first = kNone;
-    }
-    for (Use& use : chain_.uses) {
-      if (use.first >= end) continue;
-      use.first = s_.new_position[use.first];
-      use.last = s_.new_position[use.last];
-      Placement& placement = plan_.placements[use.resource];
-      placement.first = std::min(placement.first, use.first);
-      placement.last = std::max(placement.last, s_.taken_until[use.last]);
-    }
+  // A resource is in use up to the last pass of another queue that may run at the same time as its
+  // last use.
+  void extend_lifetimes() {
     for (const Use& use : chain_.uses) {
+      if (use.first >= plan_.passes.size()) continue;
       Placement& placement = plan_.placements[use.resource];
-      if (use.first < end)
-        placement.concurrent |= family(use.queue) != family(plan_.passes[placement.first].queue);
+      placement.last = std::max(placement.last, s_.taken_until[use.last]);
+      placement.concurrent |= family(use.queue) != family(plan_.passes[placement.first].queue);
     }
-    std::sort(workspace_.transients.begin(), workspace_.transients.end(),
-              [this](std::uint32_t a, std::uint32_t b) {
-                const auto& placements = plan_.placements;
-                return placements[a].first != placements[b].first
-                           ? placements[a].first < placements[b].first
-                           : a < b;
-              });
   }
 
   static constexpr ByQueue kNothing{Workspace::kNever, Workspace::kNever, Workspace::kNever};

@@ -47,8 +47,11 @@ void Recorder::full_barrier(VkCommandBuffer commands) {
 void Recorder::submission(std::uint32_t index, VkCommandBuffer commands, Timestamps* timestamps) {
   const Submission& submission = plan_->submissions[index];
   const std::uint32_t first_time = timestamps ? timestamps->add(submission.pass_count) : 0;
-  for (std::uint32_t i = 0; i < submission.pass_count; ++i)
-    pass(plan_->passes[submission.first_pass + i], commands, timestamps, first_time + i);
+  std::uint32_t position = submission.first_pass;
+  for (std::uint32_t i = 0; i < submission.pass_count; ++i) {
+    pass(plan_->passes[position], commands, timestamps, first_time + i);
+    position = plan_->passes[position].next;
+  }
   batch(submission.end_batch, commands);
   if (index == plan_->final_submission) batch(plan_->final_batch, commands);
 }

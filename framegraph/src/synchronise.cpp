@@ -53,19 +53,20 @@ class Synchroniser {
     find_last_owners();
     const auto count = static_cast<std::uint32_t>(plan_.passes.size());
     const auto& first_use = workspace_.chain.first_use;
-    const std::uint32_t* starting = workspace_.transients.data();
-    const std::uint32_t* const end = starting + workspace_.transients.size();
-    for (std::uint32_t position = 0; position < count; ++position) {
-      PlannedPass& planned = plan_.passes[position];
-      queue_ = planned.queue;
-      if (several_) begin_submission(planned.submission);
-      for (; starting != end && plan_.placements[*starting].first == position; ++starting)
-        take_over_memory(*starting);
-      const std::uint32_t at = several_ ? workspace_.queues.old_position[position] : position;
-      for (std::uint32_t u = first_use[at]; u < first_use[at + 1]; ++u) order(uses_[u], position);
-      if (batch_time_ == batch_time(position))
-        planned.batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
-      if (several_) end_pass(position, first_use[at], first_use[at + 1]);
+    for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) {
+      const Submission submission = plan_.submissions[s];
+      queue_ = submission.queue;
+      if (several_) begin_submission(s);
+      std::uint32_t position = submission.first_pass;
+      for (std::uint32_t left = submission.pass_count; left > 0; --left) {
+        const std::uint32_t next = plan_.passes[position].next;
+        for (std::uint32_t u = first_use[position]; u < first_use[position + 1]; ++u)
+          order(uses_[u], position);
+        if (batch_time_ == batch_time(position))
+          plan_.passes[position].batch = static_cast<std::uint32_t>(plan_.batches.size() - 1);
+        if (several_) end_pass(position, first_use[position], first_use[position + 1]);
+        position = next;
+      }
     }
     end_frame(count);
   }
@@ -80,6 +81,7 @@ class Synchroniser {
     s_.memory.resize(std::max(s_.memory.size(), plan_.heaps.size()));
     for (MemoryMap& map : s_.memory) map.clear();
     s_.formers.resize(graph_.resources.size() * queues());
+    s_.owns_memory.assign(graph_.resources.size(), 0);
     VkDeviceSize unclaimed = 0;
     for (const Heap& heap : plan_.heaps) unclaimed += heap.size;
     const auto& transients = workspace_.transients;
@@ -143,6 +145,7 @@ class Synchroniser {
     if (position == plan_.passes.size() && &use != &head) order_after_reads(use, position);
     if (head.previous == kNone && head.first != kNone) {
       // It takes its memory from other resources.
+      if (!std::exchange(s_.owns_memory[use.resource], 1)) take_over_memory(use.resource);
       const Source& former = s_.formers[use.resource * queues() + static_cast<std::size_t>(queue_)];
       return order_after(former, use, VK_IMAGE_LAYOUT_UNDEFINED, changes && &use == &head, true,
                          position);
@@ -205,6 +208,7 @@ class Synchroniser {
   void begin_submission(std::uint32_t index) {
     const Submission& submission = plan_.submissions[index];
     earliest_ = batch_time(submission.first_pass) - 1;
+    batch_time_ = kNever;
     auto& waits = last_waits_[static_cast<std::size_t>(submission.queue)];
     for (std::uint32_t w = submission.first_wait; w < submission.first_wait + submission.wait_count;
          ++w)
@@ -247,7 +251,7 @@ class Synchroniser {
     for (std::uint32_t u = first; u < last; ++u)
       if (uses_[u].moved != VK_IMAGE_LAYOUT_UNDEFINED) s_.moves.push_back(u);
     Submission& submission = plan_.submissions[plan_.passes[position].submission];
-    if (position + 1 != submission.first_pass + submission.pass_count || s_.moves.empty()) return;
+    if (plan_.passes[position].next != kNone || s_.moves.empty()) return;
     const auto batch = static_cast<std::uint32_t>(plan_.batches.size());
     batch_time_ = kNever;
     for (std::size_t i = 0, end = 0; i < s_.moves.size(); i = end) {

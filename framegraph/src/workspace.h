@@ -84,8 +84,7 @@ struct Workspace {
   struct Chain {
     std::vector<Use> uses;
     std::vector<std::uint32_t> tails;  // by subresource: the head of its last group, or kNone
-    // By position, before regrouping: the first use that begins there. Those at the end are of the
-    // final states.
+    // By position: the first use that begins there. Those at the end are of the final states.
     std::vector<std::uint32_t> first_use;
   } chain;
   // A position for each queue, or one of these values.
@@ -93,13 +92,9 @@ struct Workspace {
   static constexpr std::int32_t kOpening = -1;  // the work before the frame
   static constexpr std::int32_t kNever = -2;
   struct Queues {
-    std::vector<ByQueue> waits;            // by position: the passes waited for
-    std::vector<ByQueue> known;            // by position: the last passes known to be done
-    std::vector<std::uint8_t> waited_for;  // by position
-    std::vector<ByQueue> old_known;        // before regrouping
-    std::vector<PlannedPass> old_passes;
-    std::vector<std::uint32_t> new_position;
-    std::vector<std::uint32_t> old_position;
+    std::vector<ByQueue> waits;              // by position: the passes waited for
+    std::vector<ByQueue> known;              // by position: the last passes known to be done
+    std::vector<std::uint8_t> waited_for;    // by position
     std::vector<std::uint32_t> taken_until;  // by position
     std::vector<QueueClass> last_queue;      // by resource: on which the frame leaves a history
   } queues;
@@ -128,8 +123,9 @@ struct Workspace {
     bool by_last_frame = false;     // a wait of the previous frame
   };
   struct Synchronise {
-    std::vector<Source> formers;    // by resource and queue: of what occupied a transient's memory
-    std::vector<MemoryMap> memory;  // by heap
+    std::vector<Source> formers;  // by resource and queue: of what occupied a transient's memory
+    std::vector<std::uint8_t> owns_memory;      // by resource: a use has been reached
+    std::vector<MemoryMap> memory;              // by heap
     std::vector<std::uint32_t> batch_memories;  // memory barriers of the last batch
     std::vector<std::uint32_t> moves;           // writes of this submission with moved layouts
     std::vector<std::uint8_t> written;  // by subresource of histories: a live pass writes it

@@ -132,12 +132,14 @@ void Replay::submission(std::uint32_t index) {
       fail("a submission waits in a stage that its queue cannot run");
     order_.wait(queue, wait.submission, wait.stages);
   }
-  for (std::uint32_t p = 0; p < submission.pass_count; ++p) {
-    const PlannedPass& planned = plan_.passes[submission.first_pass + p];
+  std::uint32_t position = submission.first_pass;
+  for (std::uint32_t left = submission.pass_count; left > 0; --left) {
+    const PlannedPass& planned = plan_.passes[position];
     where_ = std::string("before pass '").append(graph_.pass_name(planned.pass)).append("'");
     batch(planned.batch, submission.queue);
     where_ = std::string("in pass '").append(graph_.pass_name(planned.pass)).append("'");
-    pass(submission.first_pass + p);
+    pass(position);
+    position = planned.next;
   }
   where_ = "after the last pass";
   batch(submission.end_batch, submission.queue);

@@ -66,23 +66,28 @@ class Tables {
   }
 
   void check_submissions() {
-    std::uint32_t next = 0;
+    std::size_t passes = 0;
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s) {
       const Submission& submission = plan_.submissions[s];
-      if (submission.first_pass != next ||
-          submission.pass_count > plan_.passes.size() - submission.first_pass)
-        return fail("submissions do not cover the passes in order");
-      next += submission.pass_count;
-      for (std::uint32_t p = submission.first_pass; p < next; ++p)
-        if (plan_.passes[p].queue != submission.queue)
+      std::uint32_t position = submission.first_pass;
+      for (std::uint32_t left = submission.pass_count; left > 0; --left, ++passes) {
+        if (position >= plan_.passes.size()) return fail("a submission has passes out of range");
+        const PlannedPass& planned = plan_.passes[position];
+        if (planned.queue != submission.queue)
           fail("a pass is submitted to another queue than it was planned for");
+        if (planned.submission != s || planned.next <= position)
+          return fail("a pass is in another submission than planned, or they are not in order");
+        position = planned.next;
+      }
+      if (submission.pass_count != 0 && position != kNone)
+        return fail("a pass falls out of its submission");
       if (submission.first_wait + submission.wait_count > plan_.waits.size())
         return fail("a submission's waits are out of range");
       for (std::uint32_t w = 0; w < submission.wait_count; ++w)
         if (plan_.waits[submission.first_wait + w].submission >= s)
           fail("a submission waits for itself or a later one: it would hang");
     }
-    if (next != plan_.passes.size()) fail("a pass is in no submission");
+    if (passes != plan_.passes.size()) fail("a pass is in no submission");
     const std::uint32_t final = plan_.final_submission;
     if (final != kNone && (final >= plan_.submissions.size() ||
                            plan_.submissions[final].queue != QueueClass::graphics))

@@ -47,12 +47,13 @@ struct Batch {
   std::uint32_t count = 0;
 };
 
-// A pass in execution order. Positions index Plan::passes; within a submission they run in order.
+// A pass that runs. Positions index Plan::passes, in the order of declaration.
 struct PlannedPass {
   std::uint32_t pass = kNone;  // declaration index
   QueueClass queue = QueueClass::graphics;
   std::uint32_t submission = 0;  // into Plan::submissions
   std::uint32_t batch = kNone;   // into Plan::batches; recorded before the pass; kNone: no barriers
+  std::uint32_t next = kNone;    // the next pass of its submission
 };
 
 // Work that is submitted to one queue at once. A submission waits only for earlier submissions.
@@ -65,7 +66,7 @@ struct Submission {
   // A mask with one bit per queue class. The submission waits until all work of the previous frame
   // on these queues is done, because it uses memory or a history that this work used.
   std::uint8_t frame_before = 0;
-  std::uint32_t first_pass = 0;  // positions [first_pass, first_pass + pass_count)
+  std::uint32_t first_pass = 0;  // a position; the others follow by PlannedPass::next
   std::uint32_t pass_count = 0;
   std::uint32_t first_wait = 0;  // into Plan::waits
   std::uint32_t wait_count = 0;
