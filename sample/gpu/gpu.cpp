@@ -107,9 +107,9 @@ tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(
   made->handles_ = device_handles(*made->device_);
   made->handles_.debug_utils = options.validation;
   if (auto started = made->restart(); !started) return Failure(std::move(started.error()));
-  auto kernels = passes::Kernels::create(made->handles_, executor_options.frames_in_flight);
-  if (!kernels) return Failure(std::move(kernels.error().message));
-  made->kernels_.emplace(std::move(*kernels));
+  auto pipelines = passes::Pipelines::create(made->handles_, executor_options.frames_in_flight);
+  if (!pipelines) return Failure(std::move(pipelines.error().message));
+  made->pipelines_.emplace(std::move(*pipelines));
   return made;
 }
 
@@ -134,7 +134,7 @@ tl::expected<framegraph::FrameReport, std::string> Gpu::submit(const Declare& de
                                                                const framegraph::FrameInfo& frame) {
   if (auto waited = wait(frame.slot); !waited) return Failure(std::move(waited.error()));
   graph_.reset();
-  kernels_->begin_frame(frame.slot);
+  pipelines_->begin_frame(frame.slot);
   if (auto declared = declare(graph_); !declared) return Failure(std::move(declared.error()));
   return executor_->submit(graph_, frame).map_error([](const framegraph::Errors& errors) {
     return framegraph::to_string(errors);

@@ -11,7 +11,7 @@
 
 #include "alcove/framegraph/executor.h"
 #include "alcove/framegraph/graph.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/pipelines.h"
 #include "gpu/gpu_image.h"
 #include "gpu/vulkan_device.h"
 
@@ -61,7 +61,8 @@ struct PassRange {
   bool contains(std::uint32_t pass) const { return begin <= pass && pass < end; }
 };
 
-// A render graph with its executor and kernels. The sample and the tests run their frames with it.
+// A render graph with its executor and pipelines. The sample and the tests run their frames with
+// it.
 class Gpu {
  public:
   [[nodiscard]] static tl::expected<std::unique_ptr<Gpu>, std::string> create(
@@ -71,7 +72,7 @@ class Gpu {
   [[nodiscard]] tl::expected<void, std::string> restart();
 
   const VulkanDevice& device() const { return *device_; }
-  passes::Kernels& kernels() { return *kernels_; }
+  passes::Pipelines& pipelines() { return *pipelines_; }
   framegraph::Executor& executor() { return *executor_; }
 
   // Declares a frame with `declare`, submits it and waits for it. If `declare` or the graph fails,
@@ -96,7 +97,7 @@ class Gpu {
 
   std::unique_ptr<VulkanDevice> device_;
   std::optional<framegraph::Executor> executor_;
-  std::optional<passes::Kernels> kernels_;
+  std::optional<passes::Pipelines> pipelines_;
   framegraph::Graph graph_;
   framegraph::DeviceHandles handles_;
   framegraph::ExecutorOptions executor_options_;

@@ -10,7 +10,8 @@ OcclusionSettings::OcclusionSettings(AlcoveQuality quality, float radius_ws) : A
     specular = ALCOVE_SPECULAR_NONE;
 }
 
-tl::expected<void, passes::Error> add_occlusion(framegraph::Graph& graph, passes::Kernels& kernels,
+tl::expected<void, passes::Error> add_occlusion(framegraph::Graph& graph,
+                                                passes::Pipelines& pipelines,
                                                 const AlcoveViewInfo& info, std::uint32_t index,
                                                 const OcclusionSettings& settings,
                                                 passes::ViewTextures& textures) {
@@ -25,7 +26,7 @@ tl::expected<void, passes::Error> add_occlusion(framegraph::Graph& graph, passes
   request(settings.specular != ALCOVE_SPECULAR_NONE, ALCOVE_IMAGE_SPECULAR, "specular occlusion");
   AlcoveViewInfo view = info;
   view.settings = &settings;
-  return passes::add_view(graph, kernels, view, index, textures);
+  return passes::add_view(graph, pipelines, view, index, textures);
 }
 
 }  // namespace alcove::sample

@@ -36,7 +36,7 @@ struct OcclusionSettings : AlcoveSettings {
 // Adds the passes of a view. Creates textures for the outputs that the settings enable and that
 // `textures` lacks, in the precision of the settings.
 [[nodiscard]] tl::expected<void, passes::Error> add_occlusion(
-    framegraph::Graph& graph, passes::Kernels& kernels, const AlcoveViewInfo& info,
+    framegraph::Graph& graph, passes::Pipelines& pipelines, const AlcoveViewInfo& info,
     std::uint32_t index, const OcclusionSettings& settings, passes::ViewTextures& textures);
 
 }  // namespace alcove::sample

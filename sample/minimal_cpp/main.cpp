@@ -152,7 +152,7 @@ constexpr VkBufferImageCopy kWholeImage{.imageSubresource = {VK_IMAGE_ASPECT_COL
                                         .imageExtent = {kWidth, kHeight, 1}};
 
 // Declares a frame. Every image of it is a transient, which shares memory with the others.
-void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffer& upload,
+void declare(framegraph::Graph& graph, passes::Pipelines& pipelines, const HostBuffer& upload,
              const HostBuffer& result, std::uint32_t index) {
   graph.reset();
   const auto from = graph.import_buffer("upload", upload.import);
@@ -178,7 +178,7 @@ void declare(framegraph::Graph& graph, passes::Kernels& kernels, const HostBuffe
   passes::ViewTextures images{};
   images[ALCOVE_IMAGE_DEPTH] = depth;
   images[ALCOVE_IMAGE_VISIBILITY] = graph.create_texture("visibility", {VK_FORMAT_R8_UNORM, size});
-  value_of(passes::add_view(graph, kernels, view, index, images));
+  value_of(passes::add_view(graph, pipelines, view, index, images));
 
   const auto target = graph.import_buffer("result", result.import);
   auto copy = graph.add_pass("read back");
@@ -203,11 +203,11 @@ int main(int argc, char** argv) {
     static_cast<float*>(upload.mapped)[i] = depth_at(i % kWidth, i / kWidth);
   {
     auto executor = value_of(framegraph::Executor::create(handles, {.frames_in_flight = 1}));
-    auto kernels = value_of(passes::Kernels::create(handles, 1));
+    auto pipelines = value_of(passes::Pipelines::create(handles, 1));
     framegraph::Graph graph;
     for (std::uint32_t i = 0; i < kFrames; ++i) {
-      kernels.begin_frame(0);
-      declare(graph, kernels, upload, result, i);
+      pipelines.begin_frame(0);
+      declare(graph, pipelines, upload, result, i);
       (void)value_of(executor.submit(graph));
       value_of(executor.wait());
     }

@@ -65,7 +65,7 @@ Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& vi
   };
   const std::uint32_t first_pass = pass_count();
   ALCOVE_TRY_VOID(
-      add_occlusion(graph, gpu.kernels(), view, index, settings, textures).map_error(message));
+      add_occlusion(graph, gpu.pipelines(), view, index, settings, textures).map_error(message));
   Occlusion result{textures[ALCOVE_IMAGE_VISIBILITY],
                    textures[ALCOVE_IMAGE_BENT_NORMAL],
                    textures[ALCOVE_IMAGE_SPECULAR],
@@ -75,7 +75,7 @@ Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& vi
   if (!has_normals) {
     ALCOVE_TRY(
         const auto made,
-        passes::add_surface(graph, gpu.kernels(), view.camera, gbuffer.depth).map_error(message));
+        passes::add_surface(graph, gpu.pipelines(), view.camera, gbuffer.depth).map_error(message));
     result.normals = made.normals;
   }
   return result;

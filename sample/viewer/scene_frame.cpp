@@ -164,7 +164,7 @@ Result<Texture> SceneFrame::add_picture(Graph& graph, const ViewState& state,
     case Picture::normals:
       return outputs.normals;
     case Picture::depth:
-      return passes::add_surface(graph, gpu_.kernels(), view.camera, surfaces.gbuffer.depth)
+      return passes::add_surface(graph, gpu_.pipelines(), view.camera, surfaces.gbuffer.depth)
           .map([](const passes::SurfaceTextures& made) { return made.linear_depth; })
           .map_error([](const passes::Error& error) { return error.message; });
     case Picture::albedo:

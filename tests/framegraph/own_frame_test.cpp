@@ -10,7 +10,7 @@ namespace alcove::framegraph {
 namespace {
 
 // Declares the frame of an engine that provides depth and reads visibility and bent normals.
-void declare(Graph& graph, passes::Kernels& kernels, VkImage image, AlcoveQuality quality) {
+void declare(Graph& graph, passes::Pipelines& pipelines, VkImage image, AlcoveQuality quality) {
   ImportedTexture engine_depth;
   engine_depth.image = image;
   engine_depth.desc = {VK_FORMAT_R32_SFLOAT, Extent::absolute(960, 540)};
@@ -28,7 +28,7 @@ void declare(Graph& graph, passes::Kernels& kernels, VkImage image, AlcoveQualit
       graph.create_texture("visibility", {VK_FORMAT_R8_UNORM, engine_depth.desc.extent});
   textures[ALCOVE_IMAGE_BENT_NORMAL] =
       graph.create_texture("bent normal", {VK_FORMAT_R8G8B8A8_SNORM, engine_depth.desc.extent});
-  const auto added = passes::add_view(graph, kernels, view, 0, textures);
+  const auto added = passes::add_view(graph, pipelines, view, 0, textures);
   ASSERT_TRUE(added) << added.error().message;
   PassBuilder light = graph.add_pass("lighting");
   light.read(textures[ALCOVE_IMAGE_VISIBILITY], access::sampled_fragment);
@@ -40,13 +40,13 @@ void declare(Graph& graph, passes::Kernels& kernels, VkImage image, AlcoveQualit
 TEST(OcclusionFrame, PlanHasTheFewestBarrierCommandsAndTheLeastPeakMemory) {
   Gpu gpu;
   ASSERT_EQ(gpu.problem(), "");
-  auto kernels = passes::Kernels::create(gpu.handles(), 1);
-  ASSERT_TRUE(kernels) << kernels.error().message;
+  auto pipelines = passes::Pipelines::create(gpu.handles(), 1);
+  ASSERT_TRUE(pipelines) << pipelines.error().message;
   const VkImage image = gpu.make_image({VK_FORMAT_R32_SFLOAT, Extent::absolute(960, 540)},
                                        VK_IMAGE_USAGE_SAMPLED_BIT);
   for (const auto quality : {ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH}) {
     Graph graph;
-    declare(graph, *kernels, image, quality);
+    declare(graph, *pipelines, image, quality);
     const auto plan = compile(graph.description());
     ASSERT_TRUE(plan) << to_string(plan.error());
     EXPECT_GT(expect_no_command_too_many(graph.description(), {}, *plan), 0u);

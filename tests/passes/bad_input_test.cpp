@@ -32,7 +32,7 @@ class BadInput : public PassTest {
 
 TEST_F(BadInput, FrameInFlightSlotOutOfRangeIsReported) {
   const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
-    gpu().kernels().begin_frame(8);
+    gpu().pipelines().begin_frame(8);
     ViewTextures textures{upload(graph, drawing_.depth_ndc)};
     add_view_of(graph, {.camera = drawing_.view}, 0, OcclusionSettings(), textures);
     graph.output(textures[ALCOVE_IMAGE_VISIBILITY]);
@@ -45,14 +45,15 @@ TEST_F(BadInput, FrameInFlightSlotOutOfRangeIsReported) {
 
 TEST_F(BadInput, NumberOfFramesInFlightOutOfRangeIsReported) {
   for (const std::uint32_t frames : {0u, 9u, ~0u}) {
-    expect_error(Kernels::create(handles(), frames), std::to_string(frames) + " frames in flight");
+    expect_error(Pipelines::create(handles(), frames),
+                 std::to_string(frames) + " frames in flight");
   }
 }
 
 TEST_F(BadInput, InputImageWithoutPixelsIsReported) {
   const auto report = gpu().run([&](Graph& graph) -> tl::expected<void, std::string> {
     ViewTextures textures{graph.create_texture("empty depth", {VK_FORMAT_R32_SFLOAT, {}})};
-    expect_error(sample::add_occlusion(graph, gpu().kernels(), {.camera = drawing_.view}, 0,
+    expect_error(sample::add_occlusion(graph, gpu().pipelines(), {.camera = drawing_.view}, 0,
                                        OcclusionSettings(), textures),
                  "depth is 0x0 pixels");
     return {};

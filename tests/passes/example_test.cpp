@@ -16,7 +16,7 @@ namespace {
 // An engine of what the example uses.
 struct Engine {
   framegraph::Graph graph;
-  passes::Kernels kernels;
+  passes::Pipelines pipelines;
   framegraph::Executor executor;
   AlcoveSettings settings{};
   AlcoveCamera camera{};
@@ -29,12 +29,12 @@ struct Engine {
 };
 
 // At the start, with the engine's device and two frames in flight, the engine calls
-// Executor::create(device, {.frames_in_flight = 2}) and Kernels::create(device, 2). It calls this
+// Executor::create(device, {.frames_in_flight = 2}) and Pipelines::create(device, 2). It calls this
 // function once per frame, after the device has finished the previous frame with the same slot.
 tl::expected<void, std::string> record_occlusion(Engine& engine, VkCommandBuffer commands) {
   framegraph::Graph& graph = engine.graph;
   graph.reset();
-  engine.kernels.begin_frame(engine.slot);
+  engine.pipelines.begin_frame(engine.slot);
   passes::ViewTextures textures{};
   textures[ALCOVE_IMAGE_DEPTH] = graph.import_texture("depth", engine.depth);
   textures[ALCOVE_IMAGE_NORMALS] = graph.import_texture("normals", engine.normals);
@@ -42,7 +42,7 @@ tl::expected<void, std::string> record_occlusion(Engine& engine, VkCommandBuffer
   const AlcoveViewInfo view{.settings = &engine.settings,
                             .camera = engine.camera,
                             .previous_camera = engine.previous_camera};
-  const auto added = passes::add_view(graph, engine.kernels, view, engine.frame, textures);
+  const auto added = passes::add_view(graph, engine.pipelines, view, engine.frame, textures);
   if (!added) return tl::unexpected(added.error().message);
   const auto report = engine.executor.record(graph, commands, {engine.slot});
   if (!report) return tl::unexpected(framegraph::to_string(report.error()));
@@ -70,10 +70,10 @@ class Example : public passes::CInterface {
     device.get_instance_proc_addr = vkGetInstanceProcAddr;
     device.queues[0] = {gpu().device().queue(), gpu().device().queue_family()};
     auto executor = framegraph::Executor::create(device, {.frames_in_flight = 2});
-    auto kernels = passes::Kernels::create(device, 2);
-    if (!executor || !kernels) return nullptr;
-    return std::unique_ptr<Engine>(
-        new Engine{.graph = {}, .kernels = std::move(*kernels), .executor = std::move(*executor)});
+    auto pipelines = passes::Pipelines::create(device, 2);
+    if (!executor || !pipelines) return nullptr;
+    return std::unique_ptr<Engine>(new Engine{
+        .graph = {}, .pipelines = std::move(*pipelines), .executor = std::move(*executor)});
   }
 };
 

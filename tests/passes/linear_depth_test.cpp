@@ -35,7 +35,7 @@ class LinearDepth : public PassTest {
   // Linear depth of `depth`, a depth buffer that the view's projection wrote.
   HostImage linear_image(const AlcoveCamera& view, const HostImage& depth) {
     run([&](Graph& graph) {
-      const auto made = add_surface(graph, gpu().kernels(), view, upload(graph, depth));
+      const auto made = add_surface(graph, gpu().pipelines(), view, upload(graph, depth));
       ASSERT_TRUE(made) << made.error().message;
       read_back(graph, made->linear_depth);
     });

@@ -18,8 +18,9 @@ class MultiBouncePass : public PassTest {
     textures[ALCOVE_IMAGE_VISIBILITY] = visibility;
     textures[ALCOVE_IMAGE_MULTI_BOUNCE] = graph.create_texture(
         "multi-bounce", {VK_FORMAT_R32G32B32A32_SFLOAT, sample::extent_of(graph, visibility)});
-    add_passes(graph, gpu().kernels(), {.settings = &settings, .camera = test_views().front().view},
-               0, textures, [](GraphWork&, const ViewWork& view) {
+    add_passes(graph, gpu().pipelines(),
+               {.settings = &settings, .camera = test_views().front().view}, 0, textures,
+               [](GraphAdapter&, const ViewInputs& view) {
                  describe_multi_bounce(view, view.image(ALCOVE_IMAGE_VISIBILITY));
                });
     return textures[ALCOVE_IMAGE_MULTI_BOUNCE];

@@ -18,7 +18,7 @@ class NormalsFromDepth : public PassTest {
  protected:
   HostImage normals(const AlcoveCamera& view, const HostImage& depth_ndc) {
     run([&](Graph& graph) {
-      const auto made = add_surface(graph, gpu().kernels(), view, upload(graph, depth_ndc));
+      const auto made = add_surface(graph, gpu().pipelines(), view, upload(graph, depth_ndc));
       ASSERT_TRUE(made) << made.error().message;
       read_back(graph, made->normals);
     });

@@ -107,7 +107,7 @@ class PassTest : public testing::Test {
   void add_view_of(framegraph::Graph& graph, const AlcoveViewInfo& view, std::uint32_t index,
                    const OcclusionSettings& settings, ViewTextures& textures) {
     const auto added =
-        sample::add_occlusion(graph, gpu().kernels(), view, index, settings, textures);
+        sample::add_occlusion(graph, gpu().pipelines(), view, index, settings, textures);
     ASSERT_TRUE(added) << added.error().message;
   }
   OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);

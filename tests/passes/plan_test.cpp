@@ -85,7 +85,7 @@ TEST_F(OcclusionPlan, FrameThatOnlyComputesVisibilityHasTwoPassesAndTwoTextures)
   EXPECT_THAT(frame.transients,
               testing::UnorderedElementsAre("raw occlusion", "visibility", "unused output"));
   EXPECT_THAT(frame.histories, testing::IsEmpty());
-  EXPECT_EQ(gpu().kernels().pipeline_count(), 2u);
+  EXPECT_EQ(gpu().pipelines().pipeline_count(), 2u);
 }
 
 TEST_F(OcclusionPlan, FrameWithoutNormalsHasNoFurtherPassesAndTextures) {
@@ -116,9 +116,9 @@ TEST_F(OcclusionPlan, MotionVectorsAreNotReadIfHistoryIsOff) {
   OcclusionSettings history = least();
   history.history_frames = 8;
   (void)plan(least());
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  const std::size_t pipelines = gpu().pipelines().pipeline_count();
   EXPECT_EQ(plan(least(), {}, moving).uploads, 2u) << "depth and normals";
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+  EXPECT_EQ(gpu().pipelines().pipeline_count(), pipelines);
   EXPECT_EQ(plan(history, {}, moving).uploads, 3u);
 }
 
@@ -129,21 +129,21 @@ TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsR
       [](OcclusionSettings& s) { s.depth_layers = 2; }};
   for (const auto read : kReads) {
     const FramePlan horizons = plan(least());
-    const std::size_t first_pipelines = gpu().kernels().pipeline_count();
+    const std::size_t first_pipelines = gpu().pipelines().pipeline_count();
     OcclusionSettings settings = least();
     read(settings);
     expect_same(plan(settings), horizons);
-    EXPECT_EQ(gpu().kernels().pipeline_count(), first_pipelines);
+    EXPECT_EQ(gpu().pipelines().pipeline_count(), first_pipelines);
 
     settings = least();
     settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
     const FramePlan connected = plan(settings);
-    const std::size_t pipelines = gpu().kernels().pipeline_count();
+    const std::size_t pipelines = gpu().pipelines().pipeline_count();
     expect_same(plan(settings, {}, {.hidden_depths = true}), connected);
-    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+    EXPECT_EQ(gpu().pipelines().pipeline_count(), pipelines);
     read(settings);
     expect_same(plan(settings, {}, {.hidden_depths = true}), connected);
-    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + 1) << "the variant that reads them";
+    EXPECT_EQ(gpu().pipelines().pipeline_count(), pipelines + 1) << "the variant that reads them";
   }
 }
 
@@ -173,15 +173,15 @@ TEST_F(OcclusionPlan, RoughnessChannelCreatesAPipelineOnlyIfARoughnessTextureIsR
     const bool read = specular != ALCOVE_SPECULAR_NONE;
     (void)plan(settings, {.specular = read});
     (void)plan(settings, {.specular = read}, {.roughness = true});
-    const std::size_t pipelines = gpu().kernels().pipeline_count();
+    const std::size_t pipelines = gpu().pipelines().pipeline_count();
     settings.roughness_channel = 2;
     (void)plan(settings, {.specular = read});
-    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+    EXPECT_EQ(gpu().pipelines().pipeline_count(), pipelines);
     (void)plan(settings, {.specular = read}, {.roughness = true});
     // With specular occlusion from slices, the passes gtao and reconstruct both read the roughness.
     // Each gets another pipeline for another channel.
     const std::size_t readers = !read ? 0 : specular == ALCOVE_SPECULAR_SLICES ? 2 : 1;
-    EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines + readers);
+    EXPECT_EQ(gpu().pipelines().pipeline_count(), pipelines + readers);
   }
 }
 
@@ -193,11 +193,11 @@ TEST_F(OcclusionPlan, LargerTracingTilesTakeLessMemory) {
 
 TEST_F(OcclusionPlan, ChangedRadiusCreatesNoNewPipeline) {
   (void)plan(least());
-  const std::size_t pipelines = gpu().kernels().pipeline_count();
+  const std::size_t pipelines = gpu().pipelines().pipeline_count();
   OcclusionSettings other = least();
   other.radius = 3.0f;
   (void)plan(other);
-  EXPECT_EQ(gpu().kernels().pipeline_count(), pipelines);
+  EXPECT_EQ(gpu().pipelines().pipeline_count(), pipelines);
 }
 
 }  // namespace

@@ -86,9 +86,9 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                packed_raw_occlusion(input.view, input.drawing, input.raw_occlusion, input.tile_size,
                                     input.index),
                VK_FORMAT_R32G32_UINT);
-    add_passes(graph, gpu().kernels(), info, input.index, textures,
-               [&](GraphWork& work, const ViewWork& view) {
-                 const framegraph::Texture listed = work.list().add(
+    add_passes(graph, gpu().pipelines(), info, input.index, textures,
+               [&](GraphAdapter& work, const ViewInputs& view) {
+                 const ResourceHandle listed = work.list().add(
                      ALCOVE_RESOURCE_KIND_INPUT, "raw occlusion", VK_FORMAT_R32G32_UINT,
                      {input.raw_occlusion.width, input.raw_occlusion.height});
                  work.texture(listed) = raw;

@@ -9,7 +9,7 @@
 
 #include "vulkan/descriptor_sets.h"
 #include "work/shader_table.h"
-#include "work/work_list.h"
+#include "work/work_builder.h"
 
 namespace alcove::passes {
 namespace {
@@ -89,9 +89,9 @@ class DispatchByName : public testing::Test {
   // Adds a dispatch of a shader with these constants, and with an image for each of the names.
   tl::expected<void, Error> add(Shader shader, const std::vector<NamedConstant>& constants,
                                 const std::vector<std::string_view>& names) {
-    WorkList list(*work_);
+    WorkBuilder list(*work_);
     const auto image = list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8});
-    std::vector<NamedTexture> images;
+    std::vector<NamedImage> images;
     for (const std::string_view name : names) images.push_back({name, image});
     list.dispatch({.shader = shader, .constants = constants, .images = images, .size = {8, 8, 1}});
     return list.result();
@@ -137,11 +137,11 @@ TEST_F(DispatchByName, ShaderBindingWithoutAnImageIsReportedByName) {
 }
 
 TEST_F(DispatchByName, ListThatIsFullIsAnError) {
-  WorkList list(*work_);
+  WorkBuilder list(*work_);
   while (list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8})) {
   }
   EXPECT_EQ(work_->resource_count, std::uint32_t{ALCOVE_MAX_WORK_RESOURCES});
-  const NamedTexture images[] = {{"depth_ndc_image", {0}}, {"linear_depth_image", {}}};
+  const NamedImage images[] = {{"depth_ndc_image", {0}}, {"linear_depth_image", {}}};
   list.dispatch({.shader = Shader::linear_depth, .images = images, .size = {8, 8, 1}});
   ASSERT_FALSE(list.result());
   EXPECT_THAT(list.result().error().message,

@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "graph/graph_work.h"
+#include "graph/graph_adapter.h"
 
 namespace alcove::passes {
 
 // Adds the passes that `describe(work, view)` describes. `textures` become the written ones.
 template <typename Describe>
-void add_passes(framegraph::Graph& graph, Kernels& kernels, const AlcoveViewInfo& info,
+void add_passes(framegraph::Graph& graph, Pipelines& pipelines, const AlcoveViewInfo& info,
                 std::uint32_t index, ViewTextures& textures, const Describe& describe) {
-  GraphWork work(graph, kernels, info.id);
+  GraphAdapter work(graph, pipelines, info.id);
   const AlcoveWorkInfo described = work_info(graph, info, index, textures);
   const auto view = begin_view(work.list(), described);
   ASSERT_TRUE(view) << view.error().message;

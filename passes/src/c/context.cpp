@@ -32,10 +32,10 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   options.timestamps = info.timestamps != VK_FALSE;
   auto executor = framegraph::Executor::create(handles, options);
   if (!executor) return tl::unexpected(passes::failure_of(executor.error()));
-  auto kernels = passes::Kernels::create(handles, info.frames_in_flight, info.pipeline_cache);
-  if (!kernels) return tl::unexpected(passes::failure_of(kernels.error(), "The context"));
+  auto pipelines = passes::Pipelines::create(handles, info.frames_in_flight, info.pipeline_cache);
+  if (!pipelines) return tl::unexpected(passes::failure_of(pipelines.error(), "The context"));
   context = std::make_unique<AlcoveContext>(std::move(host), std::move(*executor),
-                                            std::move(*kernels), handles, info.frames_in_flight)
+                                            std::move(*pipelines), handles, info.frames_in_flight)
                 .release();
   return {};
 }

@@ -9,7 +9,7 @@
 
 #include "alcove/alcove.h"
 #include "alcove/framegraph/executor.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/pipelines.h"
 #include "c/failure.h"
 #include "c/host.h"
 #include "c/view.h"
@@ -36,18 +36,19 @@ struct ViewPasses {
 
 struct AlcoveContext {
   AlcoveContext(std::unique_ptr<alcove::passes::HostAdapter> made_host,
-                alcove::framegraph::Executor made_executor, alcove::passes::Kernels made_kernels,
+                alcove::framegraph::Executor made_executor,
+                alcove::passes::Pipelines made_pipelines,
                 const alcove::framegraph::DeviceHandles& device, std::uint32_t slots)
       : host(std::move(made_host)),
         frames_in_flight(slots),
         executor(std::move(made_executor)),
-        kernels(std::move(made_kernels)),
+        pipelines(std::move(made_pipelines)),
         pixels(device, executor.functions()) {}
 
   std::unique_ptr<alcove::passes::HostAdapter> host;  // destroyed last
   std::uint32_t frames_in_flight;
   alcove::framegraph::Executor executor;
-  alcove::passes::Kernels kernels;
+  alcove::passes::Pipelines pipelines;
   alcove::framegraph::Graph graph;
   alcove::passes::ImageTable images;
   alcove::passes::MistakeFinder finder;

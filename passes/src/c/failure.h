@@ -12,7 +12,7 @@
 
 #include "alcove/alcove.h"
 #include "alcove/framegraph/error.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/error.h"
 
 namespace alcove::passes {
 

@@ -22,8 +22,8 @@ namespace {
 
 // The most dispatches of a view.
 constexpr std::uint32_t kPassesOfAView = 10;
-static_assert(ALCOVE_MAX_FRAMES_IN_FLIGHT == passes::Kernels::kMaxFramesInFlight);
-static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView + 1 <= passes::Kernels::kMaxDispatches,
+static_assert(ALCOVE_MAX_FRAMES_IN_FLIGHT == passes::Pipelines::kMaxFramesInFlight);
+static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView + 1 <= passes::Pipelines::kMaxDispatches,
               "and one that samples pixels");
 
 Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
@@ -83,7 +83,7 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
   context.images.reset();
   for (const AlcoveView& view : std::span(frame.views, frame.view_count)) {
     const bool inspects = frame.diagnose_pixels != VK_FALSE && passes.count == 0;
-    auto added = passes::add_view(graph, context.kernels, context.images, view, frame, prepare,
+    auto added = passes::add_view(graph, context.pipelines, context.images, view, frame, prepare,
                                   inspects ? &context.pixels : nullptr);
     if (!added) return tl::unexpected(std::move(added.error()));
     passes.views[passes.count++] = {view.info.id,
@@ -111,12 +111,12 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   if (commands == VK_NULL_HANDLE) return invalid("There is no command buffer to record into.");
   if (auto right = check(context, frame); !right) return right;
   Declaration declaration(context.graph);
-  context.kernels.begin_frame(frame->slot);
+  context.pipelines.begin_frame(frame->slot);
   context.pixels.collect(frame->slot, context.finder);
-  const std::size_t pipelines = context.kernels.pipeline_count();
+  const std::size_t pipelines = context.pipelines.pipeline_count();
   const auto passes = add_views(context.graph, context, *frame, false);
   if (!passes) return tl::unexpected(passes.error());
-  if (context.kernels.pipeline_count() != pipelines) {
+  if (context.pipelines.pipeline_count() != pipelines) {
     context.host->log(
         ALCOVE_SEVERITY_WARNING,
         "Pipelines were created while a frame was recorded, which may take the driver "

@@ -25,7 +25,7 @@ AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
                .transients = found.aliased,
                .transients_unshared = found.unaliased,
                .history = found.history,
-               .allocated = recorded ? found.allocated + context->kernels.memory_bytes() : 0};
+               .allocated = recorded ? found.allocated + context->pipelines.memory_bytes() : 0};
     return {};
   });
 }

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "diagnose/pixel_observer.h"
+#include "work/describe_view.h"
 #include "work/image_roles.h"
-#include "work/view_work.h"
 
 namespace alcove::passes {
 namespace {
@@ -95,8 +95,9 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
   return texture;
 }
 
-tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels, ImageTable& images,
-                                     const AlcoveView& view, const AlcoveFrame& frame, bool prepare,
+tl::expected<void, Failure> add_view(framegraph::Graph& graph, Pipelines& pipelines,
+                                     ImageTable& images, const AlcoveView& view,
+                                     const AlcoveFrame& frame, bool prepare,
                                      PixelObserver* observer) {
   const auto failed = [&](const Error& error) { return failure_of(error, view_name(view)); };
   ViewTextures textures;
@@ -106,16 +107,15 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
     textures.at(role) = *texture;
   }
   if (prepare) {
-    if (auto done = prepare_view(graph, kernels, view.info, textures); !done)
+    if (auto done = prepare_view(graph, pipelines, view.info, textures); !done)
       return tl::unexpected(failed(done.error()));
   }
   const ViewTextures inputs = textures;
-  if (auto done = add_view(graph, kernels, view.info, frame.index, textures); !done)
+  if (auto done = add_view(graph, pipelines, view.info, frame.index, textures); !done)
     return tl::unexpected(failed(done.error()));
   if (observer == nullptr || view.images[ALCOVE_IMAGE_DEPTH].samples > 1) return {};
-  return observer->add(graph, kernels, view, inputs, frame.slot).map_error([](const Error& error) {
-    return failure_of(error, "View");
-  });
+  return observer->add(graph, pipelines, view, inputs, frame.slot)
+      .map_error([](const Error& error) { return failure_of(error, "View"); });
 }
 
 }  // namespace alcove::passes

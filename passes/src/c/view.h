@@ -37,7 +37,7 @@ class PixelObserver;
 // Adds the passes of `view` to the graph, or with `prepare` only creates their pipelines. If
 // `observer` is not null, it adds a pass that samples the view's pixels for the frame slot
 // AlcoveFrame::slot.
-[[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Kernels& kernels,
+[[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Pipelines& pipelines,
                                                    ImageTable& images, const AlcoveView& view,
                                                    const AlcoveFrame& frame, bool prepare,
                                                    PixelObserver* observer);

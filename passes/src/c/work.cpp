@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "c/failure.h"
+#include "work/describe_view.h"
 #include "work/shader_table.h"
-#include "work/view_work.h"
 
 using namespace alcove;
 using passes::guarded;
@@ -43,7 +43,7 @@ Result describe(const AlcoveWorkInfo& given, AlcoveWork& work) {
     view.previous_width = previous->width;
     view.previous_height = previous->height;
   }
-  passes::WorkList list(work, previous);
+  passes::WorkBuilder list(work, previous);
   return passes::describe_view(list, info).map_error(failed);
 }
 

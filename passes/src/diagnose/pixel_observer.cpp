@@ -4,8 +4,9 @@
 #include <cstring>
 
 #include "inspect_parameters.h"
+#include "vulkan/pipeline_state.h"
+#include "work/describe_view.h"
 #include "work/view_parameters.h"
-#include "work/view_work.h"
 
 namespace alcove::passes {
 namespace {
@@ -26,7 +27,7 @@ constexpr std::size_t kFrames = 3;  // that inspect() compares
 
 }  // namespace
 
-tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Kernels& kernels,
+tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Pipelines& pipelines,
                                              const AlcoveView& view, const ViewTextures& inputs,
                                              std::uint32_t slot) {
   const AlcoveViewInfo& info = view.info;
@@ -37,8 +38,8 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Kernels& 
       return tl::unexpected(Error{"The buffer for pixels could not be created.", made.error()});
     pending.buffer = std::move(*made);
   }
-  const auto kernel = kernels.get(Shader::inspect);
-  if (!kernel) return tl::unexpected(kernel.error());
+  const auto pipeline = pipelines.state().get(Shader::inspect);
+  if (!pipeline) return tl::unexpected(pipeline.error());
   const Texture depth = inputs[ALCOVE_IMAGE_DEPTH], normals = inputs[ALCOVE_IMAGE_NORMALS];
   const Texture motion = info.static_frames == 0 ? inputs[ALCOVE_IMAGE_MOTION] : Texture{};
   const AlcoveImage& image = view.images[ALCOVE_IMAGE_DEPTH];
@@ -64,12 +65,12 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Kernels& 
                            framegraph::Contents::discard);
   const maths::InspectParameters parameters{
       {read.x, read.y}, {size.width, size.height}, normals ? 1u : 0u, motion ? 1u : 0u};
-  sampling.record([&kernels, kernel = *kernel, depth, normals, motion, samples,
-                   parameters](RecordContext& context) {
+  sampling.record([&state = pipelines.state(), pipeline = *pipeline, depth, normals, motion,
+                   samples, parameters](RecordContext& context) {
     const std::array views{context.view(depth), context.view(normals ? normals : depth),
                            context.view(motion ? motion : depth), context.view(samples)};
-    kernels.dispatch(context, kernel, views, bytes_of(parameters),
-                     {(kInspectColumns + 7) / 8, (kInspectRows + 8) / 8, 1});
+    state.dispatch(context, pipeline, views, bytes_of(parameters),
+                   {(kInspectColumns + 7) / 8, (kInspectRows + 8) / 8, 1});
   });
   Buffer buffer = graph.import_buffer("samples for the host",
                                       {.buffer = pending.buffer->buffer(),

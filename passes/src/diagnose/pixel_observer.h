@@ -24,7 +24,7 @@ class PixelObserver {
   // `finder` what they show. If that frame has not finished on the device, its slot is reused.
   void collect(std::uint32_t slot, MistakeFinder& finder);
   // Adds the passes that sample a view. Its samples are read only if recorded() is called.
-  [[nodiscard]] tl::expected<void, Error> add(framegraph::Graph& graph, Kernels& kernels,
+  [[nodiscard]] tl::expected<void, Error> add(framegraph::Graph& graph, Pipelines& pipelines,
                                               const AlcoveView& view, const ViewTextures& inputs,
                                               std::uint32_t slot);
   void recorded(std::uint32_t slot) { pending_.at(slot).recorded = pending_.at(slot).declared; }

@@ -1,5 +1,5 @@
 #include "alcove/passes/graph.h"
-#include "graph/graph_work.h"
+#include "graph/graph_adapter.h"
 #include "work/shader_table.h"
 #include "work/view_parameters.h"
 
@@ -8,10 +8,10 @@ namespace alcove::passes {
 using framegraph::Graph;
 using framegraph::Texture;
 
-tl::expected<void, Error> add_view(Graph& graph, Kernels& kernels, const AlcoveViewInfo& info,
+tl::expected<void, Error> add_view(Graph& graph, Pipelines& pipelines, const AlcoveViewInfo& info,
                                    std::uint32_t index, ViewTextures& textures) {
   if (info.reset_history != 0) graph.reset_history(HistoryName(info.id, HistoryRole::visibility));
-  GraphWork work(graph, kernels, info.id);
+  GraphAdapter work(graph, pipelines, info.id);
   const AlcoveWorkInfo described = work_info(graph, info, index, textures);
   if (auto done = describe_view(work.list(), described); !done) return done;
   const AlcoveWork& list = work.list().work();
@@ -26,13 +26,15 @@ tl::expected<void, Error> add_view(Graph& graph, Kernels& kernels, const AlcoveV
   return {};
 }
 
-tl::expected<void, Error> prepare_view(const Graph& graph, Kernels& kernels,
+tl::expected<void, Error> prepare_view(const Graph& graph, Pipelines& pipelines,
                                        const AlcoveViewInfo& info, const ViewTextures& textures) {
-  const auto pipelines = list_pipelines(kernels.scratch(), work_info(graph, info, 0, textures));
-  if (!pipelines) return tl::unexpected(pipelines.error());
-  for (const AlcoveWorkPipeline& pipeline : *pipelines) {
-    const auto made = kernels.get(shader_of_name(pipeline.shader),
-                                  std::span(pipeline.constants).first(pipeline.constant_count));
+  const auto needed =
+      list_pipelines(pipelines.state().scratch, work_info(graph, info, 0, textures));
+  if (!needed) return tl::unexpected(needed.error());
+  for (const AlcoveWorkPipeline& pipeline : *needed) {
+    const auto made =
+        pipelines.state().get(shader_of_name(pipeline.shader),
+                              std::span(pipeline.constants).first(pipeline.constant_count));
     if (!made) return tl::unexpected(made.error());
   }
   return {};
@@ -42,24 +44,24 @@ void drop_view(Graph& graph, std::uint32_t id) {
   for (const HistoryRole role : kHistoryRoles) graph.drop_history(HistoryName(id, role));
 }
 
-tl::expected<SurfaceTextures, Error> add_surface(Graph& graph, Kernels& kernels,
+tl::expected<SurfaceTextures, Error> add_surface(Graph& graph, Pipelines& pipelines,
                                                  const AlcoveCamera& camera, Texture depth) {
-  GraphWork work(graph, kernels, 0);
+  GraphAdapter work(graph, pipelines, 0);
   const VkExtent3D size = graph.extent(depth);
   const auto projection = projection_of(camera, {size.width, size.height});
   if (!projection) return tl::unexpected(projection.error());
   const AlcoveSettings settings{};
   const AlcoveViewInfo info{.settings = &settings, .camera = camera};
-  const ViewWork view{.list = work.list(),
-                      .info = info,
-                      .settings = settings,
-                      .size = {size.width, size.height},
-                      .projection = *projection};
-  const Texture listed = work.list().add(ALCOVE_RESOURCE_KIND_INPUT, "depth", graph.format(depth),
-                                         {size.width, size.height});
+  const ViewInputs view{.list = work.list(),
+                        .info = info,
+                        .settings = settings,
+                        .size = {size.width, size.height},
+                        .projection = *projection};
+  const ResourceHandle listed = work.list().add(ALCOVE_RESOURCE_KIND_INPUT, "depth",
+                                                graph.format(depth), {size.width, size.height});
   work.texture(listed) = depth;
-  const Texture linear_depth = describe_linear_depth(view, listed);
-  const Texture normals = describe_normals(view, linear_depth);
+  const ResourceHandle linear_depth = describe_linear_depth(view, listed);
+  const ResourceHandle normals = describe_normals(view, linear_depth);
   return work.list().result().and_then([&] { return work.add(); }).map([&] {
     return SurfaceTextures{work.texture(linear_depth), work.texture(normals)};
   });

@@ -47,7 +47,7 @@ DescriptorSets::~DescriptorSets() {
 
 VkResult DescriptorSets::create_pools(std::uint32_t slot_count) {
   constexpr auto kSets = static_cast<std::uint32_t>(
-      Kernels::kMaxDispatches * std::tuple_size_v<decltype(DispatchSets::sets)>);
+      Pipelines::kMaxDispatches * std::tuple_size_v<decltype(DispatchSets::sets)>);
   std::array<VkDescriptorPoolSize, 5> sizes{{{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                                              {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                                              {VK_DESCRIPTOR_TYPE_SAMPLER},
@@ -76,7 +76,7 @@ void DescriptorSets::begin_frame(std::uint32_t slot) {
 VkDescriptorSet DescriptorSets::get(framegraph::RecordContext& context,
                                     const DispatchBindings& bound) {
   if (slot_ >= slots_.size()) {
-    context.fail("dispatch of a slot that is not below the frames in flight of Kernels::create",
+    context.fail("dispatch of a slot that is not below the frames in flight of Pipelines::create",
                  VK_ERROR_OUT_OF_POOL_MEMORY);
     return VK_NULL_HANDLE;
   }
@@ -84,14 +84,14 @@ VkDescriptorSet DescriptorSets::get(framegraph::RecordContext& context,
   if (own.set == VK_NULL_HANDLE) return VK_NULL_HANDLE;
   assert(bound.parameters.size() <= ALCOVE_MAX_WORK_PARAMETER_BYTES);
   const VkDeviceSize offset =
-      (slot_ * Kernels::kMaxDispatches + own.number) * ALCOVE_MAX_WORK_PARAMETER_BYTES;
+      (slot_ * Pipelines::kMaxDispatches + own.number) * ALCOVE_MAX_WORK_PARAMETER_BYTES;
   std::memcpy(parameters_->bytes() + offset, bound.parameters.data(), bound.parameters.size());
   if (!own.is_written) write(own.set, bound, offset);
   return own.set;
 }
 
 VkDeviceSize DescriptorSets::parameter_bytes() const {
-  return VkDeviceSize{slots_.size()} * Kernels::kMaxDispatches * ALCOVE_MAX_WORK_PARAMETER_BYTES;
+  return VkDeviceSize{slots_.size()} * Pipelines::kMaxDispatches * ALCOVE_MAX_WORK_PARAMETER_BYTES;
 }
 
 // Returns whether the set still holds the resources that the dispatch binds. Equal handles mean
@@ -129,9 +129,8 @@ VkResult DescriptorSets::allocate(Set& set, const DispatchBindings& bound) {
 // rewritten.
 DescriptorSets::Claim DescriptorSets::claim(framegraph::RecordContext& context,
                                             const DispatchBindings& bound) {
-  const std::lock_guard lock(mutex_);
-  if (dispatches_ == Kernels::kMaxDispatches) {
-    context.fail("dispatch after Kernels::kMaxDispatches of them since Kernels::begin_frame",
+  if (dispatches_ == Pipelines::kMaxDispatches) {
+    context.fail("dispatch after Pipelines::kMaxDispatches of them since Pipelines::begin_frame",
                  VK_ERROR_OUT_OF_POOL_MEMORY);
     return {};
   }

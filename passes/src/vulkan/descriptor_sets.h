@@ -5,14 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "alcove/passes/kernels.h"
+#include "alcove/framegraph/record_context.h"
+#include "alcove/passes/pipelines.h"
 #include "vulkan/host_buffer.h"
-#include "work/shader_interface.h"
+#include "work/shader_table.h"
 
 namespace alcove::passes {
 
@@ -46,8 +46,8 @@ class DescriptorSets {
   void begin_frame(std::uint32_t slot);
 
   // Copies the parameters to the uniform buffer and returns a descriptor set with all resources of
-  // `bound`. If the frame slot does not exist, the frame already has Kernels::kMaxDispatches, or
-  // memory runs out, calls context.fail() and returns null. Several threads may call it.
+  // `bound`. If the frame slot does not exist, the frame already has Pipelines::kMaxDispatches, or
+  // memory runs out, calls context.fail() and returns null.
   [[nodiscard]] VkDescriptorSet get(framegraph::RecordContext& context,
                                     const DispatchBindings& bound);
 
@@ -75,7 +75,7 @@ class DescriptorSets {
 
   struct FrameSlot {
     VkDescriptorPool pool = VK_NULL_HANDLE;
-    std::array<DispatchSets, Kernels::kMaxDispatches> dispatches;
+    std::array<DispatchSets, Pipelines::kMaxDispatches> dispatches;
   };
 
   // A dispatch of the frame, counted from 0, and its descriptor set.
@@ -99,9 +99,6 @@ class DescriptorSets {
   std::vector<FrameSlot> slots_;
   std::unique_ptr<HostBuffer> parameters_;
   std::size_t slot_ = 0;
-  // Guards `dispatches_` and the slot's sets and pool. After a dispatch has claimed its set, no
-  // lock is needed to use it.
-  std::mutex mutex_;
   std::uint32_t dispatches_ = 0;  // of this frame so far
 };
 

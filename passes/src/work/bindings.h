@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "maths/normal_encoding.h"
+#include "work/describe_view.h"
 #include "work/view_parameters.h"
-#include "work/view_work.h"
 
 namespace alcove::passes {
 
@@ -20,15 +20,14 @@ namespace alcove::passes {
 
 // Returns `texture`, or `instead` if it is null. Every binding needs an image of its type, even if
 // the shader does not use it.
-[[nodiscard]] constexpr framegraph::Texture or_else(framegraph::Texture texture,
-                                                    framegraph::Texture instead) {
-  return texture.index != framegraph::kNone ? texture : instead;
+[[nodiscard]] constexpr ResourceHandle or_else(ResourceHandle texture, ResourceHandle instead) {
+  return texture ? texture : instead;
 }
 
 // Returns `texture`, or a new one of one texel that the shader does not write. What a shader can
 // write must not be bound twice.
-[[nodiscard]] inline framegraph::Texture or_unused(const ViewWork& view,
-                                                   framegraph::Texture texture, VkFormat format) {
+[[nodiscard]] inline ResourceHandle or_unused(const ViewInputs& view, ResourceHandle texture,
+                                              VkFormat format) {
   return texture ? texture : view.list.add_transient("unused output", format, {1, 1});
 }
 
@@ -39,28 +38,27 @@ namespace alcove::passes {
 }
 
 // Returns the image of a role, or a new transient if there is none.
-[[nodiscard]] inline framegraph::Texture image_or_transient(const ViewWork& view,
-                                                            AlcoveImageRole role, const char* name,
-                                                            VkFormat format) {
-  if (const framegraph::Texture given = view.image(role)) return given;
+[[nodiscard]] inline ResourceHandle image_or_transient(const ViewInputs& view, AlcoveImageRole role,
+                                                       const char* name, VkFormat format) {
+  if (const ResourceHandle given = view.image(role)) return given;
   return view.list.add_transient(
       name, format,
       {view.info.output_x + view.written.width, view.info.output_y + view.written.height});
 }
 
 // Returns the value of the specialisation constant kNormalEncoding.
-[[nodiscard]] inline std::uint32_t encoding_of(const ViewWork& view) {
+[[nodiscard]] inline std::uint32_t encoding_of(const ViewInputs& view) {
   return view.image(ALCOVE_IMAGE_NORMALS) ? static_cast<std::uint32_t>(view.info.normal_encoding)
                                           : maths::kNoNormals;
 }
 
-[[nodiscard]] inline NormalConvention normals_of(const ViewWork& view) {
+[[nodiscard]] inline NormalConvention normals_of(const ViewInputs& view) {
   return normals_of(view.info, bool(view.image(ALCOVE_IMAGE_NORMALS)));
 }
 
 // Sets the members `area` and `written` of a shader's parameters.
 template <typename Parameters>
-void set_areas(Parameters& parameters, const ViewWork& view) {
+void set_areas(Parameters& parameters, const ViewInputs& view) {
   const AlcoveArea& written = view.written;
   const AlcoveArea& read = view.read;
   parameters.area = maths::uvec4(read.x, read.y, read.width, read.height);

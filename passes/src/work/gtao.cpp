@@ -11,8 +11,6 @@
 
 namespace alcove::passes {
 
-using framegraph::Texture;
-
 namespace {
 
 // Larger radii than this, in scene units, are treated as this radius. The shader measures lengths
@@ -20,11 +18,11 @@ namespace {
 constexpr float kLargestRadius = 1e12f;
 
 // Returns the image of roughness if the search reads it.
-Texture roughness_of(const ViewWork& view) {
-  return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : Texture{};
+ResourceHandle roughness_of(const ViewInputs& view) {
+  return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : ResourceHandle{};
 }
 
-std::array<NamedConstant, 16> constants_of(const ViewWork& view, const Depths& depths) {
+std::array<NamedConstant, 16> constants_of(const ViewInputs& view, const Depths& depths) {
   const AlcoveSettings& settings = view.settings;
   const bool horizons = settings.estimator == ALCOVE_ESTIMATOR_HORIZONS;
   const bool rough = bool(roughness_of(view));
@@ -58,7 +56,7 @@ VkExtent3D in_strips(VkExtent2D tiles) {
 
 // Returns the tiles that are traced: those of the area that is read which the reconstruction
 // filters.
-AlcoveArea traced_tiles(const ViewWork& view) {
+AlcoveArea traced_tiles(const ViewInputs& view) {
   const AlcoveArea& written = view.written;
   const std::uint32_t tile = view.settings.tile_size;
   // The groups of the reconstruction begin at multiples of 8 texels, of which one precedes the
@@ -80,7 +78,7 @@ AlcoveArea traced_tiles(const ViewWork& view) {
           last(written.y + written.height, view.size.height) - y + 1};
 }
 
-maths::GtaoParameters parameters_of(const ViewWork& view, const AlcoveArea& tiles) {
+maths::GtaoParameters parameters_of(const ViewInputs& view, const AlcoveArea& tiles) {
   const AlcoveSettings& settings = view.settings;
   const maths::Projection& projection = view.projection;
   const InterleaveOffset offset = interleave_offset_of(settings.tile_size, view.index);
@@ -104,7 +102,7 @@ maths::GtaoParameters parameters_of(const ViewWork& view, const AlcoveArea& tile
 
 }  // namespace
 
-RawOcclusion describe_gtao(const ViewWork& view, const Depths& depths) {
+RawOcclusion describe_gtao(const ViewInputs& view, const Depths& depths) {
   const std::uint32_t tile = view.settings.tile_size;
   const VkExtent2D size{(view.size.width + tile - 1) / tile, (view.size.height + tile - 1) / tile};
   RawOcclusion raw{view.list.add_transient("raw occlusion", raw_format(view.lobe()), size), {}};
@@ -113,7 +111,7 @@ RawOcclusion describe_gtao(const ViewWork& view, const Depths& depths) {
   const auto or_depth = [&](bool read, AlcoveImageRole role) {
     return read ? view.image(role) : depths.occluders;
   };
-  const NamedTexture images[] = {
+  const NamedImage images[] = {
       {"depth_image", depths.occluders},
       {"normal_image", or_else(view.image(ALCOVE_IMAGE_NORMALS), depths.occluders)},
       {"raw_image", raw.sums},

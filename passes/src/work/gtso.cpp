@@ -4,23 +4,21 @@
 
 namespace alcove::passes {
 
-using framegraph::Texture;
-
-void describe_gtso(const ViewWork& view, const Results& results, Texture linear_depth,
-                   Texture normals) {
-  const Texture roughness = view.image(ALCOVE_IMAGE_ROUGHNESS);
+void describe_gtso(const ViewInputs& view, const Results& results, ResourceHandle linear_depth,
+                   ResourceHandle normals) {
+  const ResourceHandle roughness = view.image(ALCOVE_IMAGE_ROUGHNESS);
   const NormalConvention convention = normals_of(view);
   const NamedConstant constants[] = {
       {"kRoughnessTexture", flag(bool(roughness))},
       {"kRoughnessChannel", channel_if(bool(roughness), view.settings.roughness_channel)},
       {"kNormalEncoding", static_cast<std::uint32_t>(convention.encoding)},
       {"kAreas", flag(view.in_part)}};
-  const NamedTexture images[] = {{"visibility_image", results.visibility},
-                                 {"bent_normal_image", results.bent_normal},
-                                 {"normal_image", normals},
-                                 {"depth_image", linear_depth},
-                                 {"roughness_image", or_else(roughness, results.visibility)},
-                                 {"result_image", view.image(ALCOVE_IMAGE_SPECULAR)}};
+  const NamedImage images[] = {{"visibility_image", results.visibility},
+                               {"bent_normal_image", results.bent_normal},
+                               {"normal_image", normals},
+                               {"depth_image", linear_depth},
+                               {"roughness_image", or_else(roughness, results.visibility)},
+                               {"result_image", view.image(ALCOVE_IMAGE_SPECULAR)}};
   const AlcoveArea& written = view.written;
   // Normals that were computed from depth have the size of the area that is read.
   const bool given = bool(view.image(ALCOVE_IMAGE_NORMALS));

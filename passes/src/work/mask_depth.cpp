@@ -5,25 +5,23 @@
 
 namespace alcove::passes {
 
-using framegraph::Texture;
-
 namespace {
 
 // The copies have the size of the whole images, so that all inputs are read at the same positions.
-Texture add_copy(const ViewWork& view, const char* name) {
+ResourceHandle add_copy(const ViewInputs& view, const char* name) {
   return view.list.add_transient(name, VK_FORMAT_R32_SFLOAT,
                                  view.list.size(view.image(ALCOVE_IMAGE_DEPTH)));
 }
 
-maths::DepthCopyParameters copy_parameters(const ViewWork& view) {
+maths::DepthCopyParameters copy_parameters(const ViewInputs& view) {
   return {.first = maths::uvec2(view.read.x, view.read.y),
           .size = maths::uvec2(view.size.width, view.size.height)};
 }
 
-Texture describe_resolve(const ViewWork& view) {
-  const Texture resolved = add_copy(view, "depth");
-  const NamedTexture images[] = {{"depth_image", view.image(ALCOVE_IMAGE_DEPTH)},
-                                 {"resolved_image", resolved}};
+ResourceHandle describe_resolve(const ViewInputs& view) {
+  const ResourceHandle resolved = add_copy(view, "depth");
+  const NamedImage images[] = {{"depth_image", view.image(ALCOVE_IMAGE_DEPTH)},
+                               {"resolved_image", resolved}};
   view.list.dispatch({.label = "resolve depth",
                       .shader = Shader::resolve_depth,
                       .images = images,
@@ -32,8 +30,8 @@ Texture describe_resolve(const ViewWork& view) {
   return resolved;
 }
 
-Depths describe_mask(const ViewWork& view, Texture depth) {
-  const Texture mask = view.image(ALCOVE_IMAGE_MASK);
+Depths describe_mask(const ViewInputs& view, ResourceHandle depth) {
+  const ResourceHandle mask = view.image(ALCOVE_IMAGE_MASK);
   maths::DepthCopyParameters parameters = copy_parameters(view);
   parameters.not_receiving = view.info.not_receiving;
   parameters.not_occluding = view.info.not_occluding;
@@ -41,10 +39,10 @@ Depths describe_mask(const ViewWork& view, Texture depth) {
   const Depths made{.all = depth,
                     .receivers = add_copy(view, "receivers"),
                     .occluders = add_copy(view, "depth of occluders")};
-  const NamedTexture images[] = {{"depth_image", depth},
-                                 {"mask_image", mask},
-                                 {"receiver_image", made.receivers},
-                                 {"occluder_image", made.occluders}};
+  const NamedImage images[] = {{"depth_image", depth},
+                               {"mask_image", mask},
+                               {"receiver_image", made.receivers},
+                               {"occluder_image", made.occluders}};
   view.list.dispatch({.label = "mask depth",
                       .shader = view.list.format(mask) == VK_FORMAT_R8_UINT
                                     ? Shader::mask_depth_integer
@@ -57,15 +55,15 @@ Depths describe_mask(const ViewWork& view, Texture depth) {
 
 // Copies one of each 2x2 pixels of the area that is read: that with the parity of the traced
 // pixels.
-Texture describe_half(const ViewWork& view, Texture depth) {
+ResourceHandle describe_half(const ViewInputs& view, ResourceHandle depth) {
   const VkExtent2D size{(view.size.width + 1) / 2, (view.size.height + 1) / 2};
   const InterleaveOffset traced = interleave_offset_of(view.settings.tile_size, view.index);
   maths::DepthCopyParameters parameters = copy_parameters(view);
   const maths::ivec2 parity = maths::uvec2(traced.x % 2, traced.y % 2);
   parameters.first += parity;
   parameters.size -= parity;
-  const Texture half = view.list.add_transient("half depth", VK_FORMAT_R32_SFLOAT, size);
-  const NamedTexture images[] = {{"depth_image", depth}, {"resolved_image", half}};
+  const ResourceHandle half = view.list.add_transient("half depth", VK_FORMAT_R32_SFLOAT, size);
+  const NamedImage images[] = {{"depth_image", depth}, {"resolved_image", half}};
   view.list.dispatch({.label = "halve depth",
                       .shader = Shader::halve_depth,
                       .images = images,
@@ -76,9 +74,9 @@ Texture describe_half(const ViewWork& view, Texture depth) {
 
 }  // namespace
 
-Depths describe_depths(const ViewWork& view) {
-  const Texture given = view.image(ALCOVE_IMAGE_DEPTH);
-  const Texture depth = view.list.samples(given) > 1 ? describe_resolve(view) : given;
+Depths describe_depths(const ViewInputs& view) {
+  const ResourceHandle given = view.image(ALCOVE_IMAGE_DEPTH);
+  const ResourceHandle depth = view.list.samples(given) > 1 ? describe_resolve(view) : given;
   const AlcoveSettings& settings = view.settings;
   Depths depths =
       view.image(ALCOVE_IMAGE_MASK) ? describe_mask(view, depth) : Depths{depth, depth, depth};

@@ -3,12 +3,12 @@
 
 namespace alcove::passes {
 
-void describe_multi_bounce(const ViewWork& view, framegraph::Texture visibility) {
+void describe_multi_bounce(const ViewInputs& view, ResourceHandle visibility) {
   const AlcoveArea& written = view.written;
   const NamedConstant constants[] = {{"kAreas", flag(view.in_part)}};
-  const NamedTexture images[] = {{"visibility_image", visibility},
-                                 {"albedo_image", view.image(ALCOVE_IMAGE_ALBEDO)},
-                                 {"result_image", view.image(ALCOVE_IMAGE_MULTI_BOUNCE)}};
+  const NamedImage images[] = {{"visibility_image", visibility},
+                               {"albedo_image", view.image(ALCOVE_IMAGE_ALBEDO)},
+                               {"result_image", view.image(ALCOVE_IMAGE_MULTI_BOUNCE)}};
   const maths::MultiBounceParameters parameters{
       maths::uvec4(view.read.x + written.x, view.read.y + written.y, view.info.output_x,
                    view.info.output_y),

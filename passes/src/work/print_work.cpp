@@ -3,7 +3,7 @@
 
 #include "work/format_name.h"
 #include "work/shader_table.h"
-#include "work/work_list.h"
+#include "work/work_builder.h"
 
 namespace alcove::passes {
 namespace {

@@ -9,8 +9,6 @@
 
 namespace alcove::passes {
 
-using framegraph::Texture;
-
 namespace {
 
 // Static frames after which every pixel of a tile of 4x4 has been traced once.
@@ -24,15 +22,15 @@ enum class Past : std::uint8_t {
   unchanged,  // the previous frame shows the same
 };
 
-bool has_history(const ViewWork& view) { return view.settings.history_frames > 0; }
-bool is_half(const ViewWork& view) { return view.settings.half_resolution != 0; }
+bool has_history(const ViewInputs& view) { return view.settings.history_frames > 0; }
+bool is_half(const ViewInputs& view) { return view.settings.half_resolution != 0; }
 
 // Returns the image of roughness if the filter reads it.
-Texture roughness_of(const ViewWork& view) {
-  return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : Texture{};
+ResourceHandle roughness_of(const ViewInputs& view) {
+  return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : ResourceHandle{};
 }
 
-std::array<NamedConstant, 14> constants_of(const ViewWork& view, Past past, bool motion) {
+std::array<NamedConstant, 14> constants_of(const ViewInputs& view, Past past, bool motion) {
   const AlcoveSettings& settings = view.settings;
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
   const bool rough = bool(roughness_of(view));
@@ -54,11 +52,11 @@ std::array<NamedConstant, 14> constants_of(const ViewWork& view, Past past, bool
 
 // Every texture that the passes write; null where it is not wanted.
 struct Textures {
-  Results results;           // at half resolution the upsampling pass writes them
-  WorkList::History texels;  // visibility; at half resolution maths::pack_half_texel()
-  WorkList::History depth;   // maths::half_texel_depth(), only at half resolution
-  WorkList::History bent;
-  WorkList::History lobe;
+  Results results;              // at half resolution the upsampling pass writes them
+  WorkBuilder::History texels;  // visibility; at half resolution maths::pack_half_texel()
+  WorkBuilder::History depth;   // maths::half_texel_depth(), only at half resolution
+  WorkBuilder::History bent;
+  WorkBuilder::History lobe;
   bool valid = false;  // whether the histories of the previous frame can be read
 };
 
@@ -66,7 +64,7 @@ VkExtent2D texels(VkExtent2D pixels, bool half) {
   return half ? VkExtent2D{(pixels.width + 1) / 2, (pixels.height + 1) / 2} : pixels;
 }
 
-Textures add_textures(const ViewWork& view) {
+Textures add_textures(const ViewInputs& view) {
   const bool half = is_half(view);
   const AlcovePrecision precision = view.settings.precision;
   Textures textures;
@@ -85,14 +83,14 @@ Textures add_textures(const ViewWork& view) {
   // Adds a history, or at half resolution without history the texture that the upsampling reads.
   const auto add = [&](bool wanted, HistoryRole role, const char* name, VkFormat format) {
     if (wanted && has_history(view)) {
-      const WorkList::History added =
+      const WorkBuilder::History added =
           view.list.add_history(role, format, texels(view.largest, half));
       textures.valid = textures.valid && added.valid;
       return added;
     }
-    return wanted && half ? WorkList::History{.current = view.list.add_transient(
-                                                  name, format, texels(view.size, half))}
-                          : WorkList::History{};
+    return wanted && half ? WorkBuilder::History{.current = view.list.add_transient(
+                                                     name, format, texels(view.size, half))}
+                          : WorkBuilder::History{};
   };
   textures.texels =
       add(true, HistoryRole::visibility, "half resolution", half ? kHalfFormat : kHistoryFormat);
@@ -106,15 +104,17 @@ Textures add_textures(const ViewWork& view) {
 // Returns the image of each binding that a variant of the shader can have. An image that is not
 // read is replaced by another one, and one that is not written by one of its own. The image is null
 // if the variant does not have the binding.
-std::array<NamedTexture, 18> images_of(const ViewWork& view, Texture depth, const RawOcclusion& raw,
-                                       const Textures& textures, Texture motion) {
+std::array<NamedImage, 18> images_of(const ViewInputs& view, ResourceHandle depth,
+                                     const RawOcclusion& raw, const Textures& textures,
+                                     ResourceHandle motion) {
   const bool half = is_half(view);
   const Results& out = textures.results;  // at half resolution the upsampling pass writes it
   // At half resolution only the weights of GGX lobes need normals.
-  const Texture normals = half && !view.lobe() ? Texture{} : view.image(ALCOVE_IMAGE_NORMALS);
+  const ResourceHandle normals =
+      half && !view.lobe() ? ResourceHandle{} : view.image(ALCOVE_IMAGE_NORMALS);
   const VkFormat visibility_format =
       output_format(ALCOVE_IMAGE_VISIBILITY, view.settings.precision);
-  const auto unused = [&](bool bound, Texture texture, VkFormat format) {
+  const auto unused = [&](bool bound, ResourceHandle texture, VkFormat format) {
     return bound ? or_unused(view, texture, format) : texture;
   };
   return {{{"raw_image", raw.sums},
@@ -140,7 +140,7 @@ std::array<NamedTexture, 18> images_of(const ViewWork& view, Texture depth, cons
 }
 
 // Returns the invocations of the shader.
-VkExtent3D invocations(const ViewWork& view, VkExtent2D stored) {
+VkExtent3D invocations(const ViewInputs& view, VkExtent2D stored) {
   const bool half = is_half(view);
   // The groups begin at a multiple of 8 texels (first_texel() of the shader).
   const std::uint32_t texel = half ? 2 : 1;
@@ -162,12 +162,12 @@ VkExtent3D invocations(const ViewWork& view, VkExtent2D stored) {
 
 }  // namespace
 
-tl::expected<Results, Error> describe_reconstruct(const ViewWork& view, Texture depth,
+tl::expected<Results, Error> describe_reconstruct(const ViewInputs& view, ResourceHandle depth,
                                                   const RawOcclusion& raw) {
   const AlcoveViewInfo& info = view.info;
   const bool same = same_camera(info.camera, info.previous_camera);
   const bool reads_motion = has_history(view) && !(same && view.static_frames > 0);
-  const Texture motion = reads_motion ? view.image(ALCOVE_IMAGE_MOTION) : Texture{};
+  const ResourceHandle motion = reads_motion ? view.image(ALCOVE_IMAGE_MOTION) : ResourceHandle{};
   const bool sized = info.reset_history == 0 && (info.previous_width | info.previous_height) != 0;
   const VkExtent2D size = sized ? VkExtent2D{info.previous_width, info.previous_height} : view.size;
   Textures textures = add_textures(view);

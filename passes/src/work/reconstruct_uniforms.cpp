@@ -110,7 +110,7 @@ maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& vie
 // needed less the more slices each of them has. A static image averages ever more frames, which
 // make the samples of neighbours dispensable. Fitted to the error that `alcove compare --frames 8`,
 // 24 and 32, with and without --orbit, prints, and to the noise that its pictures show.
-float near_sharpness(const ViewWork& view, bool is_static, float texel) {
+float near_sharpness(const ViewInputs& view, bool is_static, float texel) {
   if (!is_static) {
     const float one_slice = texel > 1.0f ? 1.0f : 1.3f;
     return view.settings.slices > 1 ? 1.7f : one_slice;
@@ -161,7 +161,7 @@ constexpr float kFilterTolerancePx = 1.5f;
 
 }  // namespace
 
-maths::ReconstructParameters reconstruct_parameters(const ViewWork& view,
+maths::ReconstructParameters reconstruct_parameters(const ViewInputs& view,
                                                     const PreviousFrame& from) {
   const AlcoveViewInfo& info = view.info;
   const AlcoveSettings& settings = view.settings;

@@ -3,7 +3,7 @@
 
 #include "maths/projection.h"
 #include "reconstruct_parameters.h"
-#include "work/view_work.h"
+#include "work/describe_view.h"
 
 namespace alcove::passes {
 
@@ -16,7 +16,7 @@ struct PreviousFrame {
 
 // Returns all parameters except the size of the history's texture.
 // ReconstructParameters::largest_weight is set to its value for a view that is not static.
-[[nodiscard]] maths::ReconstructParameters reconstruct_parameters(const ViewWork& view,
+[[nodiscard]] maths::ReconstructParameters reconstruct_parameters(const ViewInputs& view,
                                                                   const PreviousFrame& previous);
 
 }  // namespace alcove::passes

@@ -3,15 +3,55 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <tl/expected.hpp>
 
 #include "alcove/alcove_work.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/error.h"
 #include "work/shader_interface.h"
 
 namespace alcove::passes {
+
+// The compute shaders of the library. Each is a file in shaders/, or a variant of a file that is
+// compiled with other preprocessor definitions.
+enum class Shader : std::uint8_t {
+  linear_depth,
+  normals,
+  gtao,
+  gtao_bent,
+  gtao_specular,
+  gtao_bent_specular,
+  reconstruct,
+  reconstruct_bent,
+  reconstruct_specular,
+  reconstruct_bent_specular,
+  reconstruct_half,
+  reconstruct_half_bent,
+  reconstruct_half_specular,
+  reconstruct_half_bent_specular,
+  upsample,
+  upsample_bent,
+  upsample_specular,
+  upsample_bent_specular,
+  resolve_depth,
+  halve_depth,
+  mask_depth,
+  mask_depth_integer,
+  multi_bounce,
+  gtso,
+  inspect,
+  count,
+};
+inline constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
+
+// A value for a specialisation constant of a shader, by the constant's name in GLSL.
+struct NamedConstant {
+  std::string_view name;
+  std::uint32_t value = 0;  // of a bool: 0 or 1
+};
 
 struct ShaderSource {
   std::string_view name = {};           // a literal

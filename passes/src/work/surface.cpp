@@ -5,13 +5,12 @@
 
 namespace alcove::passes {
 
-using framegraph::Texture;
-
-Texture describe_linear_depth(const ViewWork& view, Texture depth) {
+ResourceHandle describe_linear_depth(const ViewInputs& view, ResourceHandle depth) {
   // The format has 32 bits because a half float ends at 65504, and its steps are visible as bands
   // at grazing angles.
-  const Texture linear = view.list.add_transient("linear depth", VK_FORMAT_R32_SFLOAT, view.size);
-  const NamedTexture images[] = {{"depth_ndc_image", depth}, {"linear_depth_image", linear}};
+  const ResourceHandle linear =
+      view.list.add_transient("linear depth", VK_FORMAT_R32_SFLOAT, view.size);
+  const NamedImage images[] = {{"depth_ndc_image", depth}, {"linear_depth_image", linear}};
   view.list.dispatch({.label = "linear depth",
                       .shader = Shader::linear_depth,
                       .images = images,
@@ -21,11 +20,11 @@ Texture describe_linear_depth(const ViewWork& view, Texture depth) {
   return linear;
 }
 
-Texture describe_normals(const ViewWork& view, Texture linear_depth) {
-  const Texture normals =
+ResourceHandle describe_normals(const ViewInputs& view, ResourceHandle linear_depth) {
+  const ResourceHandle normals =
       view.list.add_transient("normals from depth", VK_FORMAT_R16G16B16A16_SFLOAT, view.size);
   const maths::Projection& projection = view.projection;
-  const NamedTexture images[] = {{"depth_image", linear_depth}, {"normal_image", normals}};
+  const NamedImage images[] = {{"depth_image", linear_depth}, {"normal_image", normals}};
   const NamedConstant constants[] = {{"kPerspective", flag(is_perspective(projection))}};
   const maths::NormalsParameters parameters{maths::vec4(
       maths::ray_per_px(projection), projection.uv_to_slope.z, projection.uv_to_slope.w)};

@@ -9,15 +9,13 @@
 
 namespace alcove::passes {
 
-using framegraph::Texture;
-
 namespace {
 
 // Distance from a texel's tangent plane, in pixels, at which the texel's weight falls to 0.25.
 // Fitted to the error over the development views (`alcove compare --set half_resolution=true`).
 constexpr float kTolerancePx = 1.0f;
 
-std::array<NamedConstant, 6> constants_of(const ViewWork& view) {
+std::array<NamedConstant, 6> constants_of(const ViewInputs& view) {
   const AlcoveSettings& settings = view.settings;
   return {{{"kPerspective", flag(is_perspective(view.projection))},
            {"kVisibility", flag(view.visibility())},
@@ -27,7 +25,7 @@ std::array<NamedConstant, 6> constants_of(const ViewWork& view) {
            {"kAreas", flag(view.in_part)}}};
 }
 
-maths::UpsampleParameters parameters_of(const ViewWork& view, VkExtent2D stored) {
+maths::UpsampleParameters parameters_of(const ViewInputs& view, VkExtent2D stored) {
   const maths::Projection& projection = view.projection;
   const maths::vec2 per_px = maths::ray_per_px(projection);
   maths::UpsampleParameters parameters{};
@@ -50,10 +48,11 @@ maths::UpsampleParameters parameters_of(const ViewWork& view, VkExtent2D stored)
 
 }  // namespace
 
-void describe_upsample(const ViewWork& view, Texture depth, const HalfTexels& texels,
+void describe_upsample(const ViewInputs& view, ResourceHandle depth, const HalfTexels& texels,
                        const Results& results) {
-  const Texture normals = results.bent_normal ? view.image(ALCOVE_IMAGE_NORMALS) : Texture{};
-  const NamedTexture images[] = {
+  const ResourceHandle normals =
+      results.bent_normal ? view.image(ALCOVE_IMAGE_NORMALS) : ResourceHandle{};
+  const NamedImage images[] = {
       {"half_image", texels.half},
       {"half_depth_image", texels.depth},
       {"depth_image", depth},

@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "alcove/alcove_work.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/error.h"
 #include "maths/make_projection.h"
 #include "maths/slice_line.h"
 #include "work/rigid_transform.h"

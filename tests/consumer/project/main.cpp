@@ -1,5 +1,5 @@
 // Uses both libraries without a device: compiles a plan, makes settings, and checks that creating
-// kernels on a null device returns an error.
+// pipelines on a null device returns an error.
 #include <alcove/framegraph/framegraph.h>
 #include <alcove/passes/graph.h>
 
@@ -19,10 +19,10 @@ int main() {
   pass.record([](framegraph::RecordContext&) {});
   const auto plan = framegraph::compile(graph);
 
-  const auto kernels = passes::Kernels::create({}, 1);
+  const auto pipelines = passes::Pipelines::create({}, 1);
   const bool good =
-      filled && settings.radius == 2.0f && plan && plan->passes.size() == 1 && !kernels;
+      filled && settings.radius == 2.0f && plan && plan->passes.size() == 1 && !pipelines;
   std::printf("%s\n",
-              kernels ? "Kernels were made on no device." : kernels.error().message.c_str());
+              pipelines ? "Pipelines were made on no device." : pipelines.error().message.c_str());
   return good ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 // Services that the caller may provide instead of Vulkan's defaults: host memory for the driver,
 // device memory, and a log. All of them are optional. The functions and memory that the caller
-// provides must outlive the executor and the kernels that use them.
+// provides must outlive the executor and the pipelines that use them.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

@@ -1,7 +1,7 @@
 // Adds the work of a view to a render graph.
 //
-//   once:   Executor::create and Kernels::create, for the same number of frames in flight
-//   frame:  wait for the fence of frame slot s;  graph.reset(); kernels.begin_frame(s);
+//   once:   Executor::create and Pipelines::create, for the same number of frames in flight
+//   frame:  wait for the fence of frame slot s;  graph.reset(); pipelines.begin_frame(s);
 //           import textures, add_view;  executor.record(graph, commands, {s})
 #pragma once
 
@@ -10,7 +10,7 @@
 
 #include "alcove/alcove_work.h"
 #include "alcove/framegraph/graph.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/pipelines.h"
 
 namespace alcove::passes {
 
@@ -23,14 +23,15 @@ using ViewTextures = std::array<framegraph::Texture, ALCOVE_IMAGE_COUNT>;
 // so that it is the same in all views.
 //
 // Errors: a camera, settings, a size or a format that cannot be used, or a missing image.
-[[nodiscard]] tl::expected<void, Error> add_view(framegraph::Graph& graph, Kernels& kernels,
+[[nodiscard]] tl::expected<void, Error> add_view(framegraph::Graph& graph, Pipelines& pipelines,
                                                  const AlcoveViewInfo& info, std::uint32_t index,
                                                  ViewTextures& textures);
 
 // Creates the pipelines that frames of a view can need (alcoveListPipelines), so that no frame has
 // to wait for one. Call it while loading or before settings change. Errors: those of add_view().
 [[nodiscard]] tl::expected<void, Error> prepare_view(const framegraph::Graph& graph,
-                                                     Kernels& kernels, const AlcoveViewInfo& info,
+                                                     Pipelines& pipelines,
+                                                     const AlcoveViewInfo& info,
                                                      const ViewTextures& textures);
 
 // Frees the histories of a view that the most recently declared frame does not use, after the
@@ -47,7 +48,7 @@ struct SurfaceTextures {
   framegraph::Texture normals;
 };
 [[nodiscard]] tl::expected<SurfaceTextures, Error> add_surface(framegraph::Graph& graph,
-                                                               Kernels& kernels,
+                                                               Pipelines& pipelines,
                                                                const AlcoveCamera& camera,
                                                                framegraph::Texture depth);
 

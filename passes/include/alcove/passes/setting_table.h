@@ -14,7 +14,8 @@
 #include <tl/expected.hpp>
 
 #include "alcove/alcove_settings.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/alcove_view.h"
+#include "alcove/passes/error.h"
 
 namespace alcove::passes {
 

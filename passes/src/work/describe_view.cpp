@@ -1,4 +1,4 @@
-#include "work/view_work.h"
+#include "work/describe_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,6 @@
 #include "work/view_parameters.h"
 
 namespace alcove::passes {
-
-using framegraph::Texture;
 
 namespace {
 
@@ -135,7 +133,7 @@ Checked check_areas(const AlcoveArea& read, const AlcoveArea& written, VkExtent2
 }
 
 // Checks that the outputs have room for the results, and without areas exactly their size.
-Checked check_outputs(const ViewWork& view, const AlcoveWorkInfo& info) {
+Checked check_outputs(const ViewInputs& view, const AlcoveWorkInfo& info) {
   const std::uint32_t x = view.info.output_x, y = view.info.output_y;
   const VkExtent2D written{view.written.width, view.written.height};
   for (std::uint32_t role = ALCOVE_IMAGE_FIRST_OUTPUT; role < ALCOVE_IMAGE_COUNT; ++role) {
@@ -152,14 +150,14 @@ Checked check_outputs(const ViewWork& view, const AlcoveWorkInfo& info) {
   return {};
 }
 
-Checked check_largest(const ViewWork& view) {
+Checked check_largest(const ViewInputs& view) {
   if (view.size.width <= view.largest.width && view.size.height <= view.largest.height) return {};
   return refusal("The depth has " + size_text(view.size) + " pixels; it must be within " +
                  size_text(view.largest) + ", the largest size.");
 }
 
 // Sets the sizes and areas of a view whose images and areas have been checked.
-void set_areas(ViewWork& view, const AlcoveArea& read, VkExtent2D whole) {
+void set_areas(ViewInputs& view, const AlcoveArea& read, VkExtent2D whole) {
   const AlcoveViewInfo& info = view.info;
   view.in_part = read.width > 0;
   view.read = view.in_part ? read : AlcoveArea{0, 0, whole.width, whole.height};
@@ -188,13 +186,13 @@ bool same_camera(const AlcoveCamera& a, const AlcoveCamera& b) {
          std::ranges::equal(a.view_from_world, b.view_from_world);
 }
 
-tl::expected<ViewWork, Error> begin_view(WorkList& list, const AlcoveWorkInfo& given) {
+tl::expected<ViewInputs, Error> begin_view(WorkBuilder& list, const AlcoveWorkInfo& given) {
   const AlcoveViewInfo& info = given.view;
   if (info.settings == nullptr)
     return refusal("There are no settings: alcoveGetSettings gives some.");
   const AlcoveWorkImage& depth = given.images[ALCOVE_IMAGE_DEPTH];
   const AlcoveArea read = read_area(info, size_of(depth));
-  ViewWork view{.list = list, .info = info, .settings = *info.settings};
+  ViewInputs view{.list = list, .info = info, .settings = *info.settings};
   const auto checked =
       validate(view.settings)
           .and_then([&] { return check_given(given); })
@@ -227,12 +225,12 @@ tl::expected<ViewWork, Error> begin_view(WorkList& list, const AlcoveWorkInfo& g
   return view;
 }
 
-tl::expected<void, Error> describe_view(WorkList& list, const AlcoveWorkInfo& info) {
+tl::expected<void, Error> describe_view(WorkBuilder& list, const AlcoveWorkInfo& info) {
   const auto begun = begin_view(list, info);
   if (!begun) return tl::unexpected(begun.error());
-  const ViewWork& view = *begun;
+  const ViewInputs& view = *begun;
   const Depths depths = describe_depths(view);
-  Texture linear_depth, normals = view.image(ALCOVE_IMAGE_NORMALS);
+  ResourceHandle linear_depth, normals = view.image(ALCOVE_IMAGE_NORMALS);
   if (view.by_table()) {
     linear_depth = describe_linear_depth(view, depths.all);
     if (!normals) normals = describe_normals(view, linear_depth);
@@ -259,7 +257,7 @@ tl::expected<std::vector<AlcoveWorkPipeline>, Error> list_pipelines(AlcoveWork& 
       float& x = view.previous_camera.view_from_world[12];
       x = x == 0.0f ? 1.0f : 0.0f;
     }
-    WorkList list(work);
+    WorkBuilder list(work);
     if (past != Past::none)
       list.set_history_source({[](void*, HistoryRole, const auto&) { return true; }});
     if (auto described = describe_view(list, frame); !described)

@@ -1,9 +1,7 @@
-#include "graph/graph_work.h"
+#include "graph/graph_adapter.h"
 
 #include <algorithm>
 #include <cstdio>
-
-#include "work/shader_table.h"
 
 namespace alcove::passes {
 
@@ -38,10 +36,10 @@ bool has_other_contents(const Graph& graph, Texture texture) {
          (texture.version > 0 || declared.externals[record.external].has_contents != 0);
 }
 
-// The callback of a pass: one dispatch.
-struct Dispatch {
-  Kernels* kernels = nullptr;
-  Kernel kernel;
+// The callback of a pass: it records one dispatch.
+struct RecordDispatch {
+  Pipelines::State* pipelines = nullptr;
+  Pipeline pipeline;
   std::array<std::uint32_t, 3> groups{};
   std::uint32_t image_count = 0;
   std::uint32_t parameter_bytes = 0;
@@ -55,8 +53,8 @@ struct Dispatch {
       static_cast<void>(context.validity(images[i]));
       views[i] = context.view(images[i]);
     }
-    kernels->dispatch(context, kernel, std::span<const VkImageView>(views).first(image_count),
-                      std::span(parameters).first(parameter_bytes), groups);
+    pipelines->dispatch(context, pipeline, std::span<const VkImageView>(views).first(image_count),
+                        std::span(parameters).first(parameter_bytes), groups);
   }
 };
 
@@ -84,15 +82,16 @@ AlcoveWorkInfo work_info(const Graph& graph, const AlcoveViewInfo& info, std::ui
   return result;
 }
 
-GraphWork::GraphWork(Graph& graph, Kernels& kernels, std::uint32_t view_id)
-    : graph_(graph), kernels_(kernels), view_id_(view_id), list_(kernels.scratch()) {
-  list_.set_history_source({[](void* user, HistoryRole role, const WorkList::History& history) {
-                              return static_cast<GraphWork*>(user)->declare_history(role, history);
+GraphAdapter::GraphAdapter(Graph& graph, Pipelines& pipelines, std::uint32_t view_id)
+    : graph_(graph), pipelines_(pipelines.state()), view_id_(view_id), list_(pipelines_.scratch) {
+  list_.set_history_source({[](void* user, HistoryRole role, const WorkBuilder::History& history) {
+                              return static_cast<GraphAdapter*>(user)->declare_history(role,
+                                                                                       history);
                             },
                             this});
 }
 
-bool GraphWork::declare_history(HistoryRole role, const WorkList::History& history) {
+bool GraphAdapter::declare_history(HistoryRole role, const WorkBuilder::History& history) {
   declared_.at(static_cast<std::size_t>(role)) = true;
   const VkExtent2D size = list_.size(history.current);
   const framegraph::TextureHistory made = graph_.create_texture_history(
@@ -103,16 +102,16 @@ bool GraphWork::declare_history(HistoryRole role, const WorkList::History& histo
   return made.validity == framegraph::HistoryValidity::valid;
 }
 
-tl::expected<void, Error> GraphWork::add() {
+tl::expected<void, Error> GraphAdapter::add() {
   const AlcoveWork& work = list_.work();
   const std::span dispatches(work.dispatches, work.dispatch_count);
-  std::array<Kernel, ALCOVE_MAX_WORK_DISPATCHES> kernels;
+  std::array<Pipeline, ALCOVE_MAX_WORK_DISPATCHES> pipelines;
   for (std::size_t i = 0; i < dispatches.size(); ++i) {
-    auto kernel =
-        kernels_.get(shader_of_name(dispatches[i].shader),
-                     std::span(dispatches[i].constants).first(dispatches[i].constant_count));
-    if (!kernel) return tl::unexpected(std::move(kernel.error()));
-    kernels[i] = *kernel;
+    auto pipeline =
+        pipelines_.get(shader_of_name(dispatches[i].shader),
+                       std::span(dispatches[i].constants).first(dispatches[i].constant_count));
+    if (!pipeline) return tl::unexpected(std::move(pipeline.error()));
+    pipelines[i] = *pipeline;
   }
   for (std::uint32_t i = 0; i < work.resource_count; ++i) {
     const AlcoveWorkResource& resource = work.resources[i];
@@ -122,22 +121,22 @@ tl::expected<void, Error> GraphWork::add() {
                           framegraph::Extent::absolute(resource.width, resource.height)});
     }
   }
-  for (std::size_t i = 0; i < dispatches.size(); ++i) add(dispatches[i], kernels[i]);
+  for (std::size_t i = 0; i < dispatches.size(); ++i) add(dispatches[i], pipelines[i]);
   return {};
 }
 
-void GraphWork::reset_other_histories() {
+void GraphAdapter::reset_other_histories() {
   for (const HistoryRole role : kHistoryRoles)
     if (!declared_.at(static_cast<std::size_t>(role)))
       graph_.reset_history(HistoryName(view_id_, role));
 }
 
-void GraphWork::add(const AlcoveWorkDispatch& dispatch, Kernel kernel) {
+void GraphAdapter::add(const AlcoveWorkDispatch& dispatch, Pipeline pipeline) {
   auto pass = graph_.add_pass(dispatch.label);
   declare_accesses(pass, dispatch);
-  Dispatch callback;
-  callback.kernels = &kernels_;
-  callback.kernel = kernel;
+  RecordDispatch callback;
+  callback.pipelines = &pipelines_;
+  callback.pipeline = pipeline;
   std::ranges::copy(dispatch.groups, callback.groups.begin());
   for (const AlcoveWorkBinding& binding :
        std::span(dispatch.bindings).first(dispatch.binding_count)) {
@@ -150,8 +149,8 @@ void GraphWork::add(const AlcoveWorkDispatch& dispatch, Kernel kernel) {
 }
 
 // Declares one access for each texture, which combines all bindings of it.
-void GraphWork::declare_accesses(framegraph::PassBuilder& pass,
-                                 const AlcoveWorkDispatch& dispatch) {
+void GraphAdapter::declare_accesses(framegraph::PassBuilder& pass,
+                                    const AlcoveWorkDispatch& dispatch) {
   const auto bindings = std::span(dispatch.bindings).first(dispatch.binding_count);
   for (auto binding = bindings.begin(); binding != bindings.end(); ++binding) {
     const auto is_same = [&](const AlcoveWorkBinding& other) {

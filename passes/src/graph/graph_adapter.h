@@ -5,22 +5,23 @@
 #include <string_view>
 
 #include "alcove/passes/graph.h"
-#include "work/view_work.h"
+#include "vulkan/pipeline_state.h"
+#include "work/describe_view.h"
 
 namespace alcove::passes {
 
 // A list of work whose resources are textures of a graph. A description fills list(); add() then
-// creates the transients and adds a pass for each dispatch. The list is that of the kernels
-// (Kernels::scratch), so only one object may exist at a time.
-class GraphWork {
+// creates the transients and adds a pass for each dispatch. The list is that of the pipelines
+// (Pipelines::State::scratch), so only one object may exist at a time.
+class GraphAdapter {
  public:
-  GraphWork(framegraph::Graph& graph, Kernels& kernels, std::uint32_t view_id);
-  GraphWork(const GraphWork&) = delete;
-  GraphWork& operator=(const GraphWork&) = delete;
+  GraphAdapter(framegraph::Graph& graph, Pipelines& pipelines, std::uint32_t view_id);
+  GraphAdapter(const GraphAdapter&) = delete;
+  GraphAdapter& operator=(const GraphAdapter&) = delete;
 
-  WorkList& list() { return list_; }
+  WorkBuilder& list() { return list_; }
   // The texture of the graph for a resource of the list. Those of the engine are set before add().
-  framegraph::Texture& texture(framegraph::Texture listed) { return textures_.at(listed.index); }
+  framegraph::Texture& texture(ResourceHandle listed) { return textures_.at(listed.index); }
 
   // Creates the pipelines of all dispatches, and adds the dispatches to the graph.
   [[nodiscard]] tl::expected<void, Error> add();
@@ -30,14 +31,14 @@ class GraphWork {
   void reset_other_histories();
 
  private:
-  bool declare_history(HistoryRole role, const WorkList::History& history);
-  void add(const AlcoveWorkDispatch& dispatch, Kernel kernel);
+  bool declare_history(HistoryRole role, const WorkBuilder::History& history);
+  void add(const AlcoveWorkDispatch& dispatch, Pipeline pipeline);
   void declare_accesses(framegraph::PassBuilder& pass, const AlcoveWorkDispatch& dispatch);
 
   framegraph::Graph& graph_;
-  Kernels& kernels_;
+  Pipelines::State& pipelines_;
   std::uint32_t view_id_;
-  WorkList list_;
+  WorkBuilder list_;
   std::array<framegraph::Texture, ALCOVE_MAX_WORK_RESOURCES> textures_;  // parallel to resources
   std::array<bool, ALCOVE_MAX_WORK_HISTORIES> declared_{};               // by HistoryRole
 };

@@ -1,4 +1,4 @@
-#include "work/work_list.h"
+#include "work/work_builder.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,6 @@
 #include "work/shader_table.h"
 
 namespace alcove::passes {
-
-using framegraph::Texture;
 
 namespace {
 
@@ -48,7 +46,7 @@ std::uint32_t groups(std::uint32_t invocations) {
 
 }  // namespace
 
-WorkList::WorkList(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
+WorkBuilder::WorkBuilder(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
   for (std::uint32_t i = 0; previous != nullptr && i < previous->history_count; ++i) {
     const AlcoveWorkResource& slot = previous->resources[previous->histories[i].current];
     previous_[i] = {slot.name, slot.format, {slot.width, slot.height}};
@@ -57,8 +55,8 @@ WorkList::WorkList(AlcoveWork& work, const AlcoveWork* previous) : work_(work) {
   work.resource_count = work.dispatch_count = work.history_count = 0;
 }
 
-Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format, VkExtent2D size,
-                      std::uint32_t samples, std::uint32_t role) {
+ResourceHandle WorkBuilder::add(AlcoveResourceKind kind, const char* name, VkFormat format,
+                                VkExtent2D size, std::uint32_t samples, std::uint32_t role) {
   if (work_.resource_count == ALCOVE_MAX_WORK_RESOURCES) return {};
   work_.resources[work_.resource_count] = {.name = name,
                                            .kind = kind,
@@ -75,7 +73,7 @@ Texture WorkList::add(AlcoveResourceKind kind, const char* name, VkFormat format
   return {work_.resource_count++};
 }
 
-WorkList::History WorkList::add_history(HistoryRole role, VkFormat format, VkExtent2D size) {
+WorkBuilder::History WorkBuilder::add_history(HistoryRole role, VkFormat format, VkExtent2D size) {
   const char* const name = kHistoryNames.at(static_cast<std::size_t>(role));
   History history{add(ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS, name, format, size),
                   add(ALCOVE_RESOURCE_KIND_HISTORY_CURRENT, name, format, size)};
@@ -91,8 +89,8 @@ WorkList::History WorkList::add_history(HistoryRole role, VkFormat format, VkExt
   return history;
 }
 
-std::uint32_t WorkList::add_table(const char* name, std::span<const std::uint32_t> words) {
-  const Texture table = add(ALCOVE_RESOURCE_KIND_TABLE, name, VK_FORMAT_UNDEFINED, {});
+std::uint32_t WorkBuilder::add_table(const char* name, std::span<const std::uint32_t> words) {
+  const ResourceHandle table = add(ALCOVE_RESOURCE_KIND_TABLE, name, VK_FORMAT_UNDEFINED, {});
   if (table) {
     AlcoveWorkResource& added = work_.resources[table.index];
     added.size = words.size_bytes();
@@ -101,11 +99,11 @@ std::uint32_t WorkList::add_table(const char* name, std::span<const std::uint32_
   return table.index;
 }
 
-void WorkList::dispatch(const DispatchInfo& info) {
+void WorkBuilder::dispatch(const DispatchRequest& info) {
   if (result_) result_ = add_dispatch(info);
 }
 
-tl::expected<void, Error> WorkList::add_dispatch(const DispatchInfo& info) {
+tl::expected<void, Error> WorkBuilder::add_dispatch(const DispatchRequest& info) {
   const ShaderSource source = shader_source(info.shader);
   const auto fail = [&](std::string_view what) {
     return tl::unexpected(Error{std::string("The shader '").append(source.name).append("' ") +
@@ -126,9 +124,9 @@ tl::expected<void, Error> WorkList::add_dispatch(const DispatchInfo& info) {
   made.binding_count = 0;
   std::size_t images = 0;
   for (const ShaderBinding& binding : shader_interface(info.shader).bindings) {
-    const NamedTexture* const given =
+    const NamedImage* const given =
         binding.is_image() ? find_named(info.images, binding.name, images++) : nullptr;
-    const Texture texture = given == nullptr ? Texture{} : given->texture;
+    const ResourceHandle texture = given == nullptr ? ResourceHandle{} : given->texture;
     if (!bind(made, binding, texture, source.table)) {
       return fail(std::string("has a binding '").append(binding.name) +
                   "', for which its pass gives no image; name it in the pass's list of images");
@@ -143,8 +141,8 @@ tl::expected<void, Error> WorkList::add_dispatch(const DispatchInfo& info) {
 
 // Adds a binding to the dispatch that is being added, and the use to its resource: the image that
 // is given, or the table. Returns false if there is no resource.
-bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding, Texture given,
-                    std::span<const std::uint32_t> table) {
+bool WorkBuilder::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding,
+                       ResourceHandle given, std::span<const std::uint32_t> table) {
   AlcoveWorkBinding& bound = dispatch.bindings[dispatch.binding_count++];
   bound = {.name = binding.name.data(),
            .number = binding.number,
@@ -153,8 +151,8 @@ bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding, 
            .resource = ALCOVE_WORK_NONE};
   if (bound.type == ALCOVE_BINDING_TYPE_PARAMETERS || bound.type == ALCOVE_BINDING_TYPE_SAMPLER)
     return true;
-  const Texture used =
-      bound.type == ALCOVE_BINDING_TYPE_TABLE ? Texture{add_table("table", table)} : given;
+  const ResourceHandle used =
+      bound.type == ALCOVE_BINDING_TYPE_TABLE ? ResourceHandle{add_table("table", table)} : given;
   if (find(used) == nullptr) return false;
   AlcoveWorkResource& resource = work_.resources[used.index];
   bound.resource = used.index;
@@ -167,21 +165,21 @@ bool WorkList::bind(AlcoveWorkDispatch& dispatch, const ShaderBinding& binding, 
   return true;
 }
 
-const AlcoveWorkResource* WorkList::find(Texture texture) const {
+const AlcoveWorkResource* WorkBuilder::find(ResourceHandle texture) const {
   return texture.index < work_.resource_count ? &work_.resources[texture.index] : nullptr;
 }
 
-VkExtent2D WorkList::size(Texture texture) const {
+VkExtent2D WorkBuilder::size(ResourceHandle texture) const {
   const AlcoveWorkResource* const found = find(texture);
   return found == nullptr ? VkExtent2D{} : VkExtent2D{found->width, found->height};
 }
 
-VkFormat WorkList::format(Texture texture) const {
+VkFormat WorkBuilder::format(ResourceHandle texture) const {
   const AlcoveWorkResource* const found = find(texture);
   return found == nullptr ? VK_FORMAT_UNDEFINED : static_cast<VkFormat>(found->format);
 }
 
-std::uint32_t WorkList::samples(Texture texture) const {
+std::uint32_t WorkBuilder::samples(ResourceHandle texture) const {
   const AlcoveWorkResource* const found = find(texture);
   return found == nullptr ? 0 : found->samples;
 }

@@ -1,21 +1,14 @@
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/pipelines.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstring>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "vulkan/descriptor_sets.h"
-#include "vulkan/host_buffer.h"
-#include "work/shader_table.h"
+#include "vulkan/pipeline_state.h"
 
 namespace alcove::passes {
 namespace {
-
-constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
 
 tl::unexpected<Error> failure(std::string_view what, VkResult result) {
   return tl::unexpected(
@@ -26,54 +19,11 @@ const ShaderInterface& interface_of(std::size_t shader) {
   return shader_interface(static_cast<Shader>(shader));
 }
 
-// The Vulkan objects of one shader. The module and the table are created with its first pipeline.
-struct ShaderObjects {
-  VkShaderModule module = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-  VkPipelineLayout pipeline_layout = VK_NULL_HANDLE;
-  std::unique_ptr<HostBuffer> table;  // null if the shader has none
-};
-
-struct Pipeline {
-  Shader shader = Shader::count;
-  std::vector<AlcoveWorkConstant> constants;
-  VkPipeline pipeline = VK_NULL_HANDLE;
-};
-
 }  // namespace
 
-struct Kernels::State {
-  framegraph::VulkanFunctions vk;
-  framegraph::DeviceHandles handles;
-  VkPipelineCache cache = VK_NULL_HANDLE;  // the caller's
-  VkSampler sampler = VK_NULL_HANDLE;      // of all shaders: nearest, clamped to the edge
-  std::array<ShaderObjects, kShaderCount> shaders;
-  std::vector<Pipeline> pipelines;
-  std::unique_ptr<DescriptorSets> sets;
-  AlcoveWork work;
-
-  VkDevice device() const { return handles.device; }
-  const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
-
-  State() = default;
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State();
-
-  tl::expected<void, Error> check_limits() const;
-  tl::expected<void, Error> create_sampler();
-  tl::expected<void, Error> create_layout(std::size_t shader);
-  tl::expected<void, Error> create_layouts();
-  tl::expected<void, Error> create_sets(std::uint32_t slot_count);
-  tl::expected<void, Error> create_module(std::size_t shader);
-  tl::expected<void, Error> create_table(std::size_t shader);
-  tl::expected<Kernel, Error> create_pipeline(Shader shader,
-                                              std::span<const AlcoveWorkConstant> constants);
-};
-
-Kernels::State::~State() {
+Pipelines::State::~State() {
   if (device() == VK_NULL_HANDLE) return;
-  for (const Pipeline& pipeline : pipelines)
+  for (const CachedPipeline& pipeline : cached)
     vk.vkDestroyPipeline(device(), pipeline.pipeline, callbacks());
   for (const ShaderObjects& shader : shaders) {
     vk.vkDestroyShaderModule(device(), shader.module, callbacks());
@@ -85,7 +35,7 @@ Kernels::State::~State() {
 
 // Checks the device limit on storage images per stage. It is the only descriptor limit that the
 // shaders may exceed: Vulkan guarantees only 4.
-tl::expected<void, Error> Kernels::State::check_limits() const {
+tl::expected<void, Error> Pipelines::State::check_limits() const {
   VkPhysicalDeviceProperties properties{};
   vk.vkGetPhysicalDeviceProperties(handles.physical_device, &properties);
   const std::uint32_t limit = properties.limits.maxPerStageDescriptorStorageImages;
@@ -103,7 +53,7 @@ tl::expected<void, Error> Kernels::State::check_limits() const {
                               VK_ERROR_FEATURE_NOT_PRESENT});
 }
 
-tl::expected<void, Error> Kernels::State::create_sampler() {
+tl::expected<void, Error> Pipelines::State::create_sampler() {
   // The filters are those whose value is 0: nearest.
   const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                  .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -115,7 +65,7 @@ tl::expected<void, Error> Kernels::State::create_sampler() {
   return {};
 }
 
-tl::expected<void, Error> Kernels::State::create_layout(std::size_t shader) {
+tl::expected<void, Error> Pipelines::State::create_layout(std::size_t shader) {
   const std::span<const ShaderBinding> bindings = interface_of(shader).bindings;
   std::array<VkDescriptorSetLayoutBinding, kMaxBindings> described{};
   for (std::size_t i = 0; i < bindings.size(); ++i) {
@@ -142,21 +92,21 @@ tl::expected<void, Error> Kernels::State::create_layout(std::size_t shader) {
   return {};
 }
 
-tl::expected<void, Error> Kernels::State::create_layouts() {
+tl::expected<void, Error> Pipelines::State::create_layouts() {
   tl::expected<void, Error> done;
   for (std::size_t shader = 0; done && shader < kShaderCount; ++shader)
     done = create_layout(shader);
   return done;
 }
 
-tl::expected<void, Error> Kernels::State::create_sets(std::uint32_t slot_count) {
+tl::expected<void, Error> Pipelines::State::create_sets(std::uint32_t slot_count) {
   auto made = DescriptorSets::create(vk, handles, slot_count);
   if (!made) return tl::unexpected(std::move(made.error()));
   sets = std::move(*made);
   return {};
 }
 
-tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
+tl::expected<void, Error> Pipelines::State::create_module(std::size_t shader) {
   VkShaderModule& module = shaders[shader].module;
   if (module != VK_NULL_HANDLE) return {};
   const std::span<const std::uint32_t> code = shader_source(static_cast<Shader>(shader)).code;
@@ -170,7 +120,7 @@ tl::expected<void, Error> Kernels::State::create_module(std::size_t shader) {
 }
 
 // Creates the shader's storage buffer with its table, if it has one and the buffer does not exist.
-tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
+tl::expected<void, Error> Pipelines::State::create_table(std::size_t shader) {
   const std::span<const std::uint32_t> table = shader_source(static_cast<Shader>(shader)).table;
   if (table.empty() || shaders[shader].table) return {};
   auto made =
@@ -181,7 +131,7 @@ tl::expected<void, Error> Kernels::State::create_table(std::size_t shader) {
   return {};
 }
 
-tl::expected<Kernel, Error> Kernels::State::create_pipeline(
+tl::expected<Pipeline, Error> Pipelines::State::create_pipeline(
     Shader shader, std::span<const AlcoveWorkConstant> constants) {
   const auto index = static_cast<std::size_t>(shader);
   if (auto made = create_module(index).and_then([&] { return create_table(index); }); !made)
@@ -204,28 +154,28 @@ tl::expected<Kernel, Error> Kernels::State::create_pipeline(
                 .pName = "main",
                 .pSpecializationInfo = &specialisation},
       .layout = shaders[index].pipeline_layout};
-  // The vector of pipelines grows before the pipeline is created, so that a failed allocation
+  // The vector grows before the pipeline is created, so that a failed allocation
   // cannot leak the pipeline.
-  if (pipelines.size() == pipelines.capacity()) pipelines.reserve(2 * pipelines.size() + 8);
-  Pipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
+  if (cached.size() == cached.capacity()) cached.reserve(2 * cached.size() + 8);
+  CachedPipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
   if (const VkResult result =
           vk.vkCreateComputePipelines(device(), cache, 1, &info, callbacks(), &made.pipeline);
       result != VK_SUCCESS)
     return failure("a compute pipeline", result);
-  pipelines.push_back(std::move(made));
+  cached.push_back(std::move(made));
   if (const framegraph::Log& log = handles.host.log; log.write != nullptr)
     log.write(log.user, framegraph::Severity::info, "A compute pipeline has been created.");
-  return Kernel{pipelines.back().pipeline, shader};
+  return Pipeline{cached.back().pipeline, shader};
 }
 
-Kernels::Kernels(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Kernels::Kernels(Kernels&&) noexcept = default;
-Kernels& Kernels::operator=(Kernels&&) noexcept = default;
-Kernels::~Kernels() = default;
+Pipelines::Pipelines(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Pipelines::Pipelines(Pipelines&&) noexcept = default;
+Pipelines& Pipelines::operator=(Pipelines&&) noexcept = default;
+Pipelines::~Pipelines() = default;
 
-tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& device,
-                                             std::uint32_t frames_in_flight,
-                                             VkPipelineCache cache) {
+tl::expected<Pipelines, Error> Pipelines::create(const framegraph::DeviceHandles& device,
+                                                 std::uint32_t frames_in_flight,
+                                                 VkPipelineCache cache) {
   if (device.instance == VK_NULL_HANDLE || device.physical_device == VK_NULL_HANDLE ||
       device.device == VK_NULL_HANDLE || device.get_instance_proc_addr == nullptr) {
     return tl::unexpected(
@@ -253,56 +203,54 @@ tl::expected<Kernels, Error> Kernels::create(const framegraph::DeviceHandles& de
                   .and_then([&] { return state->create_layouts(); })
                   .and_then([&] { return state->create_sets(frames_in_flight); });
   if (!done) return tl::unexpected(std::move(done.error()));
-  return Kernels(std::move(state));
+  return Pipelines(std::move(state));
 }
 
-void Kernels::begin_frame(std::uint32_t slot) { state_->sets->begin_frame(slot); }
+void Pipelines::begin_frame(std::uint32_t slot) { state_->sets->begin_frame(slot); }
 
-tl::expected<Kernel, Error> Kernels::get(Shader shader,
-                                         std::span<const AlcoveWorkConstant> constants) {
-  for (const Pipeline& made : state_->pipelines)
+tl::expected<Pipeline, Error> Pipelines::State::get(Shader shader,
+                                                    std::span<const AlcoveWorkConstant> constants) {
+  for (const CachedPipeline& made : cached)
     if (made.shader == shader &&
         std::ranges::equal(made.constants, constants, {}, &AlcoveWorkConstant::value,
                            &AlcoveWorkConstant::value))
-      return Kernel{made.pipeline, shader};
-  return state_->create_pipeline(shader, constants);
+      return Pipeline{made.pipeline, shader};
+  return create_pipeline(shader, constants);
 }
 
-void Kernels::dispatch(framegraph::RecordContext& context, Kernel kernel,
-                       std::span<const VkImageView> views, std::span<const std::byte> parameters,
-                       const std::array<std::uint32_t, 3>& groups) {
+void Pipelines::State::dispatch(framegraph::RecordContext& context, Pipeline pipeline,
+                                std::span<const VkImageView> views,
+                                std::span<const std::byte> parameters,
+                                const std::array<std::uint32_t, 3>& groups) const {
   // A view that could not be created is an error of the frame's record already.
   if (std::ranges::find(views, VkImageView{VK_NULL_HANDLE}) != views.end()) return;
-  const State& s = *state_;
-  const ShaderObjects& shader = s.shaders[static_cast<std::size_t>(kernel.shader)];
-  const VkDescriptorSet set = s.sets->get(
-      context, {.shader = kernel.shader,
-                .interface = &shader_interface(kernel.shader),
-                .layout = shader.set_layout,
-                .table = shader.table ? shader.table->buffer() : VkBuffer{VK_NULL_HANDLE},
-                .views = views,
-                .parameters = parameters});
+  const ShaderObjects& shader = shaders[static_cast<std::size_t>(pipeline.shader)];
+  const VkDescriptorSet set =
+      sets->get(context, {.shader = pipeline.shader,
+                          .interface = &shader_interface(pipeline.shader),
+                          .layout = shader.set_layout,
+                          .table = shader.table ? shader.table->buffer() : VkBuffer{VK_NULL_HANDLE},
+                          .views = views,
+                          .parameters = parameters});
   if (set == VK_NULL_HANDLE) return;
   const VkCommandBuffer commands = context.commands;
-  s.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
-  s.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline_layout, 0,
-                               1, &set, 0, nullptr);
-  s.vk.vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
+  vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+  vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline_layout, 0, 1,
+                             &set, 0, nullptr);
+  vk.vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
 }
 
-AlcoveWork& Kernels::scratch() { return state_->work; }
-
-std::size_t Kernels::pipeline_count() const { return state_->pipelines.size(); }
-
-VkDeviceSize Kernels::memory_bytes() const {
-  return state_->sets->parameter_bytes() + table_bytes();
-}
-
-std::size_t Kernels::table_bytes() const {
+std::size_t Pipelines::State::table_bytes() const {
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < kShaderCount; ++i)
-    if (state_->shaders[i].table) bytes += shader_source(static_cast<Shader>(i)).table.size_bytes();
+    if (shaders[i].table) bytes += shader_source(static_cast<Shader>(i)).table.size_bytes();
   return bytes;
+}
+
+std::size_t Pipelines::pipeline_count() const { return state_->cached.size(); }
+
+VkDeviceSize Pipelines::memory_bytes() const {
+  return state_->sets->parameter_bytes() + state_->table_bytes();
 }
 
 }  // namespace alcove::passes

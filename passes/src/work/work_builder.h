@@ -1,5 +1,4 @@
-// Fills a list of work (alcove_work.h). The textures that passes name are handles of the list:
-// Texture::index is the index of a resource.
+// Fills a list of work (alcove_work.h).
 #pragma once
 
 #include <cstddef>
@@ -9,38 +8,45 @@
 #include <string_view>
 
 #include "alcove/alcove_work.h"
-#include "alcove/framegraph/graph.h"
-#include "alcove/passes/kernels.h"
+#include "alcove/passes/error.h"
+#include "work/shader_table.h"
 
 namespace alcove::passes {
 
 // The histories of a view.
 enum class HistoryRole : std::uint8_t { visibility, depth, bent_normal, lobe };
 
+// A resource of the list, by its index, or null.
+struct ResourceHandle {
+  std::uint32_t index = ALCOVE_WORK_NONE;
+  explicit constexpr operator bool() const { return index != ALCOVE_WORK_NONE; }
+  bool operator==(const ResourceHandle&) const = default;
+};
+
 // An image for a binding of a shader, by the variable's name in GLSL.
-struct NamedTexture {
+struct NamedImage {
   std::string_view name;
-  framegraph::Texture texture;
+  ResourceHandle texture;
 };
 
 // A request of a pass to run a shader. Constants and images that only other shaders have are
 // ignored, so that all variants of a shader can be given the same lists.
-struct DispatchInfo {
+struct DispatchRequest {
   const char* label = "";  // static
   Shader shader = Shader::count;
   std::span<const NamedConstant> constants = {};
-  std::span<const NamedTexture> images = {};
+  std::span<const NamedImage> images = {};
   std::span<const std::byte> parameters = {};
   VkExtent3D size{};  // invocations
 };
 
 // Fills an AlcoveWork. It refers to the list, which must outlive it, and allocates nothing.
-class WorkList {
+class WorkBuilder {
  public:
   // The slots of a history, and whether the contents of `previous` can be read.
   struct History {
-    framegraph::Texture previous;
-    framegraph::Texture current;
+    ResourceHandle previous;
+    ResourceHandle current;
     bool valid = false;
   };
   // Decides about a history instead of `previous`. It is called when the history has been added.
@@ -51,13 +57,12 @@ class WorkList {
 
   // Begins an empty list. The histories continue those of `previous`, the list of the last executed
   // frame, which may be `work` itself, or null.
-  explicit WorkList(AlcoveWork& work, const AlcoveWork* previous = nullptr);
+  explicit WorkBuilder(AlcoveWork& work, const AlcoveWork* previous = nullptr);
 
   // Adds an image. Returns a null handle if the list is full.
-  framegraph::Texture add(AlcoveResourceKind kind, const char* name, VkFormat format,
-                          VkExtent2D size, std::uint32_t samples = 1,
-                          std::uint32_t role = ALCOVE_WORK_NONE);
-  framegraph::Texture add_transient(const char* name, VkFormat format, VkExtent2D size) {
+  ResourceHandle add(AlcoveResourceKind kind, const char* name, VkFormat format, VkExtent2D size,
+                     std::uint32_t samples = 1, std::uint32_t role = ALCOVE_WORK_NONE);
+  ResourceHandle add_transient(const char* name, VkFormat format, VkExtent2D size) {
     return add(ALCOVE_RESOURCE_KIND_TRANSIENT, name, format, size);
   }
   // Adds the two slots of a history.
@@ -66,13 +71,13 @@ class WorkList {
 
   // Adds a dispatch. The accesses follow from the shader's interface. A constant or an image of the
   // shader that is missing, or a full list, is an error, which result() returns.
-  void dispatch(const DispatchInfo& info);
+  void dispatch(const DispatchRequest& info);
   // Returns the first error of dispatch().
   [[nodiscard]] tl::expected<void, Error> result() const { return result_; }
 
-  VkExtent2D size(framegraph::Texture texture) const;
-  VkFormat format(framegraph::Texture texture) const;
-  std::uint32_t samples(framegraph::Texture texture) const;  // per pixel
+  VkExtent2D size(ResourceHandle texture) const;
+  VkFormat format(ResourceHandle texture) const;
+  std::uint32_t samples(ResourceHandle texture) const;  // per pixel
   AlcoveWork& work() const { return work_; }
 
  private:
@@ -81,11 +86,11 @@ class WorkList {
     std::uint32_t format = 0;
     VkExtent2D size{};
   };
-  const AlcoveWorkResource* find(framegraph::Texture texture) const;
+  const AlcoveWorkResource* find(ResourceHandle texture) const;
   std::uint32_t add_table(const char* name, std::span<const std::uint32_t> words);
-  tl::expected<void, Error> add_dispatch(const DispatchInfo& info);
-  bool bind(AlcoveWorkDispatch& dispatch, const struct ShaderBinding& binding,
-            framegraph::Texture given, std::span<const std::uint32_t> table);
+  tl::expected<void, Error> add_dispatch(const DispatchRequest& info);
+  bool bind(AlcoveWorkDispatch& dispatch, const struct ShaderBinding& binding, ResourceHandle given,
+            std::span<const std::uint32_t> table);
 
   AlcoveWork& work_;
   HistorySource source_;

@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "maths/make_projection.h"
-#include "work/work_list.h"
+#include "work/work_builder.h"
 
 namespace alcove::passes {
 
 // The view, its defaults filled in, and its images as handles of the list. The objects that it
 // refers to must outlive it.
-struct ViewWork {
-  WorkList& list;
+struct ViewInputs {
+  WorkBuilder& list;
   const AlcoveViewInfo& info;
   const AlcoveSettings& settings;
-  std::array<framegraph::Texture, ALCOVE_IMAGE_COUNT> images{};
+  std::array<ResourceHandle, ALCOVE_IMAGE_COUNT> images{};
   std::uint32_t index = 0;                      // the number that selects the noise
   std::uint32_t static_frames = 0;              // 0 with reset_history
   VkFormat depth_format = VK_FORMAT_UNDEFINED;  // in which depths were first stored
@@ -27,7 +27,7 @@ struct ViewWork {
   VkExtent2D largest{};                         // of the history
   maths::Projection projection{};
 
-  framegraph::Texture image(AlcoveImageRole role) const { return images[role]; }
+  ResourceHandle image(AlcoveImageRole role) const { return images[role]; }
   // The results that the search and the filter compute.
   bool visibility() const {
     return image(ALCOVE_IMAGE_VISIBILITY) || image(ALCOVE_IMAGE_MULTI_BOUNCE) || by_table();
@@ -43,10 +43,12 @@ struct ViewWork {
 };
 
 // Checks a view, which is done once in a frame, and adds its images to the list.
-[[nodiscard]] tl::expected<ViewWork, Error> begin_view(WorkList& list, const AlcoveWorkInfo& info);
+[[nodiscard]] tl::expected<ViewInputs, Error> begin_view(WorkBuilder& list,
+                                                         const AlcoveWorkInfo& info);
 
 // Adds all work of a view to the list. AlcoveWorkInfo::previous is not read.
-[[nodiscard]] tl::expected<void, Error> describe_view(WorkList& list, const AlcoveWorkInfo& info);
+[[nodiscard]] tl::expected<void, Error> describe_view(WorkBuilder& list,
+                                                      const AlcoveWorkInfo& info);
 
 // Returns the pipelines that frames of a view can need: a first frame, frames in motion and static
 // ones. `work` is overwritten.
@@ -59,63 +61,61 @@ struct ViewWork {
 [[nodiscard]] bool same_camera(const AlcoveCamera& a, const AlcoveCamera& b);
 
 // The passes. Each adds its dispatches and returns its results as handles of the list.
-[[nodiscard]] framegraph::Texture describe_linear_depth(const ViewWork& view,
-                                                        framegraph::Texture depth);
-[[nodiscard]] framegraph::Texture describe_normals(const ViewWork& view,
-                                                   framegraph::Texture linear_depth);
+[[nodiscard]] ResourceHandle describe_linear_depth(const ViewInputs& view, ResourceHandle depth);
+[[nodiscard]] ResourceHandle describe_normals(const ViewInputs& view, ResourceHandle linear_depth);
 
 // The depth buffers that the passes read. Without several samples and without a mask all three are
 // the given depth.
 struct Depths {
-  framegraph::Texture all;        // with one sample per pixel
-  framegraph::Texture receivers;  // with sky in the place of surfaces that do not receive occlusion
-  framegraph::Texture occluders;  // with kNoOccluder in the place of surfaces that do not occlude
-  framegraph::Texture halved{};   // every second pixel of `occluders`, for the search; or null
+  ResourceHandle all;        // with one sample per pixel
+  ResourceHandle receivers;  // with sky in the place of surfaces that do not receive occlusion
+  ResourceHandle occluders;  // with kNoOccluder in the place of surfaces that do not occlude
+  ResourceHandle halved{};   // every second pixel of `occluders`, for the search; or null
 };
-[[nodiscard]] Depths describe_depths(const ViewWork& view);
+[[nodiscard]] Depths describe_depths(const ViewInputs& view);
 
 // The raw occlusion of a frame, one texel per tile: sums over slices, which reconstruction filters.
 struct RawOcclusion {
   // R32G32_UINT: the packed visible and unoccluded parts (shaders/maths/raw_occlusion.h), and the
   // bits of the traced pixel's inverse depth as a float. With a GGX lobe the format is
   // R32G32B32A32_UINT: also the packed parts of the lobe, and the surface's normal and roughness.
-  framegraph::Texture sums;
+  ResourceHandle sums;
   // R32G32_UINT: two sums over the slices, in view space, with 10 bits per component
   // (shaders/maths/bent_normal.h). The first is the bent-normal residual, the second the residual
   // that is expected without occluders. Null if no bent normals are computed.
-  framegraph::Texture bent;
+  ResourceHandle bent;
 };
-[[nodiscard]] RawOcclusion describe_gtao(const ViewWork& view, const Depths& depths);
+[[nodiscard]] RawOcclusion describe_gtao(const ViewInputs& view, const Depths& depths);
 
 // Visibility, bent normals and specular occlusion of every pixel: the images of the view, or
 // transients where another pass reads a result that has no image. Null where nothing does.
 struct Results {
-  framegraph::Texture visibility;
-  framegraph::Texture bent_normal;
-  framegraph::Texture specular;
+  ResourceHandle visibility;
+  ResourceHandle bent_normal;
+  ResourceHandle specular;
 };
 // Reconstructs every pixel from the traced pixels: spatial filter, upsampling and temporal
 // accumulation in one pass (Jimenez et al. 2016, sections 4.4 and 4.5, with other weights). Error:
 // a previous camera that cannot be used.
-[[nodiscard]] tl::expected<Results, Error> describe_reconstruct(const ViewWork& view,
-                                                                framegraph::Texture depth,
+[[nodiscard]] tl::expected<Results, Error> describe_reconstruct(const ViewInputs& view,
+                                                                ResourceHandle depth,
                                                                 const RawOcclusion& raw);
 // Makes pixels from what is reconstructed at half resolution.
 struct HalfTexels {
-  framegraph::Texture half;       // maths::pack_half_texel()
-  framegraph::Texture depth;      // maths::half_texel_depth()
-  framegraph::Texture residuals;  // maths::pack_half_residual(); null where there is no bent normal
-  framegraph::Texture lobes;      // maths::LobeTexel; null where there is no lobe
+  ResourceHandle half;       // maths::pack_half_texel()
+  ResourceHandle depth;      // maths::half_texel_depth()
+  ResourceHandle residuals;  // maths::pack_half_residual(); null where there is no bent normal
+  ResourceHandle lobes;      // maths::LobeTexel; null where there is no lobe
 };
-void describe_upsample(const ViewWork& view, framegraph::Texture depth, const HalfTexels& texels,
+void describe_upsample(const ViewInputs& view, ResourceHandle depth, const HalfTexels& texels,
                        const Results& results);
 
 // Ground-truth specular occlusion by the table of Jimenez, Wu, Pesce and Jarabo 2016, section 6.
 // `normals` are in view space if the view has none of its own.
-void describe_gtso(const ViewWork& view, const Results& results, framegraph::Texture linear_depth,
-                   framegraph::Texture normals);
+void describe_gtso(const ViewInputs& view, const Results& results, ResourceHandle linear_depth,
+                   ResourceHandle normals);
 
 // Visibility per colour channel, with the light that occluders reflect ([Jimenez 2016], section 5).
-void describe_multi_bounce(const ViewWork& view, framegraph::Texture visibility);
+void describe_multi_bounce(const ViewInputs& view, ResourceHandle visibility);
 
 }  // namespace alcove::passes
