@@ -4,6 +4,11 @@
 
 namespace alcove::framegraph {
 
+// After a rendering with a view mask, lavapipe of Mesa 25.0 writes a timestamp for each view, also
+// where the rendering has ended. The later ones are overwritten by the passes that follow, and
+// those of the last pass need room. A mask has 32 bits.
+constexpr std::uint32_t kSpareQueries = 31;
+
 Timestamps::~Timestamps() {
   device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, device_.callbacks());
 }
@@ -20,7 +25,7 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = 2 * passes;
+    info.queryCount = 2 * passes + kSpareQueries;
     const VkResult result =
         device_.vk.vkCreateQueryPool(device_.handles.device, &info, device_.callbacks(), &pool_);
     if (result != VK_SUCCESS) return result;

@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 namespace alcove::sample {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
-// The setting that makes these validation layers check synchronisation between queue submissions
-// too.
-constexpr const char* kQueueSubmitCheck =
-    "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT";
+// The environment variables that make validation layers check synchronisation between queue
+// submissions too: of layers 1.3, and of layers 1.4, which do not know the first.
+constexpr std::pair<const char*, const char*> kQueueSubmitChecks[] = {
+    {"VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT"},
+    {"VK_KHRONOS_VALIDATION_SYNCVAL_SUBMIT_TIME_VALIDATION", "true"}};
 
 constexpr VkApplicationInfo kApplication{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                          .pApplicationName = "alcove",
@@ -172,9 +174,10 @@ tl::expected<void, std::string> VulkanDevice::create_instance(const DeviceOption
                                          .pEnabledValidationFeatures = checks};
   if (options.validation) {
 #ifndef _WIN32
-    setenv("VK_LAYER_ENABLES", kQueueSubmitCheck, 1);
+    for (const auto& [variable, value] : kQueueSubmitChecks) setenv(variable, value, 1);
 #endif
-    // Under wine the layer is one of the host's, which VK_INSTANCE_LAYERS names; wine knows no layers.
+    // Under wine the layer is one of the host's, which VK_INSTANCE_LAYERS names; wine knows no
+    // layers.
     if (std::getenv("ALCOVE_LAYERS_OF_THE_HOST") == nullptr) layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
