@@ -34,11 +34,13 @@ inline bool is_orthographic(const dmat4& m) {
          (w_per_z <= kRounding * std::abs(m[3][3]) && w_per_z <= 1e-4 * std::abs(m[2][2]));
 }
 
-// Returns whether the constant part of the clip-space coordinate w is at most a rounding error.
-// Removing it then moves the eye along z by less than a ten-thousandth of the near plane's
-// distance.
-inline bool has_no_constant_w(const dmat4& m) {
-  return std::abs(m[3][3]) <= std::max(1e-6 * std::abs(m[2][3]), 1e-4 * std::abs(m[3][2]));
+// Returns whether the constant part of the clip-space coordinate `row` (x, y or w), `per_length` of
+// which is a movement of the eye by 1, is at most a rounding error in perspective. It then moves
+// the eye by less than a ten-thousandth of the near plane's distance.
+inline bool has_no_constant(const dmat4& m, int row, double per_length) {
+  const double w_per_z = std::abs(m[2][3]);
+  return std::abs(m[3][row]) * w_per_z <=
+         std::abs(per_length) * std::max(1e-6 * w_per_z, 1e-4 * std::abs(m[3][2]));
 }
 
 // Returns whether `m` is a perspective projection times a rotated view matrix: its w is a distance
@@ -72,8 +74,13 @@ inline const char* projection_fault(const dmat4& m) {
   const bool orthographic = is_orthographic(m);
   if (orthographic ? m[3][3] <= 0.0 : m[2][3] > 0.0)
     return "the projection matrix looks along +Z: convert it with "
-           "ALCOVE_CAMERA_CONVENTION_FORWARD_Z";
-  if (!orthographic && !has_no_constant_w(m))
+           "ALCOVE_CAMERA_CONVENTION_FORWARD_Z, or, if it was converted with this bit, which "
+           "DIRECT3D and UNREAL contain, without it";
+  if (orthographic) return nullptr;
+  if (!has_no_constant(m, 0, m[0][0]) || !has_no_constant(m, 1, m[1][1]))
+    return "the projection matrix moves the eye along x or y: in perspective jitter and shifts of "
+           "the image belong in its third column, and those of the eye in the view matrix";
+  if (!has_no_constant(m, 3, m[2][3]))
     return "the projection matrix moves the eye along z: in perspective its w must be 0 where z is";
   return nullptr;
 }

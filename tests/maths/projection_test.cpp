@@ -309,9 +309,11 @@ TEST(MakeProjection, InvalidProjectionMatricesAreRefusedWithAReason) {
        {Case{1, 2, kNan, "not finite"}, Case{0, 0, 0.0f, "flattens"},
         Case{0, 0, 1e-40f, "flattens"}, Case{1, 1, 1e38f, "stretches"},
         Case{0, 1, 0.5f, "mixes x and y"}, Case{0, 3, 0.5f, "tilts"}, Case{1, 2, 0.5f, "oblique"},
-        Case{2, 3, 1.0f, "+Z"}, Case{3, 3, 0.5f, "eye"}, Case{2, 2, 1e-40f, "range of depth"},
-        Case{2, 2, 1e38f, "range of depth"}, Case{3, 2, 0.0f, "range of depth"},
-        Case{3, 2, 1e-40f, "range of depth"}, Case{3, 2, 1e38f, "range of depth"}}) {
+        Case{2, 3, 1.0f, "+Z"}, Case{3, 3, 0.5f, "eye along z"},
+        Case{3, 0, 1e38f, "eye along x or y"}, Case{3, 1, 0.002f, "eye along x or y"},
+        Case{2, 2, 1e-40f, "range of depth"}, Case{2, 2, 1e38f, "range of depth"},
+        Case{3, 2, 0.0f, "range of depth"}, Case{3, 2, 1e-40f, "range of depth"},
+        Case{3, 2, 1e38f, "range of depth"}}) {
     mat4 m = good;
     m[wrong.column][wrong.row] = wrong.value;
     EXPECT_NE(fault(m).find(wrong.why), std::string::npos) << wrong.why;

@@ -119,6 +119,46 @@ TEST_F(CFailure, VulkanFeatureThatTheEngineDidNotEnableIsReported) {
               HasSubstr("shaderStorageImageWriteWithoutFormat"));
 }
 
+TEST_F(CFailure, EnabledFeaturesAreFoundInAnyOrderOfTheirStructs) {
+  AlcoveContextInfo info = engine().context_info();
+  for (const bool alone : {false, true}) {
+    for (const bool complete : {true, false}) {
+      VkPhysicalDeviceFeatures2 core{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+      core.features.shaderStorageImageWriteWithoutFormat = complete ? VK_TRUE : VK_FALSE;
+      VkPhysicalDeviceVulkan11Features vulkan11{
+          .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
+      VkPhysicalDeviceVulkan13Features vulkan13{
+          .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+      VkPhysicalDeviceSynchronization2Features synchronization2{
+          .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
+      vulkan13.synchronization2 = synchronization2.synchronization2 = VK_TRUE;
+      const auto base = [](auto& feature) {
+        return reinterpret_cast<VkBaseOutStructure*>(&feature);
+      };
+      std::array chain{base(core), base(vulkan11), alone ? base(synchronization2) : base(vulkan13)};
+      std::ranges::sort(chain);
+      do {
+        for (std::size_t i = 0; i < 3; ++i) chain.at(i)->pNext = i < 2 ? chain.at(i + 1) : nullptr;
+        info.enabled_features = reinterpret_cast<const VkPhysicalDeviceFeatures2*>(chain[0]);
+        const std::string said =
+            error_of_context(info, complete ? ALCOVE_SUCCESS : ALCOVE_ERROR_UNSUPPORTED);
+        EXPECT_THAT(said, HasSubstr(complete ? "" : "shaderStorageImageWriteWithoutFormat"));
+      } while (std::ranges::next_permutation(chain).found);
+      // Without VkPhysicalDeviceFeatures2, and with a chain that does not end.
+      vulkan11.pNext = nullptr;
+      info.enabled_features = reinterpret_cast<const VkPhysicalDeviceFeatures2*>(&vulkan11);
+      EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_INVALID_INPUT),
+                  HasSubstr("has no VkPhysicalDeviceFeatures2"));
+      for (const auto& [last, again] : {std::pair{2, 0}, std::pair{2, 1}, std::pair{0, 0}}) {
+        for (std::size_t i = 0; i < 2; ++i) chain.at(i)->pNext = chain.at(i + 1);
+        chain.at(last)->pNext = chain.at(again);
+        info.enabled_features = reinterpret_cast<const VkPhysicalDeviceFeatures2*>(chain[0]);
+        EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_INVALID_INPUT), HasSubstr("does not end"));
+      }
+    }
+  }
+}
+
 // A context whose device is wrapped by failing_device.h.
 AlcoveContextInfo failing_info(const Engine& engine) {
   AlcoveContextInfo info = engine.context_info();

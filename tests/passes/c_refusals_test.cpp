@@ -238,6 +238,19 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
       {"it must lie within the area that is read", Areas{{2, 2, 10, 9}, {1, 2, 4, 4}}},
       {"it must lie within the area that is read", Areas{{2, 2, 10, 9}, {3, 3, kMost, kMost}}},
       {"it needs room for 10x9 pixels at (12, 0)", Areas{{2, 2, 10, 9}, {}, 12, 0}},
+      {"View 2: The image of visibility is written by view 0 in 8x12 pixels at (0, 0) and by this "
+       "view in 8x12 pixels at (7, 0)",
+       [](D& d) {
+         set_areas(d.views[0], {{0, 0, 8, 12}});
+         set_areas(d.views[1], {{0, 0, 8, 12}, {}, 8, 0});
+         set_areas(d.views[2], {{8, 0, 8, 12}, {}, 7, 0});
+         d.frame.view_count = 3;
+       }},
+      {"and by this view in 16x12 pixels at (0, 0)",
+       [](D& d) {
+         set_areas(d.views[1], {{0, 0, 16, 12}});
+         d.frame.view_count = 2;
+       }},
   };
   for (const Refusal& refusal : refusals) expect_refused(refusal);
   expect_a_good_frame();

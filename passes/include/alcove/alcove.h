@@ -71,9 +71,10 @@ typedef struct AlcoveContextInfo {
   // VK_KHR_synchronization2 must be enabled as well.
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-  // The features that the device was created with, chained as for vkCreateDevice. If given,
-  // alcoveCreateContext fails with a message that names the first needed feature that is not
-  // enabled. Null: the library only checks that the physical device supports the features.
+  // The features that the device was created with, chained as for vkCreateDevice, in any order: the
+  // first struct may be another one, cast to this type. VkPhysicalDeviceFeatures2 is one of them.
+  // If given, alcoveCreateContext fails with a message that names the first needed feature that is
+  // not enabled. Null: the library only checks that the physical device supports the features.
   const VkPhysicalDeviceFeatures2* enabled_features;
   uint32_t frames_in_flight;  // 1 to ALCOVE_MAX_FRAMES_IN_FLIGHT
   VkBool32 debug_utils;       // VK_EXT_debug_utils is enabled: passes and images get names

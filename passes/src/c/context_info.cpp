@@ -23,15 +23,24 @@ std::string version_text(std::uint32_t version) {
 struct Features {
   bool synchronization2 = false;
   bool write_without_format = false;
+  bool has_features2 = false;
+  bool ends = true;
 };
 
 // Returns which of the needed features are enabled in a chain of feature structs, the kind of chain
-// that vkCreateDevice takes and vkGetPhysicalDeviceFeatures2 fills.
-Features features_in(const VkPhysicalDeviceFeatures2& chain) {
+// that vkCreateDevice takes and vkGetPhysicalDeviceFeatures2 fills. Its structs may have any order.
+Features features_in(const void* chain) {
+  constexpr int kMostStructs = 1000;  // Vulkan allows each type once, and has a few hundred
   Features found;
-  found.write_without_format = chain.features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
-  for (auto* next = static_cast<const VkBaseInStructure*>(chain.pNext); next != nullptr;
+  int count = 0;
+  for (auto* next = static_cast<const VkBaseInStructure*>(chain); next != nullptr;
        next = next->pNext) {
+    if (++count > kMostStructs) return {.ends = false};
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2) {
+      const auto* core = reinterpret_cast<const VkPhysicalDeviceFeatures2*>(next);
+      found.has_features2 = true;
+      found.write_without_format |= core->features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
+    }
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES) {
       const auto* vulkan13 = reinterpret_cast<const VkPhysicalDeviceVulkan13Features*>(next);
       found.synchronization2 |= vulkan13->synchronization2 != VK_FALSE;
@@ -46,6 +55,14 @@ Features features_in(const VkPhysicalDeviceFeatures2& chain) {
 
 tl::expected<void, Failure> check_features(const Features& features, std::string_view who,
                                            const char* remedy) {
+  if (!features.ends)
+    return invalid(std::string(who) +
+                   " is a chain of structs that does not end; end it with null.");
+  if (!features.has_features2) {
+    return invalid(std::string(who) +
+                   " has no VkPhysicalDeviceFeatures2, by its sType; add one to the chain, with "
+                   "what vkCreateDevice received as pEnabledFeatures.");
+  }
   const char* missing = !features.synchronization2
                             ? "synchronization2 (of Vulkan 1.3 or VK_KHR_synchronization2)"
                         : !features.write_without_format ? "shaderStorageImageWriteWithoutFormat"
@@ -87,11 +104,11 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
                                 .pNext = &synchronization2};
   get_features(info.physical_device, &has);
   if (auto right =
-          check_features(features_in(has), name, "choose another device or update its driver");
+          check_features(features_in(&has), name, "choose another device or update its driver");
       !right)
     return right;
   if (info.enabled_features != nullptr) {
-    if (auto right = check_features(features_in(*info.enabled_features),
+    if (auto right = check_features(features_in(info.enabled_features),
                                     "AlcoveContextInfo::enabled_features",
                                     "enable it when the device is created");
         !right)

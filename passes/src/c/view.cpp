@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdio>
+#include <span>
 
 #include "diagnose/pixel_observer.h"
 #include "work/describe_view.h"
@@ -46,6 +47,23 @@ std::string vulkan_problem(const AlcoveImage& image, bool output) {
          ", or AlcoveImage::usage does not say so.";
 }
 
+// Returns the pixels of the output images that a view writes.
+AlcoveArea output_area(const AlcoveView& view) {
+  const AlcoveImage& depth = view.images[ALCOVE_IMAGE_DEPTH];
+  AlcoveArea area = view.info.written_area;
+  if (area.width == 0) area = read_area(view.info, {depth.width, depth.height});
+  if (area.width == 0) area = {0, 0, depth.width, depth.height};
+  return {view.info.output_x, view.info.output_y, area.width, area.height};
+}
+
+bool overlap(const AlcoveArea& a, const AlcoveArea& b) {
+  const auto meet = [](std::uint64_t begin, std::uint64_t size, std::uint64_t other,
+                       std::uint64_t other_size) {
+    return begin < other + other_size && other < begin + size;
+  };
+  return meet(a.x, a.width, b.x, b.width) && meet(a.y, a.height, b.y, b.height);
+}
+
 }  // namespace
 
 tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, const AlcoveView& view,
@@ -58,6 +76,7 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
   };
   if (const std::string problem = vulkan_problem(image, output); !problem.empty())
     return fail(problem);
+  const AlcoveArea part = output_area(view);
   const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
   const auto found = std::find_if(entries_.begin(), end, [&](const Entry& entry) {
     return entry.image.image == image.image && entry.image.layer == image.layer;
@@ -66,13 +85,20 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
     // Several views may write to an image, each to another area of it.
     const bool in_part = read_area(view.info, {image.width, image.height}).width > 0;
     const bool may_repeat = output ? found->output && in_part : !found->output;
-    if (!may_repeat || (output && found->view == view.info.id) ||
-        !same_description(found->image, image)) {
+    if (!may_repeat || !same_description(found->image, image)) {
       return fail(
           "is given twice in the frame; only inputs may be, and outputs of several views with "
           "areas, described alike.");
     }
-    found->view = view.info.id;
+    for (const Part& other : std::span(parts_).first(output ? part_count_ : 0)) {
+      if (other.entry == &*found && overlap(other.area, part)) {
+        return fail("is written by view " + std::to_string(other.view) + " in " +
+                    area_text(other.area) + " and by this view in " + area_text(part) +
+                    "; give each view pixels of its own by output_x and output_y, or an image of "
+                    "its own.");
+      }
+    }
+    if (output) parts_.at(part_count_++) = {&*found, part, view.info.id};
     return graph.latest(found->texture);
   }
   // The name is on the stack, because a steady frame must not allocate memory.
@@ -91,7 +117,9 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
        .initial_state = to_state(image.initial_state),
        .final_state = to_state(image.final_state)});
   assert(count_ < entries_.size());
-  entries_[count_++] = {image, texture, output, view.info.id};
+  entries_[count_] = {image, texture, output};
+  if (output) parts_.at(part_count_++) = {&entries_[count_], part, view.info.id};
+  ++count_;
   return texture;
 }
 

@@ -14,7 +14,7 @@ namespace alcove::passes {
 // The images of one frame. An image that serves as several inputs becomes one texture of the graph.
 class ImageTable {
  public:
-  void reset() { count_ = 0; }
+  void reset() { count_ = part_count_ = 0; }
 
   // Checks and imports an image of a view. Returns a null texture if there is no image.
   [[nodiscard]] tl::expected<framegraph::Texture, Failure> import(framegraph::Graph& graph,
@@ -26,10 +26,18 @@ class ImageTable {
     AlcoveImage image;
     framegraph::Texture texture;
     bool output = false;
-    std::uint32_t view = 0;  // the id of the last view that has it
+  };
+  // The pixels of an output that a view writes.
+  struct Part {
+    const Entry* entry;
+    AlcoveArea area;
+    std::uint32_t view;  // its id
   };
   std::array<Entry, std::size_t{ALCOVE_MAX_VIEWS} * ALCOVE_IMAGE_COUNT> entries_;
+  std::array<Part, std::size_t{ALCOVE_MAX_VIEWS} * (ALCOVE_IMAGE_COUNT - ALCOVE_IMAGE_FIRST_OUTPUT)>
+      parts_;
   std::size_t count_ = 0;
+  std::size_t part_count_ = 0;
 };
 
 class PixelObserver;

@@ -21,11 +21,6 @@ tl::unexpected<Error> refusal(std::string message) {
   return tl::unexpected(Error{std::move(message)});
 }
 
-std::string area_text(const AlcoveArea& area) {
-  return size_text({area.width, area.height}) + " pixels at (" + std::to_string(area.x) + ", " +
-         std::to_string(area.y) + ")";
-}
-
 bool is_given(const AlcoveArea& area) {
   return area.x != 0 || area.y != 0 || area.width != 0 || area.height != 0;
 }
@@ -172,6 +167,11 @@ void set_areas(ViewInputs& view, const AlcoveArea& read, VkExtent2D whole) {
 }
 
 }  // namespace
+
+std::string area_text(const AlcoveArea& area) {
+  return size_text({area.width, area.height}) + " pixels at (" + std::to_string(area.x) + ", " +
+         std::to_string(area.y) + ")";
+}
 
 AlcoveArea read_area(const AlcoveViewInfo& info, VkExtent2D depth) {
   // With dynamic resolution, images may be larger than the part that is in use.

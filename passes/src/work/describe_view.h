@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "maths/make_projection.h"
@@ -57,6 +58,8 @@ struct ViewInputs {
 
 // Returns the area of the inputs that is read; zeros if images are read and written as a whole.
 [[nodiscard]] AlcoveArea read_area(const AlcoveViewInfo& info, VkExtent2D depth);
+// The text of an area, such as "10x9 pixels at (12, 0)".
+[[nodiscard]] std::string area_text(const AlcoveArea& area);
 
 [[nodiscard]] bool same_camera(const AlcoveCamera& a, const AlcoveCamera& b);
 
