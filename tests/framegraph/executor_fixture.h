@@ -18,7 +18,9 @@ class ExecutorTest : public testing::Test {
     failing::lose(false);
   }
   void TearDown() override {
-    if (gpu_.problem().empty()) EXPECT_EQ(gpu_.messages(), "");
+    if (gpu_.problem().empty()) {
+      EXPECT_EQ(gpu_.messages(), "");
+    }
   }
 
   DeviceHandles handles() const {
