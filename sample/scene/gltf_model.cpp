@@ -132,7 +132,8 @@ void convert(const json& root, const char* name, std::vector<Element>& out,
 // Converts the JSON to tinygltf's model by tinygltf's own functions, so that it is parsed once.
 Result<void> fill_model(const json& root, tinygltf::Model& model) {
   std::string error;
-  // From tinygltf 2.9 on some functions also return warnings and take a strictness, of which {} is the least.
+  // From tinygltf 2.9 on some functions also return warnings and take a strictness, of which {} is
+  // the least.
   const auto by = [&](auto parse, auto... more) {
     return [&error, parse, more...](auto* out, const json& from) {
       if (!error.empty()) return false;

@@ -320,7 +320,8 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t passes, std::uint32_t
     }
     const std::uint32_t writes = 1 + dice.roll(2);
     for (std::uint32_t w = 0; w < writes; ++w) {
-      const std::uint32_t height = 1 + dice.roll(1080);  // separately: the order of arguments is unspecified
+      const std::uint32_t height =
+          1 + dice.roll(1080);  // separately: the order of arguments is unspecified
       Extent extent = Extent::absolute(1 + dice.roll(2048), height);
       if (i == passes / 2 && w == 0 && width != 0) extent.width = width;
       const Texture texture = graph.create_texture("texture", {VK_FORMAT_R8_UNORM, extent});

@@ -35,13 +35,14 @@ Vulkan12Device::Vulkan12Device(bool has_synchronization2) {
                                            .pEnabledValidationFeatures = &enabled};
   const char* layer = "VK_LAYER_KHRONOS_validation";
   const char* debug_utils = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-  const VkInstanceCreateInfo instance{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                      .pNext = &validation,
-                                      .pApplicationInfo = &application,
-                                      .enabledLayerCount = std::getenv("ALCOVE_LAYERS_OF_THE_HOST") == nullptr ? 1u : 0u,
-                                      .ppEnabledLayerNames = &layer,
-                                      .enabledExtensionCount = 1,
-                                      .ppEnabledExtensionNames = &debug_utils};
+  const VkInstanceCreateInfo instance{
+      .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+      .pNext = &validation,
+      .pApplicationInfo = &application,
+      .enabledLayerCount = std::getenv("ALCOVE_LAYERS_OF_THE_HOST") == nullptr ? 1u : 0u,
+      .ppEnabledLayerNames = &layer,
+      .enabledExtensionCount = 1,
+      .ppEnabledExtensionNames = &debug_utils};
   EXPECT_EQ(vkCreateInstance(&instance, nullptr, &instance_), VK_SUCCESS);
   reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(
       instance_, "vkCreateDebugUtilsMessengerEXT"))(instance_, &messenger, nullptr, &messenger_);

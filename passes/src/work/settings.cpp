@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
+#include <iterator>
 #include <locale>
 #include <sstream>
 #include <string>
-#include <cmath>
-#include <iterator>
 
 #include "alcove/passes/setting_table.h"
 #include "work/number_text.h"
