@@ -1,10 +1,9 @@
 /* From device creation to an occlusion picture, in C99: copy this file to start.
  *
- *   alcove_minimal_c FILE.pgm [BAND]
+ *   alcove_minimal_c FILE.pgm
  *
  * A ball on a floor is written into a depth image on the CPU, in place of an engine's rendering.
  * Alcove then records 32 frames of a static camera, and the last visibility is written to the file.
- * Depth has a guard band of BAND pixels beyond each border of the picture, by default none.
  */
 #include <alcove/alcove.h>
 #include <math.h>
@@ -90,12 +89,11 @@ typedef struct Image {
   VkDeviceMemory memory;
 } Image;
 
-static Image create_image(VkFormat format, uint32_t width, uint32_t height,
-                          VkImageUsageFlags usage) {
+static Image create_image(VkFormat format, VkImageUsageFlags usage) {
   const VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                                   .imageType = VK_IMAGE_TYPE_2D,
                                   .format = format,
-                                  .extent = {width, height, 1},
+                                  .extent = {kWidth, kHeight, 1},
                                   .mipLevels = 1,
                                   .arrayLayers = 1,
                                   .samples = VK_SAMPLE_COUNT_1_BIT,
@@ -146,17 +144,13 @@ static void image_barrier(VkCommandBuffer commands, VkImage image, VkAccessFlags
 }
 
 int main(int argc, char** argv) {
-  check(argc == 2 || argc == 3, "usage: alcove_minimal_c FILE.pgm [BAND]");
-  char* end = "";
-  const int band = argc == 3 ? (int)strtol(argv[2], &end, 10) : 0;
-  check(*end == 0 && band >= 0 && band <= 1000, "BAND must be a number of pixels, 0 to 1000");
-  const int drawn_width = kWidth + 2 * band, drawn_height = kHeight + 2 * band;
+  check(argc == 2, "usage: alcove_minimal_c FILE.pgm");
   create_device();
 
   /* A buffer that the CPU sees, for the depth on its way in and the picture on its way out. */
   const VkBufferCreateInfo buffer_info = {
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-      .size = (size_t)drawn_width * drawn_height * sizeof(float),
+      .size = kWidth * kHeight * sizeof(float),
       .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT};
   VkBuffer buffer;
   CHECK_VK(vkCreateBuffer(device, &buffer_info, NULL, &buffer));
@@ -167,14 +161,12 @@ int main(int argc, char** argv) {
   CHECK_VK(vkBindBufferMemory(device, buffer, buffer_memory, 0));
   void* mapped;
   CHECK_VK(vkMapMemory(device, buffer_memory, 0, VK_WHOLE_SIZE, 0, &mapped));
-  for (int i = 0; i < drawn_width * drawn_height; ++i)
-    ((float*)mapped)[i] = depth_at(i % drawn_width - band, i / drawn_width - band);
+  for (int i = 0; i < kWidth * kHeight; ++i) ((float*)mapped)[i] = depth_at(i % kWidth, i / kWidth);
 
-  const Image depth = create_image(VK_FORMAT_R32_SFLOAT, drawn_width, drawn_height,
+  const Image depth = create_image(VK_FORMAT_R32_SFLOAT,
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
-  const Image visibility =
-      create_image(VK_FORMAT_R8_UNORM, kWidth, kHeight,
-                   VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+  const Image visibility = create_image(
+      VK_FORMAT_R8_UNORM, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   const VkCommandPoolCreateInfo pool_info = {
       .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
       .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
@@ -209,22 +201,13 @@ int main(int argc, char** argv) {
   clip[5] = -kFocal; /* Vulkan's clip space has y down */
   clip[11] = -1;
   clip[14] = kNear;
-  if (band > 0) {
-    /* A guard band: the same camera sees as much more, and results are those of the inner part. */
-    for (int i = 0; i < 16; i += 4) {
-      clip[i] *= (float)kWidth / drawn_width;
-      clip[i + 1] *= (float)kHeight / drawn_height;
-    }
-    view.info.read_area = (AlcoveArea){0, 0, drawn_width, drawn_height};
-    view.info.written_area = (AlcoveArea){band, band, kWidth, kHeight};
-  }
   for (int i = 0; i < 4; ++i) view.info.camera.view_from_world[5 * i] = 1; /* eye: origin */
   view.info.previous_camera = view.info.camera;
   view.images[ALCOVE_IMAGE_DEPTH] = (AlcoveImage){
       .image = depth.image,
       .format = VK_FORMAT_R32_SFLOAT,
-      .width = drawn_width,
-      .height = drawn_height,
+      .width = kWidth,
+      .height = kHeight,
       .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
       .initial_state = {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
@@ -240,8 +223,8 @@ int main(int argc, char** argv) {
       .final_state = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
 
-  VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                              .imageExtent = {drawn_width, drawn_height, 1}};
+  const VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                    .imageExtent = {kWidth, kHeight, 1}};
   for (uint32_t i = 0; i < kFrames; ++i) {
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     CHECK_VK(vkBeginCommandBuffer(commands, &begin));
@@ -262,7 +245,6 @@ int main(int argc, char** argv) {
     check(alcoveRecordFrame(context, commands, &frame) == ALCOVE_SUCCESS,
           alcoveGetMessage(context));
     if (i + 1 == kFrames) {
-      region.imageExtent = (VkExtent3D){kWidth, kHeight, 1};
       vkCmdCopyImageToBuffer(commands, visibility.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                              buffer, 1, &region);
     }
