@@ -86,15 +86,13 @@ void set_setting(AlcoveSettings& settings, const SettingInfo& info, Value value)
 // Returns the format of an output in a precision. Images of an engine may have others.
 [[nodiscard]] constexpr VkFormat output_format(AlcoveImageRole role, AlcovePrecision precision) {
   const bool scalar = role == ALCOVE_IMAGE_VISIBILITY || role == ALCOVE_IMAGE_SPECULAR;
-  switch (precision) {
-    case ALCOVE_PRECISION_UNORM8:
-      if (scalar) return VK_FORMAT_R8_UNORM;
-      return role == ALCOVE_IMAGE_BENT_NORMAL ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R8G8B8A8_UNORM;
-    case ALCOVE_PRECISION_FLOAT16:
-      return scalar ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
-    default:
-      return scalar ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (precision == ALCOVE_PRECISION_UNORM8) {
+    if (scalar) return VK_FORMAT_R8_UNORM;
+    return role == ALCOVE_IMAGE_BENT_NORMAL ? VK_FORMAT_R8G8B8A8_SNORM : VK_FORMAT_R8G8B8A8_UNORM;
   }
+  if (precision == ALCOVE_PRECISION_FLOAT16)
+    return scalar ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
+  return scalar ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
 // Returns whether the image BACK_DEPTH is read. If not, an engine need not draw back faces.
