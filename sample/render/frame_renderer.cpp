@@ -61,7 +61,7 @@ Result<void> FrameRenderer::draw_gbuffer(const FrameRequest& request, FrameCost&
       if (is_drawn(kGbufferTargets[i], hidden))
         gbuffer.*kGbufferTargets[i].texture =
             graph.import_texture("g-buffer", stored.targets[i]->import_to_fill(kSampledState));
-    ALCOVE_TRY_VOID(gbuffer_->add(graph, request.view, gbuffer));
+    (void)gbuffer_->add(graph, request.view, gbuffer);
     return {};
   };
   // The first drawing also compiles shaders, so that only a second one is timed.

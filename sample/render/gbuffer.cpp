@@ -46,6 +46,9 @@ maths::GbufferMaterial convert(const Material& material) {
   return out;
 }
 
+constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
+                                                 kEmissiveFormat};
+
 // The numbers of the descriptor sets. Each material has a set of its own, because few devices allow
 // hundreds of textures in one set.
 constexpr std::uint32_t kFrameSet = 0;     // the parameters of the frame, with a dynamic offset
@@ -123,17 +126,10 @@ VkResult GbufferRenderer::create_layout(const Scene& scene) {
   return VK_SUCCESS;
 }
 
-// Returns the pipeline for these targets, which is created at its first use. The format of a target
-// that is null is undefined, because Vulkan requires that formats and attachments agree.
-Result<VkPipeline> GbufferRenderer::pipeline_for(const Gbuffer& targets, const Drawing& drawing) {
-  std::array<VkFormat, 4> colour_formats{};
-  for (std::size_t i = 0; i < colour_formats.size(); ++i)
-    if (targets.*kGbufferTargets[1 + i].texture) colour_formats[i] = kGbufferTargets[1 + i].format;
-  VkPipeline& pipeline = pipelines_[{colour_formats, bool{drawing.first}, drawing.reversed_z}];
-  if (pipeline != VK_NULL_HANDLE) return pipeline;
-  const VkSpecializationMapEntry entry{0, 0, sizeof geometric_normals_};
-  const VkSpecializationInfo specialisation{1, &entry, sizeof geometric_normals_,
-                                            &geometric_normals_};
+VkResult GbufferRenderer::create_pipelines(bool second_layer, bool geometric_normals) {
+  const std::uint32_t geometric = geometric_normals ? 1 : 0;
+  const VkSpecializationMapEntry entry{0, 0, sizeof geometric};
+  const VkSpecializationInfo specialisation{1, &entry, sizeof geometric, &geometric};
   std::array<VkVertexInputBindingDescription, kVertexStreams> streams{};
   for (std::uint32_t i = 0; i < kVertexStreams; ++i) {
     streams[i] = {i, 0,
@@ -147,24 +143,25 @@ Result<VkPipeline> GbufferRenderer::pipeline_for(const Gbuffer& targets, const D
       .fragment_constants = &specialisation,
       .streams = streams,
       .attributes = kAttributes,
-      .colour_formats = colour_formats,
+      .colour_formats = kColourFormats,
       .depth_format = kDepthFormat,
-      .depth_compare = drawing.reversed_z ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS,
       .dynamic_states = {VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE,
                          VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE},
       .layout = layout_.handle()};
-  if (drawing.first) {
+  if (second_layer) {
     description.vertex_code = kSecondLayerVertex;
     description.fragment_code = kSecondLayerFragment;
     description.attributes = description.attributes.first(kDepthAttributes);
   }
-  const VkResult result = create_pipeline(gpu_.device().device(), description, pipeline);
-  if (result != VK_SUCCESS) return device_failure("create a pipeline of the g-buffer", result);
-  return pipeline;
+  VkPipeline* const made = &pipelines_[second_layer ? 2 : 0];
+  const VkResult result = create_pipeline(gpu_.device().device(), description, made[0]);
+  description.depth_compare = VK_COMPARE_OP_GREATER;
+  return result == VK_SUCCESS ? create_pipeline(gpu_.device().device(), description, made[1])
+                              : result;
 }
 
 GbufferRenderer::~GbufferRenderer() {
-  for (const auto& [kind, pipeline] : pipelines_)
+  for (const VkPipeline pipeline : pipelines_)
     vkDestroyPipeline(gpu_.device().device(), pipeline, nullptr);
 }
 
@@ -178,7 +175,8 @@ void GbufferRenderer::record(RecordContext& context, const Gbuffer& gbuffer,
                                             {gbuffer.motion, &black},
                                             {gbuffer.emissive, &black}};
   begin_rendering(context, colours, {gbuffer.depth, &farthest});
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawing.pipeline);
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                    pipelines_[(drawing.first ? 2 : 0) + (drawing.reversed_z ? 1 : 0)]);
   layout_.bind(commands, kFrameSet, layout_.set(kFrameSet, 0), {&drawing.parameters_offset, 1});
   if (drawing.first) {
     const VkDescriptorSet set = layout_.set(kLayerSet, context.frame_slot);
@@ -210,10 +208,12 @@ void GbufferRenderer::record(RecordContext& context, const Gbuffer& gbuffer,
 
 Result<std::unique_ptr<GbufferRenderer>> GbufferRenderer::create(Gpu& gpu, const Scene& scene,
                                                                  bool geometric_normals) {
-  std::unique_ptr<GbufferRenderer> made(new GbufferRenderer(gpu, geometric_normals));
+  std::unique_ptr<GbufferRenderer> made(new GbufferRenderer(gpu));
   ALCOVE_TRY_VOID(made->upload(scene));
-  if (const VkResult result = made->create_layout(scene); result != VK_SUCCESS)
-    return device_failure("create the pipeline layout of the g-buffer", result);
+  VkResult result = made->create_layout(scene);
+  for (const bool second_layer : {false, true})
+    if (result == VK_SUCCESS) result = made->create_pipelines(second_layer, geometric_normals);
+  if (result != VK_SUCCESS) return device_failure("create the pipelines of the g-buffer", result);
   return made;
 }
 
@@ -241,11 +241,9 @@ std::uint32_t GbufferRenderer::write_parameters(const GbufferView& view) {
 // be the back of the first solid, which says nothing about the surfaces behind it. The
 // disadvantage: a thin double-sided surface, such as a leaf, that is seen from behind is missing in
 // the second layer, so that it does not occlude there.
-Result<Gbuffer> GbufferRenderer::add(Graph& graph, const GbufferView& view,
-                                     const Gbuffer& targets) {
+Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {
   Drawing drawing{view.reversed_z, write_parameters(view)};
   Gbuffer gbuffer = targets;
-  ALCOVE_TRY(drawing.pipeline, pipeline_for(targets, drawing));
   auto pass = graph.add_pass("g-buffer");
   gbuffer.depth = pass.write(targets.depth, framegraph::access::depth_attachment, {},
                              framegraph::Contents::discard);
@@ -259,20 +257,18 @@ Result<Gbuffer> GbufferRenderer::add(Graph& graph, const GbufferView& view,
       [this, gbuffer, drawing](RecordContext& context) { record(context, gbuffer, drawing); });
   if (targets.back_depth) {
     drawing.culled = drawing.double_culled = VK_CULL_MODE_FRONT_BIT;
-    ALCOVE_TRY(gbuffer.back_depth, add_depth(graph, "back faces", targets.back_depth, drawing));
+    gbuffer.back_depth = add_depth(graph, "back faces", targets.back_depth, drawing);
   }
   if (targets.second_depth) {
     drawing.culled = drawing.double_culled = VK_CULL_MODE_BACK_BIT;
     drawing.first = gbuffer.depth;
-    ALCOVE_TRY(gbuffer.second_depth,
-               add_depth(graph, "second layer", targets.second_depth, drawing));
+    gbuffer.second_depth = add_depth(graph, "second layer", targets.second_depth, drawing);
   }
   return gbuffer;
 }
 
-Result<Texture> GbufferRenderer::add_depth(Graph& graph, const char* name, Texture depth,
-                                           Drawing drawing) {
-  ALCOVE_TRY(drawing.pipeline, pipeline_for({.depth = depth}, drawing));
+Texture GbufferRenderer::add_depth(Graph& graph, const char* name, Texture depth,
+                                   const Drawing& drawing) {
   auto pass = graph.add_pass(name);
   if (drawing.first) pass.read(drawing.first, framegraph::access::sampled_fragment);
   depth =

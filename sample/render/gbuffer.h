@@ -1,11 +1,9 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
@@ -84,8 +82,8 @@ class GbufferRenderer {
 
   // Adds the passes that fill `targets`, and returns their filled versions. All calls in one frame
   // must have the same view, because only one set of parameters is kept for each frame in flight.
-  [[nodiscard]] Result<Gbuffer> add(framegraph::Graph& graph, const GbufferView& view,
-                                    const Gbuffer& targets);
+  [[nodiscard]] Gbuffer add(framegraph::Graph& graph, const GbufferView& view,
+                            const Gbuffer& targets);
 
  private:
   // The state with which the scene is drawn in one pass.
@@ -96,27 +94,20 @@ class GbufferRenderer {
     VkCullModeFlags double_culled = VK_CULL_MODE_NONE;  // of double-sided ones
     // Depth of the first layer, which the pass of the second layer reads; may be null.
     framegraph::Texture first;
-    VkPipeline pipeline = VK_NULL_HANDLE;
   };
-  // The formats of the colour targets, whether it is the second layer, whether depth is reversed.
-  using PipelineKind = std::tuple<std::array<VkFormat, 4>, bool, bool>;
 
-  GbufferRenderer(Gpu& gpu, bool geometric_normals)
-      : gpu_(gpu),
-        geometric_normals_(geometric_normals ? VK_TRUE : VK_FALSE),
-        layout_(gpu.device().device()) {}
+  explicit GbufferRenderer(Gpu& gpu) : gpu_(gpu), layout_(gpu.device().device()) {}
   Result<void> upload(const Scene& scene);
   VkResult create_layout(const Scene& scene);
-  Result<VkPipeline> pipeline_for(const Gbuffer& targets, const Drawing& drawing);
+  VkResult create_pipelines(bool second_layer, bool geometric_normals);
   // Writes the parameters of a view, and returns their offset in the parameter buffer.
   std::uint32_t write_parameters(const GbufferView& view);
-  Result<framegraph::Texture> add_depth(framegraph::Graph& graph, const char* name,
-                                        framegraph::Texture depth, Drawing drawing);
+  framegraph::Texture add_depth(framegraph::Graph& graph, const char* name,
+                                framegraph::Texture depth, const Drawing& drawing);
   void record(framegraph::RecordContext& context, const Gbuffer& gbuffer,
               const Drawing& drawing) const;
 
   Gpu& gpu_;
-  VkBool32 geometric_normals_;
   std::vector<bool> double_sided_;  // by material
   std::unique_ptr<GpuMeshes> meshes_;
   std::unique_ptr<GpuTextures> textures_;
@@ -125,7 +116,7 @@ class GbufferRenderer {
   std::optional<GbufferView> written_;      // the view that was written most recently
   std::uint32_t latest_ = 0;                // offset of its parameters
   PipelineLayout layout_;
-  std::map<PipelineKind, VkPipeline> pipelines_;
+  std::array<VkPipeline, 4> pipelines_{};  // 2: of the second layer; 1: with reversed depth
 };
 
 }  // namespace alcove::sample

@@ -76,8 +76,7 @@ struct PipelineDescription {
                                        VkPipeline& pipeline);
 
 // Begins a rendering over the whole of the attachments, and sets viewport and scissor to it. What a
-// shader writes to a null colour attachment, whose format in the pipeline is undefined, is
-// discarded. `depth` may be null.
+// shader writes to a null colour attachment is discarded. `depth` may be null.
 void begin_rendering(const framegraph::RecordContext& context,
                      std::span<const framegraph::Attachment> colours,
                      const framegraph::Attachment& depth = {});

@@ -91,7 +91,7 @@ Result<Texture> SceneFrame::declare(Graph& graph, Texture target, const ViewStat
       surfaces.gbuffer.*member = graph.create_texture(name, {format, {size.width, size.height}});
     }
   }
-  ALCOVE_TRY(surfaces.gbuffer, gbuffer_->add(graph, view_, surfaces.gbuffer));
+  surfaces.gbuffer = gbuffer_->add(graph, view_, surfaces.gbuffer);
   environment_ = state.picture == Picture::lit ? light_->import(graph) : Texture();
 
   maths::PictureParameters parameters = picture_parameters(state);

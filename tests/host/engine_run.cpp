@@ -220,15 +220,13 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   drawn.other.half_depth.width = size.width;
   drawn.other.half_depth.height = size.height;
   const auto report = gpu_.run([&](Graph& graph) -> Result<void> {
-    ALCOVE_TRY_VOID(
-        gbuffer->add(graph, seen,
-                     {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH], true),
-                      .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS], true),
-                      .albedo = import(graph, drawn.other.albedo, true),
-                      .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION], true)}));
+    (void)gbuffer->add(graph, seen,
+                       {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH], true),
+                        .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS], true),
+                        .albedo = import(graph, drawn.other.albedo, true),
+                        .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION], true)});
     if (course_.other_inputs)
-      ALCOVE_TRY_VOID(
-          gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)}));
+      (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
     return {};
   });
   if (!report) return Failure(report.error());
