@@ -18,4 +18,5 @@ execute_process(COMMAND ${OPTIMISER} --target-env=vulkan1.2 --strip-debug ${OPTI
 file(READ ${HEADER}.spv words HEX)
 string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${words}")
 string(REGEX REPLACE "(0x........,0x........,0x........,0x........,)" "\\1\n" words "${words}")
+string(REGEX REPLACE "0x0+([0-9a-f])" "0x\\1" words "${words}")
 file(WRITE ${HEADER} "#pragma once\nconst uint32_t ${NAME}[] = {\n${words}};\n")

@@ -72,16 +72,20 @@ class Declarer {
   }
 
  private:
-  std::uint32_t side() { return 1 + dice_.roll(options_.most_side); }
+  // Returns an extent whose sides are at least `least`.
+  Extent extent(std::uint32_t least = 1) {
+    const std::uint32_t height = least + dice_.roll(options_.most_side);
+    return Extent::absolute(least + dice_.roll(options_.most_side), height);
+  }
 
   TextureDesc texture_desc() {
     TextureDesc desc;
     constexpr VkFormat kFormats[] = {VK_FORMAT_R8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT,
                                      VK_FORMAT_R32_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM};
     desc.format = kFormats[dice_.roll(4)];
-    desc.extent = Extent::absolute(side(), side());
+    desc.extent = extent();
     if (dice_.chance(60)) {
-      desc.extent = Extent::absolute(16 + side(), 16 + side());
+      desc.extent = extent(17);
       desc.mips = 1 + dice_.roll(4);
     }
     if (dice_.chance(30)) desc.layers = 1 + dice_.roll(3);
@@ -150,8 +154,7 @@ class Declarer {
     if (resource.texture) {
       ImportedTexture import;
       import.image = fake_handle<VkImage>(resources_.size());
-      import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(side(), side()), 1, 1,
-                     VK_SAMPLE_COUNT_1_BIT};
+      import.desc = {VK_FORMAT_R8G8B8A8_UNORM, extent(), 1, 1, VK_SAMPLE_COUNT_1_BIT};
       import.usage = ~VkImageUsageFlags{0};
       if (full)
         import.initial_state =
@@ -320,7 +323,8 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t passes, std::uint32_t
     }
     const std::uint32_t writes = 1 + dice.roll(2);
     for (std::uint32_t w = 0; w < writes; ++w) {
-      const std::uint32_t height = 1 + dice.roll(1080);  // separately: the order of arguments is unspecified
+      const std::uint32_t height =
+          1 + dice.roll(1080);  // separately: the order of arguments is unspecified
       Extent extent = Extent::absolute(1 + dice.roll(2048), height);
       if (i == passes / 2 && w == 0 && width != 0) extent.width = width;
       const Texture texture = graph.create_texture("texture", {VK_FORMAT_R8_UNORM, extent});

@@ -34,8 +34,9 @@ float weight_code(float weight) { return 31.0f * std::sqrt(weight / kMaxWeight);
 TEST(History, PackedHistoryTexelKeepsItsValuesWithinTheirQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
-    const maths::HistoryTexel texel = texel_of(random.uniform(0, 1), random.uniform(0, 1),
-                                               random.uniform(0, 1), random.uniform(0, kMaxWeight));
+    const glm::vec4 drawn{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1),
+                          random.uniform(0, kMaxWeight)};
+    const maths::HistoryTexel texel = texel_of(drawn.x, drawn.y, drawn.z, drawn.w);
     const maths::HistoryTexel back = stored(texel, random.uniform(0.0f, 0.999f));
     EXPECT_NEAR(back.depth, texel.depth, 7.5f / 65535.0f);
     EXPECT_NEAR(back.occlusion, texel.occlusion, 1.0f / 2047.0f + 4e-6f);

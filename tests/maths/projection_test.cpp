@@ -70,7 +70,7 @@ Frustum random_frustum(RandomInput& random) {
   f.near = random.log_uniform(1e-3f, 10.0f);
   if (!f.perspective && random.bits() % 2 == 0) f.near = -f.near;
   f.far = std::max(f.near, 0.0) + random.log_uniform(1.0f, 1e5f);
-  f.jitter = glm::dvec2(random.uniform(-1e-3f, 1e-3f), random.uniform(-1e-3f, 1e-3f));
+  f.jitter = {random.uniform(-1e-3f, 1e-3f), random.uniform(-1e-3f, 1e-3f)};
   return f;
 }
 
@@ -106,7 +106,7 @@ TEST(Projection, PositionsFromDepthProjectBackToTheirPixelByTheProjectionMatrix)
     const float depth =
         float(f.perspective ? f.near * random.log_uniform(1.01f, 1e4f)
                             : f.near + random.uniform(0.01f, 0.99f) * (f.far - f.near));
-    const vec2 uv(random.uniform(0, 1), random.uniform(0, 1));
+    const vec2 uv{random.uniform(0, 1), random.uniform(0, 1)};
     const vec3 position = maths::position_vs(p, uv, depth);
     EXPECT_EQ(position.z, -depth);
     const ImagePoint point = project(matrix_of(f), position);
@@ -210,7 +210,7 @@ TEST(Projection, ViewDirectionPointsFromTheSurfaceToTheEye) {
   for (int i = 0; i < 5000; ++i) {
     const Frustum f = random_frustum(random);
     const Projection p = projection_of(f);
-    const vec2 uv(random.uniform(0, 1), random.uniform(0, 1));
+    const vec2 uv{random.uniform(0, 1), random.uniform(0, 1)};
     const float depth = float(std::abs(f.near)) * random.uniform(2.0f, 50.0f);
     const vec3 near = maths::position_vs(p, uv, depth);
     const vec3 behind = maths::position_vs(p, uv, depth * 3.0f);

@@ -23,9 +23,10 @@ constexpr unsigned kWidth = 640, kHeight = 360;
 
 Projection some_projection(RandomInput& random) {
   glm::mat4 m(0.0f);
-  const vec2 shift(random.uniform(-0.3f, 0.3f), random.uniform(-0.3f, 0.3f));
+  const vec2 shift{random.uniform(-0.3f, 0.3f), random.uniform(-0.3f, 0.3f)};
   m[0][0] = random.uniform(0.5f, 2.0f);
-  m[1][1] = (random.bits() % 2 == 0 ? -1.0f : 1.0f) * random.uniform(0.5f, 2.0f);
+  m[1][1] = random.uniform(0.5f, 2.0f);
+  if (random.bits() % 2 == 0) m[1][1] = -m[1][1];
   if (random.bits() % 2 == 0) {
     m[2] = glm::vec4(shift, -1.0f, -1.0f);
     m[3][2] = -0.1f;
@@ -46,7 +47,7 @@ struct Setting {
 
   explicit Setting(RandomInput& random)
       : projection(some_projection(random)),
-        pixel(random.uniform(0, kWidth), random.uniform(0, kHeight)),
+        pixel{random.uniform(0, kWidth), random.uniform(0, kHeight)},
         depth(random.uniform(1.0f, 20.0f)),
         position(maths::position_vs(projection, pixel * projection.texel_uv, depth)),
         view(maths::view_direction(projection, position)),
@@ -243,7 +244,7 @@ TEST(ConnectedSamples, SamplesOfTheSecondDepthLayerAreConnectedAlongPlanesOnly) 
 TEST(ConnectedSamples, BackOfAnOccluderMovesAwayFromTheViewDirectionAsItsThicknessGrows) {
   RandomInput random;
   for (int i = 0; i < 2000; ++i) {
-    const vec2 front(random.uniform(0.01f, 2.0f), random.uniform(-2.0f, 2.0f));
+    const vec2 front{random.uniform(0.01f, 2.0f), random.uniform(-2.0f, 2.0f)};
     const float scale = 1.0f / (front.x + std::abs(front.y));
     const float height = front.y * scale;
     EXPECT_EQ(maths::height_of_back(height, scale, 0.0f), height) << "no thickness";
@@ -297,8 +298,8 @@ TEST(TangentPlane, NormalIsRecoveredFromTheGradientOfInverseDepthOfItsTangentPla
   RandomInput random;
   for (int i = 0; i < 5000; ++i) {
     const bool perspective = i % 2 == 0;
-    const vec2 per_px(random.uniform(1e-4f, 1e-1f), -random.uniform(1e-4f, 1e-1f));
-    const vec2 slope = perspective ? vec2(random.uniform(-2, 2), random.uniform(-2, 2)) : vec2(0);
+    const vec2 per_px{random.uniform(1e-4f, 1e-1f), -random.uniform(1e-4f, 1e-1f)};
+    const vec2 slope = perspective ? vec2{random.uniform(-2, 2), random.uniform(-2, 2)} : vec2(0);
     const vec3 view = normalize(vec3(-slope.x, -slope.y, 1.0f));
     const vec3 normal = random.facing(view);
     if (dot(normal, view) < 0.05f) continue;

@@ -8,6 +8,7 @@
 
 #include "maths/slice.h"
 #include "quadrature.h"
+#include "random_input.h"
 
 namespace alcove::maths_test {
 
@@ -57,6 +58,11 @@ inline maths::Slice slice_of(double scale, double gamma) {
   const double y = std::sqrt(std::max(0.0, 1.0 - scale * scale));
   const glm::vec3 normal(scale * std::sin(gamma), y, scale * std::cos(gamma));
   return maths::make_slice(normal, direction, view);
+}
+
+inline maths::Slice random_slice(RandomInput& random) {
+  const float scale = random.uniform(0.05f, 1.0f);
+  return slice_of(scale, random.uniform(-1.57f, 1.57f));
 }
 
 // Calls f(slice, truth, horizon) for slices of many normals. `horizon` is the cosine of an angle

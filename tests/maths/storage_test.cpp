@@ -96,8 +96,8 @@ TEST(RawOcclusion, PackingKeepsBentNormalResidualsToTenBitPrecision) {
   };
   for (int i = 0; i < 100000; ++i) {
     const float largest = maths::kLargestResidual;
-    const vec3 residual(random.uniform(-largest, largest), random.uniform(-largest, largest),
-                        random.uniform(-largest, largest));
+    const vec3 residual{random.uniform(-largest, largest), random.uniform(-largest, largest),
+                        random.uniform(-largest, largest)};
     const vec3 apart = glm::abs(round_trip(residual) - residual);
     EXPECT_LT(std::max({apart.x, apart.y, apart.z}), 0.0014f);
   }
@@ -133,7 +133,7 @@ TEST(Octahedral, EncodingIgnoresTheLengthOfAVectorAndAcceptsTheZeroVector) {
 TEST(Octahedral, AnyPairOfCoordinatesIsDecodedToAUnitVector) {
   RandomInput random;
   for (int i = 0; i < 10000; ++i) {
-    const vec2 point(random.uniform(-2, 2), random.uniform(-2, 2));
+    const vec2 point{random.uniform(-2, 2), random.uniform(-2, 2)};
     EXPECT_NEAR(length(maths::octahedral_decode(point)), 1.0f, 1e-5f);
   }
 }

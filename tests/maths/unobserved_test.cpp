@@ -28,7 +28,7 @@ struct Case {
   Unobserved unobserved;
 
   explicit Case(RandomInput& random)
-      : slice(slice_of(random.uniform(0.05f, 1.0f), random.uniform(-1.5f, 1.5f))),
+      : slice(random_slice(random)),
         side(random.bits() % 2 == 0 ? 1.0f : -1.0f),
         per_diamond_angle(32.0f / maths::tangent_diamond_angle(slice, side)),
         occluded(random.bits() % 3 == 0 ? 0u : 0xffffffffu << random.bits() % 32),

@@ -21,17 +21,15 @@ using maths::VisiblePart;
 
 vec2 light_at(double angle) { return {float(std::sin(angle)), float(std::cos(angle))}; }
 
-Slice random_slice(RandomInput& random) {
-  return slice_of(random.uniform(0.05f, 1.0f), random.uniform(-1.57f, 1.57f));
-}
-
 float random_side(RandomInput& random) { return random.bits() % 2 == 0 ? 1.0f : -1.0f; }
 
 // Returns a random mask of runs of sectors, as occluders cause them.
 std::uint32_t random_runs(RandomInput& random) {
   std::uint32_t occluded = 0;
-  for (unsigned k = random.bits() % 4; k > 0; --k)
-    occluded |= maths::sectors_beyond(random.bits()) ^ maths::sectors_beyond(random.bits());
+  for (unsigned k = random.bits() % 4; k > 0; --k) {
+    const unsigned first = random.bits(), last = random.bits();
+    occluded |= maths::sectors_beyond(first) ^ maths::sectors_beyond(last);
+  }
   return maths::repeat_last_sector(occluded & 0x7fffffffu);
 }
 

@@ -51,7 +51,7 @@ TEST(MotionErrors, StaticSurfaceIsReprojectedCorrectlyAfterAnyCameraStep) {
   std::uniform_real_distribution<float> step(-0.5f, 0.5f);
   for (int i = 0; i < 20; ++i) {
     Camera moved = camera_at(step(random));
-    moved.target_ws += glm::vec3(0.2f * step(random), 0.2f * step(random), 0.0f);
+    moved.target_ws += glm::vec3{0.2f * step(random), 0.2f * step(random), 0.0f};
     const RenderedFrame before = walls(camera_at(0.0f), -100.0f);
     const RenderedFrame now = walls(moved, -100.0f);
     const Reprojection reprojection = reproject(now, before, unmoved);

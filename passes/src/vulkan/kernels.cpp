@@ -15,7 +15,6 @@
 namespace alcove::passes {
 namespace {
 
-constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
 
 tl::unexpected<Error> failure(std::string_view what, VkResult result) {
   return tl::unexpected(

@@ -19,15 +19,10 @@ namespace {
 // in radii, and the squares of such lengths would underflow.
 constexpr float kLargestRadius = 1e12f;
 
-// Returns the image of roughness if the search reads it.
-Texture roughness_of(const ViewWork& view) {
-  return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : Texture{};
-}
-
 std::array<NamedConstant, 16> constants_of(const ViewWork& view, const Depths& depths) {
   const AlcoveSettings& settings = view.settings;
   const bool horizons = settings.estimator == ALCOVE_ESTIMATOR_HORIZONS;
-  const bool rough = bool(roughness_of(view));
+  const bool rough = bool(view.roughness());
   return {{{"kSliceCount", settings.slices},
            {"kStepCount", settings.steps},
            {"kHorizons", flag(horizons)},
@@ -122,7 +117,7 @@ RawOcclusion describe_gtao(const ViewWork& view, const Depths& depths) {
       {"second_image", or_depth(needs_second_depth(view.settings), ALCOVE_IMAGE_SECOND_DEPTH)},
       {"receiver_image", depths.receivers},
       {"search_image", or_else(depths.halved, depths.occluders)},
-      {"roughness_image", or_else(roughness_of(view), depths.occluders)}};
+      {"roughness_image", or_else(view.roughness(), depths.occluders)}};
   const AlcoveArea traced = traced_tiles(view);
   view.list.dispatch({.label = "gtao",
                       .shader = variant(Shader::gtao, view.bent_normal(), view.lobe()),

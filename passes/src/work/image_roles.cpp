@@ -10,27 +10,28 @@
 namespace alcove::passes {
 namespace {
 
-enum class Kind : std::uint8_t { depth, colour, signed_colour, mask };
+enum class ImageKind : std::uint8_t { depth, colour, signed_colour, mask };
 
 struct Role {
   const char* name;
-  Kind kind;
+  ImageKind kind;
   std::uint32_t channels;  // that the format has at least
 };
 
 // In the order of AlcoveImageRole.
-constexpr std::array<Role, ALCOVE_IMAGE_COUNT> kRoles{{{"depth", Kind::depth, 1},
-                                                       {"normals", Kind::signed_colour, 3},
-                                                       {"motion vectors", Kind::signed_colour, 2},
-                                                       {"roughness", Kind::colour, 1},
-                                                       {"back-face depth", Kind::depth, 1},
-                                                       {"second depth", Kind::depth, 1},
-                                                       {"albedo", Kind::colour, 3},
-                                                       {"mask", Kind::mask, 1},
-                                                       {"visibility", Kind::colour, 1},
-                                                       {"bent normals", Kind::signed_colour, 3},
-                                                       {"specular occlusion", Kind::colour, 1},
-                                                       {"multi-bounce", Kind::colour, 3}}};
+constexpr std::array<Role, ALCOVE_IMAGE_COUNT> kRoles{
+    {{"depth", ImageKind::depth, 1},
+     {"normals", ImageKind::signed_colour, 3},
+     {"motion vectors", ImageKind::signed_colour, 2},
+     {"roughness", ImageKind::colour, 1},
+     {"back-face depth", ImageKind::depth, 1},
+     {"second depth", ImageKind::depth, 1},
+     {"albedo", ImageKind::colour, 3},
+     {"mask", ImageKind::mask, 1},
+     {"visibility", ImageKind::colour, 1},
+     {"bent normals", ImageKind::signed_colour, 3},
+     {"specular occlusion", ImageKind::colour, 1},
+     {"multi-bounce", ImageKind::colour, 3}}};
 
 struct KnownFormat {
   VkFormat format;
@@ -89,7 +90,7 @@ Role role_of(std::uint32_t number, const AlcoveViewInfo& info) {
     const AlcoveNormalEncoding encoding = info.normal_encoding;
     if (encoding == ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ ||
         encoding == ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL)
-      role.kind = Kind::colour;
+      role.kind = ImageKind::colour;
     if (encoding == ALCOVE_NORMAL_ENCODING_OCTAHEDRAL ||
         encoding == ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL)
       role.channels = 2;
@@ -99,19 +100,20 @@ Role role_of(std::uint32_t number, const AlcoveViewInfo& info) {
 }
 
 bool suits(const Role& role, VkFormat format) {
-  if (role.kind == Kind::depth)
+  if (role.kind == ImageKind::depth)
     return std::ranges::find(kDepthFormats, format) != kDepthFormats.end();
-  if (role.kind == Kind::mask) return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R8_UINT;
+  if (role.kind == ImageKind::mask)
+    return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R8_UINT;
   const auto known = std::ranges::find(kColourFormats, format, &KnownFormat::format);
   return known != kColourFormats.end() && known->channels >= role.channels &&
-         (known->is_signed || role.kind != Kind::signed_colour);
+         (known->is_signed || role.kind != ImageKind::signed_colour);
 }
 
 std::string wanted_format(const Role& role) {
-  if (role.kind == Kind::depth) return "a depth format or VK_FORMAT_R32_SFLOAT";
-  if (role.kind == Kind::mask) return "VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT";
-  return std::string(role.kind == Kind::signed_colour ? "a signed normalised or float"
-                                                      : "a normalised or float") +
+  if (role.kind == ImageKind::depth) return "a depth format or VK_FORMAT_R32_SFLOAT";
+  if (role.kind == ImageKind::mask) return "VK_FORMAT_R8_UNORM or VK_FORMAT_R8_UINT";
+  return std::string(role.kind == ImageKind::signed_colour ? "a signed normalised or float"
+                                                           : "a normalised or float") +
          " format of at least " + std::to_string(role.channels) +
          (role.channels == 1 ? " channel" : " channels");
 }

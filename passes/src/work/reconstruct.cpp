@@ -27,15 +27,10 @@ enum class Past : std::uint8_t {
 bool has_history(const ViewWork& view) { return view.settings.history_frames > 0; }
 bool is_half(const ViewWork& view) { return view.settings.half_resolution != 0; }
 
-// Returns the image of roughness if the filter reads it.
-Texture roughness_of(const ViewWork& view) {
-  return view.lobe() ? view.image(ALCOVE_IMAGE_ROUGHNESS) : Texture{};
-}
-
 std::array<NamedConstant, 14> constants_of(const ViewWork& view, Past past, bool motion) {
   const AlcoveSettings& settings = view.settings;
   const bool shaped = settings.power != 1.0f || settings.intensity != 1.0f;
-  const bool rough = bool(roughness_of(view));
+  const bool rough = bool(view.roughness());
   return {{{"kTileSize", settings.tile_size},
            {"kFilterRadius", filter_radius(settings)},
            {"kHistory", flag(has_history(view))},
@@ -132,7 +127,7 @@ std::array<NamedTexture, 18> images_of(const ViewWork& view, Texture depth, cons
            {"bent_history_image", or_else(textures.bent.previous, depth)},
            {"next_bent_history_image",
             unused(view.bent_normal(), textures.bent.current, kBentHistoryFormat)},
-           {"roughness_image", or_else(roughness_of(view), depth)},
+           {"roughness_image", or_else(view.roughness(), depth)},
            {"specular_image", out.specular},
            {"lobe_history_image", or_else(textures.lobe.previous, raw.sums)},
            {"next_lobe_history_image",

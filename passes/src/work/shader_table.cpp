@@ -10,8 +10,6 @@ namespace alcove::passes {
 
 namespace {
 
-constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
-
 // In the order of the enum.
 constexpr ShaderSource kSources[] = {
     {"linear_depth", kLinearDepth, kLinearDepthInterface},

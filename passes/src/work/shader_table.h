@@ -13,6 +13,8 @@
 
 namespace alcove::passes {
 
+inline constexpr std::size_t kShaderCount = static_cast<std::size_t>(Shader::count);
+
 struct ShaderSource {
   std::string_view name = {};           // a literal
   std::span<const std::uint32_t> code;  // words of the SPIR-V module

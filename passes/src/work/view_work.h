@@ -35,6 +35,10 @@ struct ViewWork {
   bool bent_normal() const { return image(ALCOVE_IMAGE_BENT_NORMAL) || by_table(); }
   bool lobe() const { return specular(ALCOVE_SPECULAR_SLICES); }
   bool by_table() const { return specular(ALCOVE_SPECULAR_TABLE); }
+  // Returns the image of roughness if the search and the filter read it.
+  framegraph::Texture roughness() const {
+    return lobe() ? image(ALCOVE_IMAGE_ROUGHNESS) : framegraph::Texture{};
+  }
 
  private:
   bool specular(AlcoveSpecular model) const {

@@ -1,13 +1,24 @@
-# Fails if a shared library exports a symbol that is not a function of alcove.h.
-# Run with -DNM=... -DLIBRARY=...
-execute_process(COMMAND ${NM} --dynamic --defined-only --extern-only ${LIBRARY}
-  OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
-string(REGEX MATCHALL "[^\n]+" lines "${symbols}")
-set(others ${lines})
-list(FILTER others EXCLUDE REGEX " T alcove[A-Z][A-Za-z]*$")
-if(others)
-  message(FATAL_ERROR "${LIBRARY} exports more than alcove.h declares: ${others}")
+# Fails if a shared library exports anything but the functions that HEADERS, a folder, declares, or not all of them.
+# LIBRARY is what programs link with: on Windows the import library.
+# cmake -D NM=... -D LIBRARY=... -D HEADERS=... -P check_exports.cmake
+set(dynamic --dynamic)
+if(LIBRARY MATCHES "\\.dll\\.a$")
+  set(dynamic "")
 endif()
-if(NOT symbols MATCHES "alcoveRecordFrame")
-  message(FATAL_ERROR "${LIBRARY} does not export alcoveRecordFrame.")
+execute_process(COMMAND ${NM} ${dynamic} --defined-only --extern-only ${LIBRARY}
+  OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL " T [^\n]+" exported "${symbols}")
+list(TRANSFORM exported REPLACE " T " "")
+file(GLOB headers ${HEADERS}/*.h)
+set(declared "")
+foreach(header IN LISTS headers)
+  file(READ ${header} text)
+  string(REGEX MATCHALL "\n[A-Za-z][^\n/]*[ *]alcove[A-Z][A-Za-z]*\\(" found "${text}")
+  list(TRANSFORM found REPLACE ".*[ *](alcove[A-Za-z]*)\\(" "\\1")
+  list(APPEND declared ${found})
+endforeach()
+list(SORT exported)
+list(SORT declared)
+if(NOT declared OR NOT exported STREQUAL declared)
+  message(FATAL_ERROR "${LIBRARY} exports\n${exported}\nThe headers declare\n${declared}")
 endif()
