@@ -15,7 +15,6 @@
 namespace alcove::passes {
 namespace {
 
-
 tl::unexpected<Error> failure(std::string_view what, VkResult result) {
   return tl::unexpected(
       Error{"The occlusion passes could not create " + std::string(what) + ".", result});
