@@ -1,8 +1,9 @@
 #version 460
 
-// Applies the results of Alcove to ambient and image-based light in a lighting pass: a page to copy.
-// All lookups are by pixel, because the results have the size of the g-buffer. Leave out the images
-// that the view has no output for. Sun, lamps and emission are added afterwards, not multiplied.
+// Applies the results of Alcove to ambient and image-based light in a lighting pass: a page to
+// copy. All lookups are by pixel, because the results have the size of the g-buffer. Leave out the
+// images that the view has no output for. Sun, lamps and emission are added afterwards, not
+// multiplied.
 
 layout(set = 0, binding = 0) uniform sampler2D visibility_image;    // ALCOVE_IMAGE_VISIBILITY
 layout(set = 0, binding = 1) uniform sampler2D bent_normal_image;   // ALCOVE_IMAGE_BENT_NORMAL
@@ -20,7 +21,8 @@ vec3 indirect_light(ivec2 pixel, vec3 normal, vec3 to_eye, vec3 albedo, vec3 f0,
   // Multi-bounce adds to visibility the light that occluders reflect, in their colour. Without it:
   // vec3 occlusion = vec3(texelFetch(visibility_image, pixel, 0).r);
   vec3 occlusion = texelFetch(multi_bounce_image, pixel, 0).rgb;
-  // The bent normal is the mean direction that light comes from. Its length is not 1 after a filter.
+  // The bent normal is the mean direction that light comes from. Its length is not 1 after a
+  // filter.
   vec3 bent_normal = normalize(texelFetch(bent_normal_image, pixel, 0).xyz);
   vec3 diffuse = albedo * occlusion * texture(irradiance_map, bent_normal).rgb;
 
