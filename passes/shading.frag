@@ -9,7 +9,7 @@ layout(set = 0, binding = 0) uniform sampler2D visibility_image;    // ALCOVE_IM
 layout(set = 0, binding = 1) uniform sampler2D bent_normal_image;   // ALCOVE_IMAGE_BENT_NORMAL
 layout(set = 0, binding = 2) uniform sampler2D specular_image;      // ALCOVE_IMAGE_SPECULAR
 layout(set = 0, binding = 3) uniform sampler2D multi_bounce_image;  // ALCOVE_IMAGE_MULTI_BOUNCE
-// Of the engine: the irradiance divided by pi, specular probe light by roughness, its BRDF table.
+// Images of the engine: irradiance divided by pi, probe light by roughness, the table of the BRDF.
 layout(set = 0, binding = 4) uniform samplerCube irradiance_map;
 layout(set = 0, binding = 5) uniform samplerCube specular_map;
 layout(set = 0, binding = 6) uniform sampler2D brdf_table;

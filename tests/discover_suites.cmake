@@ -1,5 +1,6 @@
 # Writes to FILE one test of ctest for each test suite of PROGRAM. The tests of a suite run in one
 # process, which creates the device and each pipeline once.
+cmake_minimum_required(VERSION 3.23)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 string(REPLACE "\r\n" "\n" list "${list}")
 list(REMOVE_ITEM PROGRAM "")

@@ -16,7 +16,6 @@ struct PlantedMistake {
   const char* name;
   const char* sentence;  // part of the only sentence of alcoveDiagnose, or of the refused call
   ChangeFrame plant;     // makes the mistake in a frame; null for a late submission
-  const char* table_name = "";  // in the table of passes/INTEGRATION.md, if it has a row there
   // The frames: of an orbiting camera, with a reversed depth buffer and an infinite far plane, of a
   // camera that moves straight ahead, with two eyes, or with a near plane that is no round number.
   enum Frames { orbit, reversed, straight, stereo, odd_planes, kinds } frames = orbit;

@@ -65,7 +65,7 @@ class Mistakes : public testing::Test {
 
 TEST_F(Mistakes, AtLeastSixtyMistakesArePlanted) { EXPECT_GE(planted_mistakes().size(), 60u); }
 
-// Also prints the RMSE of the table of passes/INTEGRATION.md.
+// Also prints the RMSE of the visibility for each mistake.
 TEST_F(Mistakes, EachMistakeIsNamedIfItIsMadeFromTheFirstFrameOn) {
   std::array<Image<float>, PlantedMistake::kinds> right;
   for (std::size_t i = 0; i < right.size(); ++i)
@@ -77,7 +77,7 @@ TEST_F(Mistakes, EachMistakeIsNamedIfItIsMadeFromTheFirstFrameOn) {
     for (std::size_t i = 0; i < drawn.pixels.size(); ++i)
       squares += std::pow(drawn.pixels[i] - right.at(mistake.frames).pixels[i], 2.0);
     std::cout << std::sqrt(squares / static_cast<double>(drawn.pixels.size())) << "  "
-              << mistake.name << " " << mistake.table_name << "\n";
+              << mistake.name << "\n";
   }
 }
 

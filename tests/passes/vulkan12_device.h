@@ -5,8 +5,8 @@
 
 #include <vulkan/vulkan.h>
 
-#include <functional>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// What the passes keep on a device: pipelines, descriptor sets and parameter buffers.
+// The pipelines, descriptor sets and parameter buffers that the passes keep on a device.
 #pragma once
 
 #include <cstddef>
