@@ -17,7 +17,7 @@ function(alcove_embed_shader target shader)
   set(directory ${CMAKE_CURRENT_BINARY_DIR}/spirv)
   set(module ${CMAKE_CURRENT_BINARY_DIR}/shader_files/${name}.spv)
   file(MAKE_DIRECTORY ${directory} ${CMAKE_CURRENT_BINARY_DIR}/shader_files)
-  # gtao_bitmask -> kGtaoBitmask
+  # gtao_bent -> kGtaoBent
   string(REPLACE "_" ";" words ${name})
   set(variable k)
   foreach(word IN LISTS words)

@@ -242,8 +242,8 @@ int main(int argc, char** argv) {
     }
     view.info.static_frames = i;
     const AlcoveFrame frame = {sizeof frame, .index = i, .view_count = 1, .views = &view};
-    check(alcoveRecordFrame(context, commands, &frame) == ALCOVE_SUCCESS,
-          alcoveGetMessage(context));
+    const AlcoveResult result = alcoveRecordFrame(context, commands, &frame);
+    check(result == ALCOVE_SUCCESS, alcoveGetMessage(context));
     if (i + 1 == kFrames) {
       vkCmdCopyImageToBuffer(commands, visibility.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                              buffer, 1, &region);

@@ -1,5 +1,5 @@
-// The GGX microfacet lobe. It is the weight of specular occlusion, and the ray-traced reference
-// draws samples from it.
+// The GGX microfacet lobe, by which directions count in specular occlusion. The ray-traced truth
+// has code of its own (sample/lab/reference/sampling.h), so that an error here shows against it.
 //
 // Directions are in tangent space with z along the normal. `view` and `light` are unit and point
 // away from the surface. `alpha` is the GGX width, perceptual roughness squared, in [0,1]. Values
