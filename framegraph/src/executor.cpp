@@ -357,9 +357,15 @@ tl::expected<FrameReport, Errors> Executor::submit(Graph& graph, const FrameInfo
     return tl::unexpected(std::move(self.recorder->errors()));
   if (result == VK_SUCCESS) result = self.submitter->submit(cached->plan, info);
   if (result != VK_SUCCESS) {
-    // A frame that was submitted in part may have written to any history.
+    // A frame that was submitted in part may have written to any history, in any stage.
     attempt.runs = self.submitter->stopped_midway();
-    if (attempt.runs) graph.histories().invalidate_all();
+    if (attempt.runs) {
+      HistoryTable& histories = graph.histories();
+      histories.invalidate_all();
+      for (std::uint32_t i = 0; i < histories.entries().size(); ++i)
+        for (HistorySlot& slot : histories.entry(i).slots)
+          slot.state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT};
+    }
     graph.recorded_ = attempt.runs;
     self.before = nullptr;
     return tl::unexpected(vulkan_error(result, "the frame cannot be submitted"));

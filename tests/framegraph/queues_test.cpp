@@ -129,6 +129,35 @@ TEST_F(Queues, HistoryWhoseMipsSeveralQueuesReadIsLeftInOneLayout) {
   }
 }
 
+// The frame leaves the mips of a history with different stages: compute updates mip 0, and graphics
+// waits for it in the fragment stage only. A barrier of the next frame comes after both mips.
+TEST_F(Queues, HistoryWhoseMipsEndTheFrameInDifferentStagesGivesAVerifiedPlan) {
+  for (int frame = 0; frame < 3; ++frame) {
+    graph_.reset();
+    const TextureHistory history =
+        graph_.create_texture_history("h", {VK_FORMAT_R32_UINT, Extent::absolute(64, 64), 2});
+    const bool is_first = history.validity != HistoryValidity::valid;
+    Texture texture = is_first ? history.current : history.previous();
+    PassBuilder first =
+        graph_.add_pass("mip 0", is_first ? QueueClass::graphics : QueueClass::compute);
+    texture = first.write(texture,
+                          is_first ? access::color_attachment : access::storage_read_write_compute,
+                          Range::mip(0), is_first ? Contents::discard : Contents::keep);
+    PassBuilder second = graph_.add_pass("second");
+    if (is_first)
+      texture = second.write(texture, access::clear, Range::mip(1), Contents::discard);
+    else
+      second.read(texture, access::storage_read_fragment);
+    first.side_effect();
+    second.side_effect();
+    Plan plan = compiled();
+    graph_.leave_histories(plan.finals);
+    // The next frame would not wait for a use that the final state does not name.
+    for (FinalState& final : plan.finals) final.state.stages = 0;
+    EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+  }
+}
+
 // Particles are simulated on the compute queue while the scene is drawn on the graphics queue. The
 // two share no memory, so that neither queue waits for the previous frame of the other.
 TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForEachOthersPreviousFrame) {

@@ -180,14 +180,16 @@ void Replay::check_histories() {
 }
 
 // Checks that each history ends the frame in the state that the plan names, because the next frame
-// starts from that state, and that all work on it is ordered before later work in the stages of
-// that state on the queue that the plan names, because the next frame waits for these only.
+// starts from that state, and that a barrier after the stages of that state, on the queue that the
+// plan names, comes after all work on it, because the next frame begins with such a barrier.
 void Replay::check_final(const FinalState& final) {
   const Stages stages = expand_stages(final.state.stages);
   const auto queue = static_cast<std::uint8_t>(final.queue);
   const auto check_order = [&](const Operation& operation) {
-    if (operation.queue != queue &&
-        (stages == 0 || !order_.is_ordered(operation, queue, final.state.stages)))
+    if (stages == 0)
+      fail(name(final.resource) + " is used, but its final state names no stage to wait for");
+    else if (operation.queue != queue &&
+             !order_.is_before(operation, {queue, stages, 0, 0, 0, true}))
       fail(name(final.resource) + " is left on a queue that does not wait for its last use");
   };
   for (const Sub& sub : resources_[final.resource].subs) {
