@@ -34,6 +34,7 @@ void print_notes(const std::vector<std::string>& notes) {
 
 Result<Session> load_session(const Options& options) {
   Session session;
+  session.device = {options.device, options.validation};
   const auto start = std::chrono::steady_clock::now();
   auto scene = load_scene(options.scene, options.materials, print_progress("loading"));
   session.load_seconds =
@@ -44,14 +45,15 @@ Result<Session> load_session(const Options& options) {
   ALCOVE_TRY(session.camera, choose_camera(options.view, finder));
   const double aspect = static_cast<double>(options.view.width) / options.view.height;
   const RadiusChoice radius = finder.radius(session.camera, aspect);
-  session.radius_reason = options.occlusion.radius ? "--radius" : radius.reason;
+  const std::string source = radius_source(options.occlusion);
+  session.radius_reason = source.empty() ? radius.reason : source;
   // `compare` refuses a view of nothing, and says the same.
   const std::string advice = options.command == Command::compare ? "" : radius.advice;
   for (const std::string& note : {finder.left_out(), advice})
     if (!note.empty()) session.scene.warnings.insert(session.scene.warnings.begin(), note);
   print_notes(session.scene.warnings);
-  ALCOVE_TRY(const auto settings, occlusion_settings(options.occlusion, radius.radius));
-  session.settings = settings;
+  ALCOVE_TRY(session.settings, occlusion_settings(options.occlusion, radius.radius));
+  print_notes(ineffective_changes(options.occlusion, session.settings));
   return session;
 }
 
@@ -59,7 +61,7 @@ Result<Session> open_session(const Options& options,
                              const std::vector<const char*>& surface_extensions) {
   auto session = load_session(options);
   if (!session) return session;
-  session->device = {options.device, options.validation, surface_extensions};
+  session->device.surface_extensions = surface_extensions;
   ALCOVE_TRY(auto gpu, open_gpu(session->device));
   session->gpu = std::move(gpu);
   return session;
@@ -76,14 +78,20 @@ Result<Rendering> render(const Options& options) {
                            options.view.frames,
                            options.view.orbit,
                            options.occlusion.normals,
+                           guard_band_pixels(options.occlusion.guard_band, options.view.height),
                            {options.occlusion.roughness, std::move(environment), options.lit}});
   if (rendering && shows_surfaces(*rendering)) std::cout << radius;
   return rendering;
 }
 
 StaticSetup static_setup(const Options& options, const Camera& camera) {
-  return {camera, options.view.width, options.view.height, options.view.frames,
-          options.occlusion.normals};
+  const std::uint32_t band = guard_band_pixels(options.occlusion.guard_band, options.view.height);
+  return {.camera = camera,
+          .width = options.view.width,
+          .height = options.view.height,
+          .frames = options.view.frames,
+          .normals = options.occlusion.normals,
+          .guard_band = {band, band}};
 }
 
 Result<SettingTimes> setting_times(const Options& options, const Session& session) {
@@ -92,7 +100,7 @@ Result<SettingTimes> setting_times(const Options& options, const Session& sessio
                           {.width = options.target_width,
                            .height = options.target_height,
                            .normals = options.occlusion.normals != NormalSource::depth},
-                          options.use_cache);
+                          !options.no_cache);
   }
   StaticSetup setup = static_setup(options, session.camera);
   const double pixels = static_cast<double>(setup.width) * setup.height;
@@ -117,7 +125,7 @@ std::string clock_text(const Options& options, const Session& session) {
 }
 
 TruthOptions truth_options(const Options& options) {
-  return {options.occlusion.spp, options.lit_points, options.use_cache};
+  return {options.occlusion.spp, options.lit_points, !options.no_cache};
 }
 
 }  // namespace alcove::sample

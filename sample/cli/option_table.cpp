@@ -1,6 +1,7 @@
 #include "cli/option_table.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,13 +11,12 @@
 #include <utility>
 
 #include "alcove/passes/setting_table.h"
+#include "cli/option_value.h"
 #include "cli/settings.h"
+#include "support/printable.h"
 
 namespace alcove::sample {
 namespace {
-
-using O = Options;
-using V = OptionValue;
 
 constexpr std::uint32_t bits(std::initializer_list<Command> commands) {
   std::uint32_t set = 0;
@@ -40,62 +40,305 @@ constexpr std::uint32_t kAll =
 constexpr std::uint32_t kOnDevice = kAll & ~kCost;
 constexpr std::uint32_t kStatic = kRecommend | kReport;  // a static camera
 constexpr std::uint32_t kWithTruth = kStatic | kCompare | kMotion;
+// Added to a set: few users need the option, and only --help-all lists it.
+constexpr std::uint32_t kRare = 1u << 31;
 
-constexpr const char* kOptions = "Options";
-constexpr const char* kViewing = "View";
-constexpr const char* kOcclusion = "Occlusion";
-constexpr const char* kCostModel = "Cost";
-
-constexpr double kTiny = std::numeric_limits<float>::denorm_min();
-constexpr double kHuge = std::numeric_limits<float>::max();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// Reads a number of frames.
-void read_frames(O& o, const V& v, std::int64_t fewest = 1) {
-  o.view.frames = static_cast<std::uint32_t>(
-      v.whole_number(fewest, 100'000, fmt::format("a number from {} to 100000", fewest)));
-}
-
-float plane(const V& v, const char* wanted) {
-  return static_cast<float>(v.number(-kHuge, kHuge, wanted));
-}
-
-void read_out(O& o, const V& v) {
-  if (v.text.empty()) v.refuse("the name of a folder, such as out");
-  o.out = v.text;
-}
-
-void read_setting(O& o, const V& v) {
-  const std::size_t equals = v.text.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == v.text.size())
-    v.refuse("name=value, such as slices=2");
-  const std::string name = v.text.substr(0, equals);
-  const std::string value = v.text.substr(equals + 1);
-  if (const auto wanted = wanted_instead(name, value)) v.refuse(*wanted);
-  o.occlusion.set.emplace_back(name, value);
-}
-
-void read_settings_file(O& o, const V& v) {
-  auto read = read_settings(v.text);
-  if (!read) throw Mistake{"--settings: " + read.error()};
-  o.occlusion.file = std::move(*read);
-}
-
-void read_roughness(O& o, const V& v) {
-  const char* wanted = "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
-  const std::vector<double> values = v.numbers(1, 16, 0.0, 1.0, wanted);
-  o.occlusion.roughness.assign(values.begin(), values.end());
-  // Names of output files contain the first six digits of the roughness, which must therefore
-  // differ.
-  std::vector<float> sorted = o.occlusion.roughness;
-  std::ranges::sort(sorted);
-  const auto alike = [](float a, float b) { return b - a < 1e-5f; };
-  if (std::ranges::adjacent_find(sorted, alike) != sorted.end()) v.refuse(wanted);
-}
+constexpr float kHuge = std::numeric_limits<float>::max();
 
 // The names of the modelled GPUs.
 constexpr std::array<std::string_view, 3> kGpuNames{kGpuParts[0].name, kGpuParts[1].name,
                                                     kGpuParts[2].name};
+
+Result<const GpuPart*> read_gpu(std::string_view text) {
+  return one_of(kGpuNames)(text).transform([](std::size_t i) { return &kGpuParts[i]; });
+}
+
+Result<glm::vec3> read_up(std::string_view text) {
+  ALCOVE_TRY(const glm::vec3 up, read_vector(text));
+  if (up == glm::vec3(0.0f)) return Failure("a direction, not zero");
+  return up;
+}
+
+Result<float> read_far(std::string_view text) {
+  if (text == "inf" || text == "infinity") return std::numeric_limits<float>::infinity();
+  return number(-kHuge, kHuge, "a length above 0, or inf")(text);
+}
+
+Result<std::vector<float>> read_roughness(std::string_view text) {
+  const std::string wanted = "up to 16 numbers from 0 to 1, no two alike, such as 0.1,0.3,0.6";
+  ALCOVE_TRY(const auto values, list(number(0.0f, 1.0f, wanted))(text));
+  // Names of output files contain the first six digits of the roughness, which must therefore
+  // differ.
+  std::vector<float> sorted = values;
+  std::ranges::sort(sorted);
+  const auto alike = [](float a, float b) { return b - a < 1e-5f; };
+  if (values.size() > 16 || std::ranges::adjacent_find(sorted, alike) != sorted.end())
+    return Failure(wanted);
+  return values;
+}
+
+// Breaks a help text into lines that fit beside the names of the options.
+std::string wrapped(const std::string& help) {
+  constexpr std::size_t kWidth = 68;
+  std::string lines = help;
+  for (std::size_t begin = 0; lines.size() - begin > kWidth;) {
+    const std::size_t space = lines.rfind(' ', begin + kWidth);
+    if (space == std::string::npos || space <= begin) break;
+    lines[space] = '\n';
+    begin = space + 1;
+  }
+  return lines;
+}
+
+// Adds options to the parser of one command. Those that the command does not take are left out.
+class Table {
+ public:
+  Table(CLI::App& app, Command command, bool all)
+      : app_(app), command_(1u << static_cast<std::uint32_t>(command)), all_(all) {}
+
+  void heading(const char* heading) { heading_ = heading; }
+
+  // An option that stores its value in `target`, a reference or a tuple of references.
+  template <typename Target, typename Read>
+  void add(std::uint32_t commands, const char* name, const char* type, Target&& target, Read read,
+           const std::string& help) {
+    if ((commands & command_) == 0) return;
+    const auto store = [name, to = std::tuple<Target>(std::forward<Target>(target)),
+                        read](const std::string& text) mutable {
+      auto value = read(text);
+      if (!value) refuse(name, text, value.error());
+      std::get<0>(to) = std::move(*value);
+    };
+    describe(app_.add_option_function<std::string>(name, store, wrapped(help))->take_last(),
+             commands, type);
+  }
+
+  // An option whose values are all stored.
+  template <typename Value, typename Read>
+  void add_each(std::uint32_t commands, const char* name, const char* type,
+                std::vector<Value>& target, Read read, const std::string& help) {
+    if ((commands & command_) == 0) return;
+    const auto store = [name, &target, read](const std::vector<std::string>& texts) {
+      for (const std::string& text : texts) {
+        auto value = read(text);
+        if (!value) refuse(name, text, value.error());
+        target.push_back(std::move(*value));
+      }
+    };
+    using Texts = std::vector<std::string>;
+    describe(app_.add_option_function<Texts>(name, store, wrapped(help))->take_all()->expected(1),
+             commands, type);
+  }
+
+  // An option without a value, which stores `value`.
+  template <typename Target>
+  CLI::Option* flag(std::uint32_t commands, const char* name, Target& target,
+                    const std::string& help, bool value = true) {
+    if ((commands & command_) == 0) return nullptr;
+    const auto store = [&target, value] { target = value; };
+    return describe(app_.add_flag_callback(name, store, wrapped(help)), commands, nullptr);
+  }
+
+ private:
+  [[noreturn]] static void refuse(const char* name, const std::string& text,
+                                  const std::string& wanted) {
+    constexpr std::size_t kLongest = 80;  // bytes of an argument that a message repeats
+    throw Mistake{fmt::format("{} {}: give {}", name,
+                              text.empty() ? "''" : shortened(text, kLongest), wanted)};
+  }
+
+  CLI::Option* describe(CLI::Option* option, std::uint32_t commands, const char* type) const {
+    if (type != nullptr) option->type_name(type);
+    return option->group(all_ || (commands & kRare) == 0 ? heading_ : "");
+  }
+
+  CLI::App& app_;
+  std::uint32_t command_;
+  bool all_;
+  const char* heading_ = "Options";
+};
+
+auto frames(std::uint32_t fewest) {
+  return number(fewest, 100'000u, fmt::format("a number from {} to 100000", fewest));
+}
+
+void add_general(Table& table, Options& o) {
+  const auto folder = text("the name of a folder, such as out");
+  const auto file = text("the name of a file");
+  table.add(kRender | kCompare | kMotion | kMeasure | kReport, "--out", "DIR", o.out, folder,
+            "folder for images and report.json. Default: out");
+  table.add(kView, "--out", "DIR", o.out, folder,
+            "folder for screenshots. Default: the current folder. If given, the last frame of "
+            "--frames is written there too");
+  table.flag(kOnDevice & ~kGraph, "--cut-blends", o.materials.cut_blends,
+             "render alpha-blended materials as masks with a cutoff of 0.5, for foliage. Default: "
+             "opaque");
+  table.flag(kGraph | kRare, "--cut-blends", o.materials.cut_blends, "as of `render`");
+  table.flag(kOnDevice, "--both-sides", o.materials.both_sides,
+             "draw the back faces of single-sided materials. Default: culled");
+  table.add(kRecommend, "--budget-ms", "MS", o.budget_ms,
+            positive<double>("a time above 0 in milliseconds"),
+            "find the smallest error whose occlusion passes take at most this time");
+  table.add(kRecommend, "--tolerance", "E", o.tolerance,
+            number(std::numeric_limits<double>::denorm_min(), 1.0, "an error above 0, at most 1"),
+            "find the fastest setting whose RMSE of visibility is at most this");
+  table.add(kRecommend, "--second-layer", "MS", o.second_layer_ms,
+            number(0.0, 1e9, "a time of 0 or more in milliseconds"),
+            "time in which your engine draws a second depth layer, 0 if it does so anyway. "
+            "Default: it has none");
+  table.add(kRecommend, "--back-faces", "MS", o.back_faces_ms,
+            number(0.0, 1e9, "a time of 0 or more in milliseconds"),
+            "time in which your engine draws depth of back faces, 0 if it does so anyway. "
+            "Default: it has none");
+  table.add(kRecommend, "--situation", "NAME", o.situation,
+            one_of_or<Situation>(kSituationNames, "mix"),
+            "whose error and time count: first (frame), moving (camera), standing (camera) or mix "
+            "of 10, 60 and 30 %. Default: mix");
+  table.add(kRecommend, "--out", "FILE", o.settings_out, file,
+            "also write the settings, for --settings");
+  table.add(kRecommend | kReport, "--target-size", "WxH", std::tie(o.target_width, o.target_height),
+            read_size,
+            "size of the image whose time counts; errors are measured at --size. Default: "
+            "1920x1080");
+  table.add(kStatic, "--gpu", "NAME", o.gpu, read_gpu,
+            "the modelled GPU: ps4, ps5 or rx6800xt. Default: ps5");
+  table.add(kStatic, "--clock", "NAME", o.clock, one_of<Clock>(kClockNames),
+            "which time counts: modelled (on --gpu), timestamps (of the device) or processor "
+            "(of all threads). Default: modelled");
+  table.add(kMeasure, "--sizes", "WxH,...", o.sizes, list(read_size),
+            "sizes of the image in pixels. Default: 1920x1080,3840x2160,7680x4320");
+  table.flag(kCompare, "--split", o.split,
+             "also print and draw the causes of the squared error: noise, filter and tiles, hidden "
+             "surfaces, unknown thickness, occluders outside the image, the rest");
+  table.flag(kCompare, "--lit", o.lit,
+             "also path trace the lit scene, and print the error of the lit picture with each part "
+             "of the occlusion. Takes minutes");
+  table.add(kCompare | kRare, "--lit-points", "N", o.lit_points,
+            number(1u, 100'000'000u, "pixels, 1 to 100000000"),
+            "approximate number of pixels at which multi-bounce, specular occlusion and the lit "
+            "picture are traced, one per square block of the image. Default: 32000");
+  table.add(kGraph, "--format", "NAME", o.graph_format, one_of<GraphFormat>(kGraphFormatNames),
+            "text, dot (Graphviz), or work (the work as data). Default: text");
+  table.flag(kWithTruth | kRare, "--no-cache", o.no_cache,
+             "compute the truths again instead of reading them from the cache on disk");
+  table.add(kOnDevice | kRare, "--device", "N", o.device, number(0, 255, "a number from 0 to 255"),
+            "number of the Vulkan device in the list of `alcove doctor`. Default: the first "
+            "discrete GPU, else the first integrated GPU, else any device");
+  table.flag(kOnDevice | kRare, "--validation", o.validation,
+             "run under the Khronos validation layers and the graph's own checks, and fail on any "
+             "message");
+  table.add(kMotion, "--path", "NAME", o.path, one_of_or<MotionKind>(kMotionKindNames, "all"),
+            "orbit (around the middle of the view), dolly (towards it), object (static camera, a "
+            "block slides over the ground), cut (the camera jumps) or all. Default: all");
+}
+
+void add_view(Table& table, Options& o) {
+  ViewOptions& view = o.view;
+  table.heading("View");
+  table.add(kOnDevice, "--camera", "NAME", view.camera, text("the name of a camera"),
+            "name of a camera of the scene. Default: the first one, or a view of everything if "
+            "there is none");
+  table.add(kOnDevice, "--eye", "X,Y,Z", view.eye, read_vector,
+            "position of the camera, scene units");
+  table.add(kOnDevice, "--target", "X,Y,Z", view.target, read_vector,
+            "point that the camera looks at, scene units");
+  table.add(kOnDevice | kRare, "--up", "X,Y,Z", view.up_ws, read_up,
+            "direction that is upwards in the image. Default: 0,1,0");
+  // Cameras of scene files may have the same angles.
+  table.add(kOnDevice | kRare, "--fov-y", "DEGREES", view.fov_y,
+            degrees(0.001f, 178.0f, "the vertical angle of view in degrees, 0.001 to 178"),
+            "vertical angle of view. Default: that of the camera");
+  table.add(kOnDevice | kRare, "--ortho-height", "LENGTH", view.ortho_height,
+            positive<float>("a length above 0, in the scene's units"),
+            "makes the view orthographic, with an image of this height in scene units");
+  table.add(kOnDevice | kRare, "--near", "LENGTH", view.near_plane,
+            number(-kHuge, kHuge, "a length above 0, in the scene's units"),
+            "distance of the near plane. Default: that of the scene's camera, or fitted to the "
+            "geometry in view. In an orthographic view it may be negative (behind the eye)");
+  table.add(kOnDevice | kRare, "--far", "LENGTH", view.far_plane, read_far,
+            "distance of the far plane, or inf. Default: as for --near");
+  CLI::Option* const reversed =
+      table.flag(kOnDevice | kRare, "--reversed-z", view.reversed_z,
+                 "near plane at depth 1, far plane at 0. Default in perspective views");
+  CLI::Option* const standard =
+      table.flag(kOnDevice | kRare, "--standard-z", view.reversed_z,
+                 "near plane at depth 0, far plane at 1. Default in orthographic views", false);
+  if (reversed != nullptr) reversed->excludes(standard);
+  table.add(kAll, "--size", "WxH", std::tie(view.width, view.height), read_size,
+            fmt::format("size of the image in pixels. Default: {}x{}", view.width, view.height));
+  table.add(kRender | kCompare, "--frames", "N", view.frames, frames(1),
+            "number of frames to render; the last one is written. Default: 1");
+  table.add(kView, "--frames", "N", view.frames, frames(1),
+            "number of frames after which the window closes. Default: it stays open");
+  table.add(kStatic, "--frames", "N", view.frames, frames(1),
+            "number of frames of a static camera; the last one is compared. Default: 32");
+  table.add(kMeasure, "--frames", "N", view.frames, frames(1),
+            "number of frames that are timed. Default: 200");
+  // Surfaces of the first compared frame are followed over the four frames before it.
+  table.add(kMotion, "--frames", "N", view.frames, frames(15),
+            "number of frames of each path, which begins at the given view. Three of them are "
+            "compared with the ray-traced truth. Default: 48");
+  table.add(kRender | kCompare | kView | kRare, "--orbit", "DEGREES", view.orbit,
+            degrees(-360.0f, 360.0f, "an angle in degrees, -360 to 360"),
+            "angle by which the camera orbits its target from frame to frame. Default: 0");
+}
+
+void add_occlusion(Table& table, Options& o) {
+  OcclusionOptions& occlusion = o.occlusion;
+  table.heading("Occlusion");
+  table.add(kAll, "--quality", "NAME", occlusion.quality,
+            one_of<AlcoveQuality>(passes::kQualityNames),
+            "preset: console, low, medium, high, ultra or reference. Default: medium");
+  table.add(kAll, "--radius", "LENGTH", occlusion.radius,
+            positive<float>("a length above 0, in the scene's units"),
+            "distance up to which occluders count, scene units. Default: from what the view "
+            "shows; the program prints it and why");
+  table.add(kAll, "--settings", "FILE", occlusion.file, read_settings,
+            "settings that `alcove recommend --out` wrote, instead of --quality");
+  table.add_each(kAll, "--set", "NAME=VALUE", occlusion.set, read_change,
+                 "changes one setting; --help-all lists them. May be repeated");
+  table.add(kRender | kCompare | kMotion | kView, "--guard-band", "PERCENT", occlusion.guard_band,
+            number(0.0, 50.0, "a percentage of the image's height, 0 to 50"),
+            "also render this part of the height beyond each border, unseen, so that "
+            "occluders just outside count. Default: 0");
+  table.add(kAll, "--normals", "NAME", occlusion.normals, one_of<NormalSource>(kNormalSourceNames),
+            "normals of the occlusion and the truths: shading (with normal maps), geometric (of "
+            "the triangles) or depth (from the depth buffer). Default: shading");
+  // `render` and `graph` accept --spp without effect, so that the arguments of a `compare`
+  // command can be reused with them.
+  table.add(kWithTruth | kRender | kGraph | kRare, "--spp", "N", occlusion.spp,
+            number(1u, 65536u, "rays per pixel, 1 to 65536"),
+            fmt::format("rays per pixel of the ray-traced truth. No effect on commands without a "
+                        "truth. Default: {}",
+                        occlusion.spp));
+  table.add(kRender | kCompare | kView | kGraph | kRare, "--roughness", "R,...",
+            occlusion.roughness, read_roughness,
+            "perceptual roughness for specular occlusion, instead of that of the materials. Each "
+            "of several values gives an image of its own");
+  table.add(kRender | kCompare | kView, "--environment", "FILE", o.environment,
+            text("the name of an .exr file"),
+            "equirectangular image of the light, .exr. Default: a generated sky");
+}
+
+void add_cost_model(Table& table, Options& o) {
+  table.heading("Cost");
+  table.add(kCost, "--gpu", "NAME", o.gpu, read_gpu,
+            "modelled GPU: ps4, ps5 or rx6800xt. Default: all");
+  table.flag(kCost, "--motion-vectors", o.cost.inputs.motion,
+             "model the passes with motion vectors as an input, which moving objects need");
+  table.flag(kCost, "--area", o.cost.inputs.area,
+             "model the passes for images that are read and written in part");
+  table.flag(kCost, "--mask", o.cost.inputs.mask, "model the passes with a mask of surfaces");
+  table.flag(kCost, "--samples", o.cost.inputs.samples,
+             "model the passes with depth of four samples per pixel");
+  table.flag(kCost, "--range", o.cost.range,
+             "also print the time of a moving frame under other assumptions about the caches, of "
+             "which the model is least sure");
+  table.add(kCost, "--json", "FILE", o.cost.json, text("the name of a file"),
+            "also write all figures as JSON");
+  table.add(kCost | kRare, "--write-budget", "FILE", o.cost.budget, text("the name of a file"),
+            "only write the costs of all presets into the file of limits that the tests check");
+}
 
 // Throws a Mistake if a near or far plane is at the eye or behind it. Only orthographic views may
 // have such planes.
@@ -109,244 +352,48 @@ void check_plane(const std::string& option, const std::optional<float>& distance
 
 }  // namespace
 
-std::span<const OptionRow> option_rows() {
-  static const OptionRow rows[] = {
-      {kOnDevice, kOptions, "--cut-blends", nullptr,
-       "render alpha-blended materials as masks with a cutoff of 0.5, which suits foliage. "
-       "Default: "
-       "they are rendered opaque",
-       [](O& o, const V&) { o.materials.cut_blends = true; }},
-      {kOnDevice, kOptions, "--both-sides", nullptr,
-       "draw the back faces of single-sided materials. Default: they are culled, as glTF specifies",
-       [](O& o, const V&) { o.materials.both_sides = true; }},
-      {kRecommend, kOptions, "--budget-ms", "MS",
-       "find the setting with the smallest error whose occlusion passes take at most this time",
-       [](O& o, const V& v) {
-         o.budget_ms = v.number(kTiny, kHuge, "a time above 0 in milliseconds");
-       }},
-      {kRecommend, kOptions, "--tolerance", "E",
-       "find the fastest setting whose RMSE of visibility is at most this error",
-       [](O& o, const V& v) { o.tolerance = v.number(kTiny, kHuge, "an error above 0"); }},
-      {kRecommend, kOptions, "--situation", "NAME",
-       "the situation whose error and time count: first (frame), moving (camera), standing "
-       "(camera) "
-       "or mix. Default: mix, in which the moving camera counts 60 %, the standing 30 % and the "
-       "first frame 10 %",
-       [](O& o, const V& v) { o.situation = v.one_of_or<Situation>(kSituationNames, "mix"); }},
-      {kRecommend, kOptions, "--out", "FILE", "also write the settings, for --settings",
-       [](O& o, const V& v) { o.settings_out = v.text; }},
-      {kRecommend | kReport, kOptions, "--target-size", "WxH",
-       "size of the image whose time counts; errors are measured at --size. Default: 1920x1080",
-       [](O& o, const V& v) { std::tie(o.target_width, o.target_height) = v.size(); }},
-      {kStatic, kOptions, "--gpu", "NAME",
-       "the GPU whose time is modelled: ps4, ps5 or rx6800xt. Default: ps5",
-       [](O& o, const V& v) { o.gpu = &kGpuParts[v.one_of(kGpuNames)]; }},
-      {kStatic, kOptions, "--clock", "NAME",
-       "which time counts: modelled (time on --gpu by the cost model, the same in every run), "
-       "timestamps (GPU time of the device) or processor (time of all threads). Default: modelled",
-       [](O& o, const V& v) { o.clock = static_cast<Clock>(v.one_of(kClockNames)); }},
-      {kMeasure, kOptions, "--sizes", "WxH,...",
-       "sizes of the image in pixels. Default: 1920x1080,3840x2160,7680x4320",
-       [](O& o, const V& v) {
-         o.sizes.clear();
-         for (const V& size : v.parts()) o.sizes.push_back(size.size());
-       }},
-      {kMeasure, kOptions, "--frames", "N", "number of frames that are timed. Default: 200",
-       [](O& o, const V& v) { read_frames(o, v); }},
-      {kCompare, kOptions, "--split", nullptr,
-       "also render the view without each cause of the error, and print and draw the part of the "
-       "squared error that is noise, filter and tiles, hidden surfaces, unknown thickness, "
-       "occluders outside the image, and the rest",
-       [](O& o, const V&) { o.split = true; }},
-      {kCompare, kOptions, "--lit", nullptr,
-       "also path trace the scene lit by the environment, and print the error of the lit picture "
-       "without occlusion and with each part of the occlusion. Takes minutes",
-       [](O& o, const V&) { o.lit = true; }},
-      {kCompare, kOptions, "--lit-points", "N",
-       "approximate number of pixels at which multi-bounce, specular occlusion and the lit picture "
-       "are traced, one per square block of the image. Default: 32000",
-       [](O& o, const V& v) {
-         o.lit_points =
-             static_cast<std::uint32_t>(v.whole_number(1, 100'000'000, "pixels, 1 to 100000000"));
-       }},
-      {kGraph, kOptions, "--format", "NAME",
-       "text, dot (Graphviz), or work (the work as data). Default: text",
-       [](O& o, const V& v) {
-         o.graph_format = static_cast<GraphFormat>(v.one_of(kGraphFormatNames));
-       }},
-      {kWithTruth, kOptions, "--no-cache", nullptr,
-       "compute the truths again instead of reading them from the cache on disk",
-       [](O& o, const V&) { o.use_cache = false; }},
-      {kRender | kCompare | kMotion | kMeasure | kReport, kOptions, "--out", "DIR",
-       "folder for images and report.json. Default: out", read_out},
-      {kView, kOptions, "--out", "DIR",
-       "folder for screenshots. Default: the current folder. If given, the last frame of --frames "
-       "is written there too",
-       read_out},
-      {kOnDevice, kOptions, "--device", "N",
-       "number of the Vulkan device in the list of `alcove doctor`. Default: the first discrete "
-       "GPU, else the first integrated GPU, else any device",
-       [](O& o, const V& v) {
-         o.device = static_cast<int>(v.whole_number(0, 255, "a number from 0 to 255"));
-       }},
-      {kOnDevice, kOptions, "--validation", nullptr,
-       "run under the Khronos validation layers and the graph's own checks, and fail on any "
-       "message",
-       [](O& o, const V&) { o.validation = true; }},
-
-      {kMotion, "Motion", "--path", "NAME",
-       "orbit (around the middle of the view), dolly (towards it), object (static camera, a block "
-       "slides over the ground), cut (the camera jumps to another place) or all. Default: all",
-       [](O& o, const V& v) { o.path = v.one_of_or<MotionKind>(kMotionKindNames, "all"); }},
-      {kMotion, "Motion", "--frames", "N",
-       "number of frames of each path, which begins at the given view. Three of them are compared "
-       "with the ray-traced truth. Default: 48",
-       // Surfaces of the first compared frame are followed over the four frames before it.
-       [](O& o, const V& v) { read_frames(o, v, 15); }},
-
-      {kOnDevice, kViewing, "--camera", "NAME",
-       "name of a camera of the scene. Default: the first one, or a view of the whole scene if the "
-       "scene has no camera",
-       [](O& o, const V& v) { o.view.camera = v.text; }},
-      {kOnDevice, kViewing, "--eye", "X,Y,Z", "position of the camera, scene units",
-       [](O& o, const V& v) { o.view.eye = v.vector(); }},
-      {kOnDevice, kViewing, "--target", "X,Y,Z", "point that the camera looks at, scene units",
-       [](O& o, const V& v) { o.view.target = v.vector(); }},
-      {kOnDevice, kViewing, "--up", "X,Y,Z",
-       "direction that is upwards in the image. Default: 0,1,0",
-       [](O& o, const V& v) {
-         o.view.up_ws = v.vector();
-         if (*o.view.up_ws == glm::vec3(0.0f)) v.refuse("a direction, not zero");
-       }},
-      {kOnDevice, kViewing, "--fov-y", "DEGREES",
-       "vertical angle of view. Default: that of the camera",
-       [](O& o, const V& v) {
-         // Cameras of scene files may have the same angles.
-         o.view.fov_y = glm::radians(static_cast<float>(
-             v.number(0.001, 178.0, "the vertical angle of view in degrees, 0.001 to 178")));
-       }},
-      {kOnDevice, kViewing, "--ortho-height", "LENGTH",
-       "makes the view orthographic, with an image of this height in scene units",
-       [](O& o, const V& v) { o.view.ortho_height = v.length(); }},
-      {kOnDevice, kViewing, "--near", "LENGTH",
-       "distance of the near plane. Default: that of the scene's camera, or fitted to the geometry "
-       "in view. In an orthographic view it may be negative (behind the eye)",
-       [](O& o, const V& v) {
-         o.view.near_plane = plane(v, "a length above 0, in the scene's units");
-       }},
-      {kOnDevice, kViewing, "--far", "LENGTH",
-       "distance of the far plane, or inf. Default: as for --near",
-       [](O& o, const V& v) {
-         const bool infinite = v.text == "inf" || v.text == "infinity";
-         o.view.far_plane = infinite ? kInfinity : plane(v, "a length above 0, or inf");
-       }},
-      {kOnDevice, kViewing, "--reversed-z", nullptr,
-       "near plane at depth 1, far plane at 0. Default in perspective views",
-       [](O& o, const V&) { o.view.reversed_z = true; }},
-      {kOnDevice, kViewing, "--standard-z", nullptr,
-       "near plane at depth 0, far plane at 1. Default in orthographic views",
-       [](O& o, const V&) { o.view.reversed_z = false; }},
-      {kAll, kViewing, "--size", "WxH", "size of the image in pixels. Default: {size}",
-       [](O& o, const V& v) { std::tie(o.view.width, o.view.height) = v.size(); }},
-      {kRender | kCompare, kViewing, "--frames", "N",
-       "number of frames to render; the last one is written. Default: 1",
-       [](O& o, const V& v) { read_frames(o, v); }},
-      {kView, kViewing, "--frames", "N",
-       "number of frames after which the window closes. Default: it stays open",
-       [](O& o, const V& v) { read_frames(o, v); }},
-      {kStatic, kViewing, "--frames", "N",
-       "number of frames of a static camera that are rendered with each setting; the last one is "
-       "compared. Default: 32",
-       [](O& o, const V& v) { read_frames(o, v); }},
-      {kRender | kCompare | kView, kViewing, "--orbit", "DEGREES",
-       "angle by which the camera orbits its target from frame to frame. Default: 0",
-       [](O& o, const V& v) {
-         o.view.orbit = glm::radians(
-             static_cast<float>(v.number(-360.0, 360.0, "an angle in degrees, -360 to 360")));
-       }},
-
-      {kAll, kOcclusion, "--quality", "NAME",
-       "preset: console, low, medium, high, ultra or reference. Default: medium",
-       [](O& o, const V& v) {
-         o.occlusion.quality = static_cast<AlcoveQuality>(v.one_of(passes::kQualityNames));
-         o.occlusion.quality_given = true;
-       }},
-      {kAll, kOcclusion, "--radius", "LENGTH",
-       "distance up to which occluders count, scene units. Default: from the geometry that the "
-       "view "
-       "shows; the program prints it and why",
-       [](O& o, const V& v) { o.occlusion.radius = v.length(); }},
-      {kAll, kOcclusion, "--settings", "FILE",
-       "settings that `alcove recommend --out` wrote. --set changes them further",
-       read_settings_file},
-      {kAll, kOcclusion, "--set", "NAME=VALUE",
-       "changes one setting of the preset; the settings are listed below. May be repeated",
-       read_setting, true},
-      {kAll, kOcclusion, "--normals", "NAME",
-       "normals that the occlusion pass and the truths use: shading (from vertices and normal "
-       "maps), geometric (of the triangles) or depth (reconstructed from the depth buffer). "
-       "Default: shading",
-       [](O& o, const V& v) {
-         o.occlusion.normals = static_cast<NormalSource>(v.one_of(kNormalSourceNames));
-       }},
-      // `render` and `graph` accept --spp without effect, so that the arguments of a `compare`
-      // command can be reused with them.
-      {kWithTruth | kRender | kGraph, kOcclusion, "--spp", "N",
-       "rays per pixel of the ray-traced truth. No effect on commands without a truth. Default: "
-       "{spp}",
-       [](O& o, const V& v) {
-         o.occlusion.spp =
-             static_cast<std::uint32_t>(v.whole_number(1, 65536, "rays per pixel, 1 to 65536"));
-       }},
-      {kRender | kCompare | kView | kGraph, kOcclusion, "--roughness", "R,...",
-       "perceptual roughness for specular occlusion, instead of that of the materials. Each of "
-       "several values gives an image of its own",
-       read_roughness},
-      {kRender | kCompare | kView, "Light", "--environment", "FILE",
-       "equirectangular image of the light, .exr. Default: a generated sky",
-       [](O& o, const V& v) { o.environment = v.text; }},
-
-      {kCost, kCostModel, "--gpu", "NAME", "modelled GPU: ps4, ps5 or rx6800xt. Default: all",
-       [](O& o, const V& v) { o.gpu = &kGpuParts[v.one_of(kGpuNames)]; }},
-      {kCost, kCostModel, "--motion-vectors", nullptr,
-       "model the passes with motion vectors as an input, which moving objects need",
-       [](O& o, const V&) { o.cost.inputs.motion = true; }},
-      {kCost, kCostModel, "--area", nullptr,
-       "model the passes for images that are read and written in part",
-       [](O& o, const V&) { o.cost.inputs.area = true; }},
-      {kCost, kCostModel, "--mask", nullptr, "model the passes with a mask of surfaces",
-       [](O& o, const V&) { o.cost.inputs.mask = true; }},
-      {kCost, kCostModel, "--samples", nullptr,
-       "model the passes with depth of four samples per pixel",
-       [](O& o, const V&) { o.cost.inputs.samples = true; }},
-      {kCost, kCostModel, "--range", nullptr,
-       "also print the time of a moving frame under other assumptions about the caches, of which "
-       "the model is least sure",
-       [](O& o, const V&) { o.cost.range = true; }},
-      {kCost, kCostModel, "--json", "FILE", "also write all figures as JSON",
-       [](O& o, const V& v) { o.cost.json = v.text; }},
-      {kCost, kCostModel, "--write-budget", "FILE",
-       "only write the costs of all presets into the file of limits that the tests check",
-       [](O& o, const V& v) { o.cost.budget = v.text; }},
-  };
-  return rows;
+void add_options(CLI::App& app, Options& options, bool all) {
+  if (options.command == Command::doctor) return;
+  Table table(app, options.command, all);
+  add_general(table, options);
+  add_view(table, options);
+  add_occlusion(table, options);
+  add_cost_model(table, options);
 }
 
 void check_together(const Options& options) {
   const ViewOptions& view = options.view;
+  const OcclusionOptions& occlusion = options.occlusion;
+  const auto refuse_if = [](bool both, const char* sentence) {
+    if (both) throw Mistake{sentence};
+  };
   check_plane("--near", view.near_plane, view);
   check_plane("--far", view.far_plane, view);
   if (view.near_plane && view.far_plane && !(*view.near_plane < *view.far_plane))
     throw Mistake{"--near " + number_text(*view.near_plane) + ": give a length below --far"};
-  if (view.ortho_height && view.fov_y)
-    throw Mistake{"--ortho-height and --fov-y: give one, an orthographic view has no angle"};
-  if (view.ortho_height && view.far_plane && std::isinf(*view.far_plane))
-    throw Mistake{"--far inf: an orthographic view needs a finite --far"};
-  if (options.split && view.orbit != 0.0f)
-    throw Mistake{"--split and --orbit: give one, the error is split for a static camera"};
-  if (options.command == Command::recommend &&
-      options.budget_ms.has_value() == options.tolerance.has_value())
-    throw Mistake{"recommend: give either --budget-ms or --tolerance"};
+  refuse_if(view.ortho_height && view.fov_y,
+            "--ortho-height and --fov-y: give one, an orthographic view has no angle");
+  refuse_if(view.ortho_height && view.far_plane && std::isinf(*view.far_plane),
+            "--far inf: an orthographic view needs a finite --far");
+  refuse_if(!view.camera.empty() && view.camera != "none" && view.eye,
+            "--camera and --eye: give one, a camera has a position of its own");
+  refuse_if(occlusion.file && occlusion.quality,
+            "--settings and --quality: give one, the file holds every setting of a preset");
+  refuse_if(occlusion.radius && changes_radius(occlusion),
+            "--radius and --set radius: give one of them");
+  refuse_if(
+      occlusion.roughness.size() > 1 &&
+          (options.command == Command::view || options.command == Command::graph),
+      "--roughness: give one value, only `render` and `compare` make an image of each of several");
+  refuse_if(options.split && view.orbit != 0.0f,
+            "--split and --orbit: give one, the error is split for a static camera");
+  refuse_if(options.gpu != nullptr && options.clock != Clock::modelled,
+            "--gpu and --clock: give one, only modelled times are those of --gpu");
+  refuse_if(!options.cost.budget.empty() && !options.cost.json.empty(),
+            "--write-budget and --json: give one");
+  refuse_if(options.command == Command::recommend &&
+                options.budget_ms.has_value() == options.tolerance.has_value(),
+            "recommend: give either --budget-ms or --tolerance");
 }
 
 }  // namespace alcove::sample

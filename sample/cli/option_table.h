@@ -1,28 +1,25 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
 
-#include "cli/option_value.h"
 #include "cli/options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace alcove::sample {
 
-// A row of the table of options.
-struct OptionRow {
-  std::uint32_t commands;  // those that take the option: a bit for each Command
-  const char* heading;     // above the option in the help
-  const char* name;
-  const char* type;  // of the value, in the help; null: the option has no value
-  // {size} and {spp} stand for the command's own defaults.
-  const char* help;
-  // Stores the value, or throws a Mistake.
-  void (*read)(Options& options, const OptionValue& value);
-  bool repeatable = false;  // every value is read, not the last one only
+// A mistake in the command line, described by a sentence. It is thrown within parse_options() only,
+// as CLI11's own errors are.
+struct Mistake {
+  std::string text;
 };
 
-[[nodiscard]] std::span<const OptionRow> option_rows();
+// Adds the options of options.command to its parser. Each stores its value in `options`, which
+// holds the defaults, or throws a Mistake. The help lists those that most users need, or with
+// `all` every option.
+void add_options(CLI::App& app, Options& options, bool all);
 
 // Throws a Mistake if options that are valid alone contradict each other.
 void check_together(const Options& options);

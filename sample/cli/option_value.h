@@ -1,17 +1,22 @@
+// Converts the text of an option's value. Each function returns a reader: a function from the text
+// to the value, whose error completes the sentence "give ...".
 #pragma once
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <charconv>
-#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "support/glm.h"
+#include "support/result.h"
 
 namespace alcove::sample {
 
@@ -24,44 +29,79 @@ std::optional<Number> parse_number(std::string_view text) {
   return whole ? std::optional(value) : std::nullopt;
 }
 
-// A mistake in the command line, described by a sentence. It is thrown within parse_options() only,
-// as CLI11's own errors are.
-struct Mistake {
-  std::string text;
-};
+// A number from `low` to `high`.
+template <typename Number>
+auto number(Number low, Number high, std::string wanted) {
+  return [=](std::string_view text) -> Result<Number> {
+    const auto value = parse_number<Number>(text);
+    if (!value || !(*value >= low && *value <= high)) return Failure(wanted);
+    return *value;
+  };
+}
 
-// An option and the text of its value. Each conversion throws a Mistake for a value that it does
-// not accept; `wanted` completes the sentence "give ...".
-struct OptionValue {
-  std::string option;
-  std::string text;
+// A number above 0.
+template <typename Number>
+auto positive(std::string wanted) {
+  return number(std::numeric_limits<Number>::denorm_min(), std::numeric_limits<Number>::max(),
+                std::move(wanted));
+}
 
-  [[noreturn]] void refuse(const std::string& wanted) const;
+// An angle in degrees, as radians.
+inline auto degrees(float low, float high, std::string wanted) {
+  return [read = number(low, high, std::move(wanted))](std::string_view text) {
+    return read(text).transform([](float angle) { return glm::radians(angle); });
+  };
+}
 
-  // Returns a number within [low, high].
-  double number(double low, double high, const std::string& wanted) const;
-  std::int64_t whole_number(std::int64_t low, std::int64_t high, const std::string& wanted) const;
-  float length() const;       // finite and above 0, in scene units
-  glm::dvec3 vector() const;  // finite as floats too
-  // Returns the texts between commas as values of the option.
-  std::vector<OptionValue> parts() const;
-  // Returns the numbers between commas: from `fewest` to `most`, each within [low, high].
-  std::vector<double> numbers(std::size_t fewest, std::size_t most, double low, double high,
-                              const std::string& wanted) const;
-  // Returns the numbers of WIDTHxHEIGHT, each from 1 to 16384.
-  std::pair<std::uint32_t, std::uint32_t> size() const;
-  // Returns the index of the value in a list of names.
-  std::size_t one_of(std::span<const std::string_view> names) const;
-  // Returns the enumerator of the value, whose names are in order, or nothing for the name `all`.
-  template <class Choice>
-  std::optional<Choice> one_of_or(std::span<const std::string_view> names,
-                                  std::string_view all) const {
-    std::vector<std::string_view> allowed(names.begin(), names.end());
-    allowed.push_back(all);
-    const std::size_t which = one_of(allowed);
-    return which < names.size() ? std::optional(static_cast<Choice>(which)) : std::nullopt;
-  }
-};
+// A text that is not empty.
+inline auto text(std::string wanted) {
+  return [=](std::string_view value) -> Result<std::string> {
+    if (value.empty()) return Failure(wanted);
+    return std::string(value);
+  };
+}
+
+// The index of a name.
+template <typename Choice = std::size_t>
+auto one_of(std::span<const std::string_view> names) {
+  return [=](std::string_view value) -> Result<Choice> {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i] == value) return static_cast<Choice>(i);
+    return Failure(fmt::format("one of {}", fmt::join(names, ", ")));
+  };
+}
+
+// The enumerator of a name, or nothing for the name `all`.
+template <typename Choice>
+auto one_of_or(std::span<const std::string_view> names, std::string_view all) {
+  std::vector<std::string_view> allowed(names.begin(), names.end());
+  allowed.push_back(all);
+  return [=](std::string_view value) -> Result<std::optional<Choice>> {
+    return one_of(allowed)(value).transform([&](std::size_t i) {
+      return i < allowed.size() - 1 ? std::optional(static_cast<Choice>(i)) : std::nullopt;
+    });
+  };
+}
+
+// The values between commas.
+template <typename Read>
+auto list(Read read) {
+  using Value = typename std::invoke_result_t<Read, std::string_view>::value_type;
+  return [read](std::string_view text) -> Result<std::vector<Value>> {
+    std::vector<Value> values;
+    for (std::size_t begin = 0; begin <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', begin), text.size());
+      ALCOVE_TRY(values.emplace_back(), read(text.substr(begin, comma - begin)));
+      begin = comma + 1;
+    }
+    return values;
+  };
+}
+
+// X,Y,Z, finite as floats too.
+[[nodiscard]] Result<glm::dvec3> read_vector(std::string_view text);
+// WIDTHxHEIGHT, each from 1 to 16384.
+[[nodiscard]] Result<std::pair<std::uint32_t, std::uint32_t>> read_size(std::string_view text);
 
 // Returns the shortest text that is parsed as the same number.
 template <typename Number>

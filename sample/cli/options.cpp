@@ -1,12 +1,11 @@
 #include "cli/options.h"
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "cli/option_table.h"
-#include "cli/option_value.h"
 #include "cli/settings.h"
+#include "support/printable.h"
 #include "viewer/panel.h"
 
 namespace alcove::sample {
@@ -54,64 +53,36 @@ constexpr std::array<CommandRow, 10> kCommands{{
      Scenes::one, 960, 540, 200},
 }};
 
-void add_option(CLI::App& app, const OptionRow& row, Options& options) {
-  const std::string help =
-      fmt::format(fmt::runtime(row.help),
-                  fmt::arg("size", fmt::format("{}x{}", options.view.width, options.view.height)),
-                  fmt::arg("spp", options.occlusion.spp));
-  const auto read = [&row, &options](const std::string& text) {
-    row.read(options, {row.name, text});
-  };
-  CLI::Option* option = nullptr;
-  if (row.type == nullptr) {
-    option = app.add_flag_callback(
-        row.name, [read] { read(""); }, help);
-  } else if (row.repeatable) {
-    option = app.add_option_function<std::vector<std::string>>(
-                    row.name,
-                    [read](const std::vector<std::string>& texts) {
-                      for (const std::string& text : texts) read(text);
-                    },
-                    help)
-                 ->take_all()
-                 ->expected(1);
-  } else {
-    option = app.add_option_function<std::string>(row.name, read, help)->take_last();
-  }
-  if (row.type != nullptr) option->type_name(row.type);
-  option->group(row.heading);
-}
-
-void add_command(CLI::App& app, const CommandRow& row, Options& options) {
+void add_command(CLI::App& app, const CommandRow& row, Options& options, bool all) {
   options.command = row.command;
   options.view.width = row.width;
   options.view.height = row.height;
   options.view.frames = row.frames;
   options.occlusion.spp = row.spp;
   if (row.command == Command::view) options.out.clear();
-  if (row.command == Command::cost) options.gpu = nullptr;
   if (row.scenes == Scenes::one) {
     app.add_option("SCENE", options.scene,
-                   "a .gltf or .glb file, or a scene that the program generates: builtin (the "
-                   "default), fence, terrain, plane:60, groove:90, corner, sphere, pit or step")
+                   "a .gltf or .glb file, or a generated scene: builtin (the default), fence,\n"
+                   "terrain, plane:60, groove:90, corner, sphere, pit or step")
         ->type_name("");
   } else if (row.scenes == Scenes::many) {
     app.add_option("SCENE", options.scenes,
                    "any number of scenes; each is rendered with its own camera")
         ->type_name("");
   }
-  for (const OptionRow& option : option_rows())
-    if ((option.commands >> static_cast<std::uint32_t>(row.command) & 1u) != 0)
-      add_option(app, option, options);
-  if (row.command != Command::doctor) app.footer(settings_help());
-  if (row.command == Command::view)
-    app.footer(settings_help() + "\n\nMouse and keys:\n" + kMouseAndKeys);
+  add_options(app, options, all);
+  if (row.command == Command::doctor) return;
+  std::string footer = all ? settings_help()
+                           : "`alcove " + std::string(row.name) +
+                                 " --help-all` lists every option, and the settings of --set.";
+  if (row.command == Command::view) footer += std::string("\n\nMouse and keys:\n") + kMouseAndKeys;
+  app.footer(footer);
 }
 
-// Joins the lines of a message of CLI11.
-std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
-  return text;
+// Shortens a message of CLI11, which may repeat an argument, and joins its lines.
+std::string one_line(const std::string& text) {
+  constexpr std::size_t kLongest = 160;
+  return shortened(text, kLongest);
 }
 
 // Returns the help of the command for which it was requested, or an empty text if none was.
@@ -145,10 +116,14 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
       "  alcove recommend scene.gltf --tolerance 0.05\n"
       "  alcove render --eye -6,0.55,-4.6 --target 0,0.75,-2.9 --quality high",
       "alcove");
+  std::vector<const char*> words(argv, argv + argc);
+  const auto help_all = std::ranges::find(words, std::string_view("--help-all"));
+  const bool all = help_all != words.end();
+  if (all) *help_all = "--help";
   std::array<Options, kCommands.size()> options;
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
     const CommandRow& row = kCommands[i];
-    add_command(*app.add_subcommand(row.name, row.help)->group(row.group), row, options[i]);
+    add_command(*app.add_subcommand(row.name, row.help)->group(row.group), row, options[i], all);
   }
   app.require_subcommand(1);
   app.set_version_flag("--version", "alcove " ALCOVE_VERSION_TEXT);
@@ -157,10 +132,12 @@ tl::expected<Options, Stop> parse_options(int argc, const char* const* argv) {
   if (argv[1][0] != '-' && !is_command(argv[1]))
     return tl::unexpected(no_command("there is no command " + std::string(argv[1])));
   try {
-    app.parse(argc, argv);
+    app.parse(argc, words.data());
     for (std::size_t i = 0; i < kCommands.size(); ++i) {
       if (!app.got_subcommand(kCommands[i].name)) continue;
       check_together(options[i]);
+      if (options[i].gpu == nullptr && options[i].command != Command::cost)
+        options[i].gpu = &kGpuParts[1];
       return options[i];
     }
   } catch (const CLI::CallForHelp&) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "alcove/passes/setting_table.h"
 #include "evaluate/motion_paths.h"
 #include "evaluate/situations.h"
 #include "gpu/occlusion.h"
@@ -57,15 +58,21 @@ struct ViewOptions {
   float orbit = 0.0f;   // radians per frame
 };
 
+// A change of one setting by --set.
+struct SettingChange {
+  const passes::SettingInfo* setting = nullptr;  // null: OcclusionSettings::bent_normal
+  uint32_t value = 0;                            // the bits of the field
+};
+
 struct OcclusionOptions {
-  AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM;
-  bool quality_given = false;   // --quality was given
-  std::optional<float> radius;  // scene units; none: ViewFinder::radius()
+  std::optional<AlcoveQuality> quality;  // none: that of OcclusionSettings
+  std::optional<float> radius;           // scene units; none: ViewFinder::radius()
   NormalSource normals = NormalSource::shading;
-  std::string file;                                      // contents of the file of --settings
-  std::vector<std::pair<std::string, std::string>> set;  // --set name=value, in order
-  std::vector<float> roughness;                          // overrides the materials; perceptual
-  uint32_t spp = 256;                                    // rays per pixel of the truth
+  std::optional<OcclusionSettings> file;  // --settings; a radius of 0 if it has none
+  std::vector<SettingChange> set;         // in order
+  double guard_band = 0.0;                // percent of the image's height
+  std::vector<float> roughness;           // overrides the materials; perceptual
+  uint32_t spp = 256;                     // rays per pixel of the truth
 };
 
 struct CostOptions {
@@ -90,10 +97,12 @@ struct Options {
   // The limits of the command `recommend`: GPU time in milliseconds, or RMSE of visibility. Exactly
   // one of them is given.
   std::optional<double> budget_ms, tolerance;
+  // recommend: the time in which the host draws these depths; none: it does not draw them.
+  std::optional<double> second_layer_ms, back_faces_ms;
   std::optional<Situation> situation;  // recommend: empty for a mix of all
   uint32_t target_width = 1920;        // recommend: of the image whose time counts, pixels
   uint32_t target_height = 1080;
-  const GpuPart* gpu = &kGpuParts[1];  // the modelled one; null for all (cost)
+  const GpuPart* gpu = nullptr;        // the modelled one; null for all (cost), or a PlayStation 5
   std::filesystem::path settings_out;  // recommend: empty for none
   Clock clock = Clock::modelled;       // recommend, report
   std::optional<MotionKind> path;      // motion: empty for all paths
@@ -103,7 +112,7 @@ struct Options {
   GraphFormat graph_format = GraphFormat::text;
   int device = -1;
   bool validation = false;
-  bool use_cache = true;
+  bool no_cache = false;
 };
 
 // A command line that asks for no run: help (status 0, for stdout) or a mistake (status 2, one

@@ -23,12 +23,14 @@ SituationWeights chosen_weights(const Options& options) {
   return weights;
 }
 
-// The command line that renders the view with these settings.
-std::string render_line(const Options& options, const Session& session,
-                        const OcclusionSettings& settings) {
-  return shell_line(
-      render_arguments(options, {session.camera, settings, std::nullopt, options.view.width,
-                                 options.view.height, options.view.frames}));
+// The command line that prints the standing error of these settings.
+std::string compare_line(const Options& options, const Session& session, const Choice& choice) {
+  std::vector<std::string> arguments =
+      render_arguments(options, {session.camera, choice.settings, std::nullopt, options.view.width,
+                                 options.view.height, choice.guard_band, options.view.frames});
+  arguments[1] = "compare";
+  arguments.insert(arguments.end(), {"--spp", std::to_string(options.occlusion.spp)});
+  return shell_line(arguments);
 }
 
 void print_achievement(const Achievement& of) {
@@ -80,11 +82,15 @@ void check_other_views(const Options& options, const Session& session,
   }
 }
 
-Result<void> write_settings(const Options& options, const OcclusionSettings& settings) {
+Result<void> write_settings(const Options& options, const Choice& choice) {
   if (options.settings_out.empty()) return {};
-  return write_text(options.settings_out, settings_text(settings)).map([&] {
+  return write_text(options.settings_out, settings_text(choice)).map([&] {
     std::cout << "The settings are in " << options.settings_out.string()
-              << "; --settings and alcoveReadSettings read them\n";
+              << "; alcoveReadSettings reads them, and --settings"
+              << (choice.guard_band > 0.0
+                      ? fmt::format(" with --guard-band {:g} beside it", choice.guard_band)
+                      : "")
+              << "\n";
   });
 }
 
@@ -102,13 +108,26 @@ std::string unmet_message(const RecommendationGoal& goal, const std::string& clo
 }  // namespace
 
 Result<void> run_recommend(const Options& options) {
+  if (!options.settings_out.empty()) ALCOVE_TRY_VOID(check_writable(options.settings_out));
   ALCOVE_TRY(const Session session, open_session(options));
+  std::cerr << "Measuring errors and modelling times, which takes one or two minutes\n";
   const RecommendationGoal goal{options.budget_ms, options.tolerance, chosen_weights(options)};
-  ALCOVE_TRY(const auto times, setting_times(options, session));
+  ALCOVE_TRY(const auto passes_ms, setting_times(options, session));
+  const SettingTimes times = [&](const Choice& choice) {
+    return passes_ms(choice).map([&](std::array<double, 3> ms) {
+      const HiddenDepths drawn = hidden_depths_of(choice.settings);
+      for (double& value : ms)
+        value += (drawn.second_layer ? options.second_layer_ms.value_or(0.0) : 0.0) +
+                 (drawn.back_faces ? options.back_faces_ms.value_or(0.0) : 0.0);
+      return ms;
+    });
+  };
   ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(options, session.camera),
                                                   truth_options(options)));
   const RecommendationWorld world{[&](const Choice& choice) { return errors.measure(choice); },
-                                  times, print_progress("settings")};
+                                  times, print_progress("settings"),
+                                  options.second_layer_ms.has_value(),
+                                  options.back_faces_ms.has_value()};
   ALCOVE_TRY(const Recommendation found, recommend(session.settings, goal, world));
   ALCOVE_TRY_VOID(check_validation(*session.gpu));
   const Achievement& chosen = found.chosen;
@@ -117,19 +136,24 @@ Result<void> run_recommend(const Options& options) {
   if (goal.met(chosen)) std::cout << text << "\n";
   print_achievement(chosen);
   std::cout << fmt::format(
-      "RMSE of visibility against ray-traced truth at {}x{}; {}, without the rendering of a second "
-      "depth layer or of back faces\nEach feature, beside the settings to which it was added:\n",
+      "RMSE of visibility against ray-traced truth at {}x{}; {}, without the g-buffer of a guard "
+      "band\nEach feature, beside the settings to which it was added:\n",
       options.view.width, options.view.height, clock_text(options, session));
   for (const FeatureEffect& feature : found.features)
     std::cout << "  " << feature.sentence() << "\n";
   ALCOVE_TRY(const auto needs, view_needs(session, errors.truths(), times, goal, chosen));
   std::cout << "The outputs and inputs that the materials in view need:\n";
   for (const std::string& need : needs) std::cout << "  " << need << "\n";
+  for (const Achievement& best : found.within_usual_times) {
+    std::cout << fmt::format("The smallest error found within {:.4f} ms: RMSE {:.4f}, {}\n",
+                             goal.ms(best), goal.rmse(best), choice_text(best.choice));
+  }
   std::cout << std::flush;
   if (!goal.met(chosen)) return Failure(unmet_message(goal, text));
   check_other_views(options, session, goal, chosen);
-  std::cout << render_line(options, session, chosen.choice.settings) << "\n";
-  return write_settings(options, chosen.choice.settings);
+  std::cout << "The standing error again, and pictures:\n"
+            << compare_line(options, session, chosen.choice) << "\n";
+  return write_settings(options, chosen.choice);
 }
 
 }  // namespace alcove::sample

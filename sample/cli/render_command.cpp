@@ -79,13 +79,13 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   if (!options.scene.empty()) arguments.push_back(options.scene);
   if (options.materials.cut_blends) arguments.emplace_back("--cut-blends");
   if (options.materials.both_sides) arguments.emplace_back("--both-sides");
-  if (!options.view.camera.empty())
-    arguments.insert(arguments.end(), {"--camera", options.view.camera});
   append_camera(shot.camera, arguments);
   arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", shot.width, shot.height)});
   const auto settings = setting_arguments(shot.settings);
   arguments.insert(arguments.end(), settings.begin(), settings.end());
   arguments.insert(arguments.end(), {"--radius", number_text(shot.settings.radius)});
+  if (shot.guard_band > 0.0)
+    arguments.insert(arguments.end(), {"--guard-band", number_text(shot.guard_band)});
   if (options.occlusion.normals != NormalSource::shading) {
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
@@ -103,9 +103,7 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
 
 std::string choice_text(const Choice& choice) {
   return shell_line(setting_arguments(choice.settings)) +
-         (choice.guard_band
-              ? fmt::format(", with a guard band of {:g} % of the height", 100.0 * kGuardBand)
-              : "");
+         (choice.guard_band > 0.0 ? fmt::format(" --guard-band {:g}", choice.guard_band) : "");
 }
 
 std::string shell_line(const std::vector<std::string>& arguments) {

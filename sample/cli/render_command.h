@@ -10,8 +10,8 @@
 namespace alcove::sample {
 
 // Returns the command line of `alcove render` that renders the shot: the program's name, then
-// arguments that parse_options() reads back. Scene, treatment of materials, environment, normals,
-// device and the name of the camera are those of `options`.
+// arguments that parse_options() reads back. Scene, treatment of materials, environment, normals
+// and device are those of `options`.
 [[nodiscard]] std::vector<std::string> render_arguments(const Options& options, const Shot& shot);
 
 // Returns the options that give these settings except their radius: --quality with the quality that

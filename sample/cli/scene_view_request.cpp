@@ -16,6 +16,7 @@ SceneViewRequest scene_view_request(const Options& options) {
   request.orbit = options.view.orbit;
   request.normals = options.occlusion.normals;
   if (!options.occlusion.roughness.empty()) request.roughness = options.occlusion.roughness.front();
+  request.guard_band = options.occlusion.guard_band;
   request.environment = options.environment;
   request.screenshots = options.out;
   request.open_session = [options](const std::vector<const char*>& surface_extensions) {

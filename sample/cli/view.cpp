@@ -3,10 +3,12 @@
 #include "cli/commands.h"
 #include "cli/scene_view_request.h"
 #include "support/result.h"
+#include "support/whole_file.h"
 
 namespace alcove::sample {
 
 Result<void> run_view(const Options& options) {
+  if (!options.out.empty()) ALCOVE_TRY_VOID(create_folder(options.out));
   ALCOVE_TRY(auto view, SceneView::create(scene_view_request(options)));
   const std::uint32_t frames = options.view.frames;
   while (frames == 0 || view->drawn_frames() < frames) {

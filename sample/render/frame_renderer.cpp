@@ -21,7 +21,9 @@ Result<std::unique_ptr<GpuImage>> FrameRenderer::create_target(VkFormat format) 
                                            ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                            : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   return GpuImage::create(
-      gpu_.device(), {format, framegraph::Extent::absolute(size_.width, size_.height)},
+      gpu_.device(),
+      {format, framegraph::Extent::absolute(size_.width + 2 * guard_band_.width,
+                                            size_.height + 2 * guard_band_.height)},
       attachment | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
 }
 
@@ -154,14 +156,17 @@ void FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
 
 Result<std::unique_ptr<FrameRenderer>> FrameRenderer::create(Gpu& gpu, const Scene& scene,
                                                              VkExtent2D size, NormalSource normals,
-                                                             std::size_t kept_views) {
-  std::unique_ptr<FrameRenderer> made(new FrameRenderer(gpu, size, normals, kept_views));
+                                                             std::size_t kept_views,
+                                                             VkExtent2D guard_band) {
+  std::unique_ptr<FrameRenderer> made(
+      new FrameRenderer(gpu, size, normals, kept_views, guard_band));
   ALCOVE_TRY(made->gbuffer_,
              GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
   return made;
 }
 
-Result<FrameCost> FrameRenderer::draw(const FrameRequest& request) {
+Result<FrameCost> FrameRenderer::draw(const FrameRequest& shown) {
+  const FrameRequest request = with_band(shown);
   FrameCost cost;
   ALCOVE_TRY_VOID(draw_gbuffer(request, cost));
   const double before = processor_ms();
@@ -179,7 +184,8 @@ Result<FrameCost> FrameRenderer::draw(const FrameRequest& request) {
   return cost;
 }
 
-Result<FrameImages> FrameRenderer::draw_and_read(const FrameRequest& request) {
+Result<FrameImages> FrameRenderer::draw_and_read(const FrameRequest& shown) {
+  const FrameRequest request = with_band(shown);
   FrameCost ignored;
   ALCOVE_TRY_VOID(draw_gbuffer(request, ignored));
   std::unique_ptr<Light> light;
@@ -187,7 +193,7 @@ Result<FrameImages> FrameRenderer::draw_and_read(const FrameRequest& request) {
     ALCOVE_TRY(light, Light::create(gpu_, request.light->environment));
   }
   FrameImages images;
-  ReadBack read_back(gpu_.device());
+  ReadBack read_back(gpu_.device(), guard_band_);
   const auto declare = [&](Graph& graph) -> Result<void> {
     ALCOVE_TRY(const auto declared, declare_occlusion(graph, request));
     read_occlusion(graph, declared, read_back, images);

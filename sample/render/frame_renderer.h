@@ -78,15 +78,17 @@ struct FrameImages {
   LitImages lit;                                 // empty without an environment
 };
 
-// Draws frames of one scene at one size. First it draws a g-buffer, then it computes the occlusion.
-// Each is submitted separately, so that the time of the occlusion can be measured.
+// Draws frames of one scene at one size, if it has a guard band with an invisible border of so many
+// pixels, which FrameRequest::view and the images lack. First it draws a g-buffer, then it computes
+// the occlusion. Each is submitted separately, so that the time of the occlusion can be measured.
 class FrameRenderer {
  public:
   // The g-buffers of the last `kept_views` views are kept for frames that show them again.
   [[nodiscard]] static Result<std::unique_ptr<FrameRenderer>> create(Gpu& gpu, const Scene& scene,
                                                                      VkExtent2D size,
                                                                      NormalSource normals,
-                                                                     std::size_t kept_views = 1);
+                                                                     std::size_t kept_views = 1,
+                                                                     VkExtent2D guard_band = {});
 
   // Draws a frame without reading images back. It is used for the frames before the one whose
   // images are needed.
@@ -113,8 +115,14 @@ class FrameRenderer {
     std::array<std::unique_ptr<GpuImage>, kGbufferTargets.size()> targets;
   };
 
-  FrameRenderer(Gpu& gpu, VkExtent2D size, NormalSource normals, std::size_t kept_views)
-      : gpu_(gpu), size_(size), normals_(normals), stored_(kept_views) {}
+  FrameRenderer(Gpu& gpu, VkExtent2D size, NormalSource normals, std::size_t kept_views,
+                VkExtent2D guard_band)
+      : gpu_(gpu), size_(size), guard_band_(guard_band), normals_(normals), stored_(kept_views) {}
+  // Returns the request with the view that is drawn.
+  [[nodiscard]] FrameRequest with_band(FrameRequest request) const {
+    request.view = with_guard_band(request.view, size_, guard_band_);
+    return request;
+  }
   Result<std::unique_ptr<GpuImage>> create_target(VkFormat format);
   // Returns whether the texture of this target is drawn for these hidden depths.
   static bool is_drawn(const GbufferTarget& target, const HiddenDepths& hidden);
@@ -130,7 +138,8 @@ class FrameRenderer {
   void append_times(FrameCost& cost, bool occlusion);
 
   Gpu& gpu_;
-  VkExtent2D size_;
+  VkExtent2D size_;  // without the guard band
+  VkExtent2D guard_band_;
   NormalSource normals_;
   std::unique_ptr<GbufferRenderer> gbuffer_;
   std::vector<StoredGbuffer> stored_;

@@ -82,6 +82,18 @@ GbufferView gbuffer_view(const Camera& now, const Camera& before, VkExtent2D siz
           previous.clip_from_view, now.reversed_z};
 }
 
+std::uint32_t guard_band_pixels(double percent, std::uint32_t height) {
+  return 2 * static_cast<std::uint32_t>(0.005 * percent * height);
+}
+
+GbufferView with_guard_band(GbufferView view, VkExtent2D size, VkExtent2D band) {
+  const glm::vec2 shown(size.width, size.height);
+  const glm::vec4 scale(shown / (shown + 2.0f * glm::vec2(band.width, band.height)), 1.0f, 1.0f);
+  for (glm::mat4* clip_from_view : {&view.clip_from_view, &view.previous_clip_from_view})
+    for (int column = 0; column < 4; ++column) (*clip_from_view)[column] *= scale;
+  return view;
+}
+
 Result<void> GbufferRenderer::upload(const Scene& scene) {
   const VulkanDevice& device = gpu_.device();
   const auto uniform = [&](std::size_t stride, std::size_t count) {

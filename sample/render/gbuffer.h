@@ -34,6 +34,12 @@ struct GbufferView {
 // Returns the view of a camera; `before` is the camera of the previous frame.
 [[nodiscard]] GbufferView gbuffer_view(const Camera& now, const Camera& before, VkExtent2D size);
 
+// Returns the width of a guard band, a part of the image beyond each border that is not displayed:
+// an even number of pixels. `percent` is of the image's height.
+[[nodiscard]] std::uint32_t guard_band_pixels(double percent, std::uint32_t height);
+// Returns the view of an image of `size`, as one with a guard band of this many pixels shows it.
+[[nodiscard]] GbufferView with_guard_band(GbufferView view, VkExtent2D size, VkExtent2D band);
+
 // The textures that the rasterisation of a frame writes. A texture that is null is not drawn. Depth
 // is required.
 struct Gbuffer {

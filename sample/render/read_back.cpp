@@ -50,13 +50,18 @@ float read_channel(const std::byte* data, std::uint32_t bytes, bool is_signed) {
   }
 }
 
-Texels read_texels(const std::byte* data, VkExtent3D size, VkFormat format) {
+Texels read_texels(const std::byte* all, VkExtent3D size, VkFormat format, VkExtent2D border) {
   const auto [channels, bytes] = format_layout(format);
-  Texels texels(size.width, size.height);
-  for (glm::vec4& texel : texels.pixels) {
-    for (std::uint32_t c = 0; c < channels; ++c, data += bytes)
-      texel[static_cast<int>(c)] = read_channel(data, bytes, format == VK_FORMAT_R8G8B8A8_SNORM);
-    if (format == VK_FORMAT_B8G8R8A8_UNORM) std::swap(texel.r, texel.b);
+  Texels texels(size.width - 2 * border.width, size.height - 2 * border.height);
+  for (std::uint32_t y = 0; y < texels.height; ++y) {
+    const std::size_t first = std::size_t{y + border.height} * size.width + border.width;
+    const std::byte* data = all + first * channels * bytes;
+    for (std::uint32_t x = 0; x < texels.width; ++x) {
+      glm::vec4& texel = texels.at(x, y);
+      for (std::uint32_t c = 0; c < channels; ++c, data += bytes)
+        texel[static_cast<int>(c)] = read_channel(data, bytes, format == VK_FORMAT_R8G8B8A8_SNORM);
+      if (format == VK_FORMAT_B8G8R8A8_UNORM) std::swap(texel.r, texel.b);
+    }
   }
   return texels;
 }
@@ -82,7 +87,7 @@ void ReadBack::add(framegraph::Graph& graph, framegraph::Texture texture,
 
 void ReadBack::finish() const {
   for (const Copy& copy : copies_)
-    copy.store(read_texels(copy.buffer->bytes().data(), copy.size, copy.format));
+    copy.store(read_texels(copy.buffer->bytes().data(), copy.size, copy.format, border_));
 }
 
 Image<float> channel(const Texels& texels, int index) {

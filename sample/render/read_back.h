@@ -19,7 +19,9 @@ using Texels = Image<glm::vec4>;
 // Textures of one frame that are copied to the host. The object must outlive the frame.
 class ReadBack {
  public:
-  explicit ReadBack(const VulkanDevice& device) : device_(device) {}
+  // `border` pixels at each side of every texture are left out.
+  explicit ReadBack(const VulkanDevice& device, VkExtent2D border = {})
+      : device_(device), border_(border) {}
 
   // Adds a pass that copies mip 0 of `texture` to the host, and makes it an output of the frame.
   // Adds nothing if `texture` is null. finish() calls `store` with the texels.
@@ -38,6 +40,7 @@ class ReadBack {
     std::function<void(const Texels&)> store;
   };
   const VulkanDevice& device_;
+  VkExtent2D border_;
   std::vector<Copy> copies_;
   Result<void> added_;
 };

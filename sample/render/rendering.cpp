@@ -147,9 +147,9 @@ Result<Rendering> render(Session session, const RenderRequest& request) {
   result.driver = gpu.device().driver();
 
   result.camera = frame_camera(request, session.camera, request.frames - 1);
-  ALCOVE_TRY(
-      const auto renderer,
-      FrameRenderer::create(gpu, result.scene, {request.width, request.height}, request.normals));
+  ALCOVE_TRY(const auto renderer,
+             FrameRenderer::create(gpu, result.scene, {request.width, request.height},
+                                   request.normals, 1, {request.guard_band, request.guard_band}));
   Run run(*renderer, request, session.camera, result.settings);
   ALCOVE_TRY(result.costs, run.time());
   result.memory = renderer->memory();

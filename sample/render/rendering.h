@@ -45,6 +45,7 @@ struct RenderRequest {
   std::uint32_t frames = 1;
   float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
   NormalSource normals = NormalSource::shading;
+  std::uint32_t guard_band = 0;  // pixels beyond each border
   IndirectRequest light;
 };
 

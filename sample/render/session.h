@@ -33,6 +33,7 @@ struct Shot {
   std::optional<float> roughness;
   std::uint32_t width = 0;  // pixels
   std::uint32_t height = 0;
+  double guard_band = 0.0;   // percent of the height
   std::uint32_t frames = 0;  // number of frames to draw; 0: as many as the history averages
 };
 

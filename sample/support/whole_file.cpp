@@ -48,6 +48,17 @@ Result<void> create_folder(const fs::path& folder) {
                              folder.string(), error.message()));
 }
 
+Result<void> check_writable(const fs::path& file) {
+  std::error_code reason;
+  if (fs::is_directory(file, reason))
+    return Failure("cannot write " + file.string() + ": it is a folder; give the name of a file");
+  const fs::path temporary = temporary_beside(file);
+  const auto written = fill(temporary, "", 0);
+  fs::remove(temporary, reason);
+  if (written) return {};
+  return Failure("cannot write " + file.string() + ": " + written.error());
+}
+
 Result<void> write_whole(const fs::path& file,
                          const std::function<Result<void>(const fs::path&)>& write) {
   const fs::path temporary = temporary_beside(file);

@@ -15,6 +15,9 @@ namespace alcove::sample {
 // Creates a folder with its parents, before the work whose results it receives.
 [[nodiscard]] Result<void> create_folder(const std::filesystem::path& folder);
 
+// Returns the error of writing a file, before the work whose result it receives. Writes nothing.
+[[nodiscard]] Result<void> check_writable(const std::filesystem::path& file);
+
 // `write` fills the temporary file of the given name, and returns whether it succeeded.
 [[nodiscard]] Result<void> write_whole(
     const std::filesystem::path& file,

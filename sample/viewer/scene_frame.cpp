@@ -42,7 +42,9 @@ Result<std::unique_ptr<SceneFrame>> SceneFrame::create(Gpu& gpu, const Scene& sc
 }
 
 void SceneFrame::begin(Graph& graph, const ViewState& state, VkExtent3D size) {
-  view_ = gbuffer_view(state.camera, state.camera, {size.width, size.height});
+  const std::uint32_t band = guard_band_pixels(state.guard_band, size.height);
+  view_ = with_guard_band(gbuffer_view(state.camera, state.camera, {size.width, size.height}),
+                          {size.width, size.height}, {band, band});
   choices_ = {state.settings, compared_settings(state), state.roughness};
   if (state.fits_budget)  // the history goes on when the number of samples changes
     choices_.settings.slices = choices_.settings.steps = 0;
@@ -68,8 +70,11 @@ void SceneFrame::advance() {
 }
 
 Result<Texture> SceneFrame::declare(Graph& graph, Texture target, const ViewState& state) {
-  const VkExtent3D size = graph.extent(target);
+  VkExtent3D size = graph.extent(target);
   begin(graph, state, size);
+  const std::uint32_t band = guard_band_pixels(state.guard_band, size.height);
+  size.width += 2 * band;
+  size.height += 2 * band;
   const OcclusionSettings settings = with_outputs(state.settings, state.picture);
   const std::optional<OcclusionSettings> compared = compared_settings(state);
   const bool specular = settings.specular != ALCOVE_SPECULAR_NONE ||
@@ -95,6 +100,7 @@ Result<Texture> SceneFrame::declare(Graph& graph, Texture target, const ViewStat
   environment_ = state.picture == Picture::lit ? light_->import(graph) : Texture();
 
   maths::PictureParameters parameters = picture_parameters(state);
+  parameters.band = static_cast<float>(band);
   Texture shown[2];
   ALCOVE_TRY(shown[0], add_picture(graph, state, surfaces, settings, 0));
   if (compared) {

@@ -16,11 +16,12 @@
 namespace alcove::sample {
 namespace {
 
-ViewState first_state(const Session& session, std::optional<float> roughness) {
+ViewState first_state(const Session& session, std::optional<float> roughness, double guard_band) {
   ViewState state;
   state.camera = session.camera;
   state.settings = session.settings;
   state.roughness = roughness;
+  state.guard_band = guard_band;
   return state;
 }
 
@@ -46,7 +47,7 @@ Result<std::unique_ptr<SceneView>> SceneView::create(SceneViewRequest wanted) {
   ALCOVE_TRY_VOID(made->create_frame(made->session_.scene));
   ALCOVE_TRY(made->gui_,
              Gui::create(*made->session_.gpu, *made->window_, made->presenter_->format()));
-  made->state_ = first_state(made->session_, request.roughness);
+  made->state_ = first_state(made->session_, request.roughness, request.guard_band);
   made->good_ = {made->state_.settings, made->state_.roughness};
   made->facts_.first_settings = made->state_.settings;
   made->facts_.device = made->gpu().device().properties().deviceName;
@@ -202,8 +203,9 @@ Result<void> SceneView::draw_and_read() {
 Result<void> SceneView::write() {
   ALCOVE_TRY(const auto path, write_screenshot(request_.screenshots, screenshot_));
   const std::string file = path.string();
-  const std::string command = request_.command(
-      {state_.camera, good_.settings, good_.roughness, screenshot_.width, screenshot_.height});
+  const std::string command =
+      request_.command({state_.camera, good_.settings, good_.roughness, screenshot_.width,
+                        screenshot_.height, state_.guard_band});
   std::cout << file << "\n" << command << std::endl;
   window_->copy_to_clipboard(command);
   facts_.message = file + " is written; the clipboard has: " + command;

@@ -29,6 +29,7 @@ struct SceneViewRequest {
   float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
   NormalSource normals = NormalSource::shading;
   std::optional<float> roughness;  // perceptual roughness of every surface; null: of its material
+  double guard_band = 0.0;         // percent of the height
   std::filesystem::path environment;  // .exr; empty: the procedural sky
   std::filesystem::path screenshots;  // folder for screenshots; empty: the current folder
   // Loads the scene and opens a device with these instance extensions.

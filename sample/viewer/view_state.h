@@ -41,6 +41,7 @@ struct ViewState {
   OcclusionSettings saved;   // the settings of Comparison::saved
   bool fits_budget = false;  // whether slices and steps follow the measured times
   float target_ms = 2.0f;    // of the occlusion passes, if fits_budget
+  double guard_band = 0.0;   // percent of the window's height
   float split = 0.5f;        // position of the right part's left edge, 0..1 of the width
 };
 

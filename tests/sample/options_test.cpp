@@ -51,7 +51,7 @@ TEST(Options, CommandLineWithManyOptionsIsParsed) {
   EXPECT_EQ(options->occlusion.quality, ALCOVE_QUALITY_HIGH);
   EXPECT_EQ(options->occlusion.normals, NormalSource::geometric);
   EXPECT_EQ(options->occlusion.set.size(), 2u);
-  EXPECT_EQ(options->occlusion.set[1].second, "5");
+  EXPECT_EQ(options->occlusion.set[1].value, 5u);
   EXPECT_EQ(options->occlusion.roughness.size(), 3u);
   EXPECT_EQ(options->occlusion.spp, 512u);
   EXPECT_EQ(options->view.width, 320u) << "the last occurrence counts";
@@ -61,7 +61,8 @@ TEST(Options, CommandLineWithManyOptionsIsParsed) {
 TEST(Options, OptionsOfSingleCommandsAreParsed) {
   EXPECT_EQ(parse("view --frames 3")->view.frames, 3u);
   EXPECT_EQ(parse("motion --path dolly --frames 24")->path, MotionKind::dolly);
-  EXPECT_EQ(parse("recommend step --budget-ms 0.5")->budget_ms, 0.5);
+  EXPECT_EQ(parse("recommend step --budget-ms 0.5 --second-layer 0")->second_layer_ms, 0.0);
+  EXPECT_EQ(parse("compare --guard-band 7.5")->occlusion.guard_band, 7.5);
   EXPECT_EQ(parse("recommend --tolerance 0.05 --clock processor")->clock, Clock::processor);
   EXPECT_EQ(parse("report step corner")->scenes, (std::vector<std::string>{"step", "corner"}));
   EXPECT_EQ(*parse("render --ortho-height 4 --near -20 --far -0.5")->view.near_plane, -20.0f);
@@ -131,6 +132,18 @@ TEST(Options, MistakesAreRefusedInASentenceThatNamesTheOption) {
       {"recommend --tolerance 0.05 --budget-ms 1", "--budget-ms"},
       {"recommend --tolerance 0", "--tolerance"},
       {"recommend --budget-ms inf", "--budget-ms"},
+      {"recommend --tolerance 1.5", "--tolerance 1.5: give an error above 0, at most 1"},
+      {"recommend --tolerance 0.1 --out ''", "--out '': give the name of a file"},
+      {"recommend --tolerance 0.1 --back-faces -1", "--back-faces"},
+      {"render --guard-band 51", "a percentage of the image's height, 0 to 50"},
+      {"render --settings .", "this is a folder"},
+      {"render --settings /dev/null", "this is not a regular file"},
+      // Options that contradict each other.
+      {"render --reversed-z --standard-z", "--standard-z"},
+      {"render --set radius=2 --radius 1", "--radius and --set radius: give one"},
+      {"render --camera hall --eye 1,2,3", "--camera and --eye: give one"},
+      {"view --roughness 0.1,0.2", "--roughness: give one value"},
+      {"report --gpu ps4 --clock processor", "--gpu and --clock: give one"},
       // Options without effect on the command.
       {"view --spp 16", "--spp"},
       {"motion --roughness 0.3", "--roughness"},
@@ -159,14 +172,19 @@ TEST(Options, HelpOptionPrintsHelpInsteadOfRunningTheCommand) {
       << "help comes before a mistake";
 }
 
-TEST(Options, HelpOfEveryCommandThatTakesSettingsListsTheSettings) {
+TEST(Options, HelpFitsAScreenAndHelpAllListsEveryOptionAndSetting) {
   for (const char* command :
-       {"render", "compare", "motion", "report", "recommend", "graph", "view"}) {
-    const std::string help = parse(std::string(command) + " --help").error().text;
-    EXPECT_THAT(help, HasSubstr("hidden_occlusion")) << command;
-    EXPECT_THAT(help, HasSubstr("horizons or connected")) << command;
+       {"render", "compare", "motion", "report", "recommend", "graph", "view", "cost", "doctor"}) {
+    std::istringstream help(parse(std::string(command) + " --help").error().text);
+    int lines = 0;
+    for (std::string line; std::getline(help, line); ++lines) EXPECT_LE(line.size(), 100u) << line;
+    EXPECT_LE(lines, 60) << command;
+    const std::string all = parse(std::string(command) + " --help-all").error().text;
+    const bool has_settings = command != std::string_view("doctor");
+    EXPECT_EQ(all.find("horizons or connected") != std::string::npos, has_settings) << command;
   }
-  EXPECT_THAT(parse("doctor --help").error().text, testing::Not(HasSubstr("hidden_occlusion")));
+  EXPECT_THAT(parse("compare --help").error().text, testing::Not(HasSubstr("--lit-points")));
+  EXPECT_THAT(parse("compare --help-all").error().text, HasSubstr("--lit-points"));
 }
 
 TEST(Options, VersionOptionPrintsTheProgramNameAndAVersionNumber) {

@@ -41,14 +41,18 @@ struct World {
   RecommendationWorld functions() {
     return {[this](const Choice& choice) -> Result<std::array<double, 3>> {
               ++renders;
-              const double error = rmse(choice.settings) * (choice.guard_band ? 1 - band_gain : 1);
+              const double error =
+                  rmse(choice.settings) * (choice.guard_band > 0 ? 1 - band_gain : 1);
               return std::array{1.2 * error, error, 0.9 * error};
             },
             [this](const Choice& choice) -> Result<std::array<double, 3>> {
               ++models;
-              const double time = ms(choice.settings) * (choice.guard_band ? 1.1 : 1.0);
+              const double time = ms(choice.settings) * (choice.guard_band > 0 ? 1.1 : 1.0);
               return std::array{time, time, 0.9 * time};
-            }};
+            },
+            {},
+            true,
+            true};
   }
 };
 
@@ -61,7 +65,7 @@ Achievement best_of_all(const RecommendationGoal& goal, World world) {
   const auto functions = world.functions();
   for (const Variant& variant : preset_sweep({})) {
     for (const std::uint32_t layers : {1u, 2u}) {
-      for (const bool band : {false, true}) {
+      for (const double band : {0.0, kGuardBand}) {
         Achievement found{{variant.settings, band}};
         found.choice.settings.depth_layers = layers;
         found.rmse = functions.rmse(found.choice).value();

@@ -61,6 +61,7 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   EXPECT_EQ(read->materials.cut_blends, options.materials.cut_blends);
   EXPECT_EQ(read->materials.both_sides, options.materials.both_sides);
   EXPECT_EQ(read->view.frames, shot.frames > 0 ? shot.frames : shot.settings.history_frames);
+  EXPECT_EQ(read->occlusion.guard_band, shot.guard_band);
   EXPECT_EQ(read->view.width, shot.width);
   EXPECT_EQ(read->view.height, shot.height);
   const Scene scene = builtin_scene();
@@ -96,6 +97,7 @@ TEST(PrintedRenderCommand, PrintedCommandParsesBackToTheSameShotAndOptions) {
       [](Options& o, Shot&) { o.materials.cut_blends = true; },
       [](Options& o, Shot&) { o.materials.both_sides = true; },
       [](Options&, Shot& s) { s.camera.reversed_z = false; },
+      [](Options&, Shot& s) { s.guard_band = 10.0; },
       [](Options&, Shot& s) { s.frames = 1; },
       [](Options&, Shot& s) { s.frames = 2; },
       [](Options&, Shot& s) { s.settings.history_frames = 17; },
@@ -176,16 +178,40 @@ TEST(Settings, FileOfRecommendedSettingsIsReadBackExceptForTheRadius) {
   written.steps = 13;
   written.hidden_occlusion = 0.1f;
   const TemporaryFolder folder;
-  const std::string file = folder.write("settings.txt", settings_text(written));
+  const std::string file = folder.write("settings.txt", settings_text({written, 10.0}));
   const auto options = parse({"alcove", "render", "--settings", file, "--set", "slices=7"});
   ASSERT_TRUE(options) << options.error().text;
   written.radius = 0.5f;
   written.slices = 7;
   EXPECT_EQ(occlusion_settings(options->occlusion, 0.5f), written);
-  const std::string bad = folder.write("bad.txt", std::string("steps = 1000\n"));
-  const auto wrong = parse({"alcove", "render", "--settings", bad});
-  ASSERT_FALSE(wrong);
-  EXPECT_NE(wrong.error().text.find("steps"), std::string::npos) << wrong.error().text;
+  const std::string with_radius = folder.write("radius.txt", std::string("radius = 2\n"));
+  const auto wide = parse({"alcove", "render", "--settings", with_radius});
+  ASSERT_TRUE(wide) << wide.error().text;
+  EXPECT_EQ(occlusion_settings(wide->occlusion, 0.5f)->radius, 2.0f);
+  EXPECT_EQ(radius_source(wide->occlusion), "the file of --settings");
+  for (const auto& [text, reason] :
+       {std::pair("steps = 1000\n", "steps"), {"", "names no setting"}}) {
+    const std::string bad = folder.write("bad.txt", std::string(text));
+    const auto wrong = parse({"alcove", "render", "--settings", bad});
+    ASSERT_FALSE(wrong);
+    EXPECT_NE(wrong.error().text.find(reason), std::string::npos) << wrong.error().text;
+  }
+  const auto both = parse({"alcove", "render", "--settings", file, "--quality", "high"});
+  ASSERT_FALSE(both);
+  EXPECT_EQ(both.error().text,
+            "--settings and --quality: give one, the file holds every setting of a preset");
+}
+
+TEST(Settings, ChangeWithoutEffectIsNamed) {
+  const auto options =
+      parse({"alcove", "render", "--set", "weighting=uniform", "--set", "slices=2"});
+  ASSERT_TRUE(options) << options.error().text;
+  const auto notes = ineffective_changes(options->occlusion, OcclusionSettings());
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_TRUE(notes[0].starts_with("--set weighting=uniform has no effect")) << notes[0];
+  OcclusionSettings horizons;
+  horizons.estimator = ALCOVE_ESTIMATOR_HORIZONS;
+  EXPECT_TRUE(ineffective_changes(options->occlusion, horizons).empty());
 }
 
 }  // namespace

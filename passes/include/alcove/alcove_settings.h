@@ -153,9 +153,9 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
 size_t alcovePrintSettings(const AlcoveSettings* settings, char* text, size_t size);
 
 // Changes the settings that a text names. `text` holds `length` bytes: lines of `name = value`, as
-// alcovePrintSettings and `alcove recommend --out` write them. Empty lines are skipped. `settings`
-// must have been filled before, for example by alcoveGetSettings. Reads no file and allocates
-// nothing that grows with the text.
+// alcovePrintSettings and `alcove recommend --out` write them. Empty lines, and lines that
+// begin with `#`, are skipped. `settings` must have been filled before, for example by
+// alcoveGetSettings. Reads no file and allocates nothing that grows with the text.
 //
 // If a line has another form, an unknown name or a value that the setting does not allow, nothing
 // is changed and ALCOVE_ERROR_INVALID_INPUT is returned. If `message` is not null, it must have

@@ -57,7 +57,8 @@ Result read(const char* text, std::size_t length, AlcoveSettings* settings) {
   while (!rest.empty()) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    if (trimmed(line).empty()) continue;
+    const std::string_view content = trimmed(line);
+    if (content.empty() || content.front() == '#') continue;
     if (auto good = read_line(line, changed); !good) return good;
   }
   return check(&changed).map([&] { *settings = changed; });

@@ -24,8 +24,8 @@ Result<LabelledSettings> labelled_settings(const Options& options, AlcoveQuality
   labelled.inputs.width = options.view.width;
   labelled.inputs.height = options.view.height;
   labelled.inputs.normals = options.occlusion.normals != NormalSource::depth;
-  for (const auto& [name, value] : options.occlusion.set)
-    labelled.label += " " + name + "=" + value;
+  for (const SettingChange& change : options.occlusion.set)
+    labelled.label += " " + change_text(change);
   return labelled;
 }
 
@@ -41,9 +41,11 @@ Result<std::vector<SettingsCost>> measure(const Options& options) {
 
 Result<void> run_cost(const Options& options) {
   if (!options.cost.budget.empty()) {
+    ALCOVE_TRY_VOID(check_writable(options.cost.budget));
     ALCOVE_TRY(const auto budget, gpu_budget());
     return write_text(options.cost.budget, budget);
   }
+  if (!options.cost.json.empty()) ALCOVE_TRY_VOID(check_writable(options.cost.json));
   ALCOVE_TRY(const auto costs, measure(options));
   std::cout << format_table(costs);
   if (options.cost.json.empty()) return {};

@@ -86,6 +86,7 @@ std::string format_table(MotionKind kind, const MotionReport& report) {
 }  // namespace
 
 Result<void> run_motion(const Options& options) {
+  ALCOVE_TRY_VOID(create_folder(options.out));
   ALCOVE_TRY(const auto session, open_session(options));
   if (session.settings.history_frames == 0) {
     return Failure(
@@ -98,7 +99,6 @@ Result<void> run_motion(const Options& options) {
   ALCOVE_TRY(const auto start, motion_start(rays, session.camera, aspect, session.settings.radius));
   const MotionSetup setup{session.settings, static_setup(options, session.camera),
                           truth_options(options)};
-  ALCOVE_TRY_VOID(create_folder(options.out));
   Json report;
   report["device"] = session.gpu->device().properties().deviceName;
   report["settings"] = to_json(session.settings);

@@ -59,7 +59,8 @@ class ScenePage {
                              of.rmse[kMoving], of.rmse[kStanding], of.rmse[kFirst], of.ms[kMoving],
                              of.ms[kStanding]);
     const Shot shot{session_.camera,     of.choice.settings,   std::nullopt,
-                    options_.view.width, options_.view.height, options_.view.frames};
+                    options_.view.width, options_.view.height, of.choice.guard_band,
+                    options_.view.frames};
     points_.push_back({{"name", name},
                        {"ms", of.ms[kMoving]},
                        {"rmse", of.rmse[kMoving]},
@@ -193,10 +194,17 @@ Result<void> run_report(const Options& options) {
   Json report;
   const std::vector<std::string> scenes =
       options.scenes.empty() ? std::vector<std::string>{""} : options.scenes;
+  // All scenes are loaded before the first is measured, so that a wrong name is reported at once.
+  std::vector<Session> sessions;
+  Options one = options;
   for (const std::string& scene : scenes) {
-    Options one = options;
     one.scene = scene;
-    ALCOVE_TRY(const auto session, open_session(one));
+    ALCOVE_TRY(sessions.emplace_back(), load_session(one));
+  }
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    one.scene = scenes[i];
+    Session session = std::move(sessions[i]);
+    ALCOVE_TRY(session.gpu, open_gpu(session.device));
     data["device"] = session.gpu->device().properties().deviceName;
     data["clock"] = clock_text(options, session);
     ALCOVE_TRY(const auto times, setting_times(one, session));

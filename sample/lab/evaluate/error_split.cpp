@@ -119,9 +119,9 @@ Result<ErrorSplit> Splitter::split(const StaticSetup& setup, const OcclusionSett
   OcclusionSettings back_faces = best;
   back_faces.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
   ALCOVE_TRY_VOID(try_settings("back_faces", "thickness, which back faces tell", back_faces));
-  const VkExtent2D band{setup.width / 2, setup.height / 2};
-  ALCOVE_TRY(const auto wide, draw(with_guard_band(averaged, band), best));
-  add("outside", "occluders outside the image", without_guard_band(wide, band));
+  averaged.guard_band = {setup.width / 2, setup.height / 2};
+  ALCOVE_TRY(Image<float> wide, draw(averaged, best));
+  add("outside", "occluders outside the image", std::move(wide));
   split_.causes.push_back({"rest", "the rest", current_error_ / whole_error_, current_, truth_});
   return std::move(split_);
 }

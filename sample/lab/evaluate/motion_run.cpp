@@ -100,7 +100,7 @@ class MotionRun {
 
   Result<std::unique_ptr<FrameRenderer>> create_renderer() {
     return FrameRenderer::create(gpu_, scene_, {setup_.view.width, setup_.view.height},
-                                 setup_.view.normals);
+                                 setup_.view.normals, 1, setup_.view.guard_band);
   }
 
   FrameRequest request(const OcclusionSettings& settings, std::uint32_t frame) const {

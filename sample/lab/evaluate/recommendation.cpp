@@ -20,10 +20,10 @@ struct Feature {
   void (*use)(Choice& choice);
 };
 
-static_assert(kGuardBand == 0.1);
+static_assert(kGuardBand == 10.0);
 constexpr Feature kFeatures[] = {
     {"a second depth layer", [](Choice& c) { c.settings.depth_layers = 2; }},
-    {"a guard band of 10 % of the height", [](Choice& c) { c.guard_band = true; }},
+    {"a guard band of 10 % of the height", [](Choice& c) { c.guard_band = kGuardBand; }},
     {"thickness from back faces, whose time differs most between GPUs",
      [](Choice& c) { c.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; }},
     {"a thickness of 0.05", [](Choice& c) { c.settings.thickness = 0.05f; }},
@@ -66,20 +66,22 @@ class Search {
     std::ranges::stable_sort(ladder_, {}, samples_per_pixel);
     if (goal_.budget_ms) ALCOVE_TRY_VOID(sort_by_time());
     ALCOVE_TRY_VOID(choose_samples());
-    constexpr double kSamples = 0.3, kAllFeatures = 0.5;  // parts of the progress
-    for (std::size_t i = 0; i < std::size(kFeatures); ++i) {
-      advance(kSamples + kAllFeatures * static_cast<double>(i) / std::size(kFeatures));
-      try_feature(kFeatures[i]);
+    for (const Feature& feature : kFeatures) try_feature(feature);
+    if (goal_.tolerance && !goal_.met(found_.chosen)) {
+      ALCOVE_TRY_VOID(find_within_usual_times());
+      return std::move(found_);
     }
-    advance(kSamples + kAllFeatures);
-    if (goal_.tolerance && goal_.met(found_.chosen)) try_with_fewer_samples(found_.chosen.choice);
+    if (goal_.tolerance) try_with_fewer_samples(found_.chosen.choice);
     refine();
     return std::move(found_);
   }
 
  private:
-  void advance(double done) const {
-    if (world_.progress) world_.progress(done);
+  // Reports progress before an error is measured or a time is modelled.
+  void count() {
+    constexpr double kUsual = 60.0;  // number of these
+    constexpr double kMost = 0.95;
+    if (world_.progress) world_.progress(std::min(++counted_ / kUsual, kMost));
   }
 
   const Achievement* measured(const Choice& choice) const {
@@ -90,8 +92,18 @@ class Search {
   Result<Values> ms(const Choice& choice) {
     const auto known = std::ranges::find(timed_, choice, &std::pair<Choice, Values>::first);
     if (known != timed_.end()) return known->second;
+    count();
     ALCOVE_TRY(const Values values, world_.ms(choice));
     timed_.emplace_back(choice, values);
+    return values;
+  }
+
+  Result<Values> rmse(const Choice& choice) {
+    const auto known = std::ranges::find(errors_, choice, &std::pair<Choice, Values>::first);
+    if (known != errors_.end()) return known->second;
+    count();
+    ALCOVE_TRY(const Values values, world_.rmse(choice));
+    errors_.emplace_back(choice, values);
     return values;
   }
 
@@ -99,8 +111,8 @@ class Search {
   Result<Achievement> consider(const Choice& choice, double margin = 0) {
     if (const Achievement* known = measured(choice)) return *known;
     ALCOVE_TRY(const Values times, ms(choice));
-    ALCOVE_TRY(const Values rmse, world_.rmse(choice));
-    measured_.push_back({choice, rmse, times});
+    ALCOVE_TRY(const Values errors, rmse(choice));
+    measured_.push_back({choice, errors, times});
     const Achievement& result = measured_.back();
     if (measured_.size() == 1 || goal_.prefers(result, found_.chosen, margin))
       found_.chosen = result;
@@ -125,7 +137,6 @@ class Search {
     for (const OcclusionSettings& samples : ladder_) {
       ALCOVE_TRY(const Values values, ms(with_samples({base_}, samples)));
       timed.emplace_back(weighted(values, goal_.weights), samples);
-      advance(0.1 * static_cast<double>(timed.size()) / static_cast<double>(ladder_.size()));
     }
     std::ranges::stable_sort(timed, {}, &std::pair<double, OcclusionSettings>::first);
     ladder_.clear();
@@ -182,12 +193,37 @@ class Search {
     }
     ALCOVE_TRY(const std::size_t unmet,
                rungs_within([&](const OcclusionSettings& samples) -> Result<bool> {
-                 ALCOVE_TRY(const auto result, consider(with_samples(base, samples)));
-                 return !goal_.met(result);
+                 ALCOVE_TRY(const Values errors, rmse(with_samples(base, samples)));
+                 return !(weighted(errors, goal_.weights) <= *goal_.tolerance);
                }));
     for (std::size_t i = unmet - std::min<std::size_t>(unmet, 2);
          i < std::min(unmet + 2, ladder_.size()); ++i)
       ALCOVE_TRY_VOID(consider(with_samples(base, ladder_[i])));
+    return {};
+  }
+
+  // Returns the option that says that the host draws a depth that the settings read, if it does
+  // not.
+  const char* missing_depth(const OcclusionSettings& settings) const {
+    if (passes::needs_second_depth(settings) && !world_.second_layer &&
+        !passes::needs_second_depth(base_))
+      return "--second-layer";
+    if (passes::needs_back_depth(settings) && !world_.back_faces &&
+        !passes::needs_back_depth(base_))
+      return "--back-faces";
+    return nullptr;
+  }
+
+  // Finds the smallest errors within the times that people have, for a tolerance that is not met.
+  Result<void> find_within_usual_times() {
+    const Choice features = found_.chosen.choice;
+    for (const double limit : kUsualTimes) {
+      ALCOVE_TRY_VOID(consider_within(features, limit, 1, 0));
+      const RecommendationGoal within{limit, std::nullopt, goal_.weights};
+      const auto best = std::ranges::min_element(
+          measured_, [&](const auto& a, const auto& b) { return within.prefers(a, b); });
+      if (within.met(*best)) found_.within_usual_times.push_back(*best);
+    }
     return {};
   }
 
@@ -196,6 +232,15 @@ class Search {
     Choice with = before.choice;
     feature.use(with);
     if (with == before.choice || !passes::validate(with.settings)) return;
+    if (const char* option = missing_depth(with.settings)) {
+      const auto errors = rmse(with);
+      FeatureEffect advice{.name = feature.name, .timed = false};
+      if (errors) advice.rmse_change = weighted(*errors, goal_.weights) / goal_.rmse(before) - 1.0;
+      if (!errors) advice.problem = errors.error();
+      advice.verdict = fmt::format("only considered with {} MS, the time of drawing it", option);
+      found_.features.push_back(std::move(advice));
+      return;
+    }
     const auto result = consider(with, kWorthwhile);
     if (!result) {
       found_.features.push_back({.name = feature.name, .problem = result.error()});
@@ -267,7 +312,8 @@ class Search {
   // From few samples per pixel to many; within a budget from fast to slow.
   std::vector<OcclusionSettings> ladder_;
   std::vector<Achievement> measured_;
-  std::vector<std::pair<Choice, Values>> timed_;
+  std::vector<std::pair<Choice, Values>> timed_, errors_;
+  int counted_ = 0;
   Recommendation found_;
 };
 
@@ -295,8 +341,8 @@ std::string FeatureEffect::sentence() const {
                ? fmt::format("no difference in {}", quantity)
                : fmt::format("{:.1f} % {} {}", per_cent, relative < 0 ? "less" : "more", quantity);
   };
-  return fmt::format("{}: {} for {}; {}", name, change(rmse_change, "error"),
-                     change(ms_change, "time"), verdict);
+  const std::string time = timed ? " for " + change(ms_change, "time") : "";
+  return fmt::format("{}: {}{}; {}", name, change(rmse_change, "error"), time, verdict);
 }
 
 Result<Recommendation> recommend(const OcclusionSettings& base, const RecommendationGoal& goal,

@@ -18,15 +18,15 @@ namespace alcove::sample {
 enum class Situation { first, moving, standing };
 inline constexpr std::array<std::string_view, 3> kSituationNames{"first", "moving", "standing"};
 
-// The width of a guard band over the height of the image: about the length of a search.
-inline constexpr double kGuardBand = 0.1;
+// The width of a guard band in percent of the image's height: about the length of a search.
+inline constexpr double kGuardBand = 10.0;
 
 // One choice of a search.
 struct Choice {
   OcclusionSettings settings;
-  // Whether the image is rendered with a guard band of kGuardBand beyond each border, which is not
-  // displayed (AlcoveView::written_area).
-  bool guard_band = false;
+  // Width of the part beyond each border of the image that is rendered and not displayed
+  // (AlcoveView::written_area), in percent of the height.
+  double guard_band = 0.0;
 
   bool operator==(const Choice&) const = default;
 };
@@ -63,6 +63,7 @@ struct FeatureEffect {
   double rmse_change = 0;  // relative: -0.2 for 20 % less
   double ms_change = 0;
   std::string verdict = "not needed here";
+  bool timed = true;    // whether ms_change is known
   std::string problem;  // an error if the feature could not be measured; empty otherwise
 
   std::string sentence() const;
@@ -72,9 +73,14 @@ struct FeatureEffect {
 // this fraction.
 inline constexpr double kWorthwhile = 0.01;
 
+// Times in milliseconds for which an unmet tolerance is answered with the smallest error.
+inline constexpr std::array<double, 4> kUsualTimes{0.25, 0.5, 1.0, 2.0};
+
 struct Recommendation {
   Achievement chosen;
   std::vector<FeatureEffect> features;
+  // If a tolerance is not met: the smallest error within each of kUsualTimes that can be kept.
+  std::vector<Achievement> within_usual_times;
 };
 
 // Functions that a search calls: the values of Achievement::rmse and ms, and how much is done.
@@ -82,6 +88,9 @@ struct RecommendationWorld {
   std::function<Result<std::array<double, 3>>(const Choice&)> rmse;
   std::function<Result<std::array<double, 3>>(const Choice&)> ms;
   Progress progress = {};
+  // Whether the host draws these depths, and `ms` contains their time. If not, they are only in the
+  // answer if the base has them.
+  bool second_layer = false, back_faces = false;
 };
 
 // Searches from `base`, whose settings beyond those that the search changes are kept. First it

@@ -42,11 +42,6 @@ OcclusionSettings timed_settings(OcclusionSettings settings) {
   return settings;
 }
 
-// The width of a guard band in pixels, which is even.
-std::uint32_t guard_band_pixels(std::uint32_t height) {
-  return 2 * static_cast<std::uint32_t>(0.5 * kGuardBand * height);
-}
-
 // Reads three values from the cache, or computes and writes them.
 template <typename Compute>
 Result<std::array<double, 3>> cached(const TruthCache& cache, const CacheKey& key,
@@ -71,7 +66,7 @@ Result<std::array<double, 3>> cached(const TruthCache& cache, const CacheKey& ke
 Result<SituationErrors> SituationErrors::create(const Session& session, const StaticSetup& setup,
                                                 const TruthOptions& truth_options) {
   SituationErrors errors(session, setup);
-  ALCOVE_TRY(FrameRenderer* const renderer, errors.renderer(false));
+  ALCOVE_TRY(FrameRenderer* const renderer, errors.renderer(0.0));
   ALCOVE_TRY(const auto images, renderer->draw_and_read(frame_request(setup, session.settings, 0)));
   ALCOVE_TRY(errors.truths_, compute_truths({session.scene, setup.camera, session.settings.radius,
                                              images.depth_ndc, images.normal_ws},
@@ -86,32 +81,31 @@ Result<SituationErrors> SituationErrors::create(const Session& session, const St
   return errors;
 }
 
-Result<FrameRenderer*> SituationErrors::renderer(bool guard_band) {
-  std::unique_ptr<FrameRenderer>& renderer = renderers_.at(guard_band ? 1 : 0);
+Result<FrameRenderer*> SituationErrors::renderer(double guard_band) {
+  std::unique_ptr<FrameRenderer>& renderer = renderers_[guard_band];
   if (!renderer) {
-    const std::uint32_t band = guard_band ? guard_band_pixels(setup_.height) : 0;
-    const VkExtent2D size{setup_.width + 2 * band, setup_.height + 2 * band};
+    const VkExtent2D size{setup_.width, setup_.height};
+    const std::uint32_t band = guard_band_pixels(guard_band, size.height);
     // All choices show the same views: those of the orbit, and the static one. Their g-buffers are
     // kept if they are small.
     constexpr std::size_t kMostPixels = 4'000'000;
     const std::size_t views = kMovingFrames + 1;
     const bool kept = views * size.width * size.height <= kMostPixels;
-    ALCOVE_TRY(renderer, FrameRenderer::create(*session_->gpu, session_->scene, size,
-                                               setup_.normals, kept ? views : 1));
+    ALCOVE_TRY(renderer,
+               FrameRenderer::create(*session_->gpu, session_->scene, size, setup_.normals,
+                                     kept ? views : 1, VkExtent2D{band, band}));
   }
   return renderer.get();
 }
 
 Result<Image<float>> SituationErrors::draw(const Choice& choice, std::uint32_t frames,
                                            float orbit) {
-  const std::uint32_t pixels = choice.guard_band ? guard_band_pixels(setup_.height) : 0;
-  const VkExtent2D band{pixels, pixels};
-  StaticSetup setup = with_guard_band(setup_, band);
+  StaticSetup setup = setup_;
   setup.frames = frames;
   setup.orbit = orbit;
   ALCOVE_TRY(FrameRenderer* const drawn, renderer(choice.guard_band));
   return draw_frames(*drawn, setup, choice.settings).map([&](const FrameImages& images) {
-    return without_guard_band(images.visibility, band);
+    return images.visibility;
   });
 }
 
@@ -141,7 +135,7 @@ Result<SettingTimes> modelled_times(const GpuPart& part, const CostInputs& view,
                                                               : std::filesystem::path());
   return [&part, view, device, cache](const Choice& choice) -> Result<std::array<double, 3>> {
     CostInputs inputs = view;
-    inputs.guard_band = choice.guard_band ? guard_band_pixels(inputs.height) : 0;
+    inputs.guard_band = guard_band_pixels(choice.guard_band, inputs.height);
     inputs.settings = timed_settings(choice.settings);
     CacheKey key;
     key.add(std::string_view("modelled times"), std::string_view(program_hash()), part.family,
@@ -165,12 +159,12 @@ SettingTimes measured_times(const Session& session, const StaticSetup& view, Clo
   return [&session, view, clock, scale](const Choice& choice) -> Result<std::array<double, 3>> {
     constexpr std::uint32_t kWarmUp = 4;  // frames that compile shaders
     constexpr std::uint32_t kTimed = 11;
-    const std::uint32_t band = choice.guard_band ? guard_band_pixels(view.height) : 0;
-    StaticSetup setup = with_guard_band(view, {band, band});
+    const std::uint32_t band = guard_band_pixels(choice.guard_band, view.height);
+    StaticSetup setup = view;
     setup.frames = kWarmUp + kTimed;
     ALCOVE_TRY(const auto renderer,
                FrameRenderer::create(*session.gpu, session.scene, {setup.width, setup.height},
-                                     setup.normals));
+                                     setup.normals, 1, VkExtent2D{band, band}));
     std::array<double, 3> medians{};
     for (const Situation situation : {Situation::first, Situation::moving, Situation::standing}) {
       setup.orbit = situation == Situation::moving ? kOrbit : 0.0f;

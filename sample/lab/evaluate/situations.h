@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string_view>
 
@@ -37,12 +38,12 @@ class SituationErrors {
  private:
   SituationErrors(const Session& session, const StaticSetup& setup)
       : session_(&session), setup_(setup) {}
-  Result<FrameRenderer*> renderer(bool guard_band);
+  Result<FrameRenderer*> renderer(double guard_band);
   Result<std::array<double, 3>> compute(const Choice& choice);
 
   const Session* session_;
   StaticSetup setup_;
-  std::array<std::unique_ptr<FrameRenderer>, 2> renderers_;  // without and with a guard band
+  std::map<double, std::unique_ptr<FrameRenderer>> renderers_;  // by Choice::guard_band
   Truths truths_;
   TruthCache cache_{{}};
   CacheKey key_;

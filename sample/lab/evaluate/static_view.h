@@ -22,6 +22,7 @@ struct StaticSetup {
   NormalSource normals = NormalSource::shading;
   std::uint32_t first_frame = 0;  // number of the first frame; others have another noise
   float orbit = 0;                // radians per frame, of an orbit that ends at the camera
+  VkExtent2D guard_band{};        // pixels beyond each border, which are drawn and not evaluated
 };
 
 // Returns the request for a frame of the view: visibility, and bent normals if the settings have
@@ -35,11 +36,5 @@ struct StaticSetup {
 [[nodiscard]] Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene,
                                               const StaticSetup& setup,
                                               const OcclusionSettings& settings);
-
-// Returns the view with a guard band, which is this many pixels wide beyond the borders at the
-// sides, and at top and bottom.
-[[nodiscard]] StaticSetup with_guard_band(const StaticSetup& setup, VkExtent2D band);
-// Returns an image of that view without the band.
-[[nodiscard]] Image<float> without_guard_band(const Image<float>& image, VkExtent2D band);
 
 }  // namespace alcove::sample

@@ -32,7 +32,7 @@ vec3 colour_of(vec4 texel) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  ivec2 pixel = ivec2(gl_FragCoord.xy + parameters.band);
   bool beyond = gl_FragCoord.x >= parameters.split;
   vec4 texel = beyond ? texelFetch(shown[1], pixel, 0) : texelFetch(shown[0], pixel, 0);
   bool seam = abs(gl_FragCoord.x - parameters.split) < 1.0;

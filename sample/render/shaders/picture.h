@@ -21,7 +21,7 @@ struct PictureParameters {
   float split;            // x coordinate in pixels from which the second texture is shown
   float scale;  // of depth, scene units; of motion, 1 / the uv that is fully coloured; of radiance,
                 // the exposure
-  float unused;
+  float band;   // width of the guard band in pixels, which is not shown
 };
 
 ALCOVE_MATHS_END
