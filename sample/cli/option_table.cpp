@@ -132,11 +132,15 @@ class Table {
 
   // An option without a value, which stores `value`.
   template <typename Target>
-  CLI::Option* flag(std::uint32_t commands, const char* name, Target& target,
-                    const std::string& help, bool value = true) {
-    if ((commands & command_) == 0) return nullptr;
-    const auto store = [&target, value] { target = value; };
-    return describe(app_.add_flag_callback(name, store, wrapped(help)), commands, nullptr);
+  void flag(std::uint32_t commands, const char* name, Target& target, const std::string& help,
+            bool value = true) {
+    if ((commands & command_) == 0) return;
+    const auto store = [name, &target, value] {
+      if constexpr (!std::is_same_v<Target, bool>)
+        if (target == !value) throw Mistake{std::string(name) + ": give it or its opposite"};
+      target = value;
+    };
+    describe(app_.add_flag_callback(name, store, wrapped(help)), commands, nullptr);
   }
 
  private:
@@ -147,9 +151,9 @@ class Table {
                               text.empty() ? "''" : shortened(text, kLongest), wanted)};
   }
 
-  CLI::Option* describe(CLI::Option* option, std::uint32_t commands, const char* type) const {
+  void describe(CLI::Option* option, std::uint32_t commands, const char* type) const {
     if (type != nullptr) option->type_name(type);
-    return option->group(all_ || (commands & kRare) == 0 ? heading_ : "");
+    option->group(all_ || (commands & kRare) == 0 ? heading_ : "");
   }
 
   CLI::App& app_;
@@ -257,13 +261,10 @@ void add_view(Table& table, Options& o) {
             "geometry in view. In an orthographic view it may be negative (behind the eye)");
   table.add(kOnDevice | kRare, "--far", "LENGTH", view.far_plane, read_far,
             "distance of the far plane, or inf. Default: as for --near");
-  CLI::Option* const reversed =
-      table.flag(kOnDevice | kRare, "--reversed-z", view.reversed_z,
-                 "near plane at depth 1, far plane at 0. Default in perspective views");
-  CLI::Option* const standard =
-      table.flag(kOnDevice | kRare, "--standard-z", view.reversed_z,
-                 "near plane at depth 0, far plane at 1. Default in orthographic views", false);
-  if (reversed != nullptr) reversed->excludes(standard);
+  table.flag(kOnDevice | kRare, "--reversed-z", view.reversed_z,
+             "near plane at depth 1, far plane at 0. Default in perspective views");
+  table.flag(kOnDevice | kRare, "--standard-z", view.reversed_z,
+             "near plane at depth 0, far plane at 1. Default in orthographic views", false);
   table.add(kAll, "--size", "WxH", std::tie(view.width, view.height), read_size,
             fmt::format("size of the image in pixels. Default: {}x{}", view.width, view.height));
   table.add(kRender | kCompare, "--frames", "N", view.frames, frames(1),

@@ -62,8 +62,8 @@ void add_command(CLI::App& app, const CommandRow& row, Options& options, bool al
   if (row.command == Command::view) options.out.clear();
   if (row.scenes == Scenes::one) {
     app.add_option("SCENE", options.scene,
-                   "a .gltf or .glb file, or a generated scene: builtin (the default), fence,\n"
-                   "terrain, plane:60, groove:90, corner, sphere, pit or step")
+                   "a .gltf or .glb file, or a generated scene: builtin (the default),\n"
+                   "fence, terrain, plane:60, groove:90, corner, sphere, pit or step")
         ->type_name("");
   } else if (row.scenes == Scenes::many) {
     app.add_option("SCENE", options.scenes,
