@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -25,7 +26,7 @@ Result<LabelledSettings> labelled_settings(const Options& options, AlcoveQuality
   labelled.inputs.height = options.view.height;
   labelled.inputs.normals = options.occlusion.normals != NormalSource::depth;
   for (const SettingChange& change : options.occlusion.set)
-    labelled.label += " " + change_text(change);
+    labelled.label += fmt::format(" {}", change_text(change));
   return labelled;
 }
 
