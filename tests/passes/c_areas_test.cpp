@@ -100,28 +100,28 @@ void CAreas::run_sheet(bool band) {
       shared[i].info.output_x = place.output_x;
       shared[i].info.output_y = place.output_y;
     }
-    for (const Input& each : kInputs) {
+    for (const InputMember& each : kInputs) {
       if ((from[0].*each.texels).texels.empty()) continue;
       HostImage sheet = placed_in(kSheet, from[0].*each.texels, kPlacements[0].x, kPlacements[0].y);
       place(sheet, from[1].*each.texels, kPlacements[1].x, kPlacements[1].y);
       shared[0].images[each.role] = shared[1].images[each.role] = input(sheet);
     }
-    for (const Output& each : kOutputs)
+    for (const OutputMember& each : kOutputs)
       shared[0].images[each.role] = shared[1].images[each.role] =
           create_poisoned(own[0].images[each.role]);
     run_frame(context(), shared, index);
     engine().wait();
-    const Results found = read_results(shared[0]);
-    Results left = found;
+    const HostOutputs found = read_results(shared[0]);
+    HostOutputs left = found;
     for (std::size_t i = 0; i < 2; ++i) {
       SCOPED_TRACE("view " + std::to_string(i));
-      const Results expected = read_results(own[i]);
+      const HostOutputs expected = read_results(own[i]);
       EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.95f);
       const AlcoveArea written = band ? own[i].info.written_area : shared[i].info.read_area;
       const AlcoveArea size{0, 0, written.width, written.height};
       const AlcoveArea area{shared[i].info.output_x, shared[i].info.output_y, size.width,
                             size.height};
-      for (const Output& each : kOutputs) {
+      for (const OutputMember& each : kOutputs) {
         if ((expected.*each.texels).texels.empty()) continue;
         HostImage part = part_of(expected.*each.texels, size);
         EXPECT_EQ(part_of(found.*each.texels, area).texels, part.texels);
@@ -129,7 +129,7 @@ void CAreas::run_sheet(bool band) {
         place(left.*each.texels, part, area.x, area.y);
       }
     }
-    for (const Output& each : kOutputs)
+    for (const OutputMember& each : kOutputs)
       EXPECT_TRUE(std::ranges::all_of((left.*each.texels).texels,
                                       [](float texel) { return texel == kPoison; }));
   }
@@ -151,8 +151,8 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
     views[1].info.written_area = without_band(views[1].info.read_area);
     run_frame(context(), views, index);
     engine().wait();
-    const Results expected = read_results(views[0]);
-    const Results found = read_results(views[1]);
+    const HostOutputs expected = read_results(views[0]);
+    const HostOutputs found = read_results(views[1]);
     const AlcoveArea& written = views[1].info.written_area;
     const AlcoveArea corner{0, 0, written.width, written.height};
     EXPECT_EQ(part_of(found.visibility, corner).texels,

@@ -160,7 +160,7 @@ TEST_F(CFailure, EnabledFeaturesAreFoundInAnyOrderOfTheirStructs) {
 }
 
 // A context whose device is wrapped by failing_device.h.
-AlcoveContextInfo failing_info(const Engine& engine) {
+AlcoveContextInfo failing_info(const TestEngine& engine) {
   AlcoveContextInfo info = engine.context_info();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
   return info;

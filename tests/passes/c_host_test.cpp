@@ -212,7 +212,7 @@ TEST_F(CAllocators, LogCallbackGetsErrorsWarningsAndInformation) {
   EXPECT_THAT(log.sentences,
               testing::ElementsAre(Pair(ALCOVE_SEVERITY_ERROR, HasSubstr("frames_in_flight"))));
   log.sentences.clear();
-  info.frames_in_flight = Engine::kSlots;
+  info.frames_in_flight = TestEngine::kSlots;
   const Context context = create_context(info);
   const AlcoveView view = create_view(draw_outputs(16, 12));
   EXPECT_EQ(record_alone(*context, view, 0), ALCOVE_SUCCESS);

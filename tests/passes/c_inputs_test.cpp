@@ -50,8 +50,8 @@ HostImage mirrored(const HostImage& image) {
   });
 }
 
-void expect_near(const Results& found, const Results& expected, double limit) {
-  for (const Output& each : kOutputs) {
+void expect_near(const HostOutputs& found, const HostOutputs& expected, double limit) {
+  for (const OutputMember& each : kOutputs) {
     if ((expected.*each.texels).texels.empty()) continue;
     EXPECT_LT(rms(found.*each.texels, expected.*each.texels), limit);
   }
@@ -69,7 +69,7 @@ class CInputs : public CInterface {
 
   // Records frames of a new view and returns the results of the last. `change` sets the fields of
   // AlcoveView that describe the convention of the inputs.
-  Results run_frames(
+  HostOutputs run_frames(
       const HostView& from, std::uint32_t frames,
       const std::function<void(AlcoveView&)>& change = [](AlcoveView&) {}) {
     AlcoveView view = create_view(from);
@@ -86,7 +86,7 @@ class CInputs : public CInterface {
 
 TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
   HostView view = draw_inputs();
-  const Results expected = run_frames(view, 2);
+  const HostOutputs expected = run_frames(view, 2);
   const HostImage plain = view.normals, two = octahedral(plain);
   for (const auto& [encoding, normals] :
        {std::pair{ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, packed(plain)},
@@ -102,9 +102,10 @@ TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
 
 TEST_F(CInputs, NormalsOfACameraAlongPlusZAreMirroredOnInputAndBentNormalsOnOutput) {
   HostView view = draw_inputs();
-  const Results expected = run_frames(view, 2);
+  const HostOutputs expected = run_frames(view, 2);
   view.normals = mirrored(view.normals);
-  Results found = run_frames(view, 2, [](AlcoveView& v) { v.info.normals_forward_z = VK_TRUE; });
+  HostOutputs found =
+      run_frames(view, 2, [](AlcoveView& v) { v.info.normals_forward_z = VK_TRUE; });
   found.bent_normal = mirrored(found.bent_normal);
   expect_near(found, expected, 1e-5);
 }
@@ -118,7 +119,7 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
   moving.settings.radius = 1.5f;
   for (std::size_t i = 0; i < moving.motion.texels.size(); ++i)
     moving.motion.texels[i] = i % 2 == 0 ? 0.05f : -0.025f;
-  const Results expected = run_frames(moving, 3);
+  const HostOutputs expected = run_frames(moving, 3);
   // The conventions are: motion in pixels; motion from this frame to the last one instead of the
   // reverse; motion without the jitter of the camera; and motion in normalised device coordinates
   // with y up.
@@ -141,7 +142,7 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
                            }),
                 expected, 1e-5);
   }
-  const Results wrong = run_frames(
+  const HostOutputs wrong = run_frames(
       moving, 3, [](AlcoveView& v) { v.info.motion_scale[0] = v.info.motion_scale[1] = -1.0f; });
   EXPECT_GT(rms(wrong.visibility, expected.visibility), 1e-3) << "the sign makes no difference";
 }
@@ -149,10 +150,10 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
 TEST_F(CInputs, PowerAndIntensityChangeOnlyTheWrittenVisibility) {
   HostView view = draw_inputs();
   view.settings.specular = ALCOVE_SPECULAR_SLICES;
-  const Results open = run_frames(view, 3);
+  const HostOutputs open = run_frames(view, 3);
   view.settings.power = 2.0f;
   view.settings.intensity = 0.75f;
-  const Results shaped = run_frames(view, 3);
+  const HostOutputs shaped = run_frames(view, 3);
   for (std::size_t i = 0; i < open.visibility.texels.size(); ++i) {
     const double v = open.visibility.texels[i];
     ASSERT_NEAR(shaped.visibility.texels[i], 1.0 - 0.75 * (1.0 - v * v), 1e-5);
@@ -230,7 +231,7 @@ TEST_F(CInputs, ImageMayBeDestroyedAfterTheEngineCalledForgetImage) {
   HostView from = draw_view(16, 12);
   from.reset = true;
   AlcoveView view = create_view(from);
-  const Results expected = run_plainly(from, 0);
+  const HostOutputs expected = run_plainly(from, 0);
   for (std::uint32_t round = 0; round < 4; ++round) {
     expect_equal(run_view(view, 0), expected);
     EXPECT_EQ(alcoveForgetImage(&context(), view.images[ALCOVE_IMAGE_VISIBILITY].image),

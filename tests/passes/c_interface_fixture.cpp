@@ -93,13 +93,13 @@ HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t 
 AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index) {
   return {.struct_size = sizeof(AlcoveFrame),
           .index = index,
-          .slot = index % Engine::kSlots,
+          .slot = index % TestEngine::kSlots,
           .view_count = static_cast<std::uint32_t>(views.size()),
           .views = views.data()};
 }
 
-void expect_equal(const Results& found, const Results& expected) {
-  for (const Output& each : kOutputs)
+void expect_equal(const HostOutputs& found, const HostOutputs& expected) {
+  for (const OutputMember& each : kOutputs)
     EXPECT_EQ((found.*each.texels).texels, (expected.*each.texels).texels);
 }
 
@@ -123,7 +123,7 @@ Context CInterface::shared_context;
 
 void CInterface::SetUp() {
   PassTest::SetUp();
-  if (!HasFatalFailure()) engine_ = std::make_unique<Engine>(gpu().device());
+  if (!HasFatalFailure()) engine_ = std::make_unique<TestEngine>(gpu().device());
 }
 
 void CInterface::TearDown() {
@@ -205,36 +205,25 @@ HostImage CInterface::read(const AlcoveImage& image) {
   return result();
 }
 
-Results CInterface::read_results(const AlcoveView& view) {
-  const auto is_given = [&](const Output& each) {
+HostOutputs CInterface::read_results(const AlcoveView& view) {
+  const auto is_given = [&](const OutputMember& each) {
     return view.images[each.role].image != VK_NULL_HANDLE;
   };
   run([&](Graph& graph) {
-    for (const Output& each : kOutputs)
+    for (const OutputMember& each : kOutputs)
       if (is_given(each)) read_back(graph, import_image(graph, view.images[each.role]));
   });
-  Results results;
+  HostOutputs results;
   std::size_t next = 0;
-  for (const Output& each : kOutputs)
+  for (const OutputMember& each : kOutputs)
     if (is_given(each)) results.*each.texels = result(next++);
   return results;
 }
 
 AlcoveView CInterface::create_view(const HostView& from) {
-  AlcoveView view{.struct_size = sizeof(AlcoveView),
-                  .info = {.id = from.id,
-                           .reset_history = from.reset ? 1u : 0u,
-                           .static_frames = from.static_frames,
-                           .settings = &settings_.emplace_back(from.settings),
-                           .camera = from.view,
-                           .previous_camera = from.previous_view,
-                           .largest_width = from.largest_size.width,
-                           .largest_height = from.largest_size.height,
-                           .previous_width = from.previous_size.width,
-                           .previous_height = from.previous_size.height,
-                           .depth_format = from.depth_format,
-                           .normals_in_view_space = from.normals_in_view_space ? 1u : 0u}};
-  for (const Input& each : kInputs) view.images[each.role] = input(from.*each.texels);
+  AlcoveView view{.struct_size = sizeof(AlcoveView), .info = view_info(from)};
+  view.info.settings = &settings_.emplace_back(from.settings);
+  for (const InputMember& each : kInputs) view.images[each.role] = input(from.*each.texels);
   const auto request = [&](bool wanted, AlcoveImageRole role, AlcovePrecision precision) {
     if (wanted) {
       view.images[role] =
@@ -251,7 +240,7 @@ AlcoveView CInterface::create_view(const HostView& from) {
 
 AlcoveResult CInterface::record(AlcoveContext& context, const AlcoveFrame& frame, bool discards) {
   AlcoveResult result = ALCOVE_SUCCESS;
-  engine_->submit(frame.slot % Engine::kSlots, [&](VkCommandBuffer commands) {
+  engine_->submit(frame.slot % TestEngine::kSlots, [&](VkCommandBuffer commands) {
     result = alcoveRecordFrame(&context, commands, &frame);
     if (discards || result != ALCOVE_SUCCESS) throw_away(commands);
   });
@@ -274,26 +263,27 @@ void CInterface::discard_frame(AlcoveContext& context, std::span<const AlcoveVie
   EXPECT_EQ(alcoveDiscardFrame(&context), ALCOVE_SUCCESS);
 }
 
-Results CInterface::run_view(const AlcoveView& view, std::uint32_t index) {
+HostOutputs CInterface::run_view(const AlcoveView& view, std::uint32_t index) {
   run_frame(context(), {&view, 1}, index);
   engine_->wait();
   return read_results(view);
 }
 
-std::vector<Results> CInterface::run_views(AlcoveContext& context, std::span<const HostView> from,
-                                           std::uint32_t index) {
+std::vector<HostOutputs> CInterface::run_views(AlcoveContext& context,
+                                               std::span<const HostView> from,
+                                               std::uint32_t index) {
   std::vector<AlcoveView> views(from.size());
   std::ranges::transform(from, views.begin(),
                          [&](const HostView& each) { return create_view(each); });
   run_frame(context, views, index);
   engine_->wait();
-  std::vector<Results> results(from.size());
+  std::vector<HostOutputs> results(from.size());
   std::ranges::transform(views, results.begin(),
                          [&](const AlcoveView& view) { return read_results(view); });
   return results;
 }
 
-Results CInterface::run_plainly(const HostView& view, std::uint32_t index) {
+HostOutputs CInterface::run_plainly(const HostView& view, std::uint32_t index) {
   if (!plain_context_) plain_context_ = create_context();
   return run_views(*plain_context_, {&view, 1}, index)[0];
 }

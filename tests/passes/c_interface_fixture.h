@@ -21,57 +21,6 @@ namespace alcove::passes {
 
 using Bytes = std::vector<std::byte>;
 
-// The inputs of a view in host memory. An image without texels is not given.
-struct HostView {
-  std::uint32_t id = 0;
-  AlcoveCamera view{};
-  AlcoveCamera previous_view{};
-  bool reset = false;
-  std::uint32_t static_frames = 0;
-  VkExtent2D largest_size{};
-  VkExtent2D previous_size{};
-  HostImage depth_ndc;
-  VkFormat depth_format = VK_FORMAT_UNDEFINED;
-  HostImage normals;
-  bool normals_in_view_space = true;
-  HostImage motion;
-  HostImage roughness;
-  HostImage back_depth_ndc;
-  HostImage second_depth_ndc;
-  HostImage albedo;
-  OcclusionSettings settings;  // their flags say which outputs are requested
-  bool multi_bounce = false;
-};
-
-// The results of a view. An output that is not requested has no texels.
-struct Results {
-  HostImage visibility;
-  HostImage bent_normal;
-  HostImage specular;
-  HostImage multi_bounce;
-};
-
-// An image in host memory, and its role.
-struct Input {
-  HostImage HostView::*texels;
-  AlcoveImageRole role;
-};
-struct Output {
-  HostImage Results::*texels;
-  AlcoveImageRole role;
-};
-inline constexpr std::array kInputs{Input{&HostView::depth_ndc, ALCOVE_IMAGE_DEPTH},
-                                    Input{&HostView::normals, ALCOVE_IMAGE_NORMALS},
-                                    Input{&HostView::motion, ALCOVE_IMAGE_MOTION},
-                                    Input{&HostView::roughness, ALCOVE_IMAGE_ROUGHNESS},
-                                    Input{&HostView::back_depth_ndc, ALCOVE_IMAGE_BACK_DEPTH},
-                                    Input{&HostView::second_depth_ndc, ALCOVE_IMAGE_SECOND_DEPTH},
-                                    Input{&HostView::albedo, ALCOVE_IMAGE_ALBEDO}};
-inline constexpr std::array kOutputs{Output{&Results::visibility, ALCOVE_IMAGE_VISIBILITY},
-                                     Output{&Results::bent_normal, ALCOVE_IMAGE_BENT_NORMAL},
-                                     Output{&Results::specular, ALCOVE_IMAGE_SPECULAR},
-                                     Output{&Results::multi_bounce, ALCOVE_IMAGE_MULTI_BOUNCE}};
-
 // Draws a view of a scene with every input. Tests change its settings and its camera.
 HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene = ball_on_floor(),
                    const TestView& view = test_views()[2]);
@@ -88,7 +37,7 @@ HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t 
 // Returns frame `index` of these views.
 AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index);
 
-void expect_equal(const Results& found, const Results& expected);
+void expect_equal(const HostOutputs& found, const HostOutputs& expected);
 
 // Returns the text of a function such as alcovePrintPlan, which writes like snprintf.
 std::string print(const std::function<std::size_t(char*, std::size_t)>& write);
@@ -116,7 +65,7 @@ class CInterface : public PassTest {
   void write_bytes(const AlcoveImage& image, const Bytes& bytes);
   Bytes read_bytes(const AlcoveImage& image, std::size_t texel_bytes);
   HostImage read(const AlcoveImage& image);
-  Results read_results(const AlcoveView& view);
+  HostOutputs read_results(const AlcoveView& view);
 
   // Creates the images of a view and returns it. Its settings belong to the fixture.
   AlcoveView create_view(const HostView& view);
@@ -128,20 +77,20 @@ class CInterface : public PassTest {
   void discard_frame(AlcoveContext& context, std::span<const AlcoveView> views,
                      std::uint32_t index);
   // Runs a frame of one view with the shared context, and returns its results.
-  Results run_view(const AlcoveView& view, std::uint32_t index);
+  HostOutputs run_view(const AlcoveView& view, std::uint32_t index);
 
-  std::vector<Results> run_views(AlcoveContext& context, std::span<const HostView> views,
-                                 std::uint32_t index);
+  std::vector<HostOutputs> run_views(AlcoveContext& context, std::span<const HostView> views,
+                                     std::uint32_t index);
   // Runs a plain frame of one view with a context of its own, to compare with.
-  Results run_plainly(const HostView& view, std::uint32_t index);
+  HostOutputs run_plainly(const HostView& view, std::uint32_t index);
 
-  Engine& engine() { return *engine_; }
+  TestEngine& engine() { return *engine_; }
 
   bool shares_inputs_ = true;  // images with the same contents are one image
 
  private:
   static Context shared_context;
-  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<TestEngine> engine_;
   Context plain_context_;                // of run_plainly()
   std::deque<AlcoveSettings> settings_;  // of the views
   std::vector<std::pair<HostImage, AlcoveImage>> inputs_;

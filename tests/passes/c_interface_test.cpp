@@ -32,7 +32,7 @@ TEST_F(CInterface, ViewsRecordedInOneFrameEqualViewsRecordedInSeparateFrames) {
     views[2].settings.history_frames = 0;
     views[2].reset = i == 2;
     if (i == 2) views.erase(views.begin());  // a view that is not recorded keeps its history
-    const std::vector<Results> found = run_views(context(), views, i);
+    const std::vector<HostOutputs> found = run_views(context(), views, i);
     for (std::size_t view = 0; view < views.size(); ++view)
       expect_equal(found[view], run_plainly(views[view], i));
   }
@@ -55,7 +55,7 @@ TEST_F(CInterface, MirroringTheWorldAndItsCameraGivesTheSameImage) {
     views[1].view.view_from_world[10] = -1.0f;
     views[1].previous_view.view_from_world[10] = -1.0f;
     mirror(views[1].normals);
-    std::vector<Results> found = run_views(context(), views, i);
+    std::vector<HostOutputs> found = run_views(context(), views, i);
     mirror(found[1].bent_normal);
     expect_equal(found[1], found[0]);
   }
@@ -75,7 +75,7 @@ TEST_F(CInterface, EightViewsWithAllInputsAndOutputsCanBeRecordedInOneFrame) {
       view.settings.specular = ALCOVE_SPECULAR_TABLE;
     }
   }
-  const std::vector<Results> found = run_views(context(), views, 0);
+  const std::vector<HostOutputs> found = run_views(context(), views, 0);
   for (std::size_t id = 0; id < views.size(); ++id)
     expect_equal(found[id], run_plainly(views[id], 0));
 }
@@ -123,7 +123,7 @@ TEST_F(CInterface, DiscardedOrRefusedFrameWithOtherSettingsDoesNotChangeTheHisto
     std::array<AlcoveView, 2> views{create_view(changed)};
     for (int i = 0; i < 2; ++i) discard_frame(*context, std::span(views).first(1), index);
     std::uint32_t count = 99;
-    EXPECT_EQ(alcoveGetTimings(context.get(), index % Engine::kSlots, &count, nullptr),
+    EXPECT_EQ(alcoveGetTimings(context.get(), index % TestEngine::kSlots, &count, nullptr),
               ALCOVE_SUCCESS);
     EXPECT_EQ(count, 0u);
     run_good_frame(id);

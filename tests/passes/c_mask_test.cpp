@@ -31,7 +31,7 @@ class CMask : public CInterface {
   }
 
   // Returns the mean difference of visibility at pixels of the walls.
-  double wall_error(const Results& a, const Results& b) const {
+  double wall_error(const HostOutputs& a, const HostOutputs& b) const {
     double sum = 0.0, count = 0.0;
     for (std::size_t i = 0; i < shows_weapon_.size(); ++i) {
       if (!shows_weapon_[i]) {
@@ -61,10 +61,10 @@ class CMask : public CInterface {
   }
 
   // Runs frames with a moving and then a static camera, and returns the results of the last.
-  Results run_frames(HostView from, const AlcoveImage& mask = {}, std::uint32_t not_receiving = 0,
-                     std::uint32_t not_occluding = 0) {
+  HostOutputs run_frames(HostView from, const AlcoveImage& mask = {},
+                         std::uint32_t not_receiving = 0, std::uint32_t not_occluding = 0) {
     from.id = next_id_++;
-    Results results;
+    HostOutputs results;
     for (std::uint32_t index = 0; index < 8; ++index) {
       from.previous_view = from.view;
       from.view.view_from_world[12] = index < 4 ? 0.001f * static_cast<float>(index) : 0.003f;
@@ -85,13 +85,13 @@ class CMask : public CInterface {
 };
 
 TEST_F(CMask, WeaponThatIsMaskedOutIsUnoccludedAndLeavesTheWallsAsTheyAreWithoutIt) {
-  const Results bare = run_frames(without_);
+  const HostOutputs bare = run_frames(without_);
   const double plain_error = wall_error(run_frames(with_), bare);
   EXPECT_GT(plain_error, 0.005);
   for (const VkFormat format : {VK_FORMAT_R8_UNORM, VK_FORMAT_R8_UINT}) {
     SCOPED_TRACE(format);
     const AlcoveImage mask = create_mask(format, kNotReceiving | kNotOccluding);
-    const Results masked = run_frames(with_, mask, kNotReceiving, kNotOccluding);
+    const HostOutputs masked = run_frames(with_, mask, kNotReceiving, kNotOccluding);
     EXPECT_LT(wall_error(masked, bare), 0.1 * plain_error);
     for (std::size_t i = 0; i < shows_weapon_.size(); ++i) {
       if (!shows_weapon_[i]) continue;
@@ -105,11 +105,11 @@ TEST_F(CMask, WeaponThatIsMaskedOutIsUnoccludedAndLeavesTheWallsAsTheyAreWithout
 
 TEST_F(CMask, EachBitHasItsOwnEffect) {
   const AlcoveImage mask = create_mask(VK_FORMAT_R8_UNORM, 4 | 8);
-  const Results plain = run_frames(with_);
+  const HostOutputs plain = run_frames(with_);
   // No surface has the bits that are asked for: nothing changes.
   expect_equal(run_frames(with_, mask, 1, 2), plain);
-  const Results not_receiving = run_frames(with_, mask, 4, 0);
-  const Results not_occluding = run_frames(with_, mask, 0, 8);
+  const HostOutputs not_receiving = run_frames(with_, mask, 4, 0);
+  const HostOutputs not_occluding = run_frames(with_, mask, 0, 8);
   EXPECT_LT(wall_error(not_receiving, plain), 0.004);  // the walls are still occluded
   EXPECT_GT(wall_error(not_occluding, plain), 0.005);
   double occluded = 0.0;

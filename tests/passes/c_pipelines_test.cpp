@@ -231,7 +231,7 @@ TEST_F(CPipelines, FrameForAComputeOnlyQueueUsesNoGraphicsPipelineStage) {
     image.initial_state.access = image.final_state.access = VK_ACCESS_2_NONE;
   }
   for (std::uint32_t i = 0; i < 2; ++i) {
-    const Results found = run_view(view, i);
+    const HostOutputs found = run_view(view, i);
     const std::string plan = print_plan(context());
     EXPECT_THAT(plan, testing::HasSubstr("compute"));
     for (const char* stage : {"graphics", "vertex", "fragment", "attachment", "draw", "blit"})

@@ -79,7 +79,7 @@ TEST_F(CPlan, OutputImageWithContentsIsNotDiscardedByItsFirstLayoutTransition) {
     from.settings.specular = specular;
     AlcoveView view = create_view(from);
     for (const bool has_contents : {false, true}) {
-      for (const Output& each : kOutputs) {
+      for (const OutputMember& each : kOutputs) {
         AlcoveState& state = view.images[each.role].initial_state;
         state = kResting;
         if (!has_contents) state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -117,7 +117,7 @@ TEST_F(CPlan, HistoryTakesMemoryOnlyForViewsThatHaveOne) {
 
   // A view that is recorded again after it was dropped begins a new history.
   EXPECT_EQ(alcoveDropView(context.get(), view.id), ALCOVE_SUCCESS);
-  const Results again = run_views(*context, {&view, 1}, 7)[0];
+  const HostOutputs again = run_views(*context, {&view, 1}, 7)[0];
   view.id = 77;
   expect_equal(again, run_views(*context, {&view, 1}, 7)[0]);
 }
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(FramesInFlight, CSteadyFrame, testing::Values(1u, 2u, 3
 TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesNoDescriptor) {
   const auto device = sample::VulkanDevice::create();
   ASSERT_TRUE(device) << device.error();
-  Engine engine(**device);
+  TestEngine engine(**device);
   AlcoveContextInfo info = engine.context_info();
   info.frames_in_flight = GetParam();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;

@@ -273,7 +273,7 @@ TEST_F(CRefusals, PreviousCameraAndImageSizesAreIgnoredIfHistoryIsOff) {
   AlcoveSettings settings = *view().info.settings;
   settings.history_frames = 0;
   view().info.settings = &settings;
-  const Results expected = run_view(view(), 0);
+  const HostOutputs expected = run_view(view(), 0);
   view().info.previous_camera = {};
   view().info.previous_width = view().info.previous_height = 1000;
   view().info.largest_width = 1;

@@ -160,7 +160,7 @@ void CResize::destroy_images(ViewState& state) {
 
 void CResize::use_part(ViewState& state, VkExtent2D size) {
   const HostView part = draw_view(size.width, size.height, state.scene, state.camera);
-  for (const Input& each : kInputs) {
+  for (const InputMember& each : kInputs) {
     AlcoveImage whole = state.view.images[each.role];
     whole.width = state.largest.width;
     whole.height = state.largest.height;
@@ -262,7 +262,7 @@ void expect_within(const HostImage& image, float low, const char* what) {
 
 void CResize::expect_right(ViewState& state) {
   if (!state.is_shown) return;
-  const Results found = read_results(recorded_view(state));
+  const HostOutputs found = read_results(recorded_view(state));
   expect_within(found.visibility, 0.0f, "visibility");
   expect_within(found.bent_normal, -1.0f, "a bent normal");
   expect_within(found.specular, 0.0f, "specular occlusion");
@@ -303,7 +303,7 @@ AlcoveMemory CResize::rest() {
     OcclusionSettings settings;
     settings.specular = specular;
     resting_[0].settings = settings;
-    for (std::uint32_t i = 0; i < 2 * Engine::kSlots; ++i) draw_frame(resting_, false);
+    for (std::uint32_t i = 0; i < 2 * TestEngine::kSlots; ++i) draw_frame(resting_, false);
     memory = get_memory(*context_);
   }
   drop(resting_[0]);

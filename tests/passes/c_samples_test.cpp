@@ -179,8 +179,8 @@ TEST_P(CTileSize, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
         }
         run_frame(context(), views, index);
         engine().wait();
-        const Results expected = read_results(views[0]);
-        const Results found = read_results(views[1]);
+        const HostOutputs expected = read_results(views[0]);
+        const HostOutputs found = read_results(views[1]);
         EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.97f);
         if (area.width == 0) expect_equal(found, expected);
         for (std::uint32_t y = 0; y < area.height; ++y)

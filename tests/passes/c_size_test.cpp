@@ -19,9 +19,9 @@ TEST_F(CDynamicResolution, RenderingToAPartOfAnImageGivesTheSameResultAsAnImageO
   from.settings.radius = 2.0f;
   from.settings.depth_layers = 2;
   AlcoveView view = create_view(from);
-  for (const Input& each : kInputs)
+  for (const InputMember& each : kInputs)
     view.images[each.role] = input(placed_in(kLarger, from.*each.texels));
-  for (const Output& each : kOutputs)
+  for (const OutputMember& each : kOutputs)
     view.images[each.role] = output(view.images[each.role].format, kLarger.width, kLarger.height);
   for (AlcoveImage& image : view.images) {
     if (image.width == 0) continue;
@@ -34,7 +34,7 @@ TEST_F(CDynamicResolution, RenderingToAPartOfAnImageGivesTheSameResultAsAnImageO
     view.info.previous_camera = view.info.camera;
     view.info.camera.view_from_world[12] = from.view.view_from_world[12] =
         0.02f * static_cast<float>(i);
-    const Results found = run_view(view, i);
+    const HostOutputs found = run_view(view, i);
     EXPECT_LT(std::ranges::min(found.visibility.texels), 0.9f);
     expect_equal(found, run_plainly(from, i));
     from.previous_view = from.view;
@@ -54,12 +54,12 @@ TEST_F(CDynamicResolution, HistoryKeepsAccumulatingWhileTheRenderedSizeChangesIn
     return view;
   };
   HostView constant = draw_size(kSizes[0], false);
-  Results expected;
+  HostOutputs expected;
   for (std::uint32_t i = 0; i < 3 * kFrames; ++i) expected = run_plainly(constant, i);
   constant.id = 1;
   const double fresh = rms(run_plainly(constant, kFrames - 1).visibility, expected.visibility);
   for (const bool motion : {false, true}) {
-    Results found;
+    HostOutputs found;
     VkDeviceSize history = 0;
     for (std::uint32_t i = 0; i < kFrames; ++i) {
       HostView from = draw_size(kSizes.at(i % kSizes.size()), motion);

@@ -34,7 +34,7 @@ TEST_F(CStillImage, EqualsConvergedFramesThatTheEngineCounts) {
   const std::uint32_t frames = alcoveGetConvergedFrames(view.info.settings);
   ASSERT_EQ(frames, 128u);
   run_still({&view, 1}, 0, frames - 1);
-  Results expected;
+  HostOutputs expected;
   for (std::uint32_t i = 0; i < frames; ++i) {
     from.static_frames = i;
     from.reset = i == 0;
@@ -48,7 +48,7 @@ TEST_F(CStillImage, ViewThatIsLeftOutOfFramesKeepsItsImageAndItsHistory) {
   std::array<AlcoveView, 2> views{create_view(draw_still(8)), create_view(draw_still(8))};
   views[1].info.id = 1;
   run_still(views, 0, 7);
-  const Results before = read_results(views[0]);
+  const HostOutputs before = read_results(views[0]);
   run_still(std::span(views).last(1), 8, 11);
   expect_equal(read_results(views[0]), before);
 

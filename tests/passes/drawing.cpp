@@ -16,7 +16,7 @@ glm::dmat4 in_double(const float (&matrix)[16]) {
 
 }  // namespace
 
-Surface plane(const glm::dvec3& through, const glm::dvec3& normal) {
+Shape plane(const glm::dvec3& through, const glm::dvec3& normal) {
   const glm::dvec3 unit = glm::normalize(normal);
   return {[=](const Ray& ray) -> std::vector<Hit> {
             const double slope = glm::dot(ray.along, unit);
@@ -27,13 +27,13 @@ Surface plane(const glm::dvec3& through, const glm::dvec3& normal) {
           {}};
 }
 
-Surface tilted_plane(double tilt_degrees, double distance) {
+Shape tilted_plane(double tilt_degrees, double distance) {
   const double tilt = tilt_degrees * std::numbers::pi / 180.0;
   const double across = std::sin(tilt) / std::numbers::sqrt2;
   return plane({0.0, 0.0, -distance}, {across, across, std::cos(tilt)});
 }
 
-Surface sphere(const glm::dvec3& centre, double radius) {
+Shape sphere(const glm::dvec3& centre, double radius) {
   return {[=](const Ray& ray) -> std::vector<Hit> {
             const glm::dvec3 from = ray.from - centre;
             const double a = glm::dot(ray.along, ray.along);
@@ -51,8 +51,8 @@ Surface sphere(const glm::dvec3& centre, double radius) {
           {}};
 }
 
-std::vector<Surface> box(const glm::dvec3& low, const glm::dvec3& high) {
-  std::vector<Surface> faces;
+std::vector<Shape> box(const glm::dvec3& low, const glm::dvec3& high) {
+  std::vector<Shape> faces;
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool upper : {false, true}) {
       glm::dvec3 outwards(0.0);
@@ -99,7 +99,7 @@ glm::dvec3 TestCamera::to_eye(std::uint32_t x, std::uint32_t y) const {
 
 std::optional<Hit> cast(const Scene& scene, const Ray& ray) {
   std::optional<Hit> nearest;
-  for (const Surface& surface : scene) {
+  for (const Shape& surface : scene) {
     for (const Hit& hit : surface.meet(ray))
       if (hit.t > 0.0 && (!nearest || hit.t < nearest->t) &&
           (!surface.keep || surface.keep(hit.position)))
@@ -143,7 +143,7 @@ Drawing draw_hits(const TestView& view, std::uint32_t width, std::uint32_t heigh
 template <typename Keep>
 Scene with_hits(const Scene& scene, const Keep& keep) {
   Scene result = scene;
-  for (Surface& surface : result) {
+  for (Shape& surface : result) {
     surface.meet = [all = surface.meet, keep](const Ray& ray) {
       std::vector<Hit> hits = all(ray);
       std::erase_if(hits, [&](const Hit& hit) { return !keep(hit, ray); });
@@ -161,8 +161,8 @@ Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, co
 
 Scene scaled(const Scene& scene, double scale) {
   Scene result;
-  for (const Surface& surface : scene) {
-    Surface larger;
+  for (const Shape& surface : scene) {
+    Shape larger;
     larger.meet = [=](const Ray& ray) {
       std::vector<Hit> hits = surface.meet({ray.from / scale, ray.along / scale});
       for (Hit& hit : hits) hit.position *= scale;
@@ -176,8 +176,8 @@ Scene scaled(const Scene& scene, double scale) {
 
 Scene shifted(const Scene& scene, const glm::dvec3& shift) {
   Scene result;
-  for (const Surface& surface : scene) {
-    Surface further;
+  for (const Shape& surface : scene) {
+    Shape further;
     further.meet = [=](const Ray& ray) {
       std::vector<Hit> hits = surface.meet({ray.from - shift, ray.along});
       for (Hit& hit : hits) hit.position += shift;

@@ -23,7 +23,7 @@ struct Hit {
   glm::dvec3 normal{0.0};  // unit, towards the ray's origin
 };
 
-struct Surface {
+struct Shape {
   // Returns the hits of a ray with the surface, from near to far. Normals may point to either side
   // of the surface. Only draw_back_faces() needs normals that point outwards.
   std::function<std::vector<Hit>(const Ray&)> meet;
@@ -31,13 +31,13 @@ struct Surface {
   std::function<bool(const glm::dvec3&)> keep;
 };
 
-Surface plane(const glm::dvec3& through, const glm::dvec3& normal);
+Shape plane(const glm::dvec3& through, const glm::dvec3& normal);
 // Returns a plane through the point `distance` in front of the eye, tilted about the image's
 // diagonal.
-Surface tilted_plane(double tilt_degrees, double distance);
-Surface sphere(const glm::dvec3& centre, double radius);
+Shape tilted_plane(double tilt_degrees, double distance);
+Shape sphere(const glm::dvec3& centre, double radius);
 // Returns the six faces of an axis-aligned box.
-std::vector<Surface> box(const glm::dvec3& low, const glm::dvec3& high);
+std::vector<Shape> box(const glm::dvec3& low, const glm::dvec3& high);
 
 // A view over an image, in double precision.
 class TestCamera {
@@ -64,7 +64,7 @@ class TestCamera {
   bool reversed_;
 };
 
-using Scene = std::vector<Surface>;
+using Scene = std::vector<Shape>;
 
 // Returns the nearest hit of a ray.
 std::optional<Hit> cast(const Scene& scene, const Ray& ray);

@@ -4,7 +4,7 @@
 
 namespace alcove::passes {
 
-Engine::Engine(const sample::VulkanDevice& device) : device_(device) {
+TestEngine::TestEngine(const sample::VulkanDevice& device) : device_(device) {
   const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                      .queueFamilyIndex = device.queue_family()};
@@ -22,13 +22,13 @@ Engine::Engine(const sample::VulkanDevice& device) : device_(device) {
   }
 }
 
-Engine::~Engine() {
+TestEngine::~TestEngine() {
   wait();
   for (const Slot& slot : slots_) vkDestroyFence(device_.device(), slot.fence, nullptr);
   vkDestroyCommandPool(device_.device(), pool_, nullptr);
 }
 
-AlcoveContextInfo Engine::context_info() const {
+AlcoveContextInfo TestEngine::context_info() const {
   return {.struct_size = sizeof(AlcoveContextInfo),
           .queue_family = device_.queue_family(),
           .instance = device_.instance(),
@@ -39,9 +39,9 @@ AlcoveContextInfo Engine::context_info() const {
           .timestamps = VK_TRUE};
 }
 
-AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
-                               VkImageUsageFlags usage, std::uint32_t layers,
-                               VkSampleCountFlagBits samples) {
+AlcoveImage TestEngine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
+                                   VkImageUsageFlags usage, std::uint32_t layers,
+                                   VkSampleCountFlagBits samples) {
   auto created = sample::GpuImage::create(
       device_, {format, framegraph::Extent::absolute(width, height), 1, layers, samples}, usage);
   EXPECT_TRUE(created) << created.error();
@@ -71,16 +71,16 @@ AlcoveImage Engine::make_image(VkFormat format, std::uint32_t width, std::uint32
           .final_state = kResting};
 }
 
-void Engine::destroy_image(const AlcoveImage& image) {
+void TestEngine::destroy_image(const AlcoveImage& image) {
   std::erase_if(images_, [&](const auto& each) { return each->image() == image.image; });
 }
 
-void Engine::forget_images(AlcoveContext& context) const {
+void TestEngine::forget_images(AlcoveContext& context) const {
   for (const auto& image : images_)
     EXPECT_EQ(alcoveForgetImage(&context, image->image()), ALCOVE_SUCCESS);
 }
 
-void Engine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
+void TestEngine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
   const Slot& used = slots_.at(slot);
   EXPECT_EQ(vkWaitForFences(device_.device(), 1, &used.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
   EXPECT_EQ(vkResetFences(device_.device(), 1, &used.fence), VK_SUCCESS);
@@ -107,6 +107,6 @@ void throw_away(VkCommandBuffer commands) {
   vkBeginCommandBuffer(commands, &begin);
 }
 
-void Engine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue()), VK_SUCCESS); }
+void TestEngine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue()), VK_SUCCESS); }
 
 }  // namespace alcove::passes

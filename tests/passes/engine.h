@@ -13,14 +13,14 @@
 
 namespace alcove::passes {
 
-class Engine {
+class TestEngine {
  public:
   static constexpr std::uint32_t kSlots = 2;
 
-  explicit Engine(const sample::VulkanDevice& device);
-  ~Engine();
-  Engine(const Engine&) = delete;
-  Engine& operator=(const Engine&) = delete;
+  explicit TestEngine(const sample::VulkanDevice& device);
+  ~TestEngine();
+  TestEngine(const TestEngine&) = delete;
+  TestEngine& operator=(const TestEngine&) = delete;
 
   AlcoveContextInfo context_info() const;
 

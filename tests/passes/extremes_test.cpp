@@ -37,7 +37,7 @@ AlcoveCamera moved_by(AlcoveCamera view, double x) {
 
 class Extremes : public PassTest, public testing::WithParamInterface<AlcoveQuality> {
  protected:
-  using Images = OcclusionImages;
+  using Images = HostOutputs;
 
   // Returns the images of several frames. The camera moves sideways by `step` per frame. The scene
   // is so far away that no surface moves on the image, so that history texels can only be rejected
@@ -48,13 +48,13 @@ class Extremes : public PassTest, public testing::WithParamInterface<AlcoveQuali
     std::vector<Images> images;
     for (std::uint32_t i = 0; i < frames; ++i) {
       images.push_back(run_occlusion({.view = moved_by(view.view, -step * i),
-                                      .depth_ndc = drawing.depth_ndc,
-                                      .normal_vs = &drawing.normal_vs,
                                       .previous_view = moved_by(view.view, -step * (i - 1.0)),
-                                      .index = i,
                                       .reset = i == 0,
-                                      .second_depth_ndc = &drawing.depth_ndc},
-                                     settings));
+                                      .depth_ndc = drawing.depth_ndc,
+                                      .normals = drawing.normal_vs,
+                                      .second_depth_ndc = drawing.depth_ndc,
+                                      .settings = settings},
+                                     i));
     }
     return images;
   }
@@ -127,13 +127,13 @@ TEST_P(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
     HostImage visibility;
     for (std::uint32_t i = 0; i < 8; ++i)
       visibility = run_occlusion({.view = far,
-                                  .depth_ndc = drawing.depth_ndc,
-                                  .normal_vs = &drawing.normal_vs,
-                                  .motion = &motion,
-                                  .index = i,
                                   .reset = i == 0,
-                                  .second_depth_ndc = &drawing.depth_ndc},
-                                 settings)
+                                  .depth_ndc = drawing.depth_ndc,
+                                  .normals = drawing.normal_vs,
+                                  .motion = motion,
+                                  .second_depth_ndc = drawing.depth_ndc,
+                                  .settings = settings},
+                                 i)
                        .visibility;
     return visibility;
   };
@@ -159,14 +159,14 @@ TEST_P(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
           std::fill_n(texel, i == 1 ? invalid.channels : 0, wrong);
         }
         images.push_back(run_occlusion({.view = moved_by(view.view, 0.01 * i),
-                                        .depth_ndc = clean.depth_ndc,
-                                        .normal_vs = &normals,
                                         .previous_view = moved_by(view.view, 0.01 * (i - 1.0)),
-                                        .index = i,
                                         .reset = i == 0,
-                                        .second_depth_ndc = &clean.depth_ndc,
-                                        .roughness = &roughness},
-                                       settings));
+                                        .depth_ndc = clean.depth_ndc,
+                                        .normals = normals,
+                                        .roughness = roughness,
+                                        .second_depth_ndc = clean.depth_ndc,
+                                        .settings = settings},
+                                       i));
       }
       return images;
     };
@@ -247,13 +247,13 @@ TEST_P(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
     SCOPED_TRACE(testing::Message() << size.width << " x " << size.height);
     const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
     const Images images = run_occlusion({.view = view.view,
-                                         .depth_ndc = drawing.depth_ndc,
-                                         .normal_vs = &drawing.normal_vs,
-                                         .index = index++,
-                                         .second_depth_ndc = &drawing.depth_ndc,
+                                         .largest_size = kLargest,
                                          .previous_size = previous,
-                                         .largest_size = kLargest},
-                                        settings);
+                                         .depth_ndc = drawing.depth_ndc,
+                                         .normals = drawing.normal_vs,
+                                         .second_depth_ndc = drawing.depth_ndc,
+                                         .settings = settings},
+                                        index++);
     expect_sound(images);
     previous = size;
   }

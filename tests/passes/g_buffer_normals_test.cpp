@@ -37,7 +37,7 @@ Drawing invert_normals(Drawing drawing) {
 
 class NormalsOfAGBuffer : public PassTest {
  protected:
-  OcclusionImages third_frame(const Drawing& drawing, const OcclusionSettings& settings) {
+  HostOutputs third_frame(const Drawing& drawing, const OcclusionSettings& settings) {
     for (std::uint32_t i = 0; i < 2; ++i) (void)render(drawing, settings, i);
     return render(drawing, settings, 2);
   }
@@ -48,8 +48,8 @@ TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacing
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
     const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM, specular);
-    const OcclusionImages found = third_frame(invert_normals(drawing), settings);
-    const OcclusionImages expected = third_frame(drawing, settings);
+    const HostOutputs found = third_frame(invert_normals(drawing), settings);
+    const HostOutputs expected = third_frame(drawing, settings);
     EXPECT_LT(rms(found.visibility, expected.visibility), 2e-3);
     EXPECT_LT(rms(found.bent_normal, expected.bent_normal), 0.02);
     EXPECT_LT(rms(found.specular, expected.specular), 5e-3);
@@ -58,11 +58,11 @@ TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacing
 
 TEST_F(NormalsOfAGBuffer, NaNNormalsNextToTheSkyOrInTinyImagesGiveValidResults) {
   const TestView view = test_views()[2];
-  Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
+  Shape post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
   post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
   for (const auto& [width, height] : {std::pair{kWidth, kHeight}, {1u, 1u}, {1u, 7u}, {7u, 1u}}) {
     const Drawing drawing = draw(view, width, height, {post});
-    const OcclusionImages images =
+    const HostOutputs images =
         third_frame(replace_normals(drawing, kNaN, 1), all_outputs(ALCOVE_QUALITY_MEDIUM));
     EXPECT_THAT(images.visibility.texels, testing::Each(testing::Ge(0.97f)));
     for (const HostImage* image : {&images.bent_normal, &images.specular})

@@ -108,12 +108,12 @@ TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
         settings.bent_normal = true;
         poison_memory(width, height);
         // In this frame the traced pixels of the last tiles lie outside the image.
-        const OcclusionImages images = run_occlusion({.view = view.view,
-                                                      .depth_ndc = drawing.depth_ndc,
-                                                      .normal_vs = &drawing.normal_vs,
-                                                      .index = 1,
-                                                      .reset = true},
-                                                     settings);
+        const HostOutputs images = run_occlusion({.view = view.view,
+                                                  .reset = true,
+                                                  .depth_ndc = drawing.depth_ndc,
+                                                  .normals = drawing.normal_vs,
+                                                  .settings = settings},
+                                                 1);
         for (std::uint32_t i = 0; i < width * height; ++i) {
           ASSERT_NEAR(images.visibility.texels[i], 1.0, 0.05) << "pixel " << i;
           double dot = 0.0;
@@ -149,10 +149,13 @@ TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteRes
     settings.bent_normal = true;
     settings.slices = 4;  // with a filter
     Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
-    const OcclusionFrame frame{view.view, drawing.depth_ndc, &drawing.normal_vs};
-    const HostImage clean = run_occlusion(frame, settings).visibility;
-    for (const std::uint32_t hole : {0u, 20u * kWidth + 28u}) drawing.depth_ndc.texels[hole] = kNaN;
-    const OcclusionImages invalid = run_occlusion(frame, settings);
+    HostView frame{.view = view.view,
+                   .depth_ndc = drawing.depth_ndc,
+                   .normals = drawing.normal_vs,
+                   .settings = settings};
+    const HostImage clean = run_occlusion(frame).visibility;
+    for (const std::uint32_t hole : {0u, 20u * kWidth + 28u}) frame.depth_ndc.texels[hole] = kNaN;
+    const HostOutputs invalid = run_occlusion(frame);
     EXPECT_THAT(invalid.visibility.texels,
                 testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
     for (const float component : invalid.bent_normal.texels) ASSERT_TRUE(std::isfinite(component));
@@ -192,13 +195,13 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
             all_inputs ? ALCOVE_THICKNESS_UNIT_BACK_FACES : ALCOVE_THICKNESS_UNIT_RADIUS;
         settings.depth_layers = all_inputs ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
-          const OcclusionImages images =
+          const HostOutputs images =
               run_occlusion({.view = view.view,
                              .depth_ndc = drawing.depth_ndc,
-                             .normal_vs = all_inputs ? &drawing.normal_vs : nullptr,
-                             .back_depth_ndc = &backs,
-                             .second_depth_ndc = &backs},
-                            settings);
+                             .normals = all_inputs ? drawing.normal_vs : HostImage{},
+                             .back_depth_ndc = backs,
+                             .second_depth_ndc = backs,
+                             .settings = settings});
           EXPECT_THAT(images.visibility.texels,
                       testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
           for (const float component : images.bent_normal.texels)
@@ -236,7 +239,7 @@ TEST_F(GtaoInvariance, BothEyesOfAStereoFrameGetTheSameNoise) {
 TEST_F(GtaoInvariance, SkyIsUnoccludedAndDoesNotOcclude) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
-    Surface post = plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0});
+    Shape post = plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0});
     post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
     for (const AlcoveEstimator estimator : kEstimators) {
       EXPECT_THAT(

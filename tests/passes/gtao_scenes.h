@@ -12,9 +12,9 @@ namespace alcove::passes {
 // eye. Each wall is at `half_angle` radians from the view axis.
 inline Scene groove(double half_angle, double bottom = 4.5, double aside = 0.0) {
   const glm::dvec3 through(aside, 0.0, -bottom);
-  Surface left = plane(through, {std::cos(half_angle), 0.0, std::sin(half_angle)});
+  Shape left = plane(through, {std::cos(half_angle), 0.0, std::sin(half_angle)});
   left.keep = [=](const glm::dvec3& p) { return p.x < aside; };
-  Surface right = plane(through, {-std::cos(half_angle), 0.0, std::sin(half_angle)});
+  Shape right = plane(through, {-std::cos(half_angle), 0.0, std::sin(half_angle)});
   right.keep = [=](const glm::dvec3& p) { return p.x >= aside; };
   return {left, right};
 }
@@ -22,9 +22,9 @@ inline Scene groove(double half_angle, double bottom = 4.5, double aside = 0.0) 
 // Returns a floor that faces the eye at the distance `floor`, and a platform that is nearer by
 // `height` where x > `edge`.
 inline Scene step(double edge, double height, double floor = 4.0) {
-  Surface platform = plane({0.0, 0.0, -floor + height}, {0.0, 0.0, 1.0});
+  Shape platform = plane({0.0, 0.0, -floor + height}, {0.0, 0.0, 1.0});
   platform.keep = [=](const glm::dvec3& p) { return p.x > edge; };
-  Surface wall = plane({edge, 0.0, 0.0}, {1.0, 0.0, 0.0});
+  Shape wall = plane({edge, 0.0, 0.0}, {1.0, 0.0, 0.0});
   wall.keep = [=](const glm::dvec3& p) { return p.z > -floor && p.z < -floor + height; };
   return {plane({0.0, 0.0, -floor}, {0.0, 0.0, 1.0}), platform, wall};
 }

@@ -54,7 +54,7 @@ class GtaoTruth : public PassTest {
 
   // Returns the mean visibility of a wall 4 units away, at the eight pixels to the left of an
   // occluder that covers the image from x = 0 to the right.
-  double visibility_beside(const TestView& view, const Surface& front,
+  double visibility_beside(const TestView& view, const Shape& front,
                            const OcclusionSettings& settings) {
     const Drawing drawing = draw(view, 96, 40, {plane({0.0, 0.0, -4.0}, {0.0, 0.0, 1.0}), front});
     const HostImage visibility = render(drawing, settings).visibility;
@@ -161,7 +161,7 @@ TEST_F(GtaoTruth, LargerFractionOfTheVolumeBehindAWideOccluderIsSolidThanBehindA
     SCOPED_TRACE(view.name);
     // Returns the occlusion behind slats that begin at x = 0 and are `apart` from each other.
     const auto solid_fraction = [&](double width, double apart, int slats) {
-      Surface front = plane({0.0, 0.0, -3.6}, {0.0, 0.0, 1.0});
+      Shape front = plane({0.0, 0.0, -3.6}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) {
         return p.x > 0.0 && p.x < slats * apart && std::fmod(p.x, apart) < width;
       };
@@ -195,7 +195,7 @@ TEST_F(GtaoTruth, ThicknessSettingLargerThanTheVisibleWidthDarkensNothing) {
     SCOPED_TRACE(view.name);
     for (const double width : {0.12, 1.0}) {
       SCOPED_TRACE(width);
-      Surface front = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+      Shape front = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
       front.keep = [=](const glm::dvec3& p) { return p.x > 0.0 && p.x < width; };
       const auto beside = [&](float thickness) {
         OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_CONNECTED, 1.2f);

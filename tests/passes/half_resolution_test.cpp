@@ -91,7 +91,7 @@ TEST_F(HalfResolution, ConstantRawOcclusionGivesConstantVisibilityAtOddImageSize
 // walls.
 TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
   const TestView view = test_views()[2];
-  Surface near_wall = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+  Shape near_wall = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
   near_wall.keep = [](const glm::dvec3& p) { return p.x < 0.05; };
   const Drawing drawing = draw(view, kWidth, kHeight, {near_wall, tilted_plane(0.0, 12.0)});
   const float near_ndc = drawing.depth_ndc.at(0, 0);

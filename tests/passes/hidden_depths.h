@@ -23,10 +23,10 @@ class HiddenDepthTest : public PassTest {
                        const OcclusionSettings& settings) {
     return run_occlusion({.view = drawing.view,
                           .depth_ndc = drawing.depth_ndc,
-                          .normal_vs = &drawing.normal_vs,
-                          .back_depth_ndc = &hidden,
-                          .second_depth_ndc = &hidden},
-                         settings)
+                          .normals = drawing.normal_vs,
+                          .back_depth_ndc = hidden,
+                          .second_depth_ndc = hidden,
+                          .settings = settings})
         .visibility;
   }
 };

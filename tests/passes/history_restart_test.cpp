@@ -12,16 +12,19 @@ class HistoryRestart : public PassTest {
   // Renders four frames of a groove with `settings`, four frames of a ball on a floor with
   // `meanwhile`, and one more frame of the ball with `settings`. Returns the images of the last
   // frame. If `forgets` is true, the history is reset before the last frame.
-  OcclusionImages come_back(const OcclusionSettings& settings, const OcclusionSettings& meanwhile,
-                            bool forgets) {
+  HostOutputs come_back(const OcclusionSettings& settings, const OcclusionSettings& meanwhile,
+                        bool forgets) {
     const TestView view = test_views()[2];
     const Drawing before = draw(view, 32, 24, groove(0.8));
     const Drawing now = draw(view, 32, 24, ball_on_floor());
     std::uint32_t index = 0;
     const auto frame = [&](const Drawing& drawing, const OcclusionSettings& with, bool reset) {
-      return run_occlusion(
-          {view.view, drawing.depth_ndc, &drawing.normal_vs, nullptr, view.view, index++, reset},
-          with);
+      return run_occlusion({.view = view.view,
+                            .reset = reset,
+                            .depth_ndc = drawing.depth_ndc,
+                            .normals = drawing.normal_vs,
+                            .settings = with},
+                           index++);
     };
     for (int i = 0; i < 4; ++i) (void)frame(before, settings, i == 0);
     for (int i = 0; i < 4; ++i) (void)frame(now, meanwhile, false);
@@ -30,8 +33,8 @@ class HistoryRestart : public PassTest {
 
   void expect_a_new_beginning(const OcclusionSettings& settings,
                               const OcclusionSettings& meanwhile) {
-    const OcclusionImages found = come_back(settings, meanwhile, false);
-    const OcclusionImages anew = come_back(settings, meanwhile, true);
+    const HostOutputs found = come_back(settings, meanwhile, false);
+    const HostOutputs anew = come_back(settings, meanwhile, true);
     EXPECT_EQ(found.visibility.texels, anew.visibility.texels);
     EXPECT_EQ(found.bent_normal.texels, anew.bent_normal.texels);
   }

@@ -75,7 +75,7 @@ TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossADepthStep) {
     SCOPED_TRACE(view.name);
     // The front of a box in front of a wall. Both face the eye, and their depths differ by at least
     // half a unit.
-    Surface front = plane({0.0, 0.0, -3.4}, {0.0, 0.2, 1.0});
+    Shape front = plane({0.0, 0.0, -3.4}, {0.0, 0.2, 1.0});
     front.keep = [](const glm::dvec3& p) { return p.x > -0.9 && p.x < 0.7 && p.y < 0.5; };
     const Drawing drawing = draw(view, 60, 40, {front, tilted_plane(20.0, 4.5)});
     EXPECT_LT(largest_error(normals(view.view, drawing.depth_ndc), drawing), 0.5);
@@ -84,9 +84,9 @@ TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossADepthStep) {
 
 TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossACrease) {
   const TestView view = test_views()[5];
-  Surface left = plane({0.0, 0.0, -5.0}, {1.0, 0.0, 1.0});
+  Shape left = plane({0.0, 0.0, -5.0}, {1.0, 0.0, 1.0});
   left.keep = [](const glm::dvec3& p) { return p.x < 0.0; };
-  Surface right = plane({0.0, 0.0, -5.0}, {-1.0, 0.0, 1.0});
+  Shape right = plane({0.0, 0.0, -5.0}, {-1.0, 0.0, 1.0});
   right.keep = [](const glm::dvec3& p) { return p.x >= 0.0; };
   const Drawing drawing = draw(view, 60, 40, {left, right});
   EXPECT_LT(largest_error(normals(view.view, drawing.depth_ndc), drawing), 0.5);
@@ -95,7 +95,7 @@ TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossACrease) {
 TEST_F(NormalsFromDepth, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbouringNormals) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
-    Surface post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
+    Shape post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
     post.keep = [](const glm::dvec3& p) { return std::abs(p.x) < 0.8; };
     const Drawing drawing = draw(view, 45, 31, {post});
     const HostImage image = normals(view.view, drawing.depth_ndc);
@@ -114,7 +114,7 @@ TEST_F(NormalsFromDepth, SurfaceTwoPixelsWideGetsItsOwnNormal) {
     for (const double n_dot_v : {-0.5, 0.5}) {
       SCOPED_TRACE(testing::Message() << view.name << ", n.v " << n_dot_v);
       const Drawing wide = draw(view, 40, 30, {plane({0.0, 0.0, -3.0}, {n_dot_v, 0.1, 1.0})});
-      Surface strip = wide.scene[0];
+      Shape strip = wide.scene[0];
       strip.keep = [&](const glm::dvec3& position) {
         const double column = wide.camera.project(position).x;
         return column > 19.0 && column < 21.0;

@@ -18,7 +18,7 @@ constexpr std::uint32_t kHeight = 64;
 struct Case {
   std::string name;
   TestView view;
-  Surface plane;
+  Shape plane;
   float radius = 0.5f;
   float normals = 1.0f;  // a factor of all normals
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
@@ -102,16 +102,16 @@ void round_to_16_bits(HostImage& depth_ndc) {
 
 class OpenPlane : public PassTest {
  protected:
-  OcclusionImages frame(const Drawing& drawing, const OcclusionSettings& settings,
-                        VkFormat depth_format, std::uint32_t index) {
+  HostOutputs frame(const Drawing& drawing, const OcclusionSettings& settings,
+                    VkFormat depth_format, std::uint32_t index) {
     return run_occlusion({.view = drawing.view,
-                          .depth_ndc = drawing.depth_ndc,
-                          .normal_vs = &drawing.normal_vs,
-                          .index = index,
                           .reset = index == 0,
-                          .second_depth_ndc = &drawing.depth_ndc,
-                          .depth_format = depth_format},
-                         settings);
+                          .depth_ndc = drawing.depth_ndc,
+                          .depth_format = depth_format,
+                          .normals = drawing.normal_vs,
+                          .second_depth_ndc = drawing.depth_ndc,
+                          .settings = settings},
+                         index);
   }
 };
 
@@ -139,7 +139,7 @@ TEST_F(OpenPlane, IsOpenInEveryPreset) {
       for (std::uint32_t index = 0; index < 3; ++index) {
         SCOPED_TRACE(testing::Message() << each.name << ", radius " << each.radius << ", "
                                         << kQualityNames.at(quality) << ", frame " << index);
-        const OcclusionImages images =
+        const HostOutputs images =
             frame(drawing, all_outputs(quality, each.radius), each.depth_format, index);
         EXPECT_GE(std::ranges::min(images.visibility.texels), each.visibility);
         EXPECT_GE(std::ranges::min(images.specular.texels), each.specular);

@@ -173,48 +173,47 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
     decode(downloads_[i].buffer->bytes(), downloads_[i].format, results_[i].texels);
 }
 
-PassTest::OcclusionImages PassTest::render(const Drawing& drawing,
-                                           const OcclusionSettings& settings, std::uint32_t index) {
-  return run_occlusion({.view = drawing.view,
-                        .depth_ndc = drawing.depth_ndc,
-                        .normal_vs = &drawing.normal_vs,
-                        .index = index,
-                        .reset = index == 0,
-                        .second_depth_ndc = &drawing.depth_ndc},
-                       settings);
+AlcoveViewInfo view_info(const HostView& view) {
+  return {.id = view.id,
+          .reset_history = view.reset ? 1u : 0u,
+          .static_frames = view.static_frames,
+          .camera = view.view,
+          .previous_camera = view.previous_view,
+          .largest_width = view.largest_size.width,
+          .largest_height = view.largest_size.height,
+          .previous_width = view.previous_size.width,
+          .previous_height = view.previous_size.height,
+          .depth_format = static_cast<std::uint32_t>(view.depth_format),
+          .normals_in_view_space = view.normals_in_view_space ? 1u : 0u};
 }
 
-PassTest::OcclusionImages PassTest::run_occlusion(const OcclusionFrame& input,
-                                                  const OcclusionSettings& settings) {
+HostOutputs PassTest::render(const Drawing& drawing, const OcclusionSettings& settings,
+                             std::uint32_t index) {
+  return run_occlusion({.view = drawing.view,
+                        .reset = index == 0,
+                        .depth_ndc = drawing.depth_ndc,
+                        .normals = drawing.normal_vs,
+                        .second_depth_ndc = drawing.depth_ndc,
+                        .settings = settings},
+                       index);
+}
+
+HostOutputs PassTest::run_occlusion(const HostView& view, std::uint32_t index) {
+  ViewTextures textures{};
   run([&](Graph& graph) {
-    const AlcoveViewInfo info{.reset_history = input.reset ? 1u : 0u,
-                              .camera = input.view,
-                              .previous_camera = input.previous_view,
-                              .largest_width = input.largest_size.width,
-                              .largest_height = input.largest_size.height,
-                              .previous_width = input.previous_size.width,
-                              .previous_height = input.previous_size.height,
-                              .depth_format = static_cast<std::uint32_t>(input.depth_format),
-                              .normals_in_view_space = 1};
-    ViewTextures textures{};
-    textures[ALCOVE_IMAGE_DEPTH] = upload(graph, input.depth_ndc);
-    for (const auto& [role, image] : {std::pair{ALCOVE_IMAGE_NORMALS, input.normal_vs},
-                                      {ALCOVE_IMAGE_MOTION, input.motion},
-                                      {ALCOVE_IMAGE_ROUGHNESS, input.roughness},
-                                      {ALCOVE_IMAGE_BACK_DEPTH, input.back_depth_ndc},
-                                      {ALCOVE_IMAGE_SECOND_DEPTH, input.second_depth_ndc}})
-      if (image != nullptr) textures[role] = upload(graph, *image);
-    add_view_of(graph, info, input.index, settings, textures);
-    for (const auto role :
-         {ALCOVE_IMAGE_VISIBILITY, ALCOVE_IMAGE_BENT_NORMAL, ALCOVE_IMAGE_SPECULAR})
-      if (textures[role]) read_back(graph, textures[role]);
+    for (const InputMember& each : kInputs)
+      if (const HostImage& image = view.*each.texels;
+          each.role != ALCOVE_IMAGE_ALBEDO && !image.texels.empty())
+        textures[each.role] = upload(graph, image);
+    add_view_of(graph, view_info(view), index, view.settings, textures);
+    for (const OutputMember& each : kOutputs)
+      if (textures[each.role]) read_back(graph, textures[each.role]);
   });
-  OcclusionImages images;
-  if (!results_.empty()) images.visibility = results_[0];
-  if (settings.bent_normal && results_.size() > 1) images.bent_normal = results_[1];
-  if (settings.specular != ALCOVE_SPECULAR_NONE && results_.size() > 1)
-    images.specular = results_.back();
-  return images;
+  HostOutputs outputs;
+  std::size_t next = 0;
+  for (const OutputMember& each : kOutputs)
+    if (textures[each.role] && next < results_.size()) outputs.*each.texels = results_[next++];
+  return outputs;
 }
 
 void PassTest::poison_memory(std::uint32_t width, std::uint32_t height) {

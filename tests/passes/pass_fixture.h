@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cctype>
 #include <cstdint>
 #include <functional>
@@ -55,6 +56,62 @@ void expect_error(const Result& result, const std::string& message) {
   EXPECT_TRUE(text.ends_with('.') && std::isupper(static_cast<unsigned char>(text[0]))) << text;
 }
 
+// A view in host memory. An input without texels is not given.
+struct HostView {
+  std::uint32_t id = 0;
+  AlcoveCamera view{};
+  AlcoveCamera previous_view = view;
+  bool reset = false;  // resets the history first
+  std::uint32_t static_frames = 0;
+  VkExtent2D largest_size{};
+  VkExtent2D previous_size{};
+  HostImage depth_ndc;
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;
+  HostImage normals;
+  bool normals_in_view_space = true;
+  HostImage motion;
+  HostImage roughness;
+  HostImage back_depth_ndc;
+  HostImage second_depth_ndc;
+  HostImage albedo;
+  OcclusionSettings settings;  // their flags say which outputs are requested
+  bool multi_bounce = false;
+};
+
+// The outputs of a view. One that is not requested has no texels.
+struct HostOutputs {
+  HostImage visibility;
+  HostImage bent_normal;
+  HostImage specular;
+  HostImage multi_bounce;
+};
+
+// An image in host memory, and its role.
+struct InputMember {
+  HostImage HostView::*texels;
+  AlcoveImageRole role;
+};
+struct OutputMember {
+  HostImage HostOutputs::*texels;
+  AlcoveImageRole role;
+};
+inline constexpr std::array kInputs{
+    InputMember{&HostView::depth_ndc, ALCOVE_IMAGE_DEPTH},
+    InputMember{&HostView::normals, ALCOVE_IMAGE_NORMALS},
+    InputMember{&HostView::motion, ALCOVE_IMAGE_MOTION},
+    InputMember{&HostView::roughness, ALCOVE_IMAGE_ROUGHNESS},
+    InputMember{&HostView::back_depth_ndc, ALCOVE_IMAGE_BACK_DEPTH},
+    InputMember{&HostView::second_depth_ndc, ALCOVE_IMAGE_SECOND_DEPTH},
+    InputMember{&HostView::albedo, ALCOVE_IMAGE_ALBEDO}};
+inline constexpr std::array kOutputs{
+    OutputMember{&HostOutputs::visibility, ALCOVE_IMAGE_VISIBILITY},
+    OutputMember{&HostOutputs::bent_normal, ALCOVE_IMAGE_BENT_NORMAL},
+    OutputMember{&HostOutputs::specular, ALCOVE_IMAGE_SPECULAR},
+    OutputMember{&HostOutputs::multi_bounce, ALCOVE_IMAGE_MULTI_BOUNCE}};
+
+// Returns what the C interface takes for a view, without settings.
+AlcoveViewInfo view_info(const HostView& view);
+
 struct Drawing;
 
 // Runs passes on the machine's Vulkan device under the validation layers. Any message of the layers
@@ -82,27 +139,6 @@ class PassTest : public testing::Test {
   // Runs the frame that `declare` declares. Fails the test if it cannot be run.
   void run(const std::function<void(framegraph::Graph&)>& declare);
 
-  // Runs add_view() for frame `frame.index` and returns its images.
-  struct OcclusionFrame {
-    AlcoveCamera view{};
-    const HostImage& depth_ndc;
-    const HostImage* normal_vs = nullptr;  // null: from depth
-    const HostImage* motion = nullptr;     // null: none
-    AlcoveCamera previous_view = view;
-    std::uint32_t index = 0;
-    bool reset = false;                         // resets the history first
-    const HostImage* back_depth_ndc = nullptr;  // null: none
-    const HostImage* second_depth_ndc = nullptr;
-    const HostImage* roughness = nullptr;
-    VkExtent2D previous_size{};
-    VkExtent2D largest_size{};
-    VkFormat depth_format = VK_FORMAT_UNDEFINED;
-  };
-  struct OcclusionImages {
-    HostImage visibility;
-    HostImage bent_normal;  // empty if not requested, as is specular
-    HostImage specular;
-  };
   // Adds the occlusion of a view to a graph. Fails the test if it is refused.
   void add_view_of(framegraph::Graph& graph, const AlcoveViewInfo& view, std::uint32_t index,
                    const OcclusionSettings& settings, ViewTextures& textures) {
@@ -110,11 +146,12 @@ class PassTest : public testing::Test {
         sample::add_occlusion(graph, gpu().pipelines(), view, index, settings, textures);
     ASSERT_TRUE(added) << added.error().message;
   }
-  OcclusionImages run_occlusion(const OcclusionFrame& frame, const OcclusionSettings& settings);
+  // Runs add_view() for frame `index` and returns its outputs. `albedo` is not an input.
+  HostOutputs run_occlusion(const HostView& view, std::uint32_t index = 0);
   // Runs frame `index` of a drawing with its normals, and with its depth as second depth. Frame 0
   // resets the history first.
-  OcclusionImages render(const Drawing& drawing, const OcclusionSettings& settings,
-                         std::uint32_t index = 0);
+  HostOutputs render(const Drawing& drawing, const OcclusionSettings& settings,
+                     std::uint32_t index = 0);
 
   // Fills the device memory that transients of about this size will use with NaN, so that the test
   // notices texels that a pass does not write.

@@ -139,11 +139,11 @@ TEST_F(Reconstruct, AccumulatedBentNormalsRotateWithTheCamera) {
           draw(now, kWidth, kHeight,
                {wall(glm::dvec3(1.0, 0.0, 1.0)), wall(glm::dvec3(-1.0, 0.0, 1.0))});
       const HostImage bent = run_occlusion({.view = now.view,
-                                            .depth_ndc = drawing.depth_ndc,
-                                            .normal_vs = &drawing.normal_vs,
                                             .previous_view = frame == 0 ? now.view : before,
-                                            .index = frame},
-                                           settings)
+                                            .depth_ndc = drawing.depth_ndc,
+                                            .normals = drawing.normal_vs,
+                                            .settings = settings},
+                                           frame)
                                  .bent_normal;
       sum = glm::dvec3(0.0);
       for (std::size_t i = 0; i < bent.texels.size(); i += 4) {

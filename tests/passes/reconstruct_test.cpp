@@ -102,7 +102,7 @@ TEST_F(Reconstruct, ConstantRawOcclusionGivesConstantVisibilityInAnySceneAtAnyTi
   const TestView view = test_views()[2];
   std::vector<NamedScene> scenes = gtao_scenes();
   scenes.push_back({"grazing", {tilted_plane(75.0, 4.0)}});
-  Surface wires = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
+  Shape wires = plane({0.0, 0.0, -3.0}, {0.0, 0.0, 1.0});
   wires.keep = [](const glm::dvec3& p) { return std::abs(std::remainder(p.x, 0.9)) < 0.08; };
   scenes.push_back({"wires", {wires, tilted_plane(10.0, 8.0)}});
   for (const NamedScene& scene : scenes) {

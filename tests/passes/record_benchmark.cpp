@@ -49,7 +49,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance insta
 // Returns the median time of alcoveRecordFrame in microseconds, or a negative number if it fails.
 double median_microseconds(const sample::VulkanDevice& device, bool library_alone,
                            bool all_outputs) {
-  Engine engine(device);
+  TestEngine engine(device);
   AlcoveContextInfo info = engine.context_info();
   info.timestamps = VK_FALSE;
   if (library_alone) info.get_instance_proc_addr = get_instance_proc_addr;
@@ -75,7 +75,7 @@ double median_microseconds(const sample::VulkanDevice& device, bool library_alon
   std::vector<double> times;
   bool good = true;
   for (frame.index = 0; good && frame.index < 2000; ++frame.index) {
-    frame.slot = frame.index % Engine::kSlots;
+    frame.slot = frame.index % TestEngine::kSlots;
     view.info.previous_camera = view.info.camera;
     view.info.camera.view_from_world[12] = 0.01f * static_cast<float>(frame.index % 100);
     engine.submit(frame.slot, [&](VkCommandBuffer commands) {

@@ -9,7 +9,7 @@ namespace {
 
 class StaticNoise : public PassTest {
  protected:
-  OcclusionImages images(std::uint32_t index, const OcclusionSettings& settings) {
+  HostOutputs images(std::uint32_t index, const OcclusionSettings& settings) {
     return render(drawing_, settings, index);
   }
 
@@ -31,9 +31,9 @@ TEST_F(StaticNoise, FramesWithoutHistoryAreIdentical) {
     OcclusionSettings settings = all_outputs(quality);
     settings.history_frames = 0;
     settings.static_noise = 1;
-    const OcclusionImages first = images(0, settings);
+    const HostOutputs first = images(0, settings);
     for (const std::uint32_t index : {1u, 2u, 7u, 0xffffffffu}) {
-      const OcclusionImages next = images(index, settings);
+      const HostOutputs next = images(index, settings);
       EXPECT_EQ(next.visibility.texels, first.visibility.texels) << index;
       EXPECT_EQ(next.bent_normal.texels, first.bent_normal.texels) << index;
       EXPECT_EQ(next.specular.texels, first.specular.texels) << index;

@@ -19,16 +19,16 @@ class UnobservedDirectionsPass : public PassTest {
   // `horizons` by little more than the directions that it excludes.
   HostImage visibility(const TestView& view, const Drawing& drawing,
                        AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED,
-                       const HostImage* second_layer = nullptr) {
+                       const HostImage& second_layer = {}) {
     OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, kRadius);
     settings.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
-    settings.depth_layers = second_layer == nullptr ? 1 : 2;
+    settings.depth_layers = second_layer.texels.empty() ? 1 : 2;
     return run_occlusion({.view = view.view,
                           .depth_ndc = drawing.depth_ndc,
-                          .normal_vs = &drawing.normal_vs,
-                          .second_depth_ndc = second_layer},
-                         settings)
+                          .normals = drawing.normal_vs,
+                          .second_depth_ndc = second_layer,
+                          .settings = settings})
         .visibility;
   }
 };
@@ -42,11 +42,11 @@ std::vector<TestView> two_views() {
 Scene trench() {
   constexpr double kFloor = 4.5, kHalfWidth = 0.5, kDepth = 0.6;
   Scene scene = {plane({0.0, 0.0, -kFloor}, {0.0, 0.0, 1.0})};
-  Surface bank = plane({0.0, 0.0, kDepth - kFloor}, {0.0, 0.0, 1.0});
+  Shape bank = plane({0.0, 0.0, kDepth - kFloor}, {0.0, 0.0, 1.0});
   bank.keep = [](const glm::dvec3& p) { return std::abs(p.x) > kHalfWidth; };
   scene.push_back(bank);
   for (const double side : {-1.0, 1.0}) {
-    Surface wall = plane({side * kHalfWidth, 0.0, 0.0}, {-side, 0.0, 0.0});
+    Shape wall = plane({side * kHalfWidth, 0.0, 0.0}, {-side, 0.0, 0.0});
     wall.keep = [](const glm::dvec3& p) { return p.z > -kFloor && p.z < kDepth - kFloor; };
     scene.push_back(wall);
   }
@@ -54,8 +54,8 @@ Scene trench() {
 }
 
 // Returns a plate in front of everything to the right of `edge`, farther from it than the radius.
-Surface plate(double edge) {
-  Surface surface = plane({0.0, 0.0, -2.5}, {0.0, 0.0, 1.0});
+Shape plate(double edge) {
+  Shape surface = plane({0.0, 0.0, -2.5}, {0.0, 0.0, 1.0});
   surface.keep = [edge](const glm::dvec3& p) { return p.x > edge; };
   return surface;
 }
@@ -114,7 +114,7 @@ TEST_F(UnobservedDirectionsPass, BackgroundAtTheImageBorderIsAssumedToContinueBe
     SCOPED_TRACE(view.name);
     // The scene is half a trench, with nothing beside its floor.
     Scene scene = trench();
-    for (Surface& surface : scene) {
+    for (Shape& surface : scene) {
       const auto keep = surface.keep;
       surface.keep = [keep](const glm::dvec3& p) { return p.x < 0.1 && (!keep || keep(p)); };
     }
@@ -155,7 +155,7 @@ TEST_F(UnobservedDirectionsPass,
 TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExcluded) {
   const TestView view = two_views()[1];
   Scene scene = trench();
-  for (Surface& surface : scene) {
+  for (Shape& surface : scene) {
     const auto keep = surface.keep;
     surface.keep = [keep](const glm::dvec3& p) { return !keep || (p.x < 0.0 && keep(p)); };
   }
@@ -163,12 +163,12 @@ TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExc
   scene.push_back(plate(0.05));
   const Drawing drawing = draw(view, kWidth, kHeight, scene);
   const HostImage second = draw_second_layer(view, kWidth, kHeight, scene);
-  const auto error = [&](const HostImage* layer) {
+  const auto error = [&](const HostImage& layer) {
     return mean_difference(visibility(view, drawing, ALCOVE_ESTIMATOR_CONNECTED, layer), truth,
                            kWidth / 2 - 4, kWidth / 2);
   };
-  EXPECT_GT(error(nullptr), 0.05);
-  EXPECT_LT(error(&second), 0.2 * error(nullptr));
+  EXPECT_GT(error({}), 0.05);
+  EXPECT_LT(error(second), 0.2 * error({}));
 }
 
 }  // namespace

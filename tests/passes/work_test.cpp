@@ -41,8 +41,8 @@ std::ostream& operator<<(std::ostream& out, const Case& of) { return out << of.n
 class WorkExecution : public CInterface, public testing::WithParamInterface<Case> {
  protected:
   // Executes the list of `view` with outputs of its own.
-  Results execute(AlcoveView view, std::uint32_t index) {
-    for (const Output& each : kOutputs) {
+  HostOutputs execute(AlcoveView view, std::uint32_t index) {
+    for (const OutputMember& each : kOutputs) {
       AlcoveImage& image = view.images[each.role];
       if (image.image != VK_NULL_HANDLE) image = output(image.format, image.width, image.height);
     }
@@ -102,7 +102,7 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
       view.info.not_receiving = 1;
       view.info.not_occluding = 2;
     }
-    const Results expected = run_view(view, index);
+    const HostOutputs expected = run_view(view, index);
     expect_equal(execute(view, index), expected);
     EXPECT_EQ(work_->history_valid, index > 0 && from.settings.history_frames > 0 ? 1u : 0u);
   }
