@@ -12,7 +12,7 @@ layout(constant_id = 4) const bool kPerspective = true;
 layout(constant_id = 5) const bool kRoughnessTexture = false;
 layout(constant_id = 6) const int kRoughnessChannel = 0;
 layout(constant_id = 7) const bool kBackFaces = false;     // back_image tells the thickness
-layout(constant_id = 8) const bool kSecondLayer = false;   // second_image occludes too
+layout(constant_id = 8) const uint kSecondStepCount = 0;   // those in second_image; 0: without it
 layout(constant_id = 9) const uint kNormalEncoding = 0;    // an AlcoveNormalEncoding
 layout(constant_id = 10) const bool kReversed = false;     // raw depth is 1 at the near plane
 layout(constant_id = 11) const bool kInfiniteFar = false;  // the far plane is infinitely far away
@@ -20,6 +20,8 @@ layout(constant_id = 12) const bool kAreas = false;        // images are read in
 layout(constant_id = 13) const bool kMask = false;         // depth_image has kNoOccluder
 layout(constant_id = 14) const bool kUniform = false;      // directions have no cosine weight
 layout(constant_id = 15) const bool kHalfSearch = false;   // depth samples are of search_image
+
+const bool kSecondLayer = kSecondStepCount > 0u;
 
 layout(set = 0, binding = 0) uniform Parameters { GtaoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D depth_image;   // as the projection wrote it

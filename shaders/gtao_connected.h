@@ -215,11 +215,11 @@ Unobserved unobserved_columns(uvec2 samples, HalfSlice half_slice) {
 Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   SliceSample here;
   SegmentState state = first_state(half_slice, sectors, layer, here);
-  const uint rest = (kStepCount - 2u) % kUnrolled;
+  const uint rest = ((layer == 0u ? kStepCount : kSecondStepCount) - 2u) % kUnrolled;
   [[unroll]] for (uint i = 0u; i < rest; ++i) {
     pass_sample(state, here, half_slice, sectors, layer, 1u + i);
   }
-  uint last = step_count(half_slice) - 1u;
+  uint last = half_slice.steps - 1u;
   uint k = 1u + rest;
   if (k < last) do {
       [[unroll]] for (uint i = 0u; i < kUnrolled; ++i) {
@@ -247,7 +247,7 @@ Occluders find_occluders(HalfSlice half_slice, float sectors) {
   if (is_empty(half_slice)) return found;
   found = find_in_layer(half_slice, sectors, 0u);
   if (kSecondLayer) {
-    Occluders behind = find_in_layer(half_slice, sectors, 1u);
+    Occluders behind = find_in_layer(with_second_steps(half_slice), sectors, 1u);
     found.occluded |= behind.occluded;
     found.unobserved = behind.unobserved;
   }

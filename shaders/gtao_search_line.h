@@ -103,7 +103,7 @@ bool reaches_samples(Surface surface) {
 struct HalfSlice {
   SearchLine search_line;
   float side;            // +1 along the slice's direction, -1 against it
-  uint steps;            // number of samples, at most kStepCount
+  uint steps;            // number of samples
   float growth;          // by this much, half the interval between samples grows per sample; zero
                          // if there is nothing to search
   float step_offset;     // of all samples, in steps, [0,1)
@@ -151,12 +151,9 @@ uint reduced_steps(float reach_px) {
   return kStepCount - (kStepCount - wanted) / kUnrolled * kUnrolled;
 }
 
-// The number of samples of a half-slice.
-uint step_count(HalfSlice half_slice) { return kMayReduceSteps ? half_slice.steps : kStepCount; }
-
 // Offset of the last sample less that of the nearest.
 float reach_of(HalfSlice half_slice) {
-  float steps = float(step_count(half_slice));
+  float steps = float(half_slice.steps);
   return half_slice.growth * (steps * steps);
 }
 
@@ -201,7 +198,7 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
     half_slice.steps =
         reduced_steps((min(distance, border.x) - nearest) / search_line.offset_per_px);
   }
-  float steps = float(step_count(half_slice));
+  float steps = float(half_slice.steps);
   // Samples stay apart if the radius spans few pixels, and inside the image in any case.
   float apart = max(distance - nearest, 0.25 * steps * search_line.offset_per_px);
   float reach = max(min(apart, border.x - nearest), 1e-3 * search_line.offset_per_px);
@@ -211,6 +208,14 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
   half_slice.texel_bias =
       (kHalfSearch ? surface.pixel >> 1 : in_inputs(surface.pixel)) - kRoundingBits;
   half_slice.inverse_depth = surface.inverse_depth;
+  return half_slice;
+}
+
+// The half-slice with the samples of the second layer.
+HalfSlice with_second_steps(HalfSlice half_slice) {
+  float ratio = float(half_slice.steps) / float(kSecondStepCount);
+  half_slice.growth *= ratio * ratio;
+  half_slice.steps = kSecondStepCount;
   return half_slice;
 }
 

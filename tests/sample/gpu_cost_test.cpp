@@ -143,14 +143,15 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   EXPECT_THAT(search_iterations(settings, {loop(1, 0)}), IsEmpty())
       << "visibility has no loop over occluder runs";
   settings.depth_layers = 2;
+  EXPECT_THAT(search_iterations(settings, {loop(1, 8), loop(2, 8), loop(3, 2), loop(3, 2)}),
+              ElementsAre(2, 2, 7, 2))
+      << "16 steps in the first layer, 6 in the second";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 10), loop(2, 10), loop(3, 2)}),
+              ElementsAre(2, 2, 7))
+      << "the loop over steps of the second layer is unrolled";
   settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
-  EXPECT_THAT(search_iterations(settings, {loop(1, 48), loop(2, 48)}), ElementsAre(2, 2))
-      << "both depth layers share the loads of back faces";
-  settings.slices = 1;
-  settings.steps = 24;
-  EXPECT_THAT(search_iterations(settings, {loop(1, 28), loop(2, 8), loop(2, 8)}),
-              ElementsAre(2, 5, 5))
-      << "both layers share the loads of the steps outside of the loops, but not of those inside";
+  EXPECT_THAT(search_iterations(settings, {loop(1, 44), loop(2, 44)}), ElementsAre(2, 2))
+      << "both layers load the depth of back faces";
 }
 
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {

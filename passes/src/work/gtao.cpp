@@ -29,7 +29,7 @@ std::array<NamedConstant, 16> constants_of(const ViewInputs& view, const Depths&
            {"kRoughnessTexture", flag(rough)},
            {"kRoughnessChannel", channel_if(rough, settings.roughness_channel)},
            {"kBackFaces", flag(needs_back_depth(settings))},
-           {"kSecondLayer", flag(needs_second_depth(settings))},
+           {"kSecondStepCount", second_layer_steps(settings)},
            {"kNormalEncoding", encoding_of(view)},
            {"kReversed", flag(is_reversed(view.projection))},
            {"kInfiniteFar", flag(has_infinite_far(view.projection))},

@@ -1,6 +1,7 @@
 #include "gpu_cost/accesses.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -21,17 +22,16 @@ maths::SliceNoise noise_of(Texel tile, bool moves) {
       {static_cast<std::uint32_t>(tile.x), static_cast<std::uint32_t>(tile.y)}, kFrame, moves);
 }
 
-// The depth sample `step` of one half-slice, as in gtao_search_line.h.
+// The depth sample `step` of `steps` of one half-slice, as in gtao_search_line.h.
 ImageAccess depth_sample(const PassImage& image, const OcclusionSettings& settings, float radius_px,
-                         std::uint32_t slice, float side, std::uint32_t step) {
+                         std::uint32_t slice, float side, std::uint32_t step, std::uint32_t steps) {
   const auto tile_size = static_cast<std::int32_t>(settings.tile_size);
   const std::int32_t scale = image.name == "half depth" ? 2 : 1;
   radius_px /= static_cast<float>(scale);
-  const auto texel = [=, slices = settings.slices,
-                      steps = static_cast<float>(settings.steps)](Texel tile) {
+  const auto texel = [=, slices = settings.slices](Texel tile) {
     const maths::SliceNoise noise = noise_of(tile, tile_size > 1);
     const float angle = maths::slice_angle(slice, slices, noise.direction);
-    const float part = (static_cast<float>(step) + noise.offset) / steps;
+    const float part = (static_cast<float>(step) + noise.offset) / static_cast<float>(steps);
     const float px = side * (maths::kNearestStep + (radius_px - maths::kNearestStep) * part * part);
     const Texel traced{(tile.x * tile_size + tile_size / 2) / scale,
                        (tile.y * tile_size + tile_size / 4) / scale};
@@ -47,18 +47,24 @@ Accesses gtao_accesses(const PassWork& work) {
   const auto tile = static_cast<std::int32_t>(settings.tile_size);
   const Texel traced{tile / 2, tile / 4};
   Accesses accesses;
-  std::vector<const PassImage*> depths;
+  std::array<std::vector<const PassImage*>, 2> layers;  // of depths that are sampled together
   for (const PassImage& image : work.images) {
-    if (image.name == "half depth") depths.clear();
-    if (image.name.find("depth") != std::string::npos) depths.push_back(&image);
-    if (image.direction == Direction::read && depths.size() < 2 && image.name != "half depth")
+    const bool halved = image.name == "half depth", second = image.name == "second depth";
+    const bool back = image.name == "back-face depth";
+    if (halved) layers[0].clear();
+    if (image.name.find("depth") != std::string::npos) layers.at(second ? 1 : 0).push_back(&image);
+    if (back) layers[1].push_back(&image);
+    if (image.direction == Direction::read && layers[0].size() < 2 && !halved && !second)
       accesses.push_back(at_invocation(image, tile, traced));
   }
+  const std::array<std::uint32_t, 2> steps{settings.steps, passes::second_layer_steps(settings)};
   for (std::uint32_t slice = 0; slice < settings.slices; ++slice) {
     for (const float side : {1.0f, -1.0f}) {
-      for (std::uint32_t step = 0; step < settings.steps; ++step)
-        for (const PassImage* depth : depths)
-          accesses.push_back(depth_sample(*depth, settings, radius_px, slice, side, step));
+      for (std::size_t layer = 0; layer < layers.size(); ++layer)
+        for (std::uint32_t step = 0; step < steps.at(layer); ++step)
+          for (const PassImage* depth : layers.at(layer))
+            accesses.push_back(
+                depth_sample(*depth, settings, radius_px, slice, side, step, steps.at(layer)));
     }
   }
   for (const PassImage& image : work.images)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <utility>
 
@@ -15,82 +16,81 @@ using Loops = std::span<const CompiledLoop>;
 // integrated. The actual number depends on the scene.
 constexpr double kOccluderRuns = 2.5;
 
-// The numbers of depth samples that follow from the settings. A loop is identified by its number of
-// image loads, because compilers unroll some loops, so that the nesting depth of a loop does not
-// identify it.
+// The depth samples of gtao.comp. A loop is identified by its number of image loads, because
+// compilers unroll some loops, so that the nesting depth of a loop does not identify it.
 struct Samples {
-  std::uint32_t loads_per_step = 1;       // image loads of one step in one depth layer
-  std::uint32_t steps_per_iteration = 1;  // of the loop over steps, kUnrolled of gtao_search_line.h
-  std::uint32_t iterations = 1;           // of the loop over steps
-  std::uint32_t half_slice = 1;           // image loads of a half-slice
-  // Image loads of a half-slice whose loops over steps are unrolled. A texel of back faces that
-  // both depth layers need is then loaded once.
-  std::uint32_t unrolled_half_slice = 1;
-  // Image loads of a half-slice that shares them in the steps outside of its loops only.
-  std::uint32_t rolled_half_slice = 1;
+  std::uint32_t slices = 1;
+  std::uint32_t half_slice = 1;     // image loads of a half-slice
+  std::uint32_t per_iteration = 1;  // image loads of an iteration of the loops over steps
+  // How often the loops over steps of a half-slice run: one for each layer, without those that the
+  // compiler unrolled.
+  std::vector<std::uint32_t> iterations;
 };
 
-Samples samples_of(const OcclusionSettings& settings) {
+// `layers` is the number of layers whose loops over steps are not unrolled.
+Samples samples_of(const OcclusionSettings& settings, std::size_t layers) {
   const bool connected = settings.estimator == ALCOVE_ESTIMATOR_CONNECTED;
-  Samples samples;
-  samples.loads_per_step = passes::needs_back_depth(settings) ? 2 : 1;
-  samples.half_slice =
-      settings.steps * samples.loads_per_step * (passes::needs_second_depth(settings) ? 2 : 1);
-  samples.unrolled_half_slice = settings.steps * ((passes::needs_back_depth(settings) ? 1 : 0) +
-                                                  (passes::needs_second_depth(settings) ? 2 : 1));
-  samples.steps_per_iteration = connected ? (settings.slices > 1 ? 2 : 4) : 1;
+  // kUnrolled of gtao_search_line.h
+  const std::uint32_t steps_per_iteration = connected ? (settings.slices > 1 ? 2 : 4) : 1;
+  const std::uint32_t loads_per_step = passes::needs_back_depth(settings) ? 2 : 1;
+  const std::array<std::uint32_t, 2> steps{settings.steps, passes::second_layer_steps(settings)};
+  Samples samples{settings.slices,
+                  (steps[0] + steps[1]) * loads_per_step,
+                  steps_per_iteration * loads_per_step,
+                  {}};
   // With connected samples the first two steps, and a remainder, are outside of the loop.
-  samples.iterations =
-      connected ? (settings.steps - 2) / samples.steps_per_iteration : settings.steps;
-  const std::uint32_t rolled = samples.iterations * samples.steps_per_iteration;
-  samples.rolled_half_slice =
-      (rolled * samples.half_slice + (settings.steps - rolled) * samples.unrolled_half_slice) /
-      settings.steps;
+  for (std::size_t i = 0; i < layers; ++i)
+    samples.iterations.push_back((steps.at(i) - (connected ? 2 : 0)) / steps_per_iteration);
   return samples;
 }
 
-std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
-                                          std::uint32_t index);
+std::optional<double> sampling_iterations(const Samples& samples, Loops loops, std::size_t index);
 
 // Image loads in one iteration of a loop, those of its inner loops as often as they run.
-std::optional<double> loads_per_iteration(const OcclusionSettings& settings, Loops loops,
-                                          std::uint32_t index) {
+std::optional<double> loads_per_iteration(const Samples& samples, Loops loops, std::size_t index) {
   const CompiledLoop& loop = loops[index];
   double loads = loop.loads;
-  for (std::uint32_t i = index + 1; i < loops.size() && loops[i].depth > loop.depth; ++i) {
+  for (std::size_t i = index + 1; i < loops.size() && loops[i].depth > loop.depth; ++i) {
     const CompiledLoop& inner = loops[i];
     if (inner.depth != loop.depth + 1 || inner.loads == 0) continue;
-    const auto times = sampling_iterations(settings, loops, i);
-    const auto inside = times ? loads_per_iteration(settings, loops, i) : std::nullopt;
+    const auto times = sampling_iterations(samples, loops, i);
+    const auto inside = times ? loads_per_iteration(samples, loops, i) : std::nullopt;
     if (!inside) return std::nullopt;
     loads += *times * *inside - inner.loads;
   }
   return loads;
 }
 
-// Returns how often a loop with image loads runs: once for each step of a half-slice, each of the
-// two half-slices of a slice, or each slice of a pixel. Its number of loads decides which of these
-// loops it is.
-std::optional<double> sampling_iterations(const OcclusionSettings& settings, Loops loops,
-                                          std::uint32_t index) {
-  const Samples samples = samples_of(settings);
-  const auto loads = loads_per_iteration(settings, loops, index);
+// Returns how often a loop with image loads runs: once for each slice of a pixel, each of the two
+// half-slices of a slice, or each few steps of a half-slice in one layer. Its number of loads
+// decides which of these loops it is. The loops of the layers follow one another.
+std::optional<double> sampling_iterations(const Samples& samples, Loops loops, std::size_t index) {
+  const auto loads = loads_per_iteration(samples, loops, index);
   if (!loads) return std::nullopt;
-  for (const std::uint32_t half_slice :
-       {samples.half_slice, samples.unrolled_half_slice, samples.rolled_half_slice}) {
-    if (*loads == half_slice) return 2.0;
-    if (*loads == 2.0 * half_slice) return settings.slices;
-  }
-  if (*loads == samples.steps_per_iteration * samples.loads_per_step) return samples.iterations;
-  return std::nullopt;
+  if (*loads == samples.half_slice) return 2.0;
+  if (*loads == 2.0 * samples.half_slice) return samples.slices;
+  if (*loads != samples.per_iteration || samples.iterations.empty()) return std::nullopt;
+  std::size_t before = 0;
+  while (before < index && loops[index - before - 1].depth == loops[index].depth) ++before;
+  return samples.iterations[before % samples.iterations.size()];
 }
 
-// gtao.comp. With back faces there is a loop over the ends of occluder runs.
+// gtao.comp. The counts of its loops must add up to the samples of a half-slice, which tells which
+// loops over steps the compiler unrolled. With back faces there is a loop over the ends of occluder
+// runs.
 std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops loops,
-                                      std::uint32_t index) {
+                                      std::size_t index) {
   if (loops[index].loads == 0)
     return passes::needs_back_depth(settings) ? std::optional(kOccluderRuns) : std::nullopt;
-  return sampling_iterations(settings, loops, index);
+  for (const std::size_t layers : {2, 1, 0}) {
+    const Samples samples = samples_of(settings, layers);
+    const auto known = [&](std::size_t i) {
+      return loops[i].loads == 0 || sampling_iterations(samples, loops, i);
+    };
+    if (std::ranges::all_of(std::views::iota(std::size_t{0}, loops.size()), known))
+      return sampling_iterations(samples, loops, index);
+  }
+  return std::nullopt;
 }
 
 // reconstruct.comp. The outermost loop runs over the blocks of a column. The loops of sum_wide()
@@ -111,7 +111,7 @@ std::string_view name_of(FrameState state) {
 
 Result<std::vector<double>> loop_iterations(const PassWork& work, Loops loops) {
   std::vector<double> found;
-  for (std::uint32_t i = 0; i < loops.size(); ++i) {
+  for (std::size_t i = 0; i < loops.size(); ++i) {
     const CompiledLoop& loop = loops[i];
     const std::optional<double> known =
         work.pass == "gtao"          ? gtao_iterations(work.settings, loops, i)

@@ -3,6 +3,7 @@
 // report.json, the sliders of the window and the table of the README are made from it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -104,6 +105,14 @@ void set_setting(AlcoveSettings& settings, const SettingInfo& info, Value value)
 // Returns whether the image SECOND_DEPTH is read.
 [[nodiscard]] constexpr bool needs_second_depth(const AlcoveSettings& settings) {
   return settings.estimator == ALCOVE_ESTIMATOR_CONNECTED && settings.depth_layers > 1;
+}
+
+// Returns the number of depth samples of a half-slice in the second layer; 0 without that layer. It
+// shows only fragments of the hidden surfaces, so that a third of AlcoveSettings::steps suffices:
+// sample/lab/README.md has the errors. More than 16 could lie less than a pixel apart.
+[[nodiscard]] constexpr std::uint32_t second_layer_steps(const AlcoveSettings& settings) {
+  if (!needs_second_depth(settings)) return 0;
+  return std::clamp((settings.steps + 2) / 3, 2u, 16u);
 }
 
 // Returns the radius of the spatial filter in tiles, for pixels with fewer than two frames of
