@@ -88,6 +88,47 @@ TEST(CDiagnose, MistakeIsForgottenAfterItHasBeenMended) {
   EXPECT_EQ(diagnose(until(30)), "");
 }
 
+TEST(CDiagnose, SentenceLeavesAfterFramesThatCannotShowTheMistake) {
+  const auto stops_at = [](std::uint32_t end) {
+    return [end](AlcoveFrame& frame, AlcoveView& view) {
+      if (frame.index >= end)
+        view.info.camera = camera_at(0.1f * static_cast<float>(end - 1), 0.0f);
+      view.info.previous_camera = view.info.camera;
+    };
+  };
+  EXPECT_THAT(diagnose(stops_at(30)), HasSubstr("previous_camera is this frame's camera"));
+  EXPECT_EQ(diagnose(stops_at(7)), "");
+}
+
+// The eyes are `distance` apart on a path along x.
+TEST(CDiagnose, EyesThatAlternateAreToldFromACameraThatTrembles) {
+  const auto diagnose_eyes = [](float speed, float distance) {
+    return diagnose([&](AlcoveFrame& frame, AlcoveView& view) {
+      const auto at = [&](std::uint32_t i) {
+        return camera_at(speed * static_cast<float>(i) + distance * static_cast<float>(i % 2),
+                         0.0f);
+      };
+      view.info.camera = at(frame.index);
+      view.info.previous_camera = at(frame.index == 0 ? 0 : frame.index - 1);
+    });
+  };
+  EXPECT_THAT(diagnose_eyes(0.0f, 0.3f), HasSubstr("as if two eyes alternated"));
+  EXPECT_THAT(diagnose_eyes(0.5f, 0.3f), HasSubstr("as if two eyes alternated"));
+  EXPECT_EQ(diagnose_eyes(0.0f, 0.01f), "");
+}
+
+TEST(CDiagnose, HalfResolutionThatChangesAgainAndAgainIsReported) {
+  AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
+  const auto diagnose_changes = [&](std::uint32_t frames) {
+    return diagnose([&](AlcoveFrame& frame, AlcoveView& view) {
+      settings.half_resolution = frame.index / frames % 2;
+      view.info.settings = &settings;
+    });
+  };
+  EXPECT_THAT(diagnose_changes(1), HasSubstr("half_resolution changes again and again"));
+  EXPECT_EQ(diagnose_changes(20), "");
+}
+
 TEST(CDiagnose, ViewsThatAreDroppedOrHaveNoHistoryMayBeManyMore) {
   AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 1.0f);
   enum class Way { leak, drop, no_history };

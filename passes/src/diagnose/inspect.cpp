@@ -61,31 +61,34 @@ class Inspector {
       pictures_[1].view_from_world = to_rigid(previous.view_from_world);
   }
 
-  // Stops at the first mistake of the geometry, because others would be its consequences. Those
-  // that come after it in the list of mistakes are not noted.
+  // Stops at the first mistake of the geometry, because others would be its consequences. Those of
+  // the groups that are not compared are not noted.
   void run(Sightings& sightings) {
-    const bool sees_surfaces = surfaces() >= kEnoughSamples;
-    Mistake last = sees_surfaces ? Mistake::radius_too_large : Mistake::depth_from_minus_one;
-    Mistake found = mistake_of_depth();
-    if (found == Mistake::count && sees_surfaces) found = mistake_of_surfaces();
-    if (found == Mistake::count && frame_.has_normals) {
-      last = Mistake::jitter_wrong;
-      found = mistake_of_normals();
-    }
+    const Mistake* found = nullptr;
+    unsigned compared = 0;
+    // Returns whether a group is compared: nothing is wrong so far, and there is what shows it.
+    const auto compares = [&](MistakeGroup group, bool is_shown) {
+      if (found != nullptr || !is_shown) return false;
+      compared |= group;
+      return true;
+    };
+    if (compares(kByDepth, true)) found = mistake_of_depth();
+    if (compares(kBySurfaces, surfaces() >= kEnoughSamples)) found = mistake_of_surfaces();
+    if (compares(kByNormals, frame_.has_normals)) found = mistake_of_normals();
     const bool continues = pictures_.size() > 1 && frame_.continues_history();
     if (continues) note_size(sightings);
-    if (continues && found == Mistake::count && frame_.info.static_frames > 0) {
-      sightings.note(Mistake::static_in_motion, changes());
-    } else if (continues && found == Mistake::count) {
+    if (continues && frame_.info.static_frames > 0) {
+      if (found == nullptr) sightings.note(mistakes::static_in_motion, changes());
+    } else if (compares(kByCameras, continues)) {
       const CameraFit fit = fit_cameras(pictures_, given_);
-      last = Mistake::cameras_disagree;
       found = fit.mistake;
       measure_ = fit.measure;
       const auto motion =
           frame_.has_motion ? mistake_of_motion(pictures_, given_, fit.share) : std::nullopt;
-      if (motion) sightings.note_all(Mistake::motion_zero, Mistake::motion_disagrees, *motion);
+      if (motion) sightings.note_groups(kByMotion, *motion);
     }
-    sightings.note_all(Mistake::image_too_small, last, found, measure_);
+    if ((compared & (kByNormals | kByCameras)) != 0) compared |= kByGeometry;
+    sightings.note_groups(compared, found, measure_);
   }
 
  private:
@@ -95,19 +98,19 @@ class Inspector {
         frame_.samples, [](const PixelSample& s) { return !is_sky(s.depth); }));
   }
 
-  // Returns the first mistake that shows in depth, whatever is seen, or Mistake::count.
-  Mistake mistake_of_depth() const {
-    if (is_too_small()) return Mistake::image_too_small;
-    if (is_depth_outside()) return Mistake::depth_outside;
-    if (is_converted_from_minus_one()) return Mistake::depth_converted_from_minus_one;
-    if (is_depth_reversed()) return Mistake::depth_reversed;
-    return near_is_round_with(1.0) ? Mistake::depth_from_minus_one : Mistake::count;
+  // Returns the first mistake that shows in depth, whatever is seen, or null.
+  const Mistake* mistake_of_depth() const {
+    if (is_too_small()) return &mistakes::image_too_small;
+    if (is_depth_outside()) return &mistakes::depth_outside;
+    if (is_converted_from_minus_one()) return &mistakes::depth_converted_from_minus_one;
+    if (is_depth_reversed()) return &mistakes::depth_reversed;
+    return near_is_round_with(1.0) ? &mistakes::depth_from_minus_one : nullptr;
   }
 
   // Returns the first mistake that shows in the depth of surfaces.
-  Mistake mistake_of_surfaces() const {
-    if (is_depth_filtered()) return Mistake::depth_filtered;
-    if (is_another_format()) return Mistake::depth_format;
+  const Mistake* mistake_of_surfaces() const {
+    if (is_depth_filtered()) return &mistakes::depth_filtered;
+    if (is_another_format()) return &mistakes::depth_format;
     return mistake_of_radius();
   }
 
@@ -188,7 +191,7 @@ class Inspector {
     return depths.size() >= kEnoughSamples && (says_16_bits ? in_steps < 0.1 : in_steps > 0.99);
   }
 
-  Mistake mistake_of_radius() const {
+  const Mistake* mistake_of_radius() const {
     const double radius = frame_.settings.radius;
     std::vector<double> heights;  // of the radius at each sample, in heights of the image
     std::array<std::vector<double>, 3> places;
@@ -206,10 +209,10 @@ class Inspector {
       extent = std::max(extent, quantile(place, 0.95) - quantile(place, 0.05));
     // The radius is too small if it spans less than a pixel at 90 % of the samples. It is too large
     // if it spans more than two image heights at 90 %, or half of one and half of what is seen.
-    if (quantile(heights, 0.9) * frame_.size.height < 1.0) return Mistake::radius_too_small;
+    if (quantile(heights, 0.9) * frame_.size.height < 1.0) return &mistakes::radius_too_small;
     const double small = quantile(heights, 0.1);
-    return small > 2.0 || (small > 0.5 && radius > 0.5 * extent) ? Mistake::radius_too_large
-                                                                 : Mistake::count;
+    return small > 2.0 || (small > 0.5 && radius > 0.5 * extent) ? &mistakes::radius_too_large
+                                                                 : nullptr;
   }
 
   // A normal from depth and the given one at the same sample.
@@ -279,30 +282,30 @@ class Inspector {
     return judged ? quantile(angles, 0.5) : 0.0;
   }
 
-  // Returns the mistake that shows in depth and normals, or Mistake::count.
-  Mistake mistake_of_normals() {
-    Mistake found = best_reading(error_of(given_));
-    if (found == Mistake::count && now_.perspective && angles_to_view_axis_differ())
-      found = Mistake::field_of_view;
+  // Returns the mistake that shows in depth and normals, or null.
+  const Mistake* mistake_of_normals() {
+    const Mistake* found = best_reading(error_of(given_));
+    if (found == nullptr && now_.perspective && angles_to_view_axis_differ())
+      found = &mistakes::field_of_view;
     // A jitter in another unit shifts the whole projection.
     const double jitter =
         pictures_.size() > 1 ? maths::length(now_.jitter() - pictures_[1].jitter()) : 0.0;
-    if (found != Mistake::count && jitter > kLargestJitter) {
+    if (found != nullptr && jitter > kLargestJitter) {
       measure_ = jitter;
-      return Mistake::jitter_wrong;
+      return &mistakes::jitter_wrong;
     }
     measure_ = typical_angle();
-    return found == Mistake::count && measure_ > 25.0 ? Mistake::normals_disagree : found;
+    return found == nullptr && measure_ > 25.0 ? &mistakes::normals_disagree : found;
   }
 
   // Returns the mistake whose correction makes the given normals match those from depth, if there
   // is one. `now` is the error without a correction.
-  Mistake best_reading(double now) const {
+  const Mistake* best_reading(double now) const {
     // Normal maps tilt normals by some degrees from the surface.
-    if (now < 4.0) return Mistake::count;
+    if (now < 4.0) return nullptr;
     double least = std::min(0.4 * now, 15.0);
-    Mistake best = Mistake::count;
-    const auto consider = [&](Mistake mistake, const Reading& reading) {
+    const Mistake* best = nullptr;
+    const auto consider = [&](const Mistake* mistake, const Reading& reading) {
       const double error = error_of(reading);
       if (error < least - 0.1) {
         least = error;
@@ -317,24 +320,24 @@ class Inspector {
             ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, ALCOVE_NORMAL_ENCODING_OCTAHEDRAL,
             ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL}) {
         reading.normals.encoding = encoding;
-        consider(
-            encoding == given_.normals.encoding ? Mistake::normal_space : Mistake::normal_encoding,
-            reading);
+        consider(encoding == given_.normals.encoding ? &mistakes::normal_space
+                                                     : &mistakes::normal_encoding,
+                 reading);
       }
     }
     reading = given_;
     if (given_.normals.in_view_space) {
       reading.normals.forward_z = !given_.normals.forward_z;
-      consider(Mistake::normal_forward_z, reading);
+      consider(&mistakes::normal_forward_z, reading);
       reading = given_;
       reading.transposed_normals = true;
-      consider(Mistake::normals_transposed, reading);
+      consider(&mistakes::normals_transposed, reading);
     } else {
       reading.invert_view = true;
-      consider(Mistake::view_inverted, reading);
+      consider(&mistakes::view_inverted, reading);
     }
-    for_projections(now_, given_, [&](Mistake mistake, const Reading& projection) {
-      if (mistake == Mistake::field_of_view) least = std::min(least, 3.1);
+    for_projections(now_, given_, [&](const Mistake* mistake, const Reading& projection) {
+      if (mistake == &mistakes::field_of_view) least = std::min(least, 3.1);
       consider(mistake, projection);
     });
     return best;
@@ -371,7 +374,7 @@ class Inspector {
   void note_size(Sightings& sightings) const {
     const InspectedFrame& before = pictures_[1].frame;
     if (to_vector(frame_.size) != to_vector(before.size)) {
-      sightings.note(Mistake::size_changes,
+      sightings.note(mistakes::size_changes,
                      to_vector(frame_.depth_size) == to_vector(before.depth_size) &&
                          frame_.info.largest_width == 0);
     }

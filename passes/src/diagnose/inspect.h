@@ -3,44 +3,57 @@
 // states, in one frame and from frame to frame.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "alcove/alcove.h"
+#include "diagnose/mistakes.h"
 
 namespace alcove::passes {
 
-enum class Mistake : std::uint8_t {
-#define ALCOVE_MISTAKE(name, sentence) name,
-#include "diagnose/mistakes.inc"
-#undef ALCOVE_MISTAKE
-  count,  // also: no mistake
-};
-
-// The frames of a view that could show a mistake.
+// The frames of a view that could show a mistake, from the first that showed it.
 struct Sighting {
+  const Mistake* mistake = nullptr;
   std::uint32_t frames = 0;  // a bit for each of them, the newest first: whether it showed
   float measure = 0.0f;      // the number of the sentence, where there is one
+  std::uint32_t last = 0;    // the record of the view in which it was noted last that it showed
 };
 
 class Sightings {
  public:
-  void note(Mistake mistake, bool is_seen, double measure = 0.0) {
-    Sighting& sighting = of_.at(static_cast<std::size_t>(mistake));
-    sighting.frames = sighting.frames << 1 | (is_seen ? 1 : 0);
-    if (is_seen) sighting.measure = static_cast<float>(measure);
+  void begin_record() { ++record_; }
+  // Notes whether a frame shows a mistake.
+  void note(const Mistake& mistake, bool is_seen, double measure = 0.0) {
+    const auto place = std::ranges::find_if(seen_, [&](const Sighting& sighting) {
+      return sighting.mistake == &mistake || sighting.mistake == nullptr;
+    });
+    if (place->mistake == nullptr && !is_seen) return;
+    place->mistake = &mistake;
+    place->frames = place->frames << 1 | (is_seen ? 1 : 0);
+    if (!is_seen) return;
+    place->measure = static_cast<float>(measure);
+    place->last = record_;
   }
-  // Notes that a frame shows `found`, and no other mistake from `first` to `last`.
-  void note_all(Mistake first, Mistake last, Mistake found, double measure = 0.0) {
-    for (int i = static_cast<int>(first); i <= static_cast<int>(last); ++i)
-      note(static_cast<Mistake>(i), static_cast<Mistake>(i) == found, measure);
+  // Notes that a frame shows `found`, if it is not null, and no other mistake of these groups.
+  void note_groups(unsigned groups, const Mistake* found, double measure = 0.0) {
+    for (Sighting& sighting : seen_)
+      if (sighting.mistake != nullptr && sighting.mistake != found &&
+          (sighting.mistake->group & groups) != 0)
+        sighting.frames <<= 1;
+    if (found != nullptr) note(*found, true, measure);
   }
-  const Sighting& operator[](std::size_t mistake) const { return of_.at(mistake); }
+  // Frames that cannot show a mistake count too, so that its sentence leaves when the engine no
+  // longer does what was wrong.
+  bool is_recent(const Sighting& sighting) const { return record_ - sighting.last < 32; }
+  auto begin() const { return seen_.begin(); }
+  auto end() const { return seen_.end(); }
 
  private:
-  std::array<Sighting, static_cast<std::size_t>(Mistake::count)> of_{};
+  std::uint32_t record_ = 0;
+  std::array<Sighting, 64> seen_{};  // more than there are mistakes
 };
 
 // A sampled pixel: its depth and those of its four neighbours, its normal and its motion vector,

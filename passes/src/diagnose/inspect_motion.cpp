@@ -160,25 +160,27 @@ CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given
   // A hypothesis must explain most samples, and more than those before it, which are simpler. If
   // almost no sample stays on the image, a hypothesis under which samples stay is right.
   double most = std::max(kFits, share + 0.3);
-  const auto consider = [&](Mistake mistake, double measure, const Displacements& displaced) {
+  const auto consider = [&](const Mistake* mistake, double measure,
+                            const Displacements& displaced) {
     const double its_share = explained(displaced);
     if (its_share <= most) return;
     most = its_share + 0.02;
     fit.mistake = mistake;
     fit.measure = measure;
   };
-  const auto consider_reading = [&](Mistake mistake, const Reading& reading) {
+  const auto consider_reading = [&](const Mistake* mistake, const Reading& reading) {
     consider(mistake, 0.0, displacements(now, before, now.eye(reading), before.eye(reading)));
   };
   if (pictures.size() > 2) {
     const Picture& oldest = pictures[2];
-    consider(Mistake::camera_of_another_frame, 0.0, displacements(before, oldest, eye, eye_before));
-    consider(Mistake::camera_of_another_frame, 0.0,
+    consider(&mistakes::camera_of_another_frame, 0.0,
+             displacements(before, oldest, eye, eye_before));
+    consider(&mistakes::camera_of_another_frame, 0.0,
              displacements(now, before, eye_before, oldest.eye(given)));
   }
   Reading inverted = given;
   inverted.invert_view = true;
-  consider_reading(Mistake::view_inverted, inverted);
+  consider_reading(&mistakes::view_inverted, inverted);
   for_projections(now, given, consider_reading);
   // Jitter: the whole image is shifted from where the cameras expect it. A change of the size may
   // also move the view axis.
@@ -190,9 +192,9 @@ CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given
                  [&](const dvec3& by) { return shifted(by_cameras, by); });
     const dvec2 in_depth = in_cameras - dvec2(shift);
     if (std::abs(in_depth.x) < 1.2 && std::abs(in_depth.y) < 1.2) {
-      consider(maths::length(in_cameras) < 0.02 ? Mistake::jitter_missing
-               : maths::length(in_depth) < 0.1  ? Mistake::jitter_unused
-                                                : Mistake::jitter_wrong,
+      consider(maths::length(in_cameras) < 0.02 ? &mistakes::jitter_missing
+               : maths::length(in_depth) < 0.1  ? &mistakes::jitter_unused
+                                                : &mistakes::jitter_wrong,
                maths::length(shift), shifted(by_cameras, shift));
     }
   }
@@ -209,30 +211,30 @@ CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given
       scale > 0.0 && maths::length(best - scale * translation) < 0.1 * maths::length(best);
   const bool has_none =
       dvec3(now.view_from_world[3]) == dvec3(0.0) && dvec3(before.view_from_world[3]) == dvec3(0.0);
-  consider(has_none    ? Mistake::no_translation
-           : is_scaled ? Mistake::translation_scale
-                       : Mistake::translation_wrong,
+  consider(has_none    ? &mistakes::no_translation
+           : is_scaled ? &mistakes::translation_scale
+                       : &mistakes::translation_wrong,
            scale, by_translation(best));
-  if (fit.mistake != Mistake::count) return fit;
+  if (fit.mistake != nullptr) return fit;
   // Where objects move, depth alone does not tell whether the cameras fit.
   const bool shows = by_cameras.size() >= kEnoughSamples && !now.frame.has_motion &&
                      share_in_place(by_cameras) <= 0.25;
   const double jitter = maths::length(in_cameras);
   if (has_none) {
-    fit.mistake = Mistake::no_translation;
+    fit.mistake = &mistakes::no_translation;
   } else if (shows && jitter > kLargestJitter) {
-    fit.mistake = Mistake::jitter_wrong;
+    fit.mistake = &mistakes::jitter_wrong;
     fit.measure = jitter;
   } else if (shows) {
-    fit.mistake = Mistake::cameras_disagree;
+    fit.mistake = &mistakes::cameras_disagree;
     fit.measure = 100.0 * (1.0 - share);
   }
   return fit;
 }
 
 // Compares the motion vectors with the motion that the cameras give to static surfaces.
-std::optional<Mistake> mistake_of_motion(const std::vector<Picture>& pictures, const Reading& given,
-                                         double share_of_cameras) {
+std::optional<const Mistake*> mistake_of_motion(const std::vector<Picture>& pictures,
+                                                const Reading& given, double share_of_cameras) {
   if (share_of_cameras <= kMisfits) return std::nullopt;
   struct Vector {
     dvec2 stored;
@@ -275,11 +277,11 @@ std::optional<Mistake> mistake_of_motion(const std::vector<Picture>& pictures, c
     return dvec2(quantile(rests[0], 0.5), quantile(rests[1], 0.5));
   };
   const double with_given = share(dvec2(1.0), dvec2(0.0));
-  if (with_given >= kMisfits) return Mistake::count;
+  if (with_given >= kMisfits) return nullptr;
   const double zeros = share_of(
       vectors, [&](const Vector& v) { return maths::length(scale * v.stored * eye.size) < 0.02; });
-  if (zeros > 0.9) return Mistake::motion_zero;
-  Mistake found = Mistake::count;
+  if (zeros > 0.9) return &mistakes::motion_zero;
+  const Mistake* found = nullptr;
   double most = std::max(kFits, with_given + 0.3);
   for (const bool has_offset : {false, true}) {
     for (const dvec2& unit : {dvec2(1.0), dvec2(0.5), dvec2(2.0), 1.0 / eye.size, eye.size}) {
@@ -291,14 +293,14 @@ std::optional<Mistake> mistake_of_motion(const std::vector<Picture>& pictures, c
         const double other = share(factor, shift);
         if (other <= most + 0.02) continue;
         most = other;
-        found = unit != dvec2(1.0)   ? Mistake::motion_unit
-                : sign != dvec2(1.0) ? Mistake::motion_sign
-                                     : Mistake::motion_offset;
+        found = unit != dvec2(1.0)   ? &mistakes::motion_unit
+                : sign != dvec2(1.0) ? &mistakes::motion_sign
+                                     : &mistakes::motion_offset;
       }
     }
   }
-  const bool disagrees = found == Mistake::count && share_of_cameras > kFits && with_given < 0.25;
-  return disagrees ? Mistake::motion_disagrees : found;
+  const bool disagrees = found == nullptr && share_of_cameras > kFits && with_given < 0.25;
+  return disagrees ? &mistakes::motion_disagrees : found;
 }
 
 }  // namespace alcove::passes

@@ -25,12 +25,6 @@ bool same(const AlcoveCamera& a, const AlcoveCamera& b) {
   return same(a.clip_from_view, b.clip_from_view) && same(a.view_from_world, b.view_from_world);
 }
 
-constexpr const char* kSentences[] = {
-#define ALCOVE_MISTAKE(name, sentence) sentence,
-#include "diagnose/mistakes.inc"
-#undef ALCOVE_MISTAKE
-};
-
 VkExtent2D read_size(const AlcoveView& view) {
   const AlcoveArea& read = view.info.read_area;
   const AlcoveImage& depth = view.images[ALCOVE_IMAGE_DEPTH];
@@ -39,19 +33,19 @@ VkExtent2D read_size(const AlcoveView& view) {
 }
 
 // `seen` has a bit for each frame that could show the mistake.
-bool is_reported(Mistake mistake, std::uint32_t seen) {
-  switch (mistake) {
-    case Mistake::index_goes_back:  // once it may, for example when a game restarts
-      return std::popcount(seen) >= 2;
-    case Mistake::index_repeats:  // in every second record if a view is recorded twice a frame
-      return std::popcount(seen & 0xffu) >= 3;
-    case Mistake::history_reset:  // a film may have a cut or two
-      return std::popcount(seen & 0xffffu) >= 3;
-    case Mistake::eyes_alternate:  // a camera may tremble
-      return (seen & 0xffu) == 0xffu;
-    default:
-      return std::popcount(seen & 0xffu) >= 5;
-  }
+bool is_reported(const Mistake& mistake, std::uint32_t seen) {
+  if (&mistake == &mistakes::index_goes_back)  // once it may, for example when a game restarts
+    return std::popcount(seen) >= 2;
+  if (&mistake == &mistakes::index_repeats)  // in every second record of a view recorded twice
+    return std::popcount(seen & 0xffu) >= 3;
+  if (&mistake == &mistakes::slot_reused)  // a right frame never shows it
+    return std::popcount(seen & 0xffu) >= 2;
+  if (&mistake == &mistakes::history_reset ||  // a film may have a cut or two
+      &mistake == &mistakes::resolution_changes)
+    return std::popcount(seen & 0xffffu) >= 3;
+  if (&mistake == &mistakes::eyes_alternate)  // a camera may shake
+    return (seen & 0xffu) == 0xffu;
+  return std::popcount(seen & 0xffu) >= 5;
 }
 
 maths::dvec3 eye_of(const AlcoveCamera& camera) {
@@ -97,34 +91,42 @@ void MistakeFinder::drop_view(std::uint32_t id) {
 void MistakeFinder::judge(View& view, const AlcoveView& given, std::uint32_t index) {
   const AlcoveViewInfo& info = given.info;
   const AlcoveSettings& settings = *info.settings;
-  const auto note = [&](Mistake mistake, bool seen) { view.sightings.note(mistake, seen); };
+  const auto note = [&](const Mistake& mistake, bool seen) { view.sightings.note(mistake, seen); };
   const bool reset = info.reset_history != VK_FALSE;
   const bool reads_index = settings.static_noise == 0 || settings.history_frames > 0;
-  note(Mistake::index_repeats, reads_index && index == view.index);
-  note(Mistake::index_goes_back, reads_index && index < view.index);
-  note(Mistake::history_reset, reset);
+  note(mistakes::index_repeats, reads_index && index == view.index);
+  note(mistakes::index_goes_back, reads_index && index < view.index);
+  note(mistakes::history_reset, reset);
+  note(mistakes::resolution_changes, settings.half_resolution != view.half_resolution);
   if (reset || settings.history_frames == 0) return;
-  // Two steps in opposite directions.
+  // Two eyes: on a smooth path, the second difference of their places alternates along the camera's
+  // x axis. It is twice the distance of the eyes, which is more than a camera trembles.
   const maths::dvec3 step = eye_of(info.camera) - view.eyes[0];
   const maths::dvec3 last_step = view.eyes[0] - view.eyes[1];
-  const double length = maths::length(step), last_length = maths::length(last_step);
-  note(Mistake::eyes_alternate, std::min(length, last_length) > 1e-3 * settings.radius &&
-                                    maths::dot(step, last_step) < -0.7 * length * last_length);
+  const maths::dvec3 bend = step - last_step;
+  const maths::dvec3 last_bend = last_step - (view.eyes[1] - view.eyes[2]);
+  const maths::dmat4 axes = maths::transpose(to_rigid(info.camera.view_from_world));
+  const double length = maths::length(bend);
+  note(mistakes::eyes_alternate,
+       length > 0.07 * settings.radius &&
+           std::min(maths::length(step), maths::length(last_step)) > 0.01 * length &&
+           maths::length(bend + last_bend) < 0.2 * length &&
+           std::abs(maths::dot(bend, maths::dvec3(axes[0]))) > 0.9 * length);
   if (!same(info.camera, view.camera)) {
     const bool is_this = same(info.previous_camera, info.camera);
     const bool other_projection = same_rotation(info.previous_camera, view.camera);
     // The translation may differ: cameras may be relative to an origin that moves.
     const bool is_last =
         other_projection && same(info.previous_camera.clip_from_view, view.camera.clip_from_view);
-    note(Mistake::previous_is_this, is_this);
-    note(Mistake::projection_is_another, !is_last && !is_this && other_projection);
-    note(Mistake::previous_is_another, !is_last && !is_this && !other_projection);
-    note(Mistake::static_in_motion, info.static_frames > 0);
+    note(mistakes::previous_is_this, is_this);
+    note(mistakes::projection_is_another, !is_last && !is_this && other_projection);
+    note(mistakes::previous_is_another, !is_last && !is_this && !other_projection);
+    note(mistakes::static_in_motion, info.static_frames > 0);
   }
   const VkExtent2D size = read_size(given);
   const bool resized = size.width != view.size.width || size.height != view.size.height;
   if (resized && info.largest_width > 0) {
-    note(Mistake::previous_size_is_wrong,
+    note(mistakes::previous_size_is_wrong,
          info.previous_width != view.size.width || info.previous_height != view.size.height);
   }
 }
@@ -142,7 +144,9 @@ bool MistakeFinder::observe(const AlcoveFrame& frame) {
     view->has_history = given.info.settings->history_frames > 0;
     view->index = frame.index;
     view->camera = given.info.camera;
-    view->eyes = {eye_of(given.info.camera), view->eyes[0]};
+    view->eyes = {eye_of(given.info.camera), view->eyes[0], view->eyes[1]};
+    view->half_resolution = given.info.settings->half_resolution;
+    view->sightings.begin_record();
     view->size = read_size(given);
   }
   new_views_ = static_cast<std::uint8_t>(new_views_ << 1 | (is_new_ ? 1 : 0));
@@ -158,10 +162,12 @@ Sightings* MistakeFinder::sightings(std::uint32_t view_id) {
 std::string MistakeFinder::describe() const {
   std::string text = too_many_views_ ? std::string(kTooManyViews) + "\n" : std::string();
   for (const View& view : views_) {
-    for (std::size_t i = 0; view.used && i < std::size(kSentences); ++i) {
-      const auto& [seen, measure] = view.sightings[i];
-      if (!is_reported(static_cast<Mistake>(i), seen)) continue;
-      std::string sentence = kSentences[i];
+    for (const Sighting& sighting : view.sightings) {
+      const auto& [mistake, seen, measure, last] = sighting;
+      if (!view.used || mistake == nullptr || !is_reported(*mistake, seen) ||
+          !view.sightings.is_recent(sighting))
+        continue;
+      std::string sentence = mistake->sentence;
       if (const std::size_t at = sentence.find('#'); at != std::string::npos) {
         // One digit, so that the sentence stays the same from frame to frame.
         const float unit = std::pow(10.0f, std::floor(std::log10(std::max(measure, 1e-3f))));

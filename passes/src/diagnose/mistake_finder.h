@@ -36,7 +36,8 @@ class MistakeFinder {
     // Values of the last recorded frame:
     std::uint32_t index = 0;
     AlcoveCamera camera{};
-    std::array<maths::dvec3, 2> eyes{};  // of the last two records
+    std::array<maths::dvec3, 3> eyes{};  // of the last three records
+    std::uint32_t half_resolution = 0;
     VkExtent2D size{};
     Sightings sightings;
   };

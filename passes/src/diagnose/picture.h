@@ -145,24 +145,24 @@ void for_projections(const Picture& picture, const Reading& given, const Call& c
   Reading reading = given;
   reading.whole_image = true;
   if (is_smaller(picture.frame.size, picture.frame.depth_size))
-    call(Mistake::image_too_large, reading);
+    call(&mistakes::image_too_large, reading);
   reading = given;
   for (const dvec2& sign : {dvec2(1.0, -1.0), dvec2(-1.0, 1.0)}) {
     reading.tangent_scale = sign;
-    call(Mistake::flipped, reading);
+    call(&mistakes::flipped, reading);
   }
   // Factors by which the tangent of half the field of view, or the aspect, may be wrong.
   for (double scale = 0.25; picture.perspective && scale < 4.2; scale *= 1.03) {
     for (const dvec2& scales : {dvec2(scale), dvec2(scale, 1.0)}) {
       reading.tangent_scale = scales;
-      if (std::abs(std::log(scale)) > 0.05) call(Mistake::field_of_view, reading);
+      if (std::abs(std::log(scale)) > 0.05) call(&mistakes::field_of_view, reading);
     }
   }
 }
 
 // What depth of successive frames says of the cameras.
 struct CameraFit {
-  Mistake mistake = Mistake::count;
+  const Mistake* mistake = nullptr;
   double measure = 0.0;  // the number of the mistake's sentence
   double share = 0.0;    // of the samples that lie where the cameras expect them
 };
@@ -170,9 +170,9 @@ struct CameraFit {
 // `pictures` begins with the frame that is inspected, followed by one or two earlier frames, and
 // `given` is how their inputs are described.
 CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given);
-// Returns the mistake of the motion vectors, or Mistake::count, or nothing if the cameras do not
-// fit or do not move. `share` is that of fit_cameras().
-std::optional<Mistake> mistake_of_motion(const std::vector<Picture>& pictures, const Reading& given,
-                                         double share);
+// Returns the mistake of the motion vectors, or null if there is none, or nothing if the cameras do
+// not fit or do not move. `share` is that of fit_cameras().
+std::optional<const Mistake*> mistake_of_motion(const std::vector<Picture>& pictures,
+                                                const Reading& given, double share);
 
 }  // namespace alcove::passes

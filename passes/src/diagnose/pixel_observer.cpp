@@ -106,7 +106,7 @@ void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
   InspectedFrame& frame = pending.frame;
   Sightings* const sightings = finder.sightings(frame.info.id);
   if (sightings == nullptr) return;
-  sightings->note(Mistake::slot_reused, finished != frame.serial);
+  sightings->note(mistakes::slot_reused, finished != frame.serial);
   if (finished != frame.serial) return;
   const auto texel = [&](std::uint32_t x, std::uint32_t y) {
     Texel result;
