@@ -51,7 +51,6 @@ DATA = {
         "errors": [{"name": "medium", "image": png(120)}],
         "causes": [{"name": "noise: 10.0 %", "image": png(150)}],
         "summary": "A sentence.", "requirements": ["a second depth layer: 20 % less error"],
-        "gains": ["high over medium: error 5 % less standing"],
         "plan": "pass gtao\n  reads depth",
     }],
 }
@@ -73,6 +72,8 @@ window.addEventListener("load", () => setTimeout(() => {
   fire(canvas, "mousemove", box.left + at.x, box.top + at.y);
   fire(canvas, "click", box.left + at.x, box.top + at.y);
   found.errors = window.failures;
+  found.ticks = canvas.chart.scales.x.ticks.length;
+  found.texts = window.texts;
   found.width = document.documentElement.scrollWidth;
   setTimeout(() => {
     found.hover = canvas.chart.tooltip.body.map((part) => part.lines.join()).join();
@@ -97,6 +98,12 @@ window.addEventListener("load", () => setTimeout(() => {
 """
 CATCH = """<script>
 window.failures = [];
+window.texts = [];
+const draw = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+  window.texts.push(text);
+  return draw.call(this, text, ...at);
+};
 window.addEventListener("error", (event) => window.failures.push(String(event.message)));
 console.error = (...what) => window.failures.push(what.join(" "));
 console.warn = console.error;
@@ -193,6 +200,8 @@ def main():
     assert (found["ascending"], found["descending"]) == ("other", "low"), found
     narrow = answer("500,844")
     assert narrow["width"] <= 500, f"the page is {narrow['width']} pixels wide on a phone"
+    assert found["ticks"] >= 3 and narrow["ticks"] >= 3, "an axis without numbers"
+    assert "medium" in found["texts"], "a preset without its name"
     run("--window-size=1100,1800", f"--screenshot={folder}/wide.png", plain.as_uri())
     run("--window-size=500,1400", f"--screenshot={folder}/phone.png", plain.as_uri())
     run(f"--print-to-pdf={folder}/print.pdf", plain.as_uri())
