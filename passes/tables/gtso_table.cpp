@@ -35,10 +35,13 @@ GtsoLobe::GtsoLobe(float mirror_from_normal, float roughness, int samples)
 }
 
 float GtsoLobe::within(float cone, const vec3& axis) const {
-  const float rim = std::cos(cone);
+  // Chords, not cosines, are compared: near 0 a float has too few cosines for the narrowest lobe.
+  const float chord = 2.0f * std::sin(0.5f * cone);
   float sum = 0.0f;
-  for (std::size_t i = 0; i < weights_.size(); ++i)
-    sum += x_[i] * axis.x + y_[i] * axis.y + z_[i] * axis.z >= rim ? weights_[i] : 0.0f;
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    const float x = x_[i] - axis.x, y = y_[i] - axis.y, z = z_[i] - axis.z;
+    sum += x * x + y * y + z * z <= chord * chord ? weights_[i] : 0.0f;
+  }
   return std::min(sum, 1.0f);
 }
 

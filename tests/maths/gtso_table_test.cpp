@@ -81,6 +81,18 @@ TEST(GtsoTable, SpecularOcclusionOfFullyOpenFullyOccludedAndMirrorSurfacesIsExac
   }
 }
 
+// Around the normal, the lobe within a cone is a formula: of the microfacets that the view sees,
+// the fraction within half the cone's angle. At roughness 0 the cosines of these cones differ by
+// millionths.
+TEST(GtsoTable, FractionOfTheNarrowestLobeWithinNarrowConesIsThatOfTheFormula) {
+  const GtsoLobe lobe(0.0f, 0.0f, 4096);
+  for (const float width : {0.3f, 0.5f, 1.0f, 1.5f, 2.0f, 4.0f, 16.0f}) {
+    const float cone = width * maths::kSmallestAlpha;
+    const float squared = 0.25f * width * width;
+    EXPECT_NEAR(lobe.share(cone, 0.0f, 1), squared / (1.0f + squared), 2e-3f) << width;
+  }
+}
+
 // At roughness 1 only the last layer of the table is read. At the coordinates of an entry the value
 // is exact to 8 bits.
 TEST(GtsoTable, TableEntriesAtRoughnessOneEqualTheIntegralTo8Bits) {
