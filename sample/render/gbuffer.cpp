@@ -6,11 +6,13 @@
 #include <cstring>
 #include <utility>
 
+#include "gpu/occlusion.h"
 #include "render/shaders/gbuffer.h"
+#include "spirv/depth_fragment.h"
+#include "spirv/depth_vertex.h"
 #include "spirv/gbuffer_fragment.h"
 #include "spirv/gbuffer_vertex.h"
-#include "spirv/second_layer_fragment.h"
-#include "spirv/second_layer_vertex.h"
+#include "spirv/second_layer.h"
 
 namespace alcove::sample {
 namespace {
@@ -49,14 +51,17 @@ maths::GbufferMaterial convert(const Material& material) {
 constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
                                                  kEmissiveFormat};
 
+// The indices of the pipelines; the next index is the pipeline for reversed depth.
+enum PipelineIndex : std::size_t { kColoursAndDepth = 0, kDepthOnly = 2, kSecondDepth = 4 };
+
 // The numbers of the descriptor sets. Each material has a set of its own, because few devices allow
 // hundreds of textures in one set.
 constexpr std::uint32_t kFrameSet = 0;     // the parameters of the frame, with a dynamic offset
 constexpr std::uint32_t kLayerSet = 1;     // only of the second layer: the depth of the first one
 constexpr std::uint32_t kMaterialSet = 2;  // the textures and the parameters of a material
 
-// Locations are those of shaders/gbuffer_vertex.h. The attributes that the second layer reads come
-// first.
+// Locations are those of shaders/gbuffer_vertex.h. The attributes that drawing only depth needs
+// come first.
 constexpr VkVertexInputAttributeDescription attribute(std::uint32_t location, VertexStream stream,
                                                       VkFormat format, std::uint32_t offset = 0) {
   return {location, static_cast<std::uint32_t>(stream), format, offset};
@@ -138,7 +143,7 @@ VkResult GbufferRenderer::create_layout(const Scene& scene) {
   return VK_SUCCESS;
 }
 
-VkResult GbufferRenderer::create_pipelines(bool second_layer, bool geometric_normals) {
+VkResult GbufferRenderer::create_pipelines(std::size_t first_index, bool geometric_normals) {
   const std::uint32_t geometric = geometric_normals ? 1 : 0;
   const VkSpecializationMapEntry entry{0, 0, sizeof geometric};
   const VkSpecializationInfo specialisation{1, &entry, sizeof geometric, &geometric};
@@ -160,12 +165,15 @@ VkResult GbufferRenderer::create_pipelines(bool second_layer, bool geometric_nor
       .dynamic_states = {VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE,
                          VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE},
       .layout = layout_.handle()};
-  if (second_layer) {
-    description.vertex_code = kSecondLayerVertex;
-    description.fragment_code = kSecondLayerFragment;
+  if (first_index != kColoursAndDepth) {
+    description.vertex_code = kDepthVertex;
+    description.fragment_code = kDepthFragment;
+    if (first_index == kSecondDepth) description.fragment_code = kSecondLayer;
+    description.fragment_constants = nullptr;
     description.attributes = description.attributes.first(kDepthAttributes);
+    description.colour_formats = {};
   }
-  VkPipeline* const made = &pipelines_[second_layer ? 2 : 0];
+  VkPipeline* const made = &pipelines_[first_index];
   const VkResult result = create_pipeline(gpu_.device().device(), description, made[0]);
   description.depth_compare = VK_COMPARE_OP_GREATER;
   return result == VK_SUCCESS ? create_pipeline(gpu_.device().device(), description, made[1])
@@ -186,9 +194,14 @@ void GbufferRenderer::record(RecordContext& context, const Gbuffer& gbuffer,
                                             {gbuffer.albedo, &black},
                                             {gbuffer.motion, &black},
                                             {gbuffer.emissive, &black}};
-  begin_rendering(context, colours, {gbuffer.depth, &farthest});
+  const bool coloured{gbuffer.normal};
+  begin_rendering(context, std::span(colours).first(coloured ? std::size(colours) : 0),
+                  {gbuffer.depth, &farthest});
+  const std::size_t pipeline = coloured        ? kColoursAndDepth
+                               : drawing.first ? kSecondDepth
+                                               : kDepthOnly;
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                    pipelines_[(drawing.first ? 2 : 0) + (drawing.reversed_z ? 1 : 0)]);
+                    pipelines_[pipeline + (drawing.reversed_z ? 1 : 0)]);
   layout_.bind(commands, kFrameSet, layout_.set(kFrameSet, 0), {&drawing.parameters_offset, 1});
   if (drawing.first) {
     const VkDescriptorSet set = layout_.set(kLayerSet, context.frame_slot);
@@ -223,8 +236,8 @@ Result<std::unique_ptr<GbufferRenderer>> GbufferRenderer::create(Gpu& gpu, const
   std::unique_ptr<GbufferRenderer> made(new GbufferRenderer(gpu));
   ALCOVE_TRY_VOID(made->upload(scene));
   VkResult result = made->create_layout(scene);
-  for (const bool second_layer : {false, true})
-    if (result == VK_SUCCESS) result = made->create_pipelines(second_layer, geometric_normals);
+  for (const std::size_t first_index : {kColoursAndDepth, kDepthOnly, kSecondDepth})
+    if (result == VK_SUCCESS) result = made->create_pipelines(first_index, geometric_normals);
   if (result != VK_SUCCESS) return device_failure("create the pipelines of the g-buffer", result);
   return made;
 }
@@ -256,17 +269,28 @@ std::uint32_t GbufferRenderer::write_parameters(const GbufferView& view) {
 Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {
   Drawing drawing{view.reversed_z, write_parameters(view)};
   Gbuffer gbuffer = targets;
-  auto pass = graph.add_pass("g-buffer");
-  gbuffer.depth = pass.write(targets.depth, framegraph::access::depth_attachment, {},
+  const std::span<const GbufferTarget> colours(kGbufferTargets.begin() + 1, kColourFormats.size());
+  if (std::ranges::any_of(colours,
+                          [&](const auto& colour) { return bool{targets.*colour.texture}; })) {
+    // The fragment shader writes all colours, and Vulkan wants an attachment for each of them.
+    Gbuffer drawn = targets;
+    for (const auto& [texture, format, name] : colours)
+      if (!(drawn.*texture))
+        drawn.*texture = graph.create_texture(name, {format, extent_of(graph, targets.depth)});
+    auto pass = graph.add_pass("g-buffer");
+    drawn.depth = pass.write(targets.depth, framegraph::access::depth_attachment, {},
                              framegraph::Contents::discard);
-  for (Texture* target : {&gbuffer.normal, &gbuffer.albedo, &gbuffer.motion, &gbuffer.emissive}) {
-    if (*target) {
-      *target = pass.write(*target, framegraph::access::color_attachment, {},
-                           framegraph::Contents::discard);
+    for (const auto& [texture, format, name] : colours) {
+      drawn.*texture = pass.write(drawn.*texture, framegraph::access::color_attachment, {},
+                                  framegraph::Contents::discard);
+      if (targets.*texture) gbuffer.*texture = drawn.*texture;
     }
+    gbuffer.depth = drawn.depth;
+    pass.record(
+        [this, drawn, drawing](RecordContext& context) { record(context, drawn, drawing); });
+  } else {
+    gbuffer.depth = add_depth(graph, "g-buffer", targets.depth, drawing);
   }
-  pass.record(
-      [this, gbuffer, drawing](RecordContext& context) { record(context, gbuffer, drawing); });
   if (targets.back_depth) {
     drawing.culled = drawing.double_culled = VK_CULL_MODE_FRONT_BIT;
     gbuffer.back_depth = add_depth(graph, "back faces", targets.back_depth, drawing);

@@ -40,7 +40,7 @@ struct GbufferView {
 // Returns the view of an image of `size`, as one with a guard band of this many pixels shows it.
 [[nodiscard]] GbufferView with_guard_band(GbufferView view, VkExtent2D size, VkExtent2D band);
 
-// The textures that the rasterisation of a frame writes. A texture that is null is not drawn. Depth
+// The textures that the rasterisation of a frame writes. A texture that is null is not kept. Depth
 // is required.
 struct Gbuffer {
   framegraph::Texture depth;       // as the projection writes it; sky at the far plane
@@ -105,7 +105,7 @@ class GbufferRenderer {
   explicit GbufferRenderer(Gpu& gpu) : gpu_(gpu), layout_(gpu.device().device()) {}
   Result<void> upload(const Scene& scene);
   VkResult create_layout(const Scene& scene);
-  VkResult create_pipelines(bool second_layer, bool geometric_normals);
+  VkResult create_pipelines(std::size_t first_index, bool geometric_normals);
   // Writes the parameters of a view, and returns their offset in the parameter buffer.
   std::uint32_t write_parameters(const GbufferView& view);
   framegraph::Texture add_depth(framegraph::Graph& graph, const char* name,
@@ -122,7 +122,7 @@ class GbufferRenderer {
   std::optional<GbufferView> written_;      // the view that was written most recently
   std::uint32_t latest_ = 0;                // offset of its parameters
   PipelineLayout layout_;
-  std::array<VkPipeline, 4> pipelines_{};  // 2: of the second layer; 1: with reversed depth
+  std::array<VkPipeline, 6> pipelines_{};
 };
 
 }  // namespace alcove::sample

@@ -181,11 +181,7 @@ void begin_rendering(const framegraph::RecordContext& context,
                      std::span<const framegraph::Attachment> colours,
                      const framegraph::Attachment& depth) {
   std::vector<VkRenderingAttachmentInfo> infos;
-  for (const framegraph::Attachment& colour : colours) {
-    infos.push_back(colour.texture
-                        ? context.attachment(colour)
-                        : VkRenderingAttachmentInfo{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO});
-  }
+  for (const framegraph::Attachment& colour : colours) infos.push_back(context.attachment(colour));
   const VkRenderingAttachmentInfo depth_info =
       depth.texture ? context.attachment(depth) : VkRenderingAttachmentInfo{};
   const VkExtent3D size = context.extent(depth.texture ? depth.texture : colours[0].texture);

@@ -75,8 +75,8 @@ struct PipelineDescription {
 [[nodiscard]] VkResult create_pipeline(VkDevice device, PipelineDescription description,
                                        VkPipeline& pipeline);
 
-// Begins a rendering over the whole of the attachments, and sets viewport and scissor to it. What a
-// shader writes to a null colour attachment is discarded. `depth` may be null.
+// Begins a rendering over the whole of the attachments, and sets viewport and scissor to it.
+// `depth` may be null.
 void begin_rendering(const framegraph::RecordContext& context,
                      std::span<const framegraph::Attachment> colours,
                      const framegraph::Attachment& depth = {});
