@@ -12,6 +12,7 @@
 #include "evaluate/output_needs.h"
 #include "evaluate/situations.h"
 #include "evaluate/sweep.h"
+#include "gpu_cost/null_device.h"
 #include "gpu_cost/presets.h"
 #include "gpu_cost/xegtao.h"
 #include "report/report_page.h"
@@ -185,8 +186,13 @@ Result<void> run_report(const Options& options) {
   ALCOVE_TRY_VOID(report_page({}));
   Json data{{"size", fmt::format("{}x{}", options.view.width, options.view.height)},
             {"peers", Json::array()}};
+  std::string compiler;
+  if (options.clock == Clock::modelled) {
+    ALCOVE_TRY(const auto device, create_null_device(options.gpu->family));
+    compiler = device.compiler;
+  }
   for (const XeGtao& peer : {kXeGtao[1], kXeGtaoHigh}) {
-    if (options.clock != Clock::modelled) continue;
+    if (compiler != kXeGtaoCompiler) continue;
     data["peers"].push_back(
         {{"name", peer.name},
          {"ms", xegtao_ms(*options.gpu, peer, options.target_width, options.target_height)}});

@@ -40,9 +40,12 @@ std::string settings_rows(const SettingsCost& cost) {
   const CostInputs& inputs = cost.settings.inputs;
   const double peer_ms = xegtao_ms(*cost.part, kXeGtaoHigh, inputs.width, inputs.height);
   for (const ModelledFrame& frame : cost.frames) {
-    out += fmt::format("  {}, {} frame: {:.3f} ms, {:.2f} of {} at this size\n",
-                       cost.settings.label, name_of(frame.state), frame.milliseconds(),
-                       frame.milliseconds() / peer_ms, kXeGtaoHigh.name);
+    out += fmt::format("  {}, {} frame: {:.3f} ms", cost.settings.label, name_of(frame.state),
+                       frame.milliseconds());
+    if (cost.compiler == kXeGtaoCompiler)
+      out += fmt::format(", {:.2f} of {} at this size", frame.milliseconds() / peer_ms,
+                         kXeGtaoHigh.name);
+    out += "\n";
     for (const ModelledPass& pass : frame.passes) out += pass_row(pass);
   }
   if (!cost.assumed_ms.empty()) out += range_row(cost);
@@ -103,8 +106,9 @@ Json to_json(const SettingsCost& cost, double peer_ms) {
     for (const ModelledPass& pass : frame.passes) passes.push_back(to_json(pass));
     frames.push_back({{"frame", name_of(frame.state)},
                       {"ms", frame.milliseconds()},
-                      {"of_xegtao_high", frame.milliseconds() / peer_ms},
                       {"passes", std::move(passes)}});
+    if (cost.compiler == kXeGtaoCompiler)
+      frames.back()["of_xegtao_high"] = frame.milliseconds() / peer_ms;
   }
   Json occupancies = Json::array();
   for (const Occupancy& occupancy : cost.occupancies) {
@@ -128,7 +132,7 @@ Result<std::vector<SettingsCost>> model_costs(std::span<const LabelledSettings> 
     if (only != nullptr && only != &part) continue;
     ALCOVE_TRY(const auto device, create_null_device(part.family));
     for (const LabelledSettings& one : settings) {
-      SettingsCost cost{one, &part};
+      SettingsCost cost{one, &part, device.compiler};
       ALCOVE_TRY(cost.frames, modelled_frames(part, device, one.inputs));
       ALCOVE_TRY(cost.occupancies, occupancies(part, device, one.inputs));
       for (const CacheAssumptions& assumptions : kCacheAssumptions) {
@@ -149,8 +153,8 @@ std::string format_table(std::span<const SettingsCost> costs) {
     const auto first = std::ranges::find(costs, &part, &SettingsCost::part);
     if (first == costs.end()) continue;
     const CostInputs& size = first->settings.inputs;
-    out += fmt::format("{}: {}. Modelled milliseconds at {}x{};", part.name, part.title, size.width,
-                       size.height);
+    out += fmt::format("{}: {}. Modelled milliseconds at {}x{}, compiled by {}; by {}:", part.name,
+                       part.title, size.width, size.height, first->compiler, kXeGtaoCompiler);
     for (const XeGtao& peer : kXeGtao) {
       out += fmt::format("{} {} {:.3f}", &peer == kXeGtao.data() ? "" : ",", peer.name,
                          xegtao_ms(part, peer, size.width, size.height));
@@ -170,8 +174,10 @@ Json to_json(std::span<const SettingsCost> costs) {
   for (const GpuPart& part : kGpuParts) {
     Json settings = Json::array();
     Json peers = Json::object();
+    std::string compiler;
     for (const SettingsCost& cost : costs) {
       if (cost.part != &part) continue;
+      compiler = cost.compiler;
       const CostInputs& size = cost.settings.inputs;
       for (const XeGtao& peer : kXeGtao)
         peers[std::string(peer.name)] = xegtao_ms(part, peer, size.width, size.height);
@@ -180,7 +186,9 @@ Json to_json(std::span<const SettingsCost> costs) {
     if (!settings.empty()) {
       parts.push_back({{"gpu", part.name},
                        {"part", part.title},
+                       {"compiler", compiler},
                        {"peers_ms", std::move(peers)},
+                       {"compiler_of_peers", kXeGtaoCompiler},
                        {"settings", std::move(settings)}});
     }
   }

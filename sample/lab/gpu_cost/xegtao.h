@@ -25,6 +25,9 @@ inline constexpr std::array<XeGtao, 4> kXeGtao{{{"XeGTAO low", 1, 2, {1.645, .24
                                                 {"XeGTAO high", 3, 3, {3.40, .491, .243}},
                                                 {"XeGTAO ultra", 9, 3, {8.38, 1.143, .566}}}};
 inline constexpr const XeGtao& kXeGtaoHigh = kXeGtao[2];
+// The compiler of these times (NullDevice::compiler). Times of another's code are not compared with
+// them.
+inline constexpr std::string_view kXeGtaoCompiler = "radv, Mesa 22.3.6";
 
 // Returns the modelled time of a frame with one denoise pass, in milliseconds. It grows with the
 // number of pixels.
