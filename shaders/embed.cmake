@@ -29,7 +29,7 @@ function(alcove_embed_shader target shader)
   list(TRANSFORM arg_DEFINES PREPEND -D)
   add_custom_command(
     OUTPUT ${directory}/${name}.spv
-    COMMAND ${ALCOVE_GLSLANG} --quiet -V --target-env vulkan1.2 --depfile ${directory}/${name}.d
+    COMMAND ${ALCOVE_GLSLANG} --quiet -V --target-env vulkan1.1 --depfile ${directory}/${name}.d
       -I${PROJECT_SOURCE_DIR}/shaders ${arg_DEFINES} -o ${directory}/${name}.spv ${source}
     DEPENDS ${source}
     DEPFILE ${directory}/${name}.d

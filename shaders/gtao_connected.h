@@ -56,16 +56,12 @@ void add_to_set(inout uvec2 samples, uint k, bool contained) {
 }
 
 // The number of samples in a set.
-float count_of(uvec2 samples) {
-  return small_float(uint(bitCount(samples.x) + bitCount(samples.y)));
-}
-
-// The number of the lowest bit that is set, which must exist.
-float lowest_of(uint bits) { return small_float(uint(findLSB(bits))); }
+float count_of(uvec2 samples) { return small_float(bit_count(samples.x) + bit_count(samples.y)); }
 
 // The number of the first sample in a set, which must not be empty.
 float first_sample(uvec2 samples) {
-  return kStepCount <= 32u || samples.x != 0u ? lowest_of(samples.x) : lowest_of(samples.y) + 32.0;
+  return kStepCount <= 32u || samples.x != 0u ? small_float(lowest_bit(samples.x))
+                                              : small_float(lowest_bit(samples.y)) + 32.0;
 }
 
 // The number of runs of adjacent samples in a set.
@@ -279,9 +275,10 @@ SearchedPart search_half_slice(HalfSlice half_slice, Slice slice) {
   part.found = find_occluders(half_slice, 1.0 / tangent_angle);
   float sector = tangent_angle * (1.0 / float(kSectorCount));
   part.sectors = 1.0 / sector;
-  part.first_light = part.found.occluded == 0u
-                         ? tangent_light(slice, half_slice.side)
-                         : diamond_angle_light(lowest_of(part.found.occluded) * sector);
+  part.first_light =
+      part.found.occluded == 0u
+          ? tangent_light(slice, half_slice.side)
+          : diamond_angle_light(small_float(lowest_bit(part.found.occluded)) * sector);
   part.beyond = (1.0 - part.found.hidden_occlusion) * visible_share_beyond(part.found.occluded);
   part.unobserved = find_unobserved(half_slice, part.first_light, part.found);
   return part;

@@ -39,11 +39,11 @@ struct SearchLine {
   float y_at_zero;      // y w of a sample at the shaded pixel with inverse depth 0
 };
 
-const float kSearchScale = kHalfSearch ? 2.0 : 1.0;         // pixels of the depth buffer in a px
-const float kNearestPx = kHalfSearch ? 1.1 : kNearestStep;  // least distance of a sample
+float search_scale() { return mix(1.0, 2.0, kHalfSearch); }  // pixels of the depth buffer in a px
+float nearest_px() { return mix(kNearestStep, 1.1, kHalfSearch); }  // least distance of a sample
 
 SearchLine make_search_line(Surface surface, vec3 direction) {
-  vec2 per_px = parameters.slope.xy * kSearchScale;
+  vec2 per_px = parameters.slope.xy * search_scale();
   SliceLine slice_line = make_slice_line(per_px, direction, surface.view);
   // The tangent plane is computed anew for each slice, because it would hold registers through all
   // slices.
@@ -90,12 +90,12 @@ SearchLine opposite(SearchLine search_line) {
 // Returns false for surfaces so far away that the radius ends before the first sample in every
 // direction. Slices need no search then.
 bool reaches_samples(Surface surface) {
-  vec2 per_px = abs(parameters.slope.xy * kSearchScale);
+  vec2 per_px = abs(parameters.slope.xy * search_scale());
   // The least length of a pixel on the surface. The factor allows for the part of the sphere that
   // is nearer to the eye.
   float length_per_px =
       0.9 * min(per_px.x, per_px.y) * surface.view.z * (kPerspective ? surface.depth : 1.0);
-  return parameters.radius >= kNearestPx * length_per_px;
+  return parameters.radius >= nearest_px() * length_per_px;
 }
 
 // One of the two directions of a slice, in which depth samples are taken outwards from the shaded
@@ -131,7 +131,7 @@ vec2 border_offsets(Surface surface, SearchLine search_line) {
 
 // Offset of the nearest possible sample.
 float nearest_offset(HalfSlice half_slice) {
-  return kNearestPx * half_slice.search_line.offset_per_px;
+  return nearest_px() * half_slice.search_line.offset_per_px;
 }
 
 // Samples in one iteration of the loop over samples. An iteration costs as many instructions as

@@ -129,7 +129,7 @@ Sums sum_near(Surface surface, Window window) {
 // or the inverse squared width of its window. The mean over pixels of the sums of weights is then
 // about 1 for every window and tile size.
 const float kWideScale = 1.3;
-const float kNearScale = kBetween ? 1.195 : kWideScale;
+float near_scale() { return mix(kWideScale, 1.195, kBetween); }
 
 // Returns the sums over the traced pixels within kFilterRadius, without the corners, on the scale
 // of sum_near(). If there is a history, few texels run this, and they read the traced pixels from
@@ -156,7 +156,7 @@ Sums sum_wide(Surface surface, Window window) {
       }
     }
   }
-  float scale = kWideScale / kNearScale * parameters.wide_sharpness;
+  float scale = kWideScale / near_scale() * parameters.wide_sharpness;
   sums.occluded *= scale;
   sums.open *= scale;
   sums.residual *= scale;

@@ -80,18 +80,15 @@ History read_static(Surface surface) {
 // The width of a tile in texels, at least 1.
 const int kTileTexels = kTileSize > kTexelSize ? kTileSize / kTexelSize : 1;
 
-// How fast the squared width of the filter window falls with the weight of the history: it is
-// divided by 1 + kNarrowing * weight. A pixel of a 2x2 tile is traced twice in eight frames. If its
-// window narrowed as fast as these frames come, it would show the noise of two traces. A smaller
-// value blurs: 0.4 increased the error of the helmet after 32 frames by 0.0007, and that of tiles
-// of 4x4 pixels by 0.0018. Fitted to the error after 4 to 32 frames (`alcove compare --frames`).
-const float kNarrowing = kTileTexels > 2 ? 3.0 : 0.5;
-
 // Returns Window::sharpness. The window narrows as the weight of the history grows, down to a
-// smallest width, which is larger between the centres of texels of the history.
+// smallest width, which is larger between the centres of texels of the history. A pixel of a 2x2
+// tile is traced twice in eight frames. If its window narrowed as fast as these frames come, it
+// would show noise. A smaller factor blurs: 0.4 increased the error of the helmet after 32 frames
+// by 0.0007, that of 4x4 tiles by 0.0018. Fitted after 4 to 32 frames (`alcove compare --frames`).
 float sharpness_of(History history) {
+  float narrowing = kTileTexels > 2 ? 3.0 * history.weight : 0.5 * history.weight;
   return min(1.0 / (parameters.smallest_window.x + parameters.smallest_window.y * history.between),
-             parameters.first_sharpness * (kNarrowing * history.weight + 1.0));
+             parameters.first_sharpness * (narrowing + 1.0));
 }
 
 // Returns the factor, at least 1, by which a neighbour's distance from the tangent plane is
@@ -131,11 +128,11 @@ void accumulate(Surface surface) {
     const float unchanged = 0.01;
     follow_change(history,
                   (now.occluded + unchanged * history.recent) / max(now.open + unchanged, 1e-37),
-                  now.open * (kNearScale / kWideScale / parameters.wide_sharpness));
+                  now.open * (near_scale() / kWideScale / parameters.wide_sharpness));
   }
   // The sums are not normalised: a frame that traced the pixel itself has more weight than a frame
   // that traced its neighbours.
-  float scale = kNearScale * float(kTileSize * kTileSize) * window.sharpness;
+  float scale = near_scale() * float(kTileSize * kTileSize) * window.sharpness;
   float total = max(history.weight + scale * now.open, 1e-37);
   float inverse_total = 1.0 / total;
   Result result;

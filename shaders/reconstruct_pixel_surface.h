@@ -42,7 +42,7 @@ Surface fetch_surface(Place place) {
   vec2 next = vec2(after.z, after.x);
   vec2 last = vec2(before.x, before.z);
   vec2 gradient = (next - last) * (parameters.half_inverse_depth_per_ndc * surface.depth);
-  vec2 tilt = gradient * parameters.pixels_per_slope * (kPerspective ? -1.0 : 1.0);
+  vec2 tilt = gradient * parameters.pixels_per_slope * mix(1.0, -1.0, kPerspective);
   // The pixel's ray matters to angles, but hardly to the scale of distances.
   float n_dot_v = kByNormal ? n_dot_v_of(tilt, place.centre) : inversesqrt(1.0 + dot(tilt, tilt));
   surface.n_dot_v = max(n_dot_v, kLeastNDotV);

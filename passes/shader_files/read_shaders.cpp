@@ -24,7 +24,7 @@ namespace {
 
 using Words = std::span<const std::uint32_t>;
 
-// Numbers of the SPIR-V specification, version 1.5.
+// Numbers of the SPIR-V specification, version 1.3.
 constexpr std::uint32_t kHeaderWords = 5;
 enum Op : std::uint32_t {
   kOpName = 5,

@@ -17,8 +17,14 @@
 
 namespace alcove::maths {
 using namespace glm;
-}
+inline uint lowest_bit(uint bits) { return uint(findLSB(bits)); }
+inline uint bit_count(uint bits) { return uint(bitCount(bits)); }
+}  // namespace alcove::maths
 #else
+// naga, which translates to WGSL, needs results of the operand's type. It also refuses constants
+// that are selected floats, such as `kFlag ? 2.0 : 1.0`; mix(1.0, 2.0, kFlag) is no constant.
+uint lowest_bit(uint bits) { return uint(findLSB(int(bits))); }
+uint bit_count(uint bits) { return uint(bitCount(int(bits))); }
 #define ALCOVE_INLINE
 #define ALCOVE_MATHS_BEGIN
 #define ALCOVE_MATHS_END

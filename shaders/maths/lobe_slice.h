@@ -136,7 +136,7 @@ ALCOVE_INLINE float visible_lobe(HalfLobe lobe, float per_diamond_angle, uint oc
   uint ends = occluded ^ (occluded << 1u);
   float weight = 1.0f;
   if (ends != 0u) do {
-      vec2 light = diamond_angle_light(float(findLSB(ends)) / per_diamond_angle);
+      vec2 light = diamond_angle_light(float(lowest_bit(ends)) / per_diamond_angle);
       sum += weight * lobe_light_arc(lobe, light);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;

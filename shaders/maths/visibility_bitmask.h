@@ -74,8 +74,8 @@ ALCOVE_INLINE uint repeat_last_sector(uint occluded) {
 // kSectorCount sectors.
 ALCOVE_INLINE float visible_share_beyond(uint occluded) {
   uint sectors = occluded & 0x7fffffffu;
-  float beyond = float(int(kSectorCount) - findLSB(sectors));
-  return sectors == 0u ? 0.0f : 1.0f - float(bitCount(sectors)) / beyond;
+  float beyond = float(kSectorCount - lowest_bit(sectors));
+  return sectors == 0u ? 0.0f : 1.0f - float(bit_count(sectors)) / beyond;
 }
 
 // The visible part of a half-slice.
@@ -134,7 +134,7 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_an
   uint ends = occluded ^ (occluded << 1u);
   weight = 1.0f;
   if (ends != 0u) do {
-      vec2 light = diamond_angle_light(float(findLSB(ends)) / per_diamond_angle);
+      vec2 light = diamond_angle_light(float(lowest_bit(ends)) / per_diamond_angle);
       sum = add_part(sum, weight, s, side, light, bent);
       weight = weight > 0.0f ? -keep : keep;
       ends &= ends - 1u;

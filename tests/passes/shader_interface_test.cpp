@@ -2,6 +2,7 @@
 // match them.
 #include <gmock/gmock.h>
 
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -59,6 +60,31 @@ TEST(ShaderInterface, ShadersHaveAtMostOneSamplerAndStorageImagesAreOnlyWritten)
           << binding.name;
     }
     EXPECT_LE(samplers, 1);
+  }
+}
+
+// naga, which translates SPIR-V to WGSL, refuses these: copies of whole structs of two layouts,
+// which SPIR-V has from 1.4 on, constants that select a float, and counts of bits of another type
+// than the bits.
+TEST(ShaderInterface, ModulesHaveNoInstructionThatWebGpuLacks) {
+  constexpr std::uint32_t kExtended = 12, kTypeFloat = 22, kSpecConstantOp = 52, kBitCount = 205;
+  constexpr std::uint32_t kFindLowestBit = 73;
+  for (const Shader shader : all_shaders()) {
+    SCOPED_TRACE(shader_source(shader).name);
+    const auto words = shader_source(shader).code;
+    EXPECT_EQ(words[1], 0x10300u) << "not SPIR-V 1.3";
+    std::set<std::uint32_t> floats;
+    std::map<std::uint32_t, std::uint32_t> types;  // of results
+    for (std::size_t i = 5; i < words.size(); i += words[i] >> 16) {
+      const std::uint32_t op = words[i] & 0xffffu;
+      if (op == kTypeFloat) floats.insert(words[i + 1]);
+      EXPECT_FALSE(op == kSpecConstantOp && floats.contains(words[i + 1]));
+      if (op == kBitCount) EXPECT_EQ(types[words[i + 3]], words[i + 1]);
+      if (op == kExtended && words[i + 4] == kFindLowestBit)
+        EXPECT_EQ(types[words[i + 5]], words[i + 1]);
+      const bool is_value = op == kExtended || op == 61 || op == 81 || (op >= 109 && op <= 245);
+      if (is_value) types[words[i + 2]] = words[i + 1];
+    }
   }
 }
 

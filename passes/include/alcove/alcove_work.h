@@ -198,7 +198,7 @@ size_t alcovePrintWork(const AlcoveWork* work, char* text, size_t size);
 
 // A compute shader of the library, with groups of 8x8 invocations and the entry point "main".
 typedef struct AlcoveShader {
-  const uint32_t* code;  // static: the words of a SPIR-V 1.5 module for Vulkan 1.2
+  const uint32_t* code;  // static: the words of a SPIR-V 1.3 module
   size_t code_size;      // in bytes
 } AlcoveShader;
 
