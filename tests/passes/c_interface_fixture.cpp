@@ -90,6 +90,24 @@ HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t 
   return around;
 }
 
+AlcoveWorkInfo work_info(const AlcoveView& view, std::uint32_t index, const AlcoveWork* previous) {
+  AlcoveWorkInfo info{.struct_size = sizeof(AlcoveWorkInfo),
+                      .view = view.info,
+                      .previous = previous,
+                      .index = index};
+  for (std::size_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
+    const AlcoveImage& image = view.images[role];
+    info.images[role] = {static_cast<std::uint32_t>(image.format), image.width, image.height};
+  }
+  return info;
+}
+
+void advance(HostView& view, std::uint32_t index) {
+  view.previous_view = view.view;
+  if (index == 1 || index == 2) view.view.view_from_world[12] += 0.03f;
+  view.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
+}
+
 AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index) {
   return {.struct_size = sizeof(AlcoveFrame),
           .index = index,

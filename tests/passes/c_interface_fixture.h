@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "alcove/alcove_work.h"
 #include "engine.h"
 #include "gtao_scenes.h"
 #include "pass_fixture.h"
@@ -33,6 +34,14 @@ void place(HostImage& image, const HostImage& contents, std::uint32_t x, std::ui
 // are NaN or 0.3, so that a pass which reads them is noticed.
 HostImage placed_in(VkExtent2D larger, const HostImage& contents, std::uint32_t x = 0,
                     std::uint32_t y = 0);
+
+// Returns what alcoveDescribeWork needs for a view.
+AlcoveWorkInfo work_info(const AlcoveView& view, std::uint32_t index = 0,
+                         const AlcoveWork* previous = nullptr);
+// Moves a view on to frame `index` of a series of kSeriesFrames: a first frame, two in motion, and
+// two without motion, of which the last has converged.
+inline constexpr std::uint32_t kSeriesFrames = 5;
+void advance(HostView& view, std::uint32_t index);
 
 // Returns frame `index` of these views.
 AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index);

@@ -140,12 +140,7 @@ TEST_F(CPlan, SizesInTheListAreWithinFivePercentOfTheMemoryOfARecordedFrame) {
     from.motion = from.back_depth_ndc = from.second_depth_ndc = {};
     const Context context = create_context();
     const AlcoveMemory found = run_memory(*context, from);
-    const AlcoveView view = create_view(from);
-    AlcoveWorkInfo info{.struct_size = sizeof info, .view = view.info};
-    for (std::size_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
-      const AlcoveImage& image = view.images[role];
-      info.images[role] = {static_cast<std::uint32_t>(image.format), image.width, image.height};
-    }
+    const AlcoveWorkInfo info = work_info(create_view(from));
     const auto work = std::make_unique<AlcoveWork>();
     ASSERT_EQ(alcoveDescribeWork(&info, work.get(), nullptr), ALCOVE_SUCCESS);
     double transients = 0.0, history = 0.0;

@@ -16,18 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-AlcoveWorkInfo info_of(const AlcoveView& view, std::uint32_t index, const AlcoveWork* previous) {
-  AlcoveWorkInfo info{.struct_size = sizeof(AlcoveWorkInfo),
-                      .view = view.info,
-                      .previous = previous,
-                      .index = index};
-  for (std::size_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
-    const AlcoveImage& image = view.images[role];
-    info.images[role] = {static_cast<std::uint32_t>(image.format), image.width, image.height};
-  }
-  return info;
-}
-
 // A setting of the comparison.
 struct Case {
   const char* name;
@@ -46,7 +34,7 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
       AlcoveImage& image = view.images[each.role];
       if (image.image != VK_NULL_HANDLE) image = output(image.format, image.width, image.height);
     }
-    const AlcoveWorkInfo info = info_of(view, index, index > 0 ? work_.get() : nullptr);
+    const AlcoveWorkInfo info = work_info(view, index, index > 0 ? work_.get() : nullptr);
     char message[ALCOVE_MAX_MESSAGE];
     EXPECT_EQ(alcoveDescribeWork(&info, work_.get(), message), ALCOVE_SUCCESS) << message;
     std::vector<VkImage> host;
@@ -88,12 +76,9 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
   from.settings = OcclusionSettings(GetParam().quality, 0.5f);
   from.settings.roughness_channel = defaults.roughness_channel;
   GetParam().change(from);
-  // A first frame, frames in motion, and frames without motion up to a converged one.
-  for (std::uint32_t index = 0; index < 5; ++index) {
+  for (std::uint32_t index = 0; index < kSeriesFrames; ++index) {
     SCOPED_TRACE("frame " + std::to_string(index));
-    from.previous_view = from.view;
-    if (index == 1 || index == 2) from.view.view_from_world[12] += 0.03f;
-    from.static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
+    advance(from, index);
     AlcoveView view = create_view(from);
     if (GetParam().area_and_mask) {
       const AlcoveImage& depth = view.images[ALCOVE_IMAGE_DEPTH];
