@@ -28,6 +28,8 @@ layout(set = 0, binding = 5) uniform texture2D roughness_image;  // read with kR
 layout(set = 0, binding = 6) uniform writeonly image2D result_image;
 layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
 
+#include "fetch_roughness.h"
+
 // A pixel's position in the images of visibility, bent normals and the result. Pixels count from
 // the corner of the area that is read.
 ivec2 in_outputs(ivec2 pixel) { return kAreas ? pixel + parameters.written.zw : pixel; }
@@ -35,12 +37,6 @@ ivec2 in_outputs(ivec2 pixel) { return kAreas ? pixel + parameters.written.zw : 
 vec3 fetch_direction(texture2D image, ivec2 pixel, uint encoding, vec3 instead) {
   vec3 given = decode_normal(texelFetch(image, pixel, 0).xyz, encoding);
   return has_direction(given) ? normalize(mat3(parameters.view_from_normal) * given) : instead;
-}
-
-float fetch_roughness(ivec2 pixel) {
-  ivec2 texel = kAreas ? pixel + parameters.origins.zw : pixel;
-  return kRoughnessTexture ? saturate(texelFetch(roughness_image, texel, 0)[kRoughnessChannel])
-                           : parameters.roughness;
 }
 
 float fetch_entry(uvec4 entry) {
@@ -64,7 +60,7 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
 
 float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
   float visibility = converged_visibility(texelFetch(visibility_image, in_outputs(pixel), 0).r);
-  float roughness = fetch_roughness(pixel);
+  float roughness = fetch_roughness(kAreas ? pixel + parameters.origins.zw : pixel);
   vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, in_outputs(pixel), 0u, normal),
                                  normal, visibility);
   return occlusion_by_table(visibility, bent, normal, mirror_direction(normal, view), roughness);

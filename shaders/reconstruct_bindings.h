@@ -1,7 +1,6 @@
-// The constants, parameters and images of reconstruct.comp. The variants of the shader are compiled
-// with these macros defined:
+// The constants, parameters and images of reconstruct.comp and, with HALF, reconstruct_half.comp.
+// Their variants are compiled with these macros:
 //   BENT      there are bent normals
-//   HALF      texels of 2x2 pixels are reconstructed, and upsample.comp computes the pixels
 //   SPECULAR  there is a GGX lobe for specular occlusion
 // The passes find bindings by name, so that binding numbers have no meaning outside this file.
 #ifndef ALCOVE_RECONSTRUCT_BINDINGS_H

@@ -1,18 +1,34 @@
-// Temporal accumulation: the part of reconstruct.comp for frames with a history. It reads the
-// history at the position that the surface had in the previous frame, rejects texels of other
-// surfaces, and adds the samples of this frame.
+// The steps of reconstruct.comp and reconstruct_half.comp: the filter, and in frames with a history
+// temporal accumulation. It reads the history at the position that the surface had in the previous
+// frame, rejects texels of other surfaces, and adds the samples of this frame.
 #ifndef ALCOVE_RECONSTRUCT_HISTORY_H
 #define ALCOVE_RECONSTRUCT_HISTORY_H
 
 #include "fetch_quad.h"
 #include "maths/history.h"
 #include "reconstruct_filter.h"
+#include "reconstruct_previous.h"
 #include "reconstruct_store.h"
-#ifdef HALF
-#include "reconstruct_half_history.h"
-#else
-#include "reconstruct_pixel_history.h"
-#endif
+
+// What a program defines for its texels.
+Surface fetch_surface(Place place);
+// The history at the four texels around `uv`, the corner that they share; `part` is the position
+// between them.
+HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2 uv);
+// Returns the occlusion, the weight and HistoryTexels::recents for means over four texels.
+float occlusion_of_mean(float mean);
+float mean_weight(float mean, float occlusion);
+float recent_of_mean(float mean, float otherwise);
+// The rounding error of a stored depth, and kDepthMotion, both in the units of
+// HistoryTexels::distances.
+float history_slack(Surface surface);
+float moved_distance(Surface surface);
+// The history that is stored at the texel itself, without residual and lobe.
+History fetch_history(Surface surface);
+// Stores the results and the history of a texel. `recent` is the occlusion of the last few frames.
+void store_history(Surface surface, Result result, float weight, float recent);
+// Stores the results of a frame without a history.
+void store_alone(Surface surface, Result result);
 
 // Reads the history between four texels. A texel's weight is its bilinear weight, reduced with the
 // distance of its depth from the surface's tangent plane.
@@ -146,6 +162,26 @@ void accumulate(Surface surface) {
   result.lobe =
       kLobe ? (history.weight * history.lobe + scale * now.lobe) * inverse_total : vec2(0.0);
   store_history(surface, result, total, kMotion ? history.recent : kNoRecent);
+}
+
+void reconstruct(Surface surface) {
+  if (kHistory)
+    accumulate(surface);
+  else
+    store_alone(surface, result_of(sum_wide(surface, Window(parameters.first_sharpness, 1.0))));
+}
+
+// Reconstructs one texel in each block of the group's column, up to the texel `last`.
+void reconstruct_column(ivec2 last) {
+  Place place = first_place();
+  [[dont_unroll]] for (int block = 0; block < kBlocks; ++block) {
+    if (place.texel.x <= last.x && place.texel.y <= last.y) {
+      Surface surface = fetch_surface(place);
+      set_plane(surface);
+      reconstruct(surface);
+    }
+    move_to_next_block(place);
+  }
 }
 
 #endif

@@ -1,5 +1,4 @@
-// The position of a surface in the previous frame, and the values of the history there. It is a
-// part of reconstruct.comp.
+// The position of a surface in the previous frame, and the values of the history there.
 #ifndef ALCOVE_RECONSTRUCT_PREVIOUS_H
 #define ALCOVE_RECONSTRUCT_PREVIOUS_H
 

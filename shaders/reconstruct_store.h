@@ -1,5 +1,4 @@
-// Stores the results of reconstruct.comp: the outputs, or the texels that the upsampling pass and
-// the next frame read.
+// The results of a texel, and what reconstruct.comp and reconstruct_half.comp both store of them.
 #ifndef ALCOVE_RECONSTRUCT_STORE_H
 #define ALCOVE_RECONSTRUCT_STORE_H
 
@@ -7,11 +6,6 @@
 #include "maths/half_texel.h"
 #include "maths/history.h"
 #include "reconstruct_filter.h"
-#ifdef HALF
-#include "reconstruct_half_surface.h"
-#else
-#include "reconstruct_pixel_surface.h"
-#endif
 
 // The results of a pixel or of a texel.
 struct Result {
@@ -47,52 +41,6 @@ void store_kept(Surface surface, Result result, float dither) {
   LobeTexel lobe = LobeTexel(valid ? result.lobe.x / max(result.lobe.y, 1e-30) : 0.0,
                              valid ? result.lobe.y : 0.0);
   imageStore(next_lobe_history_image, surface.place.texel, uvec4(pack_lobe_texel(lobe, dither)));
-#endif
-}
-
-#ifdef HALF
-
-// Stores a texel for upsampling and for the next frame. `recent`, the occlusion of the last few
-// frames, is stored only with kMotion.
-void store_half(Surface surface, Result result, float weight, float recent) {
-  HalfTexel texel = HalfTexel(result.occlusion, weight, surface.tilt);
-  imageStore(half_image, surface.place.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));
-  float depth = surface.sky ? sky_inverse_depth(kPerspective)
-                            : half_texel_depth(surface.inverse_depth, recent, kMotion);
-  imageStore(half_depth_image, surface.place.texel, vec4(depth));
-}
-
-#else
-
-// Stores the outputs of a pixel.
-void store(Surface surface, Result result) {
-  if (!is_written(surface.place.texel)) return;
-  ivec2 texel = in_outputs(surface.place.texel);
-  float visibility = surface.sky ? 1.0 : 1.0 - result.occlusion;
-  if (kVisibility) {
-    float shaped = shaped_visibility(visibility, parameters.power, parameters.intensity);
-    imageStore(visibility_image, texel, vec4(kShaped ? shaped : visibility));
-  }
-#ifdef BENT
-  vec3 residual = surface.sky ? vec3(0.0) : result.residual;
-  vec3 bent = finish_bent_normal(residual, visibility, traced_normal(surface));
-  imageStore(bent_normal_image, texel, vec4(mat3(parameters.normal_from_view) * bent, 0.0));
-#endif
-#ifdef SPECULAR
-  float occlusion = surface.sky ? 0.0 : saturate(result.lobe.x / max(result.lobe.y, 1e-30));
-  imageStore(specular_image, texel, vec4(1.0 - occlusion));
-#endif
-}
-
-#endif
-
-// Stores the results of a frame without a history.
-void store_alone(Surface surface, Result result) {
-#ifdef HALF
-  store_half(surface, result, 0.0, 0.0);
-  store_kept(surface, result, 0.5);
-#else
-  store(surface, result);
 #endif
 }
 

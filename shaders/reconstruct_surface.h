@@ -1,23 +1,18 @@
-// The place and the surface of a texel of reconstruct.comp. reconstruct_pixel_surface.h and, with
-// HALF, reconstruct_half_surface.h fetch the surface.
+// The place and the surface of a texel, which reconstruct.comp and reconstruct_half.comp fetch.
 #ifndef ALCOVE_RECONSTRUCT_SURFACE_H
 #define ALCOVE_RECONSTRUCT_SURFACE_H
 
-#include "depth_normal.h"
-#include "maths/normal_encoding.h"
 #include "maths/raw_occlusion.h"
-#include "maths/slice_line.h"
 #include "reconstruct_bindings.h"
 #include "reconstruct_tiles.h"
+#include "traced_normal.h"
+#ifdef SPECULAR
+#include "fetch_roughness.h"
+#endif
 
 // Lower bound of the cosine between the normal and the view direction. Without it, the tangent
 // plane of a surface that is seen edge-on would contain points at every depth.
 const float kLeastNDotV = 0.02;
-
-float inverse_depth_of(float depth_ndc) {
-  return inverse_depth_of_ndc(parameters.inverse_depth_from_ndc, depth_ndc, kPerspective,
-                              kReversed);
-}
 
 // The place of a texel, and values that depend on it alone. From block to block of a column each of
 // them changes by a constant.
@@ -79,8 +74,7 @@ struct Surface {
 // Returns the cosine between normal and view direction, on the camera's axis, for a
 // HalfTexel::tilt.
 float n_dot_v_of(vec2 tilt, vec2 centre) {
-  vec2 ray = parameters.slope.zw + (kPerspective ? centre * parameters.slope.xy : vec2(0.0));
-  float z = 1.0 + dot(tilt, ray);
+  float z = 1.0 + dot(tilt, ray_slope(centre));
   return inversesqrt(dot(tilt, tilt) + z * z);
 }
 
@@ -95,25 +89,17 @@ void set_plane(inout Surface surface) {
 // has no valid normal, returns the direction to the eye instead. It is exact enough for the
 // filter's weights. A NaN would stay in the history.
 vec3 fetch_normal(ivec2 pixel) {
-  if (kNormalEncoding == kNoNormals) {
-    return depth_buffer_normal(
-        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
-        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
-  }
-  vec3 normal = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding);
+  if (kNormalEncoding == kNoNormals) return fetch_depth_normal(pixel);
+  vec3 normal = fetch_given_normal(pixel);
   return has_direction(normal) ? normal : parameters.normal_from_view[2].xyz;
 }
 
 LobeSurface fetch_lobe_surface(ivec2 pixel, vec3 normal) {
-  LobeSurface surface = LobeSurface(normal, parameters.roughness);
 #ifdef SPECULAR
-  surface.normal = normalize(normal);
-  if (kRoughnessTexture) {
-    surface.roughness =
-        saturate(texelFetch(roughness_image, in_inputs(pixel), 0)[kRoughnessChannel]);
-  }
+  return LobeSurface(normalize(normal), fetch_roughness(in_inputs(pixel)));
+#else
+  return LobeSurface(normal, parameters.roughness);
 #endif
-  return surface;
 }
 
 #endif

@@ -1,5 +1,5 @@
 // The traced pixels around a texel. A group of invocations unpacks those around its texels into
-// shared memory. It is a part of reconstruct.comp.
+// shared memory.
 #ifndef ALCOVE_RECONSTRUCT_TILES_H
 #define ALCOVE_RECONSTRUCT_TILES_H
 

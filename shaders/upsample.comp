@@ -13,12 +13,10 @@
 // One invocation computes the four pixels between the centres of four texels, so that the texels
 // are unpacked only once. The first invocation begins one pixel before the image.
 
-#include "depth_normal.h"
 #include "fetch_quad.h"
 #include "maths/bent_normal.h"
 #include "maths/half_texel.h"
 #include "maths/history.h"
-#include "maths/normal_encoding.h"
 #include "maths/raw_occlusion.h"
 #include "maths/slice_line.h"
 #include "upsample_parameters.h"
@@ -130,20 +128,7 @@ vec4 weights_of(Cell cell, int j) {
 }
 
 #ifdef BENT
-vec3 unit_normal(ivec2 pixel) {
-  vec2 slope =
-      parameters.slope.zw + (kPerspective ? (vec2(pixel) + 0.5) * parameters.slope.xy : vec2(0.0));
-  vec3 given = decode_normal(texelFetch(normal_image, in_inputs(pixel), 0).xyz, kNormalEncoding) *
-               mat3(parameters.normal_from_view);
-  vec3 view = normalize(vec3(-slope, 1.0));
-  vec3 of_depth = vec3(0.0);
-  if (needs_depth_normal(given, view)) {
-    of_depth = depth_buffer_normal(
-        fetch_depth_cross(depth_image, pixel, in_inputs(ivec2(0)), size_px()), pixel, size_px(),
-        parameters.slope, parameters.inverse_depth_from_ndc, kPerspective, kReversed);
-  }
-  return seen_normal(given, view, of_depth);
-}
+#include "traced_normal.h"
 #endif
 
 void main() {
@@ -179,7 +164,9 @@ void main() {
       vec3 stored =
           vec3(dot(weights, residuals_x), dot(weights, residuals_y), dot(weights, residuals_z));
       vec3 residual = sky ? vec3(0.0) : unpack_half_residual(stored * inverse_sum);
-      vec3 bent = finish_bent_normal(residual, visibility, unit_normal(pixel));
+      vec3 given = fetch_given_normal(pixel) * mat3(parameters.normal_from_view);
+      vec3 normal = traced_normal(pixel, given, direction_to_eye(vec2(pixel) + 0.5));
+      vec3 bent = finish_bent_normal(residual, visibility, normal);
       imageStore(bent_normal_image, output_pixel,
                  vec4(mat3(parameters.normal_from_view) * bent, 0.0));
     }

@@ -21,7 +21,7 @@ maths::DepthCopyParameters copy_parameters(const ViewInputs& view) {
 ResourceHandle describe_resolve(const ViewInputs& view) {
   const ResourceHandle resolved = add_copy(view, "depth");
   const NamedImage images[] = {{"depth_image", view.image(ALCOVE_IMAGE_DEPTH)},
-                               {"resolved_image", resolved}};
+                               {"copy_image", resolved}};
   view.list.dispatch({.label = "resolve depth",
                       .shader = Shader::resolve_depth,
                       .images = images,
@@ -63,7 +63,7 @@ ResourceHandle describe_half(const ViewInputs& view, ResourceHandle depth) {
   parameters.first += parity;
   parameters.size -= parity;
   const ResourceHandle half = view.list.add_transient("half depth", VK_FORMAT_R32_SFLOAT, size);
-  const NamedImage images[] = {{"depth_image", depth}, {"resolved_image", half}};
+  const NamedImage images[] = {{"depth_image", depth}, {"copy_image", half}};
   view.list.dispatch({.label = "halve depth",
                       .shader = Shader::halve_depth,
                       .images = images,

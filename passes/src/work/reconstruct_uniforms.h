@@ -1,4 +1,4 @@
-// The parameters of shaders/reconstruct.comp.
+// The parameters of shaders/reconstruct.comp and reconstruct_half.comp.
 #pragma once
 
 #include "maths/projection.h"

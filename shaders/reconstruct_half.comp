@@ -1,11 +1,25 @@
-// The surface of a texel of 2x2 pixels: which of its pixels represents it, and the tangent plane
-// there. Both are computed from depth alone. It is the part of reconstruct.comp that is compiled
-// with HALF.
-#ifndef ALCOVE_RECONSTRUCT_HALF_SURFACE_H
-#define ALCOVE_RECONSTRUCT_HALF_SURFACE_H
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
 
+// reconstruct.comp for texels of 2x2 pixels, from which upsample.comp computes the pixels.
+// reconstruct.comp lists what both programs share.
+
+#define HALF
 #include "maths/half_texel.h"
-#include "reconstruct_surface.h"
+#include "reconstruct_history.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+void main() {
+  load_tiles();
+  // One texel beyond the border too, which upsampling reads.
+  reconstruct_column((last_written() + 2) / 2);
+}
+
+// --- The surface of a texel ---
+// Which of its pixels represents it, and the tangent plane there, are computed from depth alone.
 
 // The largest tilt (tangent of an angle of about 70 degrees) at which a change of depth to a
 // neighbouring pixel is taken as the slope of the surface if the change on the other side of the
@@ -104,4 +118,70 @@ Surface fetch_surface(Place place) {
   return surface;
 }
 
-#endif
+// --- The history of texels: HalfTexel (maths/half_texel.h) ---
+// The previous frame stored it for upsampling.
+
+// Stores a texel for upsampling and for the next frame. `recent`, the occlusion of the last few
+// frames, is stored only with kMotion.
+void store_half(Surface surface, Result result, float weight, float recent) {
+  HalfTexel texel = HalfTexel(result.occlusion, weight, surface.tilt);
+  imageStore(half_image, surface.place.texel, surface.sky ? vec4(0.0) : pack_half_texel(texel));
+  float depth = surface.sky ? sky_inverse_depth(kPerspective)
+                            : half_texel_depth(surface.inverse_depth, recent, kMotion);
+  imageStore(half_depth_image, surface.place.texel, vec4(depth));
+}
+
+float history_slack(Surface surface) { return parameters.history_slack; }
+
+float moved_distance(Surface surface) {
+  return kDepthMotion * parameters.history_sharpness * surface.n_dot_v *
+         (kPerspective ? 1.0 : 1.0 / parameters.history_depth_scale.z);
+}
+
+HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2 uv) {
+  vec4 depths = textureGather(sampler2D(history_depth_image, nearest_sampler), uv);
+  float sharpness = parameters.history_sharpness * surface.n_dot_v;
+  float per_depth = kPerspective ? previous.depth * surface.depth : 1.0;
+  float expected = kPerspective ? 1.0 : previous.depth;
+  // The slope hardly changes from frame to frame, but for the scale of all depths.
+  vec2 gradient = surface.slope * (parameters.history_sharpness * float(kTexelSize));
+  HistoryTexels texels;
+  texels.distances =
+      depths * (per_depth * sharpness) - gather_offsets(gradient, part, expected * sharpness);
+  texels.occlusions = textureGather(sampler2D(history_image, nearest_sampler), uv, 0);
+  texels.weights = textureGather(sampler2D(history_image, nearest_sampler), uv, 1);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    texels.recents[i] = kMotion ? half_texel_recent_code(depths[i]) : 0.0;
+  }
+  return texels;
+}
+
+float recent_of_mean(float mean, float otherwise) { return half_recent_of_code(mean, otherwise); }
+
+float occlusion_of_mean(float mean) { return mean; }
+
+// Returns the weight for the mean of HistoryTexels::weights.
+float mean_weight(float mean, float /*occlusion*/) { return mean * kHalfTexelWeightUnit; }
+
+History fetch_history(Surface surface) {
+  float depth = texelFetch(history_depth_image, surface.place.texel, 0).r;
+  vec4 stored = texelFetch(history_image, surface.place.texel, 0);
+  float distance = abs(depth - surface.inverse_depth) *
+                   (surface.depth * parameters.history_sharpness * surface.n_dot_v);
+  History history = no_history();
+  history.occlusion = stored.x;
+  history.recent = half_recent_of_code(half_texel_recent_code(depth), stored.x);
+  history.weight =
+      distance <= kSameTexel + history_slack(surface) ? stored.y * kHalfTexelWeightUnit : 0.0;
+  return history;
+}
+
+void store_history(Surface surface, Result result, float weight, float recent) {
+  store_half(surface, result, weight, recent);
+  store_kept(surface, result, dither_of(surface.place));
+}
+
+void store_alone(Surface surface, Result result) {
+  store_half(surface, result, 0.0, 0.0);
+  store_kept(surface, result, 0.5);
+}
