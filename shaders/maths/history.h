@@ -65,7 +65,12 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
 }
 
 // A texel of the history of pixels. It is stored in the two channels of R16G16_UNORM, which texture
-// units convert to floats, so that two gathers read what the next frame needs of four texels.
+// units convert to floats, so that two gathers read what the next frame needs of four texels:
+//
+//      15                       3 2          0
+//   r | depth                  13 | recent   3 |  1 + the code of the recent occlusion, or 0
+//   g | weight 5 | occlusion                11 |
+//      15      11 10                         0
 struct HistoryTexel {
   float depth;  // of history_depth(), [0,1], to 2^-14
   // Occlusion of the last few frames, [0,1], or kNoRecent; its root in 7 steps; 0 is exact.
@@ -86,12 +91,9 @@ const float kLastOcclusionCode = 2047.0f;
 // The recent occlusion of a frame that does not compute it.
 const float kNoRecent = -1.0f;
 
-// Packs a texel. `dither`, [0,1), replaces the 0.5 that is added to round to nearest. The lowest
-// three bits of the first component hold 1 plus the code of the recent occlusion, or 0 for
-// kNoRecent, and the other bits the depth. The
-// depth is rounded such that the whole component differs from it by at most 4.2/65535 and can be
-// used as the depth without unpacking. The highest five bits of the second component hold the code
-// of the weight, and the other bits that of the occlusion.
+// Packs a texel. `dither`, [0,1), replaces the 0.5 that is added to round to nearest. The depth is
+// rounded such that the whole first component differs from it by at most 4.2/65535 and can be used
+// as the depth without unpacking.
 ALCOVE_INLINE vec2 pack_history_texel(HistoryTexel texel, float dither) {
   float recent =
       texel.recent < 0.0f ? 0.0f : min(floor(sqrt(texel.recent) * 6.0f + (1.0f + dither)), 7.0f);
@@ -145,9 +147,10 @@ ALCOVE_INLINE HistoryTexel unpack_history_texel(vec2 stored) {
   return texel;
 }
 
-// The history of a GGX lobe, stored in 2 bytes: 9 bits of occlusion, and 7 bits of the logarithm of
-// the lobe's unoccluded part between 2^-12 and 2^4. The logarithm is stored because the unoccluded
-// part differs by orders of magnitude between roughnesses.
+// The history of a GGX lobe, R16_UINT. The logarithm of the unoccluded part, between 2^-12 and 2^4,
+// is stored because it differs by orders of magnitude between roughnesses.
+//      15                 7 6                0
+//     | occlusion         9 | log2(open)     7 |
 struct LobeTexel {
   float occlusion;  // [0,1]; 0 is exact
   float open;       // of the lobe's RawOcclusion for a weight of 1; 0 is exact

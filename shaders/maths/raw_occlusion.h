@@ -1,8 +1,14 @@
-// The raw occlusion of a traced pixel: the visible and the unoccluded part of its slices, packed
-// into 4 bytes with its normal. Another 4 bytes hold its depth.
+// The raw occlusion of a traced pixel: the visible and the unoccluded part of its slices, with its
+// normal and its depth. The texel has two words (R32G32_UINT), and two more with a GGX lobe:
 //
-// Filters and history sum visible parts and unoccluded parts, and divide at the end. The stored
-// values are the unoccluded part and the ratio of the two, so that a ratio of exactly 1 stays 1.
+//      31               16 15                0
+//   x | normal 8 | open 11 | visibility     13 |  pack_raw_occlusion()
+//   y | inverse depth, a float              32 |
+//   z | open             16 | visibility    16 |  pack_lobe(), the lobe's
+//   w | roughness 8 | z 8 | y 8 | x          8 |  pack_lobe_surface()
+//
+// Filters and history sum visible parts and unoccluded parts, and divide at the end. Stored are the
+// unoccluded part `open` and the ratio of the two, the visibility, so that 1 stays exactly 1.
 #ifndef ALCOVE_MATHS_RAW_OCCLUSION_H
 #define ALCOVE_MATHS_RAW_OCCLUSION_H
 
@@ -32,8 +38,8 @@ ALCOVE_INLINE uint pack_open(float open) {
 
 ALCOVE_INLINE float unpack_open(uint bits) { return unpackHalf2x16((bits & 0x7ffu) << 4u).x; }
 
-// Packs the raw occlusion and the normal of a traced pixel: the visibility (13 bits, with an error
-// of at most 2^-14), the unoccluded part (11 bits), and the quantised normal (8 bits).
+// Packs the raw occlusion and the normal of a traced pixel. The error of the visibility is at most
+// 2^-14.
 ALCOVE_INLINE uint pack_raw_occlusion(RawOcclusion raw_occlusion, uint quantised_normal) {
   return pack_unorm(mean_visibility(raw_occlusion), 13u) | (pack_open(raw_occlusion.open) << 13u) |
          (quantised_normal << 24u);
@@ -51,8 +57,10 @@ ALCOVE_INLINE uint raw_occlusion_normal(uint bits) { return bits >> 24u; }
 // Upper bound of the components of a residual (bent_normal.h).
 const float kLargestResidual = 4.0f / 3.0f;
 
-// Packs a residual into 10 bits per component. Components are clamped to +-kLargestResidual. The
+// Packs a residual. Components are clamped to +-kLargestResidual, and the code of 0 is 512. The
 // error after unpack_residual() is at most 0.0014, and 0 for a component of 0.
+//      31 30 29      20 19      10 9        0
+//     |  0  | z      10 | y      10 | x    10 |
 ALCOVE_INLINE uint pack_residual(vec3 residual) {
   vec3 scaled = clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + 512.5f;
   return uint(scaled.x) | (uint(scaled.y) << 10u) | (uint(scaled.z) << 20u);
