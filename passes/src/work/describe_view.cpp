@@ -235,12 +235,13 @@ tl::expected<void, Error> describe_view(WorkBuilder& list, const AlcoveWorkInfo&
     linear_depth = describe_linear_depth(view, depths.all);
     if (!normals) normals = describe_normals(view, linear_depth);
   }
-  const RawOcclusion raw = describe_gtao(view, depths);
-  return describe_reconstruct(view, depths.receivers, raw).and_then([&](const Results& results) {
-    if (view.by_table()) describe_gtso(view, results, linear_depth, normals);
-    if (view.image(ALCOVE_IMAGE_MULTI_BOUNCE)) describe_multi_bounce(view, results.visibility);
-    return list.result();
-  });
+  const RawOcclusionImages raw = describe_gtao(view, depths);
+  return describe_reconstruct(view, depths.receivers, raw)
+      .and_then([&](const OutputImages& results) {
+        if (view.by_table()) describe_gtso(view, results, linear_depth, normals);
+        if (view.image(ALCOVE_IMAGE_MULTI_BOUNCE)) describe_multi_bounce(view, results.visibility);
+        return list.result();
+      });
 }
 
 tl::expected<std::vector<AlcoveWorkPipeline>, Error> list_pipelines(AlcoveWork& work,

@@ -82,7 +82,7 @@ struct Depths {
 [[nodiscard]] Depths describe_depths(const ViewInputs& view);
 
 // The raw occlusion of a frame, one texel per tile: sums over slices, which reconstruction filters.
-struct RawOcclusion {
+struct RawOcclusionImages {
   // R32G32_UINT: the packed visible and unoccluded parts (shaders/maths/raw_occlusion.h), and the
   // bits of the traced pixel's inverse depth as a float. With a GGX lobe the format is
   // R32G32B32A32_UINT: also the packed parts of the lobe, and the surface's normal and roughness.
@@ -92,11 +92,11 @@ struct RawOcclusion {
   // that is expected without occluders. Null if no bent normals are computed.
   ResourceHandle bent;
 };
-[[nodiscard]] RawOcclusion describe_gtao(const ViewInputs& view, const Depths& depths);
+[[nodiscard]] RawOcclusionImages describe_gtao(const ViewInputs& view, const Depths& depths);
 
 // Visibility, bent normals and specular occlusion of every pixel: the images of the view, or
 // transients where another pass reads a result that has no image. Null where nothing does.
-struct Results {
+struct OutputImages {
   ResourceHandle visibility;
   ResourceHandle bent_normal;
   ResourceHandle specular;
@@ -104,9 +104,9 @@ struct Results {
 // Reconstructs every pixel from the traced pixels: spatial filter, upsampling and temporal
 // accumulation in one pass (Jimenez et al. 2016, sections 4.4 and 4.5, with other weights). Error:
 // a previous camera that cannot be used.
-[[nodiscard]] tl::expected<Results, Error> describe_reconstruct(const ViewInputs& view,
-                                                                ResourceHandle depth,
-                                                                const RawOcclusion& raw);
+[[nodiscard]] tl::expected<OutputImages, Error> describe_reconstruct(const ViewInputs& view,
+                                                                     ResourceHandle depth,
+                                                                     const RawOcclusionImages& raw);
 // Makes pixels from what is reconstructed at half resolution.
 struct HalfTexels {
   ResourceHandle half;       // maths::pack_half_texel()
@@ -115,11 +115,11 @@ struct HalfTexels {
   ResourceHandle lobes;      // maths::LobeTexel; null where there is no lobe
 };
 void describe_upsample(const ViewInputs& view, ResourceHandle depth, const HalfTexels& texels,
-                       const Results& results);
+                       const OutputImages& results);
 
 // Ground-truth specular occlusion by the table of Jimenez, Wu, Pesce and Jarabo 2016, section 6.
 // `normals` are in view space if the view has none of its own.
-void describe_gtso(const ViewInputs& view, const Results& results, ResourceHandle linear_depth,
+void describe_gtso(const ViewInputs& view, const OutputImages& results, ResourceHandle linear_depth,
                    ResourceHandle normals);
 
 // Visibility per colour channel, with the light that occluders reflect ([Jimenez 2016], section 5).

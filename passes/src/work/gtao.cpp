@@ -97,10 +97,11 @@ maths::GtaoParameters parameters_of(const ViewInputs& view, const AlcoveArea& ti
 
 }  // namespace
 
-RawOcclusion describe_gtao(const ViewInputs& view, const Depths& depths) {
+RawOcclusionImages describe_gtao(const ViewInputs& view, const Depths& depths) {
   const std::uint32_t tile = view.settings.tile_size;
   const VkExtent2D size{(view.size.width + tile - 1) / tile, (view.size.height + tile - 1) / tile};
-  RawOcclusion raw{view.list.add_transient("raw occlusion", raw_format(view.lobe()), size), {}};
+  RawOcclusionImages raw{view.list.add_transient("raw occlusion", raw_format(view.lobe()), size),
+                         {}};
   if (view.bent_normal())
     raw.bent = view.list.add_transient("bent-normal residual", kBentRawFormat, size);
   const auto or_depth = [&](bool read, AlcoveImageRole role) {

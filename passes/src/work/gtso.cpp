@@ -4,7 +4,7 @@
 
 namespace alcove::passes {
 
-void describe_gtso(const ViewInputs& view, const Results& results, ResourceHandle linear_depth,
+void describe_gtso(const ViewInputs& view, const OutputImages& results, ResourceHandle linear_depth,
                    ResourceHandle normals) {
   const ResourceHandle roughness = view.image(ALCOVE_IMAGE_ROUGHNESS);
   const NormalConvention convention = normals_of(view);

@@ -47,7 +47,7 @@ std::array<NamedConstant, 14> constants_of(const ViewInputs& view, Past past, bo
 
 // Every texture that the passes write; null where it is not wanted.
 struct Textures {
-  Results results;              // at half resolution the upsampling pass writes them
+  OutputImages results;         // at half resolution the upsampling pass writes them
   WorkBuilder::History texels;  // visibility; at half resolution maths::pack_half_texel()
   WorkBuilder::History depth;   // maths::half_texel_depth(), only at half resolution
   WorkBuilder::History bent;
@@ -100,10 +100,10 @@ Textures add_textures(const ViewInputs& view) {
 // read is replaced by another one, and one that is not written by one of its own. The image is null
 // if the variant does not have the binding.
 std::array<NamedImage, 18> images_of(const ViewInputs& view, ResourceHandle depth,
-                                     const RawOcclusion& raw, const Textures& textures,
+                                     const RawOcclusionImages& raw, const Textures& textures,
                                      ResourceHandle motion) {
   const bool half = is_half(view);
-  const Results& out = textures.results;  // at half resolution the upsampling pass writes it
+  const OutputImages& out = textures.results;  // at half resolution the upsampling pass writes it
   // At half resolution only the weights of GGX lobes need normals.
   const ResourceHandle normals =
       half && !view.lobe() ? ResourceHandle{} : view.image(ALCOVE_IMAGE_NORMALS);
@@ -157,8 +157,8 @@ VkExtent3D invocations(const ViewInputs& view, VkExtent2D stored) {
 
 }  // namespace
 
-tl::expected<Results, Error> describe_reconstruct(const ViewInputs& view, ResourceHandle depth,
-                                                  const RawOcclusion& raw) {
+tl::expected<OutputImages, Error> describe_reconstruct(const ViewInputs& view, ResourceHandle depth,
+                                                       const RawOcclusionImages& raw) {
   const AlcoveViewInfo& info = view.info;
   const bool same = same_camera(info.camera, info.previous_camera);
   const bool reads_motion = has_history(view) && !(same && view.static_frames > 0);

@@ -49,7 +49,7 @@ maths::UpsampleParameters parameters_of(const ViewInputs& view, VkExtent2D store
 }  // namespace
 
 void describe_upsample(const ViewInputs& view, ResourceHandle depth, const HalfTexels& texels,
-                       const Results& results) {
+                       const OutputImages& results) {
   const ResourceHandle normals =
       results.bent_normal ? view.image(ALCOVE_IMAGE_NORMALS) : ResourceHandle{};
   const NamedImage images[] = {
