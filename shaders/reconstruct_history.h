@@ -164,13 +164,6 @@ void accumulate(Surface surface) {
   store_history(surface, result, total, kMotion ? history.recent : kNoRecent);
 }
 
-void reconstruct(Surface surface) {
-  if (kHistory)
-    accumulate(surface);
-  else
-    store_alone(surface, result_of(sum_wide(surface, Window(parameters.first_sharpness, 1.0))));
-}
-
 // Reconstructs one texel in each block of the group's column, up to the texel `last`.
 void reconstruct_column(ivec2 last) {
   Place place = first_place();
@@ -178,7 +171,10 @@ void reconstruct_column(ivec2 last) {
     if (place.texel.x <= last.x && place.texel.y <= last.y) {
       Surface surface = fetch_surface(place);
       set_plane(surface);
-      reconstruct(surface);
+      if (kHistory)
+        accumulate(surface);
+      else
+        store_alone(surface, result_of(sum_wide(surface, Window(parameters.first_sharpness, 1.0))));
     }
     move_to_next_block(place);
   }

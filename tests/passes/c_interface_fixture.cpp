@@ -17,12 +17,6 @@ constexpr VkImageUsageFlags kInputUsage =
 constexpr VkImageUsageFlags kOutputUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 
-VkFormat float_format(std::uint32_t channels) {
-  return channels == 1   ? VK_FORMAT_R32_SFLOAT
-         : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
-                         : VK_FORMAT_R32G32B32A32_SFLOAT;
-}
-
 framegraph::State to_state(const AlcoveState& state) {
   return {state.stages, state.access, state.layout};
 }

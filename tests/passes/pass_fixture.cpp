@@ -59,13 +59,13 @@ void decode(std::span<const std::byte> bytes, VkFormat format, std::vector<float
   }
 }
 
+}  // namespace
+
 VkFormat float_format(std::uint32_t channels) {
   return channels == 1   ? VK_FORMAT_R32_SFLOAT
          : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
                          : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
-
-}  // namespace
 
 double rms(const HostImage& a, const HostImage& b) {
   EXPECT_EQ(a.texels.size(), b.texels.size());

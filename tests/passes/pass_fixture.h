@@ -33,6 +33,8 @@ struct HostImage {
 inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// Returns the format of 32-bit floats with 1, 2 or 4 channels.
+VkFormat float_format(std::uint32_t channels);
 // Returns the root mean square of the differences between two images of one size.
 double rms(const HostImage& a, const HostImage& b);
 // Returns the mean of all values of an image.

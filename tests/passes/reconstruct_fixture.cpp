@@ -60,18 +60,15 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
     used.tile_size = input.tile_size;
     used.slices = input.slices;
     if (input.reset) graph.reset_history("view 0");
-    const AlcoveViewInfo info{.reset_history = input.reset ? 1u : 0u,
-                              .static_frames = input.static_frames,
-                              .settings = &used,
-                              .camera = input.view,
-                              .previous_camera = input.previous_view,
-                              .largest_width = input.largest_size.width,
-                              .largest_height = input.largest_size.height,
-                              .previous_width = input.previous_size.width,
-                              .previous_height = input.previous_size.height,
-                              .depth_format = static_cast<std::uint32_t>(
-                                  input.coarse_depth ? VK_FORMAT_D16_UNORM : VK_FORMAT_UNDEFINED),
-                              .normals_in_view_space = 1};
+    AlcoveViewInfo info =
+        view_info({.view = input.view,
+                   .previous_view = input.previous_view,
+                   .reset = input.reset,
+                   .static_frames = input.static_frames,
+                   .largest_size = input.largest_size,
+                   .previous_size = input.previous_size,
+                   .depth_format = input.coarse_depth ? VK_FORMAT_D16_UNORM : VK_FORMAT_UNDEFINED});
+    info.settings = &used;
     ViewTextures textures{};
     textures[ALCOVE_IMAGE_DEPTH] =
         upload(graph, input.coarse_depth ? with_16_bits(input.drawing.depth_ndc)

@@ -83,13 +83,9 @@ struct Depths {
 
 // The raw occlusion of a frame, one texel per tile: sums over slices, which reconstruction filters.
 struct RawOcclusionImages {
-  // R32G32_UINT: the packed visible and unoccluded parts (shaders/maths/raw_occlusion.h), and the
-  // bits of the traced pixel's inverse depth as a float. With a GGX lobe the format is
-  // R32G32B32A32_UINT: also the packed parts of the lobe, and the surface's normal and roughness.
-  ResourceHandle sums;
-  // R32G32_UINT: two sums over the slices, in view space, with 10 bits per component
-  // (shaders/maths/bent_normal.h). The first is the bent-normal residual, the second the residual
-  // that is expected without occluders. Null if no bent normals are computed.
+  ResourceHandle sums;  // shaders/maths/raw_occlusion.h draws its layout
+  // R32G32_UINT, maths::pack_residual(): sums over the slices, in view space, of the bent-normal
+  // residual and of that which is expected without occluders. Null if there are no bent normals.
   ResourceHandle bent;
 };
 [[nodiscard]] RawOcclusionImages describe_gtao(const ViewInputs& view, const Depths& depths);

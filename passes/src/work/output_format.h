@@ -7,8 +7,7 @@
 
 namespace alcove::passes {
 
-// Returns the format of the raw occlusion that gtao.comp writes: two 32-bit words, or four if it
-// also holds a GGX lobe.
+// Returns the format of the raw occlusion that gtao.comp writes (maths/raw_occlusion.h).
 [[nodiscard]] inline VkFormat raw_format(bool lobe) {
   return lobe ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_UINT;
 }
