@@ -9,7 +9,7 @@
 #include "cli/commands.h"
 #include "cli/open_session.h"
 #include "cli/settings.h"
-#include "evaluate/static_view.h"
+#include "evaluate/situations.h"
 #include "gpu_cost/cost_report.h"
 #include "render/frame_renderer.h"
 #include "spirv/empty.h"
@@ -22,7 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr float kOrbit = 0.007f;            // radians per frame
 constexpr std::uint32_t kDispatches = 256;  // empty ones of a pass
 constexpr std::uint32_t kRuns = 20;         // of these passes
 

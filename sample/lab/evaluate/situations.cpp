@@ -16,7 +16,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-constexpr float kOrbit = 0.007f;             // radians per frame
 constexpr std::uint32_t kMovingFrames = 16;  // of the orbit
 
 // A hash of the running program, because the shaders that it contains determine the times; empty if

@@ -17,6 +17,8 @@
 
 namespace alcove::sample {
 
+inline constexpr float kOrbit = 0.007f;  // of the moving camera, radians per frame
+
 // Measures the errors of settings in one view: of the first frame, of the last frame of an orbit
 // that ends at the view, and after StaticSetup::frames frames of a static camera.
 class SituationErrors {
