@@ -47,7 +47,7 @@ uint32_t alcoveGetVersion(void) { return ALCOVE_VERSION; }
 AlcoveResult alcoveCreateContext(const AlcoveContextInfo* info, AlcoveContext** context,
                                  char* message) {
   Message said{};
-  const AlcoveResult result = guarded(said, [&]() -> Result {
+  const AlcoveResult result = guarded(said.data(), [&]() -> Result {
     if (context == nullptr) return invalid("There is no place for the context.");
     *context = nullptr;
     return passes::check(info).and_then([&] { return create(*info, *context); });

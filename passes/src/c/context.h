@@ -69,8 +69,11 @@ namespace alcove::passes {
 template <typename Call>
 AlcoveResult guarded(AlcoveContext* context, const Call& call) {
   if (context == nullptr) return ALCOVE_ERROR_INVALID_INPUT;
-  const AlcoveResult result = guarded(context->message, call);
-  if (result != ALCOVE_SUCCESS) context->host->log(ALCOVE_SEVERITY_ERROR, context->message.data());
+  Message said{};
+  const AlcoveResult result = guarded(said.data(), call);
+  if (result == ALCOVE_SUCCESS) return result;
+  context->message = said;
+  context->host->log(ALCOVE_SEVERITY_ERROR, said.data());
   return result;
 }
 

@@ -103,16 +103,16 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
   VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                 .pNext = &synchronization2};
   get_features(info.physical_device, &has);
-  if (auto right =
+  if (auto valid =
           check_features(features_in(&has), name, "choose another device or update its driver");
-      !right)
-    return right;
+      !valid)
+    return valid;
   if (info.enabled_features != nullptr) {
-    if (auto right = check_features(features_in(info.enabled_features),
+    if (auto valid = check_features(features_in(info.enabled_features),
                                     "AlcoveContextInfo::enabled_features",
                                     "enable it when the device is created");
-        !right)
-      return right;
+        !valid)
+      return valid;
   }
   std::uint32_t count = 0;
   get_families(info.physical_device, &count, nullptr);
@@ -139,8 +139,8 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
 
 tl::expected<void, Failure> check(const AlcoveContextInfo* info) {
   if (info == nullptr) return invalid("There is no AlcoveContextInfo.");
-  if (auto right = check_size(info->struct_size, sizeof *info, "AlcoveContextInfo"); !right)
-    return right;
+  if (auto valid = check_size(info->struct_size, sizeof *info, "AlcoveContextInfo"); !valid)
+    return valid;
   const std::pair<const char*, bool> needed[] = {
       {"instance", info->instance != VK_NULL_HANDLE},
       {"physical_device", info->physical_device != VK_NULL_HANDLE},

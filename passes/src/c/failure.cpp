@@ -77,10 +77,9 @@ std::size_t copy_text(std::string_view from, char* text, std::size_t size) {
   return from.size();
 }
 
-AlcoveResult keep(Message& message, const Result& result) {
-  if (result) return ALCOVE_SUCCESS;
-  copy_text(result.error().message, message.data(), message.size());
-  return result.error().result;
+AlcoveResult keep(char* message, const Result& result) {
+  copy_text(result ? "" : std::string_view(result.error().message), message, ALCOVE_MAX_MESSAGE);
+  return result ? ALCOVE_SUCCESS : result.error().result;
 }
 
 }  // namespace alcove::passes

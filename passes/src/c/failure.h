@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstring>
 #include <new>
 #include <string>
 #include <string_view>
@@ -47,38 +46,29 @@ using Result = tl::expected<void, Failure>;
 // the number of bytes of the whole text without that zero. `text` may be null if `size` is 0.
 std::size_t copy_text(std::string_view from, char* text, std::size_t size);
 
-// Stores the message of a failure. Returns the result.
-AlcoveResult keep(Message& message, const Result& result);
+// Stores the message of a failure, or no text, in `message`, which is null or has room for
+// ALCOVE_MAX_MESSAGE bytes. Returns the result.
+AlcoveResult keep(char* message, const Result& result);
 
-// Runs `call`, which returns a Result, and stores its message if it failed. The library itself
+// Runs `call`, which returns a Result, and stores its message as keep() does. The library itself
 // throws nothing, but operator new may: its exception becomes a failure. In a build without
 // exceptions, the program ends instead.
 template <typename Call>
-AlcoveResult guarded(Message& message, const Call& call) {
+AlcoveResult guarded(char* message, const Call& call) {
 #ifdef __cpp_exceptions
   try {
     return keep(message, call());
   } catch (const std::bad_alloc&) {
-    copy_text("The host is out of memory.", message.data(), message.size());
+    copy_text("The host is out of memory.", message, ALCOVE_MAX_MESSAGE);
     return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
   } catch (...) {
-    copy_text("The library failed for a reason that it does not know.", message.data(),
-              message.size());
+    copy_text("The library failed for a reason that it does not know.", message,
+              ALCOVE_MAX_MESSAGE);
     return ALCOVE_ERROR_INTERNAL;
   }
 #else
   return keep(message, call());
 #endif
-}
-
-// Runs `call`. `message` is null or has room for ALCOVE_MAX_MESSAGE bytes; it becomes empty if the
-// call succeeds.
-template <typename Call>
-AlcoveResult guarded(char* message, const Call& call) {
-  Message said{};
-  const AlcoveResult result = guarded(said, call);
-  if (message != nullptr) std::memcpy(message, said.data(), said.size());
-  return result;
 }
 
 // Runs `call` without a place for its message.

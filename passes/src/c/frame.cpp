@@ -28,8 +28,8 @@ static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView + 1 <= passes::Pipelines::kMaxDi
 
 Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
   if (frame == nullptr) return invalid("There is no AlcoveFrame.");
-  if (auto right = passes::check_size(frame->struct_size, sizeof *frame, "AlcoveFrame"); !right)
-    return right;
+  if (auto valid = passes::check_size(frame->struct_size, sizeof *frame, "AlcoveFrame"); !valid)
+    return valid;
   if (frame->slot >= context.frames_in_flight) {
     return invalid("AlcoveFrame::slot is " + std::to_string(frame->slot) +
                    "; it must be below the " + std::to_string(context.frames_in_flight) +
@@ -42,8 +42,8 @@ Result check(const AlcoveContext& context, const AlcoveFrame* frame) {
   }
   for (std::uint32_t i = 0; i < frame->view_count; ++i) {
     const AlcoveView& view = frame->views[i];
-    if (auto right = passes::check_size(view.struct_size, sizeof view, "AlcoveView"); !right)
-      return right;
+    if (auto valid = passes::check_size(view.struct_size, sizeof view, "AlcoveView"); !valid)
+      return valid;
     for (std::uint32_t before = 0; before < i; ++before) {
       if (frame->views[before].info.id == view.info.id) {
         return invalid("Two views of the frame have the id " + std::to_string(view.info.id) +
@@ -95,7 +95,7 @@ tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveCont
 // Creates the pipelines for the frame by declaring it in a separate graph. The context's own graph,
 // its histories and its last recorded frame stay as they are.
 Result prepare(AlcoveContext& context, const AlcoveFrame* frame) {
-  if (auto right = check(context, frame); !right) return right;
+  if (auto valid = check(context, frame); !valid) return valid;
   framegraph::Graph graph;
   if (auto passes = add_views(graph, context, *frame, true); !passes)
     return tl::unexpected(std::move(passes.error()));
@@ -109,7 +109,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
   confirm_last_frame(context);
   context.report = {};
   if (commands == VK_NULL_HANDLE) return invalid("There is no command buffer to record into.");
-  if (auto right = check(context, frame); !right) return right;
+  if (auto valid = check(context, frame); !valid) return valid;
   Declaration declaration(context.graph);
   context.pipelines.begin_frame(frame->slot);
   context.pixels.collect(frame->slot, context.finder);

@@ -16,9 +16,9 @@ using passes::Result;
 AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
   return guarded(context, [&]() -> Result {
     if (memory == nullptr) return invalid("There is no AlcoveMemory.");
-    if (auto right = passes::check_size(memory->struct_size, sizeof *memory, "AlcoveMemory");
-        !right)
-      return right;
+    if (auto valid = passes::check_size(memory->struct_size, sizeof *memory, "AlcoveMemory");
+        !valid)
+      return valid;
     const framegraph::MemoryStatistics& found = context->report.memory;
     const bool recorded = context->report.plan != nullptr;
     *memory = {.struct_size = sizeof *memory,

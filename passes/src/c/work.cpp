@@ -17,8 +17,8 @@ namespace {
 
 Result check(const AlcoveWorkInfo* info) {
   if (info == nullptr) return invalid("There is no AlcoveWorkInfo.");
-  if (auto right = passes::check_size(info->struct_size, sizeof *info, "AlcoveWorkInfo"); !right)
-    return right;
+  if (auto valid = passes::check_size(info->struct_size, sizeof *info, "AlcoveWorkInfo"); !valid)
+    return valid;
   const AlcoveWork* const previous = info->previous;
   const bool filled =
       previous == nullptr ||
