@@ -137,7 +137,11 @@ std::vector<std::string> resource_names(const GraphDescription& graph) {
   std::sort(sorted.begin(), sorted.end());
   for (std::uint32_t r = 0; r < names.size(); ++r) {
     const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), names[r]);
-    if (last - first > 1) names[r].append("#").append(std::to_string(r));
+    if (last - first < 2) continue;
+    // The slots of a history have one name.
+    const bool history = graph.resources[r].origin == Origin::history;
+    names[r].append(history ? ", frames ago: " : "#");
+    names[r].append(std::to_string(history ? graph.resources[r].slot : r));
   }
   return names;
 }

@@ -59,7 +59,7 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
     OcclusionSettings used = settings;
     used.tile_size = input.tile_size;
     used.slices = input.slices;
-    if (input.reset) graph.reset_history("view 0");
+    if (input.reset) graph.reset_history("visibility history of view 0");
     AlcoveViewInfo info =
         view_info({.view = input.view,
                    .previous_view = input.previous_view,
