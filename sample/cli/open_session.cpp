@@ -68,8 +68,8 @@ Result<Session> open_session(const Options& options,
 }
 
 Result<Rendering> render(const Options& options) {
-  ALCOVE_TRY(auto session, open_session(options));
   ALCOVE_TRY(auto environment, load_environment(options.environment, print_note));
+  ALCOVE_TRY(auto session, open_session(options));
   const std::string radius =
       "Radius " + number_text(session.settings.radius) + ": " + session.radius_reason + "\n";
   auto rendering = render(std::move(session),

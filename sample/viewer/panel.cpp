@@ -169,11 +169,11 @@ bool lay_out_choices(ViewState& state, const PanelFacts& facts, bool narrow) {
   const float unit = ImGui::GetFontSize();
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.0f, 0.0f});
-  ImGui::SetNextWindowSize({std::min(26.0f * unit, 0.5f * window.x), window.y});
+  ImGui::SetNextWindowSize({std::min(20.0f * unit, 0.5f * window.x), window.y});
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize;
   bool screenshot = false;
   if (ImGui::Begin("settings", nullptr, kFixed)) {
-    ImGui::PushItemWidth(-11.0f * unit);
+    ImGui::PushItemWidth(-9.5f * unit);
     if (!facts.refusal.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, kRefused);
       ImGui::TextWrapped("%s The picture shows the previous settings.", facts.refusal.c_str());
@@ -224,7 +224,7 @@ double SmoothedTimes::total_ms() const {
 }
 
 bool lay_out_panel(ViewState& state, const PanelFacts& facts) {
-  constexpr float kBesideEachOther = 58.0f;  // heights of the font; less is narrow
+  constexpr float kBesideEachOther = 52.0f;  // heights of the font; less is narrow
   const bool narrow = ImGui::GetIO().DisplaySize.x < kBesideEachOther * ImGui::GetFontSize();
   if (!narrow) lay_out_corner(facts);
   return lay_out_choices(state, facts, narrow);

@@ -8,7 +8,6 @@
 #include <iostream>
 #include <utility>
 
-#include "scene/environment.h"
 #include "scene/framing.h"
 #include "support/image_io.h"
 #include "support/whole_file.h"
@@ -41,6 +40,8 @@ Result<std::filesystem::path> write_screenshot(const std::filesystem::path& fold
 Result<std::unique_ptr<SceneView>> SceneView::create(SceneViewRequest wanted) {
   std::unique_ptr<SceneView> made(new SceneView(std::move(wanted)));
   const SceneViewRequest& request = made->request_;
+  const auto print = [](const std::string& note) { std::cerr << "note: " << note << "\n"; };
+  ALCOVE_TRY(made->environment_, load_environment(request.environment, print));
   ALCOVE_TRY(made->window_, Window::create({request.width, request.height}, request.title));
   ALCOVE_TRY(made->session_, request.open_session(Window::instance_extensions()));
   ALCOVE_TRY(made->presenter_, Presenter::create(*made->session_.gpu, *made->window_));
@@ -60,10 +61,8 @@ SceneView::~SceneView() {
 }
 
 Result<void> SceneView::create_frame(const Scene& scene) {
-  const auto print = [](const std::string& note) { std::cerr << "note: " << note << "\n"; };
-  ALCOVE_TRY(const auto environment, load_environment(request_.environment, print));
   presenter_->wait();
-  ALCOVE_TRY(frame_, SceneFrame::create(*session_.gpu, scene, environment, request_.normals,
+  ALCOVE_TRY(frame_, SceneFrame::create(*session_.gpu, scene, environment_, request_.normals,
                                         presenter_->format()));
   return {};
 }

@@ -10,6 +10,7 @@
 
 #include "render/read_back.h"
 #include "render/session.h"
+#include "scene/environment.h"
 #include "support/result.h"
 #include "viewer/budget_fitter.h"
 #include "viewer/gui.h"
@@ -96,6 +97,7 @@ class SceneView {
   Result<void> write();
 
   SceneViewRequest request_;
+  EnvironmentImage environment_;
   std::unique_ptr<Window> window_;  // outlives the members below
   Session session_;
   std::unique_ptr<Presenter> presenter_;

@@ -36,7 +36,7 @@ struct ViewState {
   Camera camera;
   OcclusionSettings settings;
   std::optional<float> roughness;  // of every surface; null: the roughness of its material
-  Picture picture = Picture::visibility;
+  Picture picture = Picture::lit;
   Comparison comparison = Comparison::none;
   OcclusionSettings saved;   // the settings of Comparison::saved
   bool fits_budget = false;  // whether slices and steps follow the measured times

@@ -156,14 +156,15 @@ std::vector<std::pair<const GpuPart*, ModelledFrame>> modelled(const CostInputs&
   return all;
 }
 
-// Prints a measured frame beside its model and returns its part of the report.
-Json print(const MeasuredFrame& frame) {
+// Prints a measured frame beside its model and returns its part of the report. Times of a software
+// device are not divided by those of GPUs.
+Json print(const MeasuredFrame& frame, bool software) {
   const CostInputs& inputs = frame.settings.inputs;
   const auto models = modelled(inputs);
-  std::cout << fmt::format("{}, {}x{}, moving camera: measured ms", frame.settings.label,
-                           inputs.width, inputs.height);
+  std::cout << fmt::format("{}, {}x{}, moving camera\n  {:24}{:>10}", frame.settings.label,
+                           inputs.width, inputs.height, "milliseconds", "measured");
   for (const auto& [part, model] : models)
-    std::cout << fmt::format("; modelled {} ms, measured / modelled", part->name);
+    std::cout << fmt::format("{:>12}{:>8}", part->name, software ? "" : "ratio");
   std::cout << "\n";
   Json passes = Json::array();
   for (const PassTime& pass : frame.passes) {
@@ -173,7 +174,8 @@ Json print(const MeasuredFrame& frame) {
       const auto own = std::ranges::find(model.passes, pass.pass, &ModelledPass::pass);
       if (own != model.passes.end()) {
         const double ratio = pass.milliseconds / own->milliseconds();
-        std::cout << fmt::format("{:12.4f}{:8.2f}", own->milliseconds(), ratio);
+        std::cout << fmt::format("{:12.4f}{:>8}", own->milliseconds(),
+                                 software ? "" : fmt::format("{:.2f}", ratio));
         row["modelled"][std::string(part->name)] = {{"ms", own->milliseconds()},
                                                     {"quotient", ratio}};
       }
@@ -213,7 +215,8 @@ Result<void> run_measure(const Options& options) {
       ALCOVE_TRY(
           const auto frame,
           measure(session, options, {std::string(passes::kQualityNames.at(quality)), inputs}));
-      report["measured"].push_back(print(frame));
+      report["measured"].push_back(
+          print(frame, device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU));
     }
   }
   return write_text(options.out / "report.json", report.dump(2) + "\n").map([&] {

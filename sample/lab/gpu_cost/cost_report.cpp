@@ -14,14 +14,17 @@ using Json = nlohmann::ordered_json;
 std::string pass_row(const ModelledPass& pass) {
   const ShaderStatistics& shader = pass.statistics;
   return fmt::format(
-      "    {:20}{:8.3f}  "
-      "{:14}{:8.0f}{:8.1f}{:7.1f}{:7.1f}{:7.1f}{:7.0f}{:7.0f}{:8.0f}{:8.0f}{:8.0f}"
-      "{:7.1f}   {:.3f}\n",
+      "    {:19}{:7.3f}  {:13}{:6.0f}{:6.1f}{:6.1f}{:7.1f}{:7.1f}{:6.0f}{:6.0f}{:7.0f}\n",
       pass.pass, pass.milliseconds(), pass.limit(), pass.instructions_per_pixel,
       pass.fetches_per_pixel, pass.stores_per_pixel, pass.l2_bytes_per_pixel, pass.bytes_per_pixel,
       shader.vector_registers, pass.waves_per_simd,
-      shader.spills > 0 ? shader.spills : shader.scratch_bytes, shader.code_bytes,
-      shader.shared_bytes, pass.cache_lines_per_load, fmt::join(pass.limits_ms, " "));
+      shader.spills > 0 ? shader.spills : shader.scratch_bytes);
+}
+
+std::string pass_rows(const ModelledFrame& frame) {
+  std::string rows;
+  for (const ModelledPass& pass : frame.passes) rows += pass_row(pass);
+  return rows;
 }
 
 // The range of the times under different assumptions, and the time under each.
@@ -39,24 +42,20 @@ std::string settings_rows(const SettingsCost& cost) {
   std::string out;
   const CostInputs& inputs = cost.settings.inputs;
   const double peer_ms = xegtao_ms(*cost.part, kXeGtaoHigh, inputs.width, inputs.height);
-  for (const ModelledFrame& frame : cost.frames) {
-    out += fmt::format("  {}, {} frame: {:.3f} ms", cost.settings.label, name_of(frame.state),
-                       frame.milliseconds());
+  for (std::size_t i = 0; i < cost.frames.size(); ++i) {
+    const ModelledFrame& frame = cost.frames[i];
+    const std::string rows = pass_rows(frame);
+    std::string states(name_of(frame.state));
+    for (; i + 1 < cost.frames.size() && pass_rows(cost.frames[i + 1]) == rows; ++i)
+      states += fmt::format(" or {}", name_of(cost.frames[i + 1].state));
+    out +=
+        fmt::format("  {}, {} frame: {:.3f} ms", cost.settings.label, states, frame.milliseconds());
     if (cost.compiler == kXeGtaoCompiler)
       out += fmt::format(", {:.2f} of {} at this size", frame.milliseconds() / peer_ms,
                          kXeGtaoHigh.name);
-    out += "\n";
-    for (const ModelledPass& pass : frame.passes) out += pass_row(pass);
+    out += "\n" + rows;
   }
   if (!cost.assumed_ms.empty()) out += range_row(cost);
-  for (const Occupancy& occupancy : cost.occupancies) {
-    out += fmt::format("    {:20}vector registers and waves per SIMD:", occupancy.pass);
-    for (std::size_t i = 0; i < kProjectionNames.size(); ++i) {
-      out += fmt::format("{} {} {:.0f} and {:.0f}", i == 0 ? "" : ",", kProjectionNames[i],
-                         occupancy.vector_registers[i], occupancy.waves_per_simd[i]);
-    }
-    out += "\n";
-  }
   return out;
 }
 
@@ -110,16 +109,8 @@ Json to_json(const SettingsCost& cost, double peer_ms) {
     if (cost.compiler == kXeGtaoCompiler)
       frames.back()["of_xegtao_high"] = frame.milliseconds() / peer_ms;
   }
-  Json occupancies = Json::array();
-  for (const Occupancy& occupancy : cost.occupancies) {
-    occupancies.push_back({{"pass", occupancy.pass},
-                           {"projections", kProjectionNames},
-                           {"vector_registers", occupancy.vector_registers},
-                           {"waves_per_simd", occupancy.waves_per_simd}});
-  }
   return {{"label", cost.settings.label},
           {"frames", std::move(frames)},
-          {"occupancy", std::move(occupancies)},
           {"assumed_ms", cost.assumed_ms}};
 }
 
@@ -134,7 +125,6 @@ Result<std::vector<SettingsCost>> model_costs(std::span<const LabelledSettings> 
     for (const LabelledSettings& one : settings) {
       SettingsCost cost{one, &part, device.compiler};
       ALCOVE_TRY(cost.frames, modelled_frames(part, device, one.inputs));
-      ALCOVE_TRY(cost.occupancies, occupancies(part, device, one.inputs));
       for (const CacheAssumptions& assumptions : kCacheAssumptions) {
         if (!range) break;
         ALCOVE_TRY(const auto frame,
@@ -153,16 +143,16 @@ std::string format_table(std::span<const SettingsCost> costs) {
     const auto first = std::ranges::find(costs, &part, &SettingsCost::part);
     if (first == costs.end()) continue;
     const CostInputs& size = first->settings.inputs;
-    out += fmt::format("{}: {}. Modelled milliseconds at {}x{}, compiled by {}; by {}:", part.name,
-                       part.title, size.width, size.height, first->compiler, kXeGtaoCompiler);
-    for (const XeGtao& peer : kXeGtao) {
-      out += fmt::format("{} {} {:.3f}", &peer == kXeGtao.data() ? "" : ",", peer.name,
-                         xegtao_ms(part, peer, size.width, size.height));
-    }
+    out += fmt::format(
+        "{}: {}. Modelled milliseconds at {}x{}, compiled by {}.\nOthers, by {}:", part.name,
+        part.title, size.width, size.height, first->compiler, kXeGtaoCompiler);
+    for (const XeGtao& peer : kXeGtao)
+      out += fmt::format(" {} {:.3f},", peer.name, xegtao_ms(part, peer, size.width, size.height));
     out +=
-        "; all passes of the paper on a PS4 0.5 (as published, 1920x1080)\n"
-        "    pass                      ms  limit          instr/px fetches stores  L2 B beyond"
-        "  VGPRs  waves  spills    code  shared  lines   ALU texture shared L2 memory latency\n";
+        "\nall passes of the paper on a PS4 0.5 (as published, 1920x1080). Instructions, fetches, "
+        "stores,\nand bytes to L2 and to memory are per pixel; --json FILE has more.\n"
+        "    pass                    ms  limit         inst fetch store   L2 B  mem B  VGPR waves "
+        "spills\n";
     for (const SettingsCost& cost : costs)
       if (cost.part == &part) out += settings_rows(cost);
   }

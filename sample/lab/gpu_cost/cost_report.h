@@ -21,9 +21,8 @@ struct LabelledSettings {
 struct SettingsCost {
   LabelledSettings settings;
   const GpuPart* part = nullptr;
-  std::string compiler;                // of the shaders, as NullDevice::compiler
-  std::vector<ModelledFrame> frames;   // for a finite far plane
-  std::vector<Occupancy> occupancies;  // of each pass, for each kind of projection
+  std::string compiler;               // of the shaders, as NullDevice::compiler
+  std::vector<ModelledFrame> frames;  // for a finite far plane
   // Milliseconds of a moving frame under each of kCacheAssumptions; empty if they are not wanted.
   std::vector<double> assumed_ms;
 };
