@@ -36,7 +36,7 @@ constexpr std::array<CommandRow, 10> kCommands{{
      "render a scene and print the errors against ray-traced and height-field truth"},
     {Command::recommend, kUse, "recommend",
      "find the most accurate setting within a time, or the fastest within an error", Scenes::one,
-     384, 216, kHistory, 64},
+     256, 144, kHistory, 64},
     {Command::report, kUse, "report",
      "write a web page: error against time, pictures beside the truth, and what a scene requires",
      Scenes::many, 480, 270, kHistory},

@@ -1,4 +1,4 @@
-// The choice of settings for a view: a coordinate search over numbers of samples and over features.
+// The choice of settings for a view, from a list of numbers of samples and of features.
 #pragma once
 
 #include <array>
@@ -52,9 +52,6 @@ struct RecommendationGoal {
   double rmse(const Achievement& of) const;
   double ms(const Achievement& of) const;
   bool met(const Achievement& by) const;
-  // Whether `a` is better than `b`, by more than the fraction `margin` if both meet the goal or
-  // neither does.
-  bool prefers(const Achievement& a, const Achievement& b, double margin = 0) const;
 };
 
 // The effect of one feature at otherwise equal settings.
@@ -69,18 +66,16 @@ struct FeatureEffect {
   std::string sentence() const;
 };
 
-// A feature is not used unless it lowers the error, or the time within a tolerance, by more than
+// A feature is not used unless it lowers the error, or the time at the same error, by more than
 // this fraction.
 inline constexpr double kWorthwhile = 0.01;
 
-// Times in milliseconds for which an unmet tolerance is answered with the smallest error.
-inline constexpr std::array<double, 4> kUsualTimes{0.25, 0.5, 1.0, 2.0};
-
 struct Recommendation {
-  Achievement chosen;
   std::vector<FeatureEffect> features;
-  // If a tolerance is not met: the smallest error within each of kUsualTimes that can be kept.
-  std::vector<Achievement> within_usual_times;
+  // The measured choices that err less than all faster ones, from fast to slow. At least one.
+  std::vector<Achievement> front;
+
+  const Achievement& chosen() const { return front.back(); }
 };
 
 // Functions that a search calls: the values of Achievement::rmse and ms, and how much is done.
@@ -93,13 +88,13 @@ struct RecommendationWorld {
   bool second_layer = false, back_faces = false;
 };
 
-// Searches from `base`, whose settings beyond those that the search changes are kept. First it
-// measures numbers of samples near the limit, then each feature with the best of them; a feature
-// that lowers the error is also tried with fewer samples. Last it changes slices, steps and tile
-// size a little, one at a time. If nothing meets the goal, the result is the closest. Errors: those
-// of the world's functions for numbers of samples.
-[[nodiscard]] Result<Recommendation> recommend(const OcclusionSettings& base,
-                                               const RecommendationGoal& goal,
+// Searches from `base`, whose settings beyond those that the search changes are kept. Features are
+// measured at few samples per pixel. Then the settings of preset_sweep() with up to 12 samples per
+// pixel, with and without each feature that is worthwhile, are sorted by their times and measured
+// from fast to slow, until one meets the tolerance or exceeds the budget. The answers by budget and
+// by tolerance are therefore from one list. If nothing meets the goal, the result is the closest.
+// Errors: those of the world's functions, except for features, which say so themselves.
+[[nodiscard]] Result<Recommendation> recommend(const Choice& base, const RecommendationGoal& goal,
                                                const RecommendationWorld& world);
 
 }  // namespace alcove::sample

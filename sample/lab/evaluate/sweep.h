@@ -13,6 +13,10 @@ struct Variant {
   OcclusionSettings settings;
 };
 
+// Returns `settings` with the tile size, slices, steps and resolution of `samples`.
+[[nodiscard]] OcclusionSettings with_samples(OcclusionSettings settings,
+                                             const OcclusionSettings& samples);
+
 // Returns the presets, and other settings with tile sizes, numbers of slices and steps, and half
 // resolution between and beyond those of the presets. Everything else is as in `base`, except that
 // a preset with a second depth layer has one. No setting appears twice. `base` itself appears only
