@@ -140,7 +140,11 @@ tl::unexpected<std::string> too_large(const std::string& what, VkDeviceSize byte
 }
 
 tl::unexpected<std::string> device_failure(const std::string& what, VkResult result) {
-  return failure("The device could not " + what, result);
+  const bool out_of_memory =
+      result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
+  return failure("The device could not " + what +
+                     (out_of_memory ? ": memory is full; make the image smaller with --size" : ""),
+                 result);
 }
 
 tl::expected<void, std::string> check(VkResult result, const std::string& what) {

@@ -38,7 +38,7 @@ maths::GbufferMaterial convert(const Material& material) {
   out.emissive = glm::vec4(material.emissive, 0.0f);
   out.metallic = material.metallic;
   out.roughness = material.roughness;
-  if (material.alpha_mode == AlphaMode::mask) out.alpha_cutoff = material.alpha_cutoff;
+  if (material.alpha_mode == AlphaMode::mask) out.least_alpha = material.least_alpha();
   out.has_normal_map = material.normal_texture.image >= 0 ? 1 : 0;
   out.normal_scale = material.normal_scale;
   set_uv_rows(out, maths::kBaseColourUv, material.base_color_texture);

@@ -213,8 +213,7 @@ Result<AnalyticScene> analytic_scene(const std::string& name) {
   if (kind == "sphere") return sphere();
   if (kind == "pit") return pit();
   if (kind == "step") return step();
-  return Failure("there is no scene " + name +
-                 "; try plane:60, groove:90, corner, sphere, pit or step");
+  return Failure("there is no scene " + name + "; try " + kAnalyticExamples);
 }
 
 }  // namespace alcove::sample

@@ -24,6 +24,8 @@ struct AnalyticScene {
   std::vector<ReferencePoint> points;
 };
 
+constexpr const char* kAnalyticExamples = "plane:60, groove:90, corner, sphere, pit or step";
+
 // Returns the scene of a name: `plane:DEG` (DEG is the tilt from facing the camera, 0..89, default
 // 0), `groove:DEG` (DEG is the opening angle between the walls, 10..170, default 90), `corner`,
 // `sphere`, `pit` or `step`. Lengths are metres. Unknown names and angles out of range are errors

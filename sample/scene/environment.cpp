@@ -71,6 +71,11 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file, boo
     const auto width = static_cast<uint32_t>(size.x), height = static_cast<uint32_t>(size.y);
     const auto factor =
         static_cast<uint32_t>((std::max(size.x, size.y) + kLargestSide - 1) / kLargestSide);
+    if (std::abs(size.x - 2 * size.y) > (size.x + 2 * size.y) / 100) {
+      return Failure("has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                     " pixels, and a panorama of the sphere is twice as wide as high; convert cube "
+                     "maps and light probes to an equirectangular panorama");
+    }
     BlockMean<float, double, 3> mean(width, height, factor);
     EnvironmentImage image(mean.reduced(width), mean.reduced(height));
     size_t written = 0;
@@ -104,7 +109,7 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file, boo
     std::ifstream(file, std::ios::binary).read(start.data(), start.size());
     const auto* bytes = reinterpret_cast<const uint8_t*>(start.data());
     const std::string kind = foreign_kind({bytes, start.size()}, "convert it to OpenEXR");
-    if (!kind.empty() && !kind.starts_with("is OpenEXR")) return Failure(kind);
+    if (!kind.empty() && !kind.starts_with("is an OpenEXR")) return Failure(kind);
     return Failure(std::string("is no OpenEXR image that can be read (OpenEXR says: ") +
                    error.what() + "); save it again as a flat image of the channels R, G and B");
   }
@@ -134,7 +139,7 @@ Result<EnvironmentImage> load_environment(const std::filesystem::path& file,
     return "The environment " + printable(file.string()) + " cannot be used: " + why + ".";
   };
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return Failure(refuse(missing_file(file)));
+  if (!std::filesystem::is_regular_file(file, ignored)) return Failure(refuse(missing_file(file)));
   bool is_clipped = false;
   auto image = read_environment(file, is_clipped);
   if (!image) return Failure(refuse("it " + image.error()));

@@ -109,9 +109,10 @@ Result<Scene> load_gltf(const fs::path& file, const Progress& progress) {
   };
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) return refuse(missing_file(file));
   if (!fs::status_known(status)) return refuse(error.message());
-  if (fs::is_directory(status)) return refuse("it is a folder; name the .gltf or .glb in it");
+  if (!fs::is_regular_file(status)) return refuse(missing_file(file));
+  if (has_other_format(file))
+    return refuse("it is no glTF; convert it to glTF 2.0, for example with Blender");
   try {
     auto bytes = read_regular_file(file, kMostFileBytes);
     if (!bytes) return refuse("it " + bytes.error());

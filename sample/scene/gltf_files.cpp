@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "support/printable.h"
 #include "support/regular_file.h"
 
 namespace alcove::sample {
@@ -70,13 +71,6 @@ Result<Bytes> base64_decoded(std::string_view text) {
   return out;
 }
 
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  std::ranges::transform(out, out.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
 constexpr std::string_view kData = "data:";
 
 bool is_data(const std::string& uri) {
@@ -116,6 +110,14 @@ bool lies_within(const fs::path& file, const fs::path& folder) {
   return end == folder.end() && rest != file.end();
 }
 
+// Returns the path without the root and the leading .. that lead out of a folder.
+std::string without_way_out(const fs::path& path) {
+  fs::path out;
+  for (const fs::path& name : path.lexically_normal().relative_path())
+    if (name != "..") out /= name;
+  return out.string();
+}
+
 }  // namespace
 
 Result<Bytes> read_regular_file(const fs::path& file, uint64_t most) {
@@ -145,8 +147,9 @@ Result<Bytes> GltfFiles::read(const std::string& uri) {
   const std::string decoded = percent_decoded(uri);
   std::string slashes = decoded;
   std::ranges::replace(slashes, '\\', '/');
+  const std::string below = without_way_out(slashes);
   bool outside = false;
-  for (const std::string& name : {decoded, uri, slashes}) {
+  for (const std::string& name : {decoded, uri, slashes, below}) {
     if (name.find('\0') != std::string::npos) continue;
     std::error_code error;
     const fs::path file = fs::canonical(folder_ / name, error);
@@ -154,7 +157,8 @@ Result<Bytes> GltfFiles::read(const std::string& uri) {
     if (lies_within(file, folder_)) return read_file(file);
     outside = true;
   }
-  return Failure(outside ? "lies outside the scene's folder" : "is not in the scene's folder");
+  if (!outside) return Failure("is not in the scene's folder");
+  return Failure("lies outside the scene's folder (copy it there as " + shown(below) + ")");
 }
 
 Result<Bytes> GltfFiles::read_file(const fs::path& file) {

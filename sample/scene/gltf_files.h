@@ -19,7 +19,8 @@ class GltfFiles {
 
   // Returns the bytes that a URI names. A relative reference is decoded after RFC 3986: %XX is a
   // byte, and all other characters are themselves. If no such file exists, the name is tried
-  // without decoding, and then with every \ replaced by /, because exporters on Windows write \.
+  // without decoding, then with every \ replaced by /, because exporters on Windows write \, and
+  // then without a beginning that leads out of the folder, such as ../.
   // `data:` URIs may have any media type, and be base64 or percent-encoded. Error texts are the end
   // of a sentence that begins with the URI.
   [[nodiscard]] Result<std::vector<uint8_t>> read(const std::string& uri);

@@ -34,8 +34,10 @@ Result<json> parse(std::span<const uint8_t> text) {
     if (!root.is_object()) return Failure("it is not glTF: its JSON is not an object");
     return root;
   } catch (const json::parse_error& error) {
-    const std::string kind = foreign_kind(text, "convert it to glTF 2.0, for example with Blender");
+    const std::string kind = foreign_kind(text, "name a .gltf or .glb file");
     if (!kind.empty()) return Failure("it " + kind);
+    if (error.byte <= 1)
+      return Failure("it is not glTF, which begins with { or glTF; name a .gltf or .glb file");
     return Failure("it is not glTF, or damaged: its JSON cannot be read at byte " +
                    std::to_string(error.byte) + "; export it as glTF 2.0 again");
   } catch (const json::exception&) {

@@ -14,6 +14,8 @@
 namespace alcove::sample {
 namespace {
 
+constexpr const char* kCycle = "some of its nodes form a cycle; export it again";
+
 glm::dmat4 compose(const glm::dvec3& translation, const glm::dquat& rotation,
                    const glm::dvec3& scale) {
   glm::dmat4 m(1.0);
@@ -77,8 +79,9 @@ Result<Roots> find_roots(const tinygltf::Model& model) {
   return out;
 }
 
-// Checks that the mesh of a node exists, and its skin with all joints.
-Result<void> check_references(const tinygltf::Model& model, const tinygltf::Node& node) {
+// Checks that the mesh of a node exists, and its skin with all joints, which must be `placed`.
+Result<void> check_references(const tinygltf::Model& model, const tinygltf::Node& node,
+                              const std::vector<char>& placed) {
   const auto refuse = [&](const std::string& what, int index) {
     return Failure("node \"" + node.name + "\" has no " + what + " " + std::to_string(index));
   };
@@ -89,8 +92,10 @@ Result<void> check_references(const tinygltf::Model& model, const tinygltf::Node
   if (!exists(node.mesh, model.meshes)) return refuse("mesh", node.mesh);
   if (!exists(node.skin, model.skins)) return refuse("skin", node.skin);
   if (node.skin < 0) return {};
-  for (const int joint : model.skins[static_cast<size_t>(node.skin)].joints)
+  for (const int joint : model.skins[static_cast<size_t>(node.skin)].joints) {
     if (!exists(joint, model.nodes)) return refuse("joint", joint);
+    if (placed[static_cast<size_t>(joint)] == 0) return Failure(kCycle);
+  }
   return {};
 }
 
@@ -172,11 +177,12 @@ Result<NodeTree> read_nodes(const tinygltf::Model& model, uint64_t most_instance
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
       open.push_back({*child, world, drawn});
   }
-  if (std::ranges::find(visited, 0) != visited.end())
-    return Failure("some of its nodes form a cycle; export it again");
+  // Without scenes, all nodes are drawn. Otherwise a cycle may stand outside of the scene.
+  if (model.scenes.empty() && std::ranges::find(visited, 0) != visited.end())
+    return Failure(kCycle);
   for (DrawnNode& drawn : out.drawn) {
     const tinygltf::Node& node = model.nodes[drawn.node];
-    ALCOVE_TRY_VOID(check_references(model, node));
+    ALCOVE_TRY_VOID(check_references(model, node, visited));
     if (node.mesh < 0 || node.skin >= 0) continue;
     ALCOVE_TRY(drawn.instances, NodeInstances::read(model, node, most_instances)
                                     .map_error(with_prefix("node \"" + node.name + "\" ")));

@@ -1,9 +1,13 @@
 #include "scene/load_scene.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "scene/analytic_scenes.h"
 #include "scene/builtin_scene.h"
 #include "scene/gltf.h"
 #include "scene/outdoor_scenes.h"
+#include "support/printable.h"
 
 namespace alcove::sample {
 
@@ -33,7 +37,13 @@ Result<Scene> load_scene(const std::string& what, const MaterialTreatment& treat
   if (is_analytic_name(what)) {
     return analytic_scene(what).map([](AnalyticScene&& it) { return std::move(it.scene); });
   }
-  ALCOVE_TRY(auto scene, load_gltf(what, progress));
+  const std::filesystem::path file = what;
+  std::error_code ignored;
+  if (!file.has_extension() && !std::filesystem::exists(file, ignored)) {
+    return Failure("there is no file and no scene " + printable(what) +
+                   "; scenes that need no file are builtin, fence, terrain, " + kAnalyticExamples);
+  }
+  ALCOVE_TRY(auto scene, load_gltf(file, progress));
   treat_materials(scene, treatment);
   return scene;
 }

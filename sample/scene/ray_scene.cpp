@@ -88,7 +88,7 @@ void reject_invisible(const RTCFilterFunctionNArguments* args) {
     } else if (material.alpha_mode == AlphaMode::mask) {
       const float alpha = alpha_at(*scene, *mesh, RTCHitN_primID(args->hit, count, i),
                                    RTCHitN_u(args->hit, count, i), RTCHitN_v(args->hit, count, i));
-      if (alpha < material.alpha_cutoff) args->valid[i] = 0;
+      if (alpha < material.least_alpha()) args->valid[i] = 0;
     }
   }
 }

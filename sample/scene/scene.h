@@ -68,10 +68,13 @@ struct Material {
   TextureUse normal_texture;
   float normal_scale = 1.0f;  // of x and y; -1e6..1e6
   AlphaMode alpha_mode = AlphaMode::opaque;
-  float alpha_cutoff = 0.5f;  // for AlphaMode::mask: points with alpha >= cutoff are kept
+  float alpha_cutoff = 0.5f;  // for AlphaMode::mask: points with alpha >= cutoff are drawn
   // If false, back faces are neither drawn nor hit by rays (glTF 2.0 section 3.9.6).
   bool double_sided = true;
 
+  // Returns the least alpha at which a point of a mask is drawn. It is a little below the cutoff,
+  // because alpha that is interpolated between equal vertices is only nearly theirs.
+  [[nodiscard]] float least_alpha() const { return alpha_cutoff - 0x1p-14f; }
   // Returns base colour, metal and roughness, emission and normal map.
   [[nodiscard]] std::array<TextureUse*, 4> textures() {
     return {&base_color_texture, &metal_roughness_texture, &emissive_texture, &normal_texture};

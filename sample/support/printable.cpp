@@ -33,4 +33,11 @@ std::string shortened(std::string_view text, std::size_t most) {
   return out.substr(0, head).append(kDots).append(out, tail, std::string::npos);
 }
 
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
 }  // namespace alcove::sample

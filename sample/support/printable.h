@@ -15,4 +15,7 @@ namespace alcove::sample {
 // the middle, so that a sentence keeps its beginning and its end.
 [[nodiscard]] std::string shortened(std::string_view text, std::size_t most);
 
+// Returns the text with the letters A to Z in lower case.
+[[nodiscard]] std::string lower_case(std::string_view text);
+
 }  // namespace alcove::sample

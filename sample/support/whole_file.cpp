@@ -61,8 +61,10 @@ Result<void> check_writable(const fs::path& file) {
 
 Result<void> write_whole(const fs::path& file,
                          const std::function<Result<void>(const fs::path&)>& write) {
-  const fs::path temporary = temporary_beside(file);
   std::error_code reason;
+  if (fs::is_directory(file, reason))
+    return Failure("cannot write " + file.string() + ": it is a folder; give the name of a file");
+  const fs::path temporary = temporary_beside(file);
   Result<void> outcome = write(temporary);
   if (outcome) {
     fs::rename(temporary, file, reason);

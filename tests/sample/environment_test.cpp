@@ -115,19 +115,25 @@ TEST_F(EnvironmentFile, RefusalNamesARemedy) {
   EXPECT_THAT(load_environment(folder_.path / "z.exr").error(),
               HasSubstr("no channels R, G and B, but G, Z; save it with these three"));
   EXPECT_THAT(load("a.hdr", "#?RADIANCE\n").error(),
-              HasSubstr("Radiance HDR (convert it to OpenEXR)"));
+              HasSubstr("a Radiance HDR image (convert it to OpenEXR)"));
   EXPECT_THAT(load("a.exr", "version https://git-lfs").error(), HasSubstr("git lfs pull"));
   EXPECT_THAT(load_environment("https://example.org/a.exr").error(),
               HasSubstr("download the file"));
+  EXPECT_THAT(load_environment(folder_.path).error(), HasSubstr("it is a folder"));
+  // A light probe, and cube maps as a strip, a column and crosses.
+  for (const auto& [width, height] :
+       {std::pair(8u, 8u), {48u, 8u}, {8u, 48u}, {32u, 24u}, {24u, 32u}})
+    EXPECT_THAT(load(EnvironmentImage(width, height)).error(), HasSubstr("twice as wide as high"));
+  EXPECT_TRUE(load(EnvironmentImage(401, 200)));
 }
 
 TEST_F(EnvironmentFile, LargeEnvironmentMapsAreReducedByAveragingPixels) {
-  EnvironmentImage image(4096, 4);
-  for (uint32_t y = 0; y < 4; ++y)
-    for (uint32_t x = 0; x < 4096; ++x) image.at(x, y) = glm::vec3(x % 2 ? 3.0f : 1.0f);
+  EnvironmentImage image(2052, 1026);
+  for (uint32_t y = 0; y < 1026; ++y)
+    for (uint32_t x = 0; x < 2052; ++x) image.at(x, y) = glm::vec3(x % 2 ? 3.0f : 1.0f);
   const auto loaded = load(image);
   ASSERT_TRUE(loaded) << loaded.error();
-  EXPECT_EQ(loaded->width, 2048u);
+  EXPECT_EQ(loaded->width, 1026u);
   for (const glm::vec3& pixel : loaded->pixels) ASSERT_EQ(pixel, glm::vec3(2.0f));
 }
 

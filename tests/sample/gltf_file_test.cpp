@@ -34,7 +34,8 @@ TEST(GltfFile, FileOutsideTheFolderOfTheSceneIsReportedAsOutsideAndNotAsMissing)
     json["buffers"] = {{{"byteLength", maker.bytes.size()}, {"uri", uri}}};
     const auto scene = load_gltf(folder.write("inside/scene.gltf", json.dump()));
     ASSERT_FALSE(scene);
-    EXPECT_THAT(scene.error(), HasSubstr("(" + uri + ") lies outside the scene's folder"));
+    EXPECT_THAT(scene.error(), HasSubstr("(" + uri + ") lies outside the scene's folder (copy it " +
+                                         "there as " + uri.substr(uri.find_first_of("ol")) + ")"));
   }
   maker.json["images"][0] = {{"uri", "../t.png"}};
   const auto scene = parse_gltf(maker.gltf(), "test.gltf", inside);
@@ -68,14 +69,18 @@ TEST(GltfFile, FilesOfOtherKindsAreNamedWithARemedy) {
       {"<HTML>", "is a web page"},
       {std::string("\xff\xfe{\0", 4), "is UTF-16 text (save it as UTF-8)"},
       {std::string("{\0\"\0", 4), "is UTF-16 text"},
-      {"Kaydara FBX Binary  ", "is Autodesk FBX (convert it to glTF 2.0"},
-      {"PK\3\4", "a .usdz (unpack it first"},
-      {"# Blender 4.0\nmtllib a.mtl\nv 0 0 0", "is Wavefront OBJ"},
-      {"v 0 0 0", "is Wavefront OBJ"},
-      {"hello", "its JSON cannot be read at byte 1; export it as glTF 2.0 again"},
+      {"PK\3\4", "is compressed (unpack it first"},
+      {"\x89PNG", "is a PNG, JPEG or WebP image (name a .gltf or .glb file)"},
+      {"# Read me", "it is not glTF, which begins with { or glTF; name a .gltf"},
+      {"{hello", "its JSON cannot be read at byte 2; export it as glTF 2.0 again"},
   };
   for (const auto& [text, sentence] : files)
     EXPECT_THAT(refusal(text_bytes(text)), HasSubstr(sentence));
+  const TemporaryFolder folder;
+  for (const char* name : {"a.FBX", "a.usda", "a.b.obj"})
+    EXPECT_THAT(load_gltf(folder.write(name, std::string("x"))).error(),
+                HasSubstr("it is no glTF; convert it to glTF 2.0"));
+  EXPECT_THAT(load_gltf(folder.path).error(), HasSubstr("it is a folder; name a file in it"));
   // A repository without its large files has pointers in place of buffers and images.
   GltfMaker maker = painted({{"index", 0}}, {{"index", 0}});
   const std::string pointer = "data:,version%20https://git-lfs.github.com/spec/v1";
@@ -127,6 +132,8 @@ TEST(GltfFile, UriIsDecodedAccordingToRfc3986) {
       {"./k.bin", "k.bin"},
       {".\\l.bin", "l.bin"},
       {"m#1?.bin", "m#1?.bin"},
+      {"../n.bin", "n.bin"},  // the files beside the scene, or copied there
+      {"..\\x\\..\\..\\o.bin", "o.bin"},
   };
   for (const auto& [uri, file_name] : names) {
     const auto scene = scene_with(uri, file_name);
@@ -140,7 +147,7 @@ TEST(GltfFile, UriIsDecodedAccordingToRfc3986) {
 TEST(GltfFile, UrisThatLeadOutOfTheFolderOfTheSceneAreRefused) {
   for (const char* uri : {"%2e%2e/own.bin", "..\\own.bin", "/etc/passwd", "file:///etc/passwd",
                           "https://example.org/a.bin", "inside/../../own.bin", "a%00.bin"}) {
-    const auto scene = scene_with(uri, "own.bin");
+    const auto scene = scene_with(uri, "other.bin");
     ASSERT_FALSE(scene) << uri;
     EXPECT_THAT(scene.error(), HasSubstr("folder")) << uri;
   }

@@ -201,6 +201,15 @@ TEST(GltfNodes, NodeThatTheSceneReachesTwiceIsDrawnOnceWithANote) {
   expect_once();
 }
 
+TEST(GltfNodes, CycleOutsideOfTheSceneMattersOnlyIfItHasAJointOfTheScene) {
+  GltfMaker maker = skinned_triangle();
+  const auto nodes = maker.json["nodes"].size();
+  maker.json["nodes"].push_back({{"mesh", 0}, {"children", {nodes}}});
+  EXPECT_EQ(corners(parsed(maker.gltf())).size(), 3u);
+  maker.json["skins"][0]["joints"][1] = nodes;
+  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("form a cycle"));
+}
+
 TEST(GltfCompression, ViewThatCannotBeDecompressedIsReplacedByItsFallback) {
   GltfMaker maker = GltfMaker::triangle();
   maker.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"] = {

@@ -30,6 +30,11 @@ TEST(SceneNotes, OnlyTheFirstTwentyNotesOnASceneArePrinted) {
   EXPECT_THAT(printed, HasSubstr("note: There are 30 more notes on this scene.\n"));
 }
 
+TEST(LoadScene, UnknownNameListsTheScenesThatNeedNoFile) {
+  for (const char* name : {"spere", "sphere/", "no/terain"})
+    EXPECT_THAT(load_scene(name).error(), HasSubstr("fence, terrain, plane:60, groove:90"));
+}
+
 // A masked triangle with vertex colours, and whether a ray meets it near its first corner.
 bool is_hit(const std::vector<uint8_t>& colors) {
   GltfMaker maker = GltfMaker::triangle();

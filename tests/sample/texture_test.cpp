@@ -221,6 +221,19 @@ TEST_F(TextureTest, MaterialsReadTheirOwnTexturesEvenIfThereAreMoreThanVulkanGua
   }
 }
 
+TEST_F(TextureTest, AlphaThatEqualsTheCutoffOfAMaskIsDrawn) {
+  Scene scene = plain_quad();
+  Camera camera;
+  camera.eye_ws = {0.37f, -0.61f, 1.7f};
+  camera.target_ws = glm::vec3(0.0f);
+  const std::vector<float> opaque = draw(scene, 64, camera).depth_ndc.pixels;
+  scene.materials[0].alpha_mode = AlphaMode::mask;
+  for (const float alpha : {0.1f, 0.35f, 0.5f, 0.7f, 1.0f}) {
+    scene.materials[0].base_color.a = scene.materials[0].alpha_cutoff = alpha;
+    EXPECT_EQ(draw(scene, 64, camera).depth_ndc.pixels, opaque) << alpha;
+  }
+}
+
 TEST_F(TextureTest, AlphaMasksReadWithTheSecondUvSetAgreeWithTheRayTracerAndKeepTheirCoverage) {
   // One texel in four is opaque, so that the mean of any mip is below the cutoff. A pixel
   // covers 1.618 periods.

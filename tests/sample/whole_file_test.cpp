@@ -36,8 +36,9 @@ TEST(WholeFile, TemporaryFilesOfAnHourAgoAreRemovedAndNoOthers) {
   EXPECT_EQ(folder.files(), 2);
 }
 
-TEST(WholeFile, FileInPlaceOfAFolderIsRefused) {
+TEST(WholeFile, FileInPlaceOfAFolderIsRefusedAndAFolderInPlaceOfAFile) {
   const TemporaryFolder folder;
+  EXPECT_THAT(write_text(folder.path, "text").error(), testing::HasSubstr("it is a folder"));
   std::ofstream(folder.path / "a") << "a file";
   for (const char* name : {"a", "a/b"}) {
     const auto made = create_folder(folder.path / name);

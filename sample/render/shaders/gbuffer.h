@@ -39,7 +39,7 @@ struct GbufferMaterial {
   vec4 emissive;     // linear RGB; w unused
   float metallic;
   float roughness;     // perceptual
-  float alpha_cutoff;  // fragments with less alpha are discarded; 0 for opaque materials
+  float least_alpha;   // fragments with less alpha are discarded; 0 for opaque materials
   float normal_scale;  // multiplies the x and y of the normal map
   uint has_normal_map;
   uint unused_0;
