@@ -79,9 +79,12 @@ TEST(ShaderInterface, ModulesHaveNoInstructionThatWebGpuLacks) {
       const std::uint32_t op = words[i] & 0xffffu;
       if (op == kTypeFloat) floats.insert(words[i + 1]);
       EXPECT_FALSE(op == kSpecConstantOp && floats.contains(words[i + 1]));
-      if (op == kBitCount) EXPECT_EQ(types[words[i + 3]], words[i + 1]);
-      if (op == kExtended && words[i + 4] == kFindLowestBit)
+      if (op == kBitCount) {
+        EXPECT_EQ(types[words[i + 3]], words[i + 1]);
+      }
+      if (op == kExtended && words[i + 4] == kFindLowestBit) {
         EXPECT_EQ(types[words[i + 5]], words[i + 1]);
+      }
       const bool is_value = op == kExtended || op == 61 || op == 81 || (op >= 109 && op <= 245);
       if (is_value) types[words[i + 2]] = words[i + 1];
     }
