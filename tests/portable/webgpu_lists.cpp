@@ -54,7 +54,7 @@ class WebGpuLists : public CInterface {
     from.motion = {};
     change(from);
     Json all;
-    for (const Input& each : kInputs) all["inputs"][each.role] = (from.*each.texels).texels;
+    for (const InputMember& each : kInputs) all["inputs"][each.role] = (from.*each.texels).texels;
     const auto work = std::make_unique<AlcoveWork>();
     for (std::uint32_t index = 0; index < kSeriesFrames; ++index) {
       advance(from, index);
@@ -64,8 +64,8 @@ class WebGpuLists : public CInterface {
       Json& frame = all["frames"][index];
       frame = {{"resources", array(work->resources, work->resource_count, json)},
                {"dispatches", array(work->dispatches, work->dispatch_count, json)}};
-      const Results results = run_view(view, index);
-      for (const Output& each : kOutputs)
+      const auto results = run_view(view, index);
+      for (const OutputMember& each : kOutputs)
         frame["results"][each.role] = (results.*each.texels).texels;
     }
     const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
