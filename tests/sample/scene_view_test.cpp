@@ -101,6 +101,7 @@ TEST_F(ViewerWindowTest, ShownImageAndSettingsMayChangeWhileFramesAreInFlight) {
 
 TEST_F(ViewerWindowTest, ShownVisibilityEqualsThatOfTheOffscreenRenderer) {
   view_->show_panel(false);
+  view_->state().picture = Picture::visibility;
   const Image<glm::vec3> seen = draw_and_look();
   const ViewState& state = view_->state();
   const auto gpu = open_gpu({options_.device, options_.validation});

@@ -61,10 +61,10 @@ struct RecordDispatch {
 }  // namespace
 
 HistoryName::HistoryName(std::uint32_t view_id, HistoryRole role) {
-  constexpr std::array<const char*, ALCOVE_MAX_WORK_HISTORIES> kNames{"visibility", "depth",
-                                                                      "bent normal", "specular"};
+  constexpr std::array<const char*, ALCOVE_MAX_WORK_HISTORIES> kHistoryNames{
+      "visibility", "depth", "bent normal", "specular"};
   std::snprintf(text_.data(), text_.size(), "%s history of view %u",
-                kNames.at(static_cast<std::size_t>(role)), static_cast<unsigned>(view_id));
+                kHistoryNames.at(static_cast<std::size_t>(role)), static_cast<unsigned>(view_id));
 }
 
 AlcoveWorkInfo work_info(const Graph& graph, const AlcoveViewInfo& info, std::uint32_t index,
