@@ -28,31 +28,25 @@ constexpr Mistake of(const char* sentence) {
 }
 
 inline constexpr Mistake index_repeats = of<kByCalls>(
-    "AlcoveFrame::index is that of the last record of the view; count it up, so that the noise "
-    "averages out, or set static_noise if no temporal filter follows, and record a view once a "
-    "frame.");
+    "AlcoveFrame::index is that of the last record of the view; count it up, or set static_noise "
+    "if no temporal filter follows, and record a view once a frame.");
 inline constexpr Mistake index_goes_back = of<kByCalls>(
     "AlcoveFrame::index goes back again and again; count it up, so that the noise averages out.");
 inline constexpr Mistake previous_is_this = of<kByCalls>(
-    "previous_camera is this frame's camera in every frame in which the camera moves; give the "
-    "camera that the view was last recorded with.");
+    "previous_camera is this frame's camera although the camera moves; give the one before.");
 inline constexpr Mistake previous_is_another = of<kByCalls>(
-    "previous_camera is not the camera that the view was last recorded with; store that one after "
-    "each frame.");
+    "previous_camera is not the camera of the view's last record; store it after each frame.");
 inline constexpr Mistake projection_is_another = of<kByCalls>(
     "previous_camera has the last frame's view_from_world but another clip_from_view; give the "
     "matrix that depth was drawn with, jitter included.");
 inline constexpr Mistake previous_size_is_wrong = of<kByCalls>(
-    "previous_width and previous_height are not the size that the view was last recorded with; "
-    "store it after each frame.");
+    "previous_width and previous_height are not the size of the last record; store it after each.");
 inline constexpr Mistake static_in_motion = of<kByCalls>(
-    "static_frames is not 0 although the image changes; it counts frames that show exactly the "
-    "same.");
+    "static_frames is not 0 although the image changes; it counts frames that are the same.");
 inline constexpr Mistake history_reset = of<kByCalls>(
     "reset_history is set again and again, so that no history accumulates; set it at cuts only.");
 inline constexpr Mistake resolution_changes = of<kByCalls>(
-    "half_resolution changes again and again, and each change begins a new history; keep it while "
-    "the view is drawn.");
+    "half_resolution changes again and again, and each change begins a new history; keep it.");
 inline constexpr Mistake eyes_alternate = of<kByCalls>(
     "the camera goes to and fro from frame to frame, as if two eyes alternated; give each eye an "
     "AlcoveView::id of its own, and its own previous_camera.");
@@ -74,8 +68,8 @@ inline constexpr Mistake depth_reversed = of<kByDepth>(
     "depth runs the other way than camera.clip_from_view says: the sky, or all that is seen, lies "
     "at its near plane; give the matrix that depth was drawn with.");
 inline constexpr Mistake depth_from_minus_one = of<kByDepth>(
-    "camera.clip_from_view looks like OpenGL's, with depth from -1 to 1: its near plane is a "
-    "round number only then; convert it with ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE.");
+    "camera.clip_from_view looks like OpenGL's, with depth from -1 to 1: its near plane is a round "
+    "number only then; convert it with ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE.");
 inline constexpr Mistake depth_filtered = of<kBySurfaces>(
     "at edges the image of depth holds values between those of the surfaces, as a linear filter "
     "makes them; scale depth with the nearest value.");
@@ -94,15 +88,13 @@ inline constexpr Mistake normal_encoding = of<kByNormals>(
 inline constexpr Mistake normal_forward_z =
     of<kByNormals>("normals fit the depth with the other sign of z; change normals_forward_z.");
 inline constexpr Mistake normals_transposed = of<kByNormals>(
-    "normals fit the depth if they were rotated by the transposed matrix; rotate them by "
-    "view_from_world.");
+    "normals fit the depth if the transposed matrix rotated them; rotate them by view_from_world.");
 inline constexpr Mistake normals_disagree = of<kByNormals>(
-    "normals fit the depth under no reading: the image holds something else, or normals with "
-    "other axes; or depth is not what camera.clip_from_view gives; or camera.view_from_world is "
-    "not the camera's (typical angle in degrees: #).");
+    "normals fit the depth under no reading: the image holds something else, or normals with other "
+    "axes; or depth is not what camera.clip_from_view gives; or camera.view_from_world is not the "
+    "camera's (typical angle in degrees: #).");
 inline constexpr Mistake view_inverted = of<kByGeometry>(
-    "the pixels fit camera.view_from_world only if it is inverted; give the matrix from world to "
-    "view space.");
+    "the pixels fit camera.view_from_world only if it is inverted; it goes from world to view.");
 inline constexpr Mistake flipped = of<kByGeometry>(
     "the pixels fit x or y of camera.clip_from_view the other way round; see "
     "ALCOVE_CAMERA_CONVENTION_CLIP_Y_UP.");
@@ -114,8 +106,7 @@ inline constexpr Mistake field_of_view = of<kByGeometry>(
     "camera.clip_from_view; give the matrix that depth was drawn with.");
 inline constexpr Mistake jitter_wrong = of<kByGeometry>(
     "the jitter of camera.clip_from_view differs from that of depth: it has another sign or unit, "
-    "or is another frame's; give the matrix that depth was drawn with (pixels from frame to "
-    "frame: #).");
+    "or is another frame's; give the matrix that depth was drawn with (pixels per frame: #).");
 inline constexpr Mistake camera_of_another_frame = of<kByCameras>(
     "the pixels fit the camera of the frame before or after: camera and depth are not of the same "
     "frame; give the camera that this frame's depth was drawn with.");
@@ -136,19 +127,16 @@ inline constexpr Mistake no_translation = of<kByCameras>(
     "camera.view_from_world has no translation, but the camera moves; give the whole matrix, or "
     "one that is relative to one origin for this frame and the last.");
 inline constexpr Mistake cameras_disagree = of<kByCameras>(
-    "depth is not what the cameras of this frame and the last expect, so that history is "
-    "rejected; give the matrices that depth was drawn with, and motion vectors if objects move "
-    "(percent of the pixels: #).");
+    "depth is not what the cameras of this frame and the last expect, so that history is rejected; "
+    "give depth's own matrices, and motion vectors if objects move (percent of pixels: #).");
 inline constexpr Mistake motion_zero = of<kByMotion>(
     "motion vectors are 0 although the camera moves; they must contain the motion by the camera.");
 inline constexpr Mistake motion_sign = of<kByMotion>(
-    "motion vectors fit the motion of the camera with the other sign of x or y; change "
-    "motion_scale.");
+    "motion vectors fit the camera's motion with the other sign of x or y; change motion_scale.");
 inline constexpr Mistake motion_unit = of<kByMotion>(
     "motion vectors fit the motion of the camera in another unit; change motion_scale.");
 inline constexpr Mistake motion_offset = of<kByMotion>(
-    "motion vectors fit the motion of the camera with a constant offset, such as another jitter; "
-    "change motion_offset.");
+    "motion vectors fit the camera's with a constant offset, as of jitter; change motion_offset.");
 inline constexpr Mistake motion_disagrees = of<kByMotion>(
     "motion vectors fit the motion of the camera under no reading although depth does: the image "
     "holds something else; give the motion of each pixel since the last frame.");
