@@ -2,6 +2,7 @@
 
 #include <ImfChannelList.h>
 #include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 
 #include <algorithm>
 #include <array>
@@ -71,8 +72,11 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file, boo
     const auto width = static_cast<uint32_t>(size.x), height = static_cast<uint32_t>(size.y);
     const auto factor =
         static_cast<uint32_t>((std::max(size.x, size.y) + kLargestSide - 1) / kLargestSide);
-    if (std::abs(size.x - 2 * size.y) > (size.x + 2 * size.y) / 100) {
-      return Failure("has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+    const Imf::Header& header = input.header();
+    const bool is_cube = Imf::hasEnvmap(header) && Imf::envmap(header) == Imf::ENVMAP_CUBE;
+    if (is_cube || std::abs(size.x - 2 * size.y) > (size.x + 2 * size.y) / 100) {
+      return Failure((is_cube ? "is a cube map of " : "has ") + std::to_string(size.x) + "x" +
+                     std::to_string(size.y) +
                      " pixels, and a panorama of the sphere is twice as wide as high; convert cube "
                      "maps and light probes to an equirectangular panorama");
     }

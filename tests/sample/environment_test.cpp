@@ -4,6 +4,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -77,8 +78,10 @@ TEST_F(EnvironmentFile, EnvironmentMapsInExrFormatAreRead) {
 
 // Writes an image of ones in channels of these names, with these windows.
 void write_windows(const std::filesystem::path& file, const Imath::Box2i& display,
-                   const Imath::Box2i& data, const std::vector<const char*>& names) {
+                   const Imath::Box2i& data, const std::vector<const char*>& names,
+                   Imf::Envmap kind = Imf::ENVMAP_LATLONG) {
   Imf::Header header(display, data);
+  Imf::addEnvmap(header, kind);
   const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
   const std::vector<float> ones(static_cast<size_t>(width) * static_cast<size_t>(height), 1.0f);
   Imf::FrameBuffer frame;
@@ -120,6 +123,9 @@ TEST_F(EnvironmentFile, RefusalNamesARemedy) {
   EXPECT_THAT(load_environment("https://example.org/a.exr").error(),
               HasSubstr("download the file"));
   EXPECT_THAT(load_environment(folder_.path).error(), HasSubstr("it is a folder"));
+  write_windows(folder_.path / "cube.exr", {{0, 0}, {7, 3}}, {{0, 0}, {7, 3}}, {"R", "G", "B"},
+                Imf::ENVMAP_CUBE);
+  EXPECT_THAT(load_environment(folder_.path / "cube.exr").error(), HasSubstr("is a cube map"));
   // A light probe, and cube maps as a strip, a column and crosses.
   for (const auto& [width, height] :
        {std::pair(8u, 8u), {48u, 8u}, {8u, 48u}, {32u, 24u}, {24u, 32u}})
