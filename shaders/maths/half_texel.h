@@ -1,12 +1,10 @@
 // A texel of 2x2 pixels that was reconstructed at half resolution: its occlusion and the tangent
 // plane of its surface. The upsampling pass computes pixels from it, and the next frame reads it as
 // history. It is stored in two images, which texture units unpack:
-//
 //   R16G16B16A16_SNORM, pack_half_texel()
 //     | r: occlusion | g: weight / 128 | b: tilt x / 16 | a: tilt y / 16 |
 //   R32_SFLOAT, half_texel_depth()
-//      31                           8 7               0
-//     | inverse depth, a float     24 | recent        8 |  1 + code of the recent occlusion, or 0
+//     | inverse depth, a float 24 | recent 8 |  1 + the code of the recent occlusion, or 0
 #ifndef ALCOVE_MATHS_HALF_TEXEL_H
 #define ALCOVE_MATHS_HALF_TEXEL_H
 

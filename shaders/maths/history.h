@@ -66,11 +66,9 @@ ALCOVE_INLINE float unpack_mantissa(uint word, uint first, uint bits) {
 
 // A texel of the history of pixels. It is stored in the two channels of R16G16_UNORM, which texture
 // units convert to floats, so that two gathers read what the next frame needs of four texels:
-//
-//      15                       3 2          0
+//      15                                    0
 //   r | depth                  13 | recent   3 |  1 + the code of the recent occlusion, or 0
 //   g | weight 5 | occlusion                11 |
-//      15      11 10                         0
 struct HistoryTexel {
   float depth;  // of history_depth(), [0,1], to 2^-14
   // Occlusion of the last few frames, [0,1], or kNoRecent; its root in 7 steps; 0 is exact.
@@ -148,9 +146,8 @@ ALCOVE_INLINE HistoryTexel unpack_history_texel(vec2 stored) {
 }
 
 // The history of a GGX lobe, R16_UINT. The logarithm of the unoccluded part, between 2^-12 and 2^4,
-// is stored because it differs by orders of magnitude between roughnesses.
-//      15                 7 6                0
-//     | occlusion         9 | log2(open)     7 |
+// is stored because it differs by orders of magnitude between roughnesses. From the highest bit:
+//     | occlusion 9 | log2(open) 7 |
 struct LobeTexel {
   float occlusion;  // [0,1]; 0 is exact
   float open;       // of the lobe's RawOcclusion for a weight of 1; 0 is exact

@@ -1,7 +1,6 @@
 // The raw occlusion of a traced pixel: the visible and the unoccluded part of its slices, with its
 // normal and its depth. The texel has two words (R32G32_UINT), and two more with a GGX lobe:
-//
-//      31               16 15                0
+//      31                                    0
 //   x | normal 8 | open 11 | visibility     13 |  pack_raw_occlusion()
 //   y | inverse depth, a float              32 |
 //   z | open             16 | visibility    16 |  pack_lobe(), the lobe's
@@ -58,9 +57,8 @@ ALCOVE_INLINE uint raw_occlusion_normal(uint bits) { return bits >> 24u; }
 const float kLargestResidual = 4.0f / 3.0f;
 
 // Packs a residual. Components are clamped to +-kLargestResidual, and the code of 0 is 512. The
-// error after unpack_residual() is at most 0.0014, and 0 for a component of 0.
-//      31 30 29      20 19      10 9        0
-//     |  0  | z      10 | y      10 | x    10 |
+// error after unpack_residual() is at most 0.0014, and 0 for a component of 0. From the highest bit:
+//     | 0 2 | z 10 | y 10 | x 10 |
 ALCOVE_INLINE uint pack_residual(vec3 residual) {
   vec3 scaled = clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + 512.5f;
   return uint(scaled.x) | (uint(scaled.y) << 10u) | (uint(scaled.z) << 20u);
