@@ -11,6 +11,7 @@ extern VkFormat depth_format;
 extern VkPhysicalDeviceFeatures2 features;
 extern AlcoveContext* context;
 extern AlcoveSettings settings;
+extern AlcoveView view;
 extern AlcoveCamera camera, previous_camera;
 extern AlcoveImage depth, normals, visibility;
 extern VkCommandBuffer commands;
