@@ -32,15 +32,21 @@ std::string list_names(const std::vector<Camera>& cameras) {
 
 }  // namespace
 
+bool uses_default_camera(const ViewOptions& view) {
+  return view.camera.empty() && !view.eye && !view.target;
+}
+
 Result<Camera> choose_camera(const ViewOptions& view, const ViewFinder& finder) {
   const Scene& scene = finder.scene();
   const Camera* named = find_camera(scene, view.camera);
-  if (!named && !view.camera.empty()) {
+  if (!named && !view.camera.empty() && view.camera != kNoCamera) {
     return tl::unexpected(
         "the scene has no camera \"" + view.camera + "\"; it has " +
         (scene.cameras.empty() ? "none: use --eye and --target" : list_names(scene.cameras)));
   }
   const double aspect = static_cast<double>(view.width) / view.height;
+  // A default camera that shows nothing, as one that was left in the file, is not what is wanted.
+  if (uses_default_camera(view) && named && !finder.shows_subject(*named, aspect)) named = nullptr;
   Camera camera = named ? *named : finder.framing_camera(aspect);
   camera.origin = scene.origin;
   if (view.eye) camera.eye_ws = *view.eye - scene.origin;

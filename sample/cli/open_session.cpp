@@ -49,7 +49,16 @@ Result<Session> load_session(const Options& options) {
   session.radius_reason = source.empty() ? radius.reason : source;
   // `compare` refuses a view of nothing, and says the same.
   const std::string advice = options.command == Command::compare ? "" : radius.advice;
-  for (const std::string& note : {finder.left_out(), advice})
+  std::string replaced;
+  if (uses_default_camera(options.view) && !session.scene.cameras.empty() &&
+      session.camera.name == ViewFinder::kFrame) {
+    const std::string& name = session.scene.cameras.front().name;
+    replaced = fmt::format(
+        "The first camera of the scene, \"{}\", shows nothing, and everything is framed instead; "
+        "--camera \"{}\" takes it.",
+        name, name);
+  }
+  for (const std::string& note : {finder.left_out(), advice, replaced})
     if (!note.empty()) session.scene.warnings.insert(session.scene.warnings.begin(), note);
   print_notes(session.scene.warnings);
   ALCOVE_TRY(session.settings, occlusion_settings(options.occlusion, radius.radius));
@@ -70,8 +79,11 @@ Result<Session> open_session(const Options& options,
 Result<Rendering> render(const Options& options) {
   ALCOVE_TRY(auto environment, load_environment(options.environment, print_note));
   ALCOVE_TRY(auto session, open_session(options));
-  const std::string radius =
+  std::string origin =
       "Radius " + number_text(session.settings.radius) + ": " + session.radius_reason + "\n";
+  if (uses_default_camera(options.view) && session.camera.name != ViewFinder::kFrame)
+    origin += fmt::format("Camera \"{}\" of the scene; --camera none frames everything\n",
+                          session.camera.name);
   auto rendering = render(std::move(session),
                           {options.view.width,
                            options.view.height,
@@ -80,7 +92,7 @@ Result<Rendering> render(const Options& options) {
                            options.occlusion.normals,
                            guard_band_pixels(options.occlusion.guard_band, options.view.height),
                            {options.occlusion.roughness, std::move(environment), options.lit}});
-  if (rendering && shows_surfaces(*rendering)) std::cout << radius;
+  if (rendering && shows_surfaces(*rendering)) std::cout << origin;
   return rendering;
 }
 

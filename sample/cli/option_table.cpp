@@ -240,8 +240,8 @@ void add_view(Table& table, Options& o) {
   ViewOptions& view = o.view;
   table.heading("View");
   table.add(kOnDevice, "--camera", "NAME", view.camera, text("the name of a camera"),
-            "name of a camera of the scene. Default: the first one, or a view of everything if "
-            "there is none");
+            "name of a camera of the scene, or none for a view of everything. Default: the first "
+            "one, or none if that shows nothing");
   table.add(kOnDevice, "--eye", "X,Y,Z", view.eye, read_vector,
             "position of the camera, scene units");
   table.add(kOnDevice, "--target", "X,Y,Z", view.target, read_vector,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <span>
 
 #include "support/median.h"
@@ -14,6 +15,7 @@ namespace {
 using Parts = std::span<const MeshInstance>;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr size_t kNearlyEmpty = 200;  // a view shows surfaces in less than one of so many pixels
 
 // From the middle of the subject to the eyes that are tried, not through edges of boxes.
 constexpr glm::vec3 kSides[] = {
@@ -27,11 +29,16 @@ bool is_wider(const Bounds& bounds, const Bounds& rest) {
   return size.x >= least.x && size.z >= least.z;
 }
 
-bool is_ground(const Bounds& bounds, const Bounds& rest) {
+// Whether the box is flat and below the rest, as a ground or a tile of one is.
+bool is_low(const Bounds& bounds, const Bounds& rest) {
   constexpr float kFlat = 0.005f;  // of the width; a circuit board is thicker
   const glm::vec3 size = size_of(bounds);
-  return is_wider(bounds, rest) && size.y <= kFlat * std::min(size.x, size.z) &&
-         bounds.high.y < middle(rest).y;
+  return size.y <= kFlat * std::min(size.x, size.z) && bounds.high.y < middle(rest).y;
+}
+
+// Whether the face of a hit is drawn. The order of its vertices says nothing if both sides are.
+bool is_drawn(const RayScene& rays, const Hit& hit) {
+  return hit.front || rays.scene().materials[hit.material].double_sided;
 }
 
 // Returns the first face that a ray from outside of a box, away from its middle, meets.
@@ -42,55 +49,88 @@ std::optional<Hit> beyond(const RayScene& rays, const Bounds& bounds, const glm:
   return hit;
 }
 
-// A sky shows its front to all sides of the rest. A body with something inside shows its back.
-bool is_sky(const RayScene& rays, const MeshInstance& part, const Bounds& rest) {
-  return is_wider(part.bounds_ws, rest) && std::ranges::all_of(kSides, [&](const glm::vec3& side) {
-           const auto hit = beyond(rays, rest, glm::normalize(side));
-           return hit && hit->mesh == part.mesh && hit->front;
-         });
+// Whether meshes are the sky, or the shell of a room, of a rest. Nearly all rays away from the rest
+// and upwards then meet a drawn face of theirs first, and far away. A sky may be open above if it
+// is not drawn from outside, as a bowl is.
+bool is_sky(const RayScene& rays, const std::vector<uint32_t>& meshes, const Bounds& rest) {
+  constexpr int kRays = 32;
+  const auto far = 2.0f * static_cast<float>(diagonal(rest));
+  const auto outside = 2.0f * static_cast<float>(diagonal(rays.scene().bounds_ws));
+  int missed = 0, missed_or_seen_from_outside = 0;
+  for (int i = 0; i < kRays; ++i) {
+    const float height = (static_cast<float>(i) + 0.5f) / kRays;
+    const float across = std::sqrt(1.0f - height * height);
+    const float angle = 2.4f * static_cast<float>(i);  // about the golden angle
+    const glm::vec3 up(across * std::cos(angle), height, across * std::sin(angle));
+    const auto hit = beyond(rays, rest, up);
+    const bool met = hit && hit->distance >= far && is_drawn(rays, *hit) &&
+                     std::ranges::find(meshes, hit->mesh) != meshes.end();
+    missed += met ? 0 : 1;
+    if (height > 0.4f) continue;  // 24 degrees
+    const auto back = rays.nearest(middle(rest) + outside * up, -up, kInfinity, true);
+    missed_or_seen_from_outside += met && !(back && is_drawn(rays, *back)) ? 0 : 1;
+  }
+  return missed <= 3 || missed_or_seen_from_outside <= 1;
 }
 
-// Returns the box of parts without strays, and counts the strays.
-Bounds bounds_without_strays(const Scene& scene, Parts parts, size_t& strays) {
-  constexpr double kSamples = 30000.0, kBeyond = 0.001 / 6.0;  // share of the area at each side
-  std::vector<std::pair<Bounds, double>> triangles;            // with their areas
-  Bounds all = empty_bounds(), box, core = empty_bounds();
-  double area = 0.0, sampled = 0.0, visited = 0.0;
-  for (const MeshInstance& part : parts) {
-    const Mesh& mesh = scene.meshes[part.mesh];
-    const glm::mat4x3 world = world_from_mesh(mesh, part.instance);
-    const glm::dmat3 normal_from_mesh = cofactor(glm::mat3(world));
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      Bounds bounds = empty_bounds();
-      for (size_t c = 0; c < 3; ++c) {
-        const glm::vec3 at = world * glm::vec4(mesh.positions[mesh.indices[i + c]], 1.0f);
-        bounds = united(bounds, {at, at});
-      }
-      triangles.emplace_back(bounds, glm::length(normal_from_mesh * area_of(mesh, i)));
-      all = united(all, bounds);
-      area += triangles.back().second;
+// The box of a triangle, and its area.
+using Triangle = std::pair<Bounds, double>;
+
+std::vector<Triangle> triangles_of(const Scene& scene, const MeshInstance& part) {
+  const Mesh& mesh = scene.meshes[part.mesh];
+  const glm::mat4x3 world = world_from_mesh(mesh, part.instance);
+  const glm::dmat3 normal_from_mesh = cofactor(glm::mat3(world));
+  std::vector<Triangle> out;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    Bounds bounds = empty_bounds();
+    for (size_t c = 0; c < 3; ++c) {
+      const glm::vec3 at = world * glm::vec4(mesh.positions[mesh.indices[i + c]], 1.0f);
+      bounds = united(bounds, {at, at});
     }
+    out.emplace_back(bounds, glm::length(normal_from_mesh * area_of(mesh, i)));
   }
-  std::vector<glm::vec3> samples;  // middles of triangles, as often as their area is large
-  for (const auto& [bounds, size] : triangles)
-    for (visited += size; sampled < visited; sampled += area / kSamples)
-      samples.push_back(middle(bounds));
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<float> values;
-    values.reserve(samples.size());
-    for (const glm::vec3& sample : samples) values.push_back(sample[axis]);
-    box.low[axis] = percentile(values, kBeyond);
-    box.high[axis] = percentile(values, 1.0 - kBeyond);
-  }
-  for (const auto& [bounds, size] : triangles) {
-    const glm::vec3 low = glm::max(bounds.low, box.low), high = glm::min(bounds.high, box.high);
-    const bool apart = glm::any(glm::lessThan(high, low));
-    strays += apart ? 1 : 0;
-    if (!apart) core = united(core, bounds);
-  }
-  if (diagonal(core) < 0.9 * diagonal(all)) return core;
+  return out;
+}
+
+// Returns the value at a share of the sorted values of triangles, weighted by their areas. With
+// `by_width`, a narrow triangle counts as a square of its width.
+template <class Value>
+float quantile(std::span<const Triangle> triangles, double share, bool by_width,
+               const Value& value) {
+  constexpr double kSamples = 30000.0;
+  const auto weight = [&](const Triangle& triangle) {
+    const double width = 2.0 * triangle.second / std::max(diagonal(triangle.first), 1e-300);
+    return by_width ? std::min(triangle.second, width * width) : triangle.second;
+  };
+  double sum = 0.0, sampled = 0.0, visited = 0.0;
+  for (const Triangle& triangle : triangles) sum += weight(triangle);
+  std::vector<float> values;
+  for (const Triangle& triangle : triangles)
+    for (visited += weight(triangle); sampled < visited; sampled += sum / kSamples)
+      values.push_back(value(triangle.first));
+  return percentile(std::move(values), share);
+}
+
+// Returns the box of triangles without strays, and counts the strays. The median does not follow a
+// vertex that has flown off, whose triangles are large, but narrow.
+Bounds bounds_without_strays(std::span<const Triangle> triangles, size_t& strays) {
+  glm::vec3 median;
+  for (int axis = 0; axis < 3; ++axis)
+    median[axis] =
+        quantile(triangles, 0.5, true, [axis](const Bounds& b) { return middle(b)[axis]; });
+  const auto reach = [&](const Bounds& bounds) {
+    return glm::length(glm::max(bounds.high - median, median - bounds.low));
+  };
+  const float most = std::min(30.0f * quantile(triangles, 0.5, true, reach),
+                              1.5f * quantile(triangles, 0.999, false, reach));
+  Bounds out = empty_bounds();
   strays = 0;
-  return all;
+  for (const Triangle& triangle : triangles) {
+    const bool stray = reach(triangle.first) > most;
+    strays += stray ? 1 : 0;
+    if (!stray) out = united(out, triangle.first);
+  }
+  return out;
 }
 
 // Returns the least distance of the eye from the centre of a box at which the whole box is in view,
@@ -116,36 +156,62 @@ struct ViewFinder::Picture {
   std::vector<float> depths;  // of surfaces that are no sky
   float nearest = kInfinity;  // depth of all surfaces
   size_t pixels = 0, surfaces = 0;
-  size_t fronts = 0, backs = 0;  // pixels by the side of the first face, drawn or not
+  size_t drawn = 0, backs = 0;  // pixels whose first face is drawn, and whose first face is not
+  std::set<uint32_t> meshes;    // in view
+
+  // The more meshes and the fewer faces that are not drawn, the better.
+  [[nodiscard]] float score() const {
+    return static_cast<float>(meshes.size() * drawn) /
+           static_cast<float>(std::max(drawn + backs, size_t{1}));
+  }
 };
 
 ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bounds_ws) {
   constexpr uint64_t kMostTriangles = uint64_t{1} << 23;
-  constexpr size_t kMostSurroundings = 4;
+  constexpr size_t kMostSurroundings = 8;
   if (scene.meshes.empty() || triangle_count(scene) > kMostTriangles) return;
   if (auto rays = RayScene::create(scene)) rays_ = std::move(*rays);
   std::vector<MeshInstance> parts = instances_of(scene.meshes);
-  const auto width = [](const MeshInstance& part) { return size_of(part.bounds_ws).x; };
+  const auto width = [](const MeshInstance& part) {
+    const glm::vec3 size = size_of(part.bounds_ws);
+    return std::max(size.x, size.z);
+  };
   std::ranges::stable_sort(parts, std::greater<>(), width);
-  // The widest parts are left out if each is a sky or a ground of the others.
-  for (size_t count = std::min(parts.size() - 1, kMostSurroundings);; --count) {
-    size_t strays = 0, grounds = 0;
-    subject_ws_ = bounds_without_strays(scene, Parts(parts).subspan(count), strays);
-    skies_.clear();
-    for (const MeshInstance& part : Parts(parts).first(count)) {
-      if (is_ground(part.bounds_ws, subject_ws_))
-        ++grounds;
-      else if (rays_ && is_sky(*rays_, part, subject_ws_))
-        skies_.push_back(part.mesh);
-    }
-    if (skies_.size() + grounds < count) continue;
-    left_out_ =
-        std::string(skies_.empty() ? "" : ", sky or room") + (grounds > 0 ? ", ground" : "");
-    if (strays > 0) left_out_ += fmt::format(", stray triangles ({})", strays);
-    if (!left_out_.empty())
-      left_out_ = "The default view is framed without " + left_out_.substr(2) + ".";
-    return;
+  std::vector<Triangle> triangles;
+  std::vector<size_t> starts;  // of the parts
+  for (const MeshInstance& part : parts) {
+    starts.push_back(triangles.size());
+    std::ranges::move(triangles_of(scene, part), std::back_inserter(triangles));
   }
+  size_t strays = 0, first = 0;
+  bool has_ground = false;
+  subject_ws_ = bounds_without_strays(triangles, strays);
+  // From the outside in, the shortest run of the widest parts that surrounds the rest is left out.
+  for (size_t end = 1; end < std::min(parts.size(), kMostSurroundings + 1); ++end) {
+    size_t rest_strays = 0;
+    const auto rest = bounds_without_strays(std::span(triangles).subspan(starts[end]), rest_strays);
+    Bounds ground = empty_bounds(), sky = empty_bounds();
+    std::vector<uint32_t> skies;
+    for (size_t i = first; i < end; ++i) {
+      const Bounds& bounds = parts[i].bounds_ws;
+      const bool low = is_low(bounds, rest);
+      (low ? ground : sky) = united(low ? ground : sky, bounds);
+      if (!low) skies.push_back(parts[i].mesh);
+    }
+    const bool on_ground = first + skies.size() < end;
+    if ((on_ground && !is_wider(ground, rest)) ||
+        (!skies.empty() && !(rays_ && is_wider(sky, rest) && is_sky(*rays_, skies, rest))))
+      continue;
+    first = end;
+    has_ground |= on_ground;
+    strays = rest_strays;
+    subject_ws_ = rest;
+    skies_.insert(skies_.end(), skies.begin(), skies.end());
+  }
+  left_out_ = std::string(skies_.empty() ? "" : ", sky or room") + (has_ground ? ", ground" : "");
+  if (strays > 0) left_out_ += fmt::format(", stray triangles ({})", strays);
+  if (!left_out_.empty())
+    left_out_ = "The default view is framed without " + left_out_.substr(2) + ".";
 }
 
 ViewFinder::Picture ViewFinder::look(const Camera& camera, double aspect) const {
@@ -164,10 +230,12 @@ ViewFinder::Picture ViewFinder::look(const Camera& camera, double aspect) const 
     const float far = (camera.far_plane - camera.near_plane) / cosine;
     auto hit = rays_->nearest(start, ray.direction_ws, far, true);
     if (!hit) continue;
-    ++(hit->front ? out.fronts : out.backs);
-    hit = rays_->nearest(start, ray.direction_ws, far);
+    const bool drawn = is_drawn(*rays_, *hit);
+    ++(drawn ? out.drawn : out.backs);
+    if (!drawn) hit = rays_->nearest(start, ray.direction_ws, far);
     if (!hit) continue;
     ++out.surfaces;
+    out.meshes.insert(hit->mesh);
     const float depth = camera.near_plane + hit->distance * cosine;
     out.nearest = std::min(out.nearest, depth);
     if (std::ranges::find(skies_, hit->mesh) == skies_.end()) out.depths.push_back(depth);
@@ -179,22 +247,25 @@ Camera ViewFinder::framing_camera(double aspect) const {
   constexpr float kInside = 0.85f;  // of the distance to a sky or a wall
   const float kFovY = glm::radians(45.0f);
   Camera camera, best;
-  camera.name = "frame";
+  camera.name = kFrame;
   camera.origin = scene_.origin;
   camera.target_ws = middle(subject_ws_);
   camera.near_plane = 0.0f;
   camera.far_plane = kInfinity;
   camera.fit_planes = true;
-  size_t fronts = 0, backs = 0;  // seen from outside
-  for (const bool inside : {false, true}) {
-    // The eye is in a room if those outside see backs of walls, and if it sees fronts there. A flat
-    // subject has no inside.
-    const glm::vec3 size = size_of(subject_ws_);
-    const bool flat = std::min({size.x, size.y, size.z}) <= 0.005f * std::max(size.x, size.z);
-    if (inside && (flat || !skies_.empty() || backs <= 2 * fronts)) break;
-    float most = inside ? 0.0f : -1.0f;
-    for (const glm::vec3& side : kSides) {
-      const glm::vec3 back = glm::normalize(inside ? side * size_of(subject_ws_) : side);
+  float most = -1.0f;
+  size_t drawn = 0, backs = 0;
+  for (const auto& [inside, from_above] : {std::pair(false, 1.0f), {true, 1.0f}, {false, -1.0f}}) {
+    // A container that is seen from outside, and is open above, is no room. The eye is only below
+    // if nothing is seen otherwise.
+    if (inside &&
+        (!rays_ || !skies_.empty() ||
+         (backs <= 2 * drawn && !rays_->nearest(camera.target_ws, camera.up_ws, kInfinity))))
+      continue;
+    if (from_above < 0.0f && most > 0.1f) break;
+    for (glm::vec3 back : kSides) {
+      back.y *= from_above;
+      back = glm::normalize(inside ? back * size_of(subject_ws_) : back);
       float free = kInfinity;
       if (inside) {
         free = 0.5f * static_cast<float>(diagonal(subject_ws_));
@@ -207,14 +278,21 @@ Camera ViewFinder::framing_camera(double aspect) const {
       camera.fov_y = kInside * free < whole ? 1.45f * kFovY : kFovY;
       camera.eye_ws = camera.target_ws + std::min(kInside * free, whole) * back;
       const Picture picture = look(camera, aspect);
-      fronts += inside ? 0 : picture.fronts;
-      backs += inside ? 0 : picture.backs;
-      if (static_cast<float>(picture.fronts) <= 1.25f * most) continue;
+      drawn += picture.drawn;
+      backs += picture.backs;
+      // A room surrounds the eye.
+      if (inside && picture.surfaces * 4 < picture.pixels * 3) continue;
+      if (picture.score() <= 1.25f * most) continue;
       best = camera;
-      most = static_cast<float>(picture.fronts);
+      most = picture.score();
     }
   }
   return best;
+}
+
+bool ViewFinder::shows_subject(const Camera& camera, double aspect) const {
+  const Picture picture = look(camera, aspect);
+  return !rays_ || picture.depths.size() * kNearlyEmpty >= picture.pixels;
 }
 
 Camera ViewFinder::with_fitted_planes(const Camera& camera, double aspect) const {
@@ -242,12 +320,15 @@ RadiusChoice ViewFinder::radius(const Camera& camera, double aspect) const {
     out.radius = 0.05f * height * static_cast<float>(aspect);
     out.reason = "a twentieth of the width of the view at the median distance of its surfaces";
   }
-  if (picture.surfaces * 10 >= picture.pixels) return out;
+  const bool below = camera.name == kFrame && camera.eye_ws.y < middle(subject_ws_).y;
+  const bool backs = picture.backs > 2 * picture.surfaces;
+  if (!below && !backs && picture.surfaces * kNearlyEmpty >= picture.pixels) return out;
   out.advice =
-      picture.backs > picture.surfaces
-          ? "The view shows back faces, which are not drawn: draw them by --both-sides, or "
+      below   ? "The view is from below, because back faces are not drawn: draw them by "
+                "--both-sides, or "
+      : backs ? "The view shows back faces, which are not drawn: draw them by --both-sides, or "
       : picture.surfaces == 0 ? "The view shows nothing but sky: widen --near and --far, or "
-                              : "Surfaces fill less than a tenth of the view: ";
+                              : "Surfaces fill hardly any of the view: ";
   out.advice += "turn it with --eye and --target.";
   return out;
 }

@@ -18,24 +18,30 @@ struct RadiusChoice {
 
 // Chooses cameras and radii by rays through a scene, which must outlive it.
 //
-// The subject of a scene is everything but skies, grounds and strays, judged by the boxes of the
-// instances of meshes. A sky, or the shell of a room, contains the rest, is at least three times as
-// large in both horizontal directions, and shows its front inside. A ground is flat, below the
-// rest, and as much wider. Strays are triangles outside the box that holds 99.9 % of the area, if
-// the subject is clearly larger with them. Scenes of more than 2^23 triangles are judged by their
-// box alone.
+// The subject of a scene is everything but skies, grounds and strays. From the outside in, the
+// shortest run of the widest parts (instances of meshes) that surrounds the rest, at least three
+// times as wide in both horizontal directions, is a ground, if its parts are flat and below the
+// rest, a sky or the shell of a room, or both. A sky is far away on nearly all sides and above; it
+// may be open above if its outside is not drawn. Strays are triangles that reach further than 30
+// times the median from the median, or lie outside the box that holds 99.9 % of the area if the
+// subject is clearly larger with them. Scenes of more than 2^23 triangles are judged by their box
+// alone.
 class ViewFinder {
  public:
+  static constexpr const char* kFrame = "frame";  // the name of framing_camera()
+
   explicit ViewFinder(const Scene& scene);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   // A sentence on what the subject lacks, or empty.
   [[nodiscard]] const std::string& left_out() const { return left_out_; }
   // Returns a camera that looks at the whole subject diagonally from above, inside of a sky, from
-  // the first of four sides or one that shows clearly more front faces. If these views mostly show
-  // the backs of faces, as those of a room, the eye is inside. with_fitted_planes() sets its near
-  // and far plane.
+  // the first of four sides or one that shows clearly more meshes or fewer back faces that are not
+  // drawn. The eye is inside a subject that shows clearly more so and then surrounds it, and below
+  // one of which nothing is seen otherwise. with_fitted_planes() sets its near and far plane.
   [[nodiscard]] Camera framing_camera(double aspect) const;
+  // Whether the view shows more than sky in at least one of 200 pixels.
+  [[nodiscard]] bool shows_subject(const Camera& camera, double aspect) const;
   // Returns the camera with a near and far plane around the surfaces in view.
   [[nodiscard]] Camera with_fitted_planes(const Camera& camera, double aspect) const;
   // Returns the radius of the scene if it suggests one, or a twentieth of the width of the view at

@@ -33,6 +33,18 @@ TEST(CameraFromOptions, UnknownCameraNameIsReportedWithTheCameraNamesOfTheScene)
   EXPECT_THAT(camera.error(), HasSubstr("court"));
 }
 
+TEST(CameraFromOptions, DefaultCameraThatShowsNothingIsReplacedAndANamedOneIsNot) {
+  Scene scene = builtin_scene();
+  ViewOptions view;
+  EXPECT_EQ(choose(view, scene)->name, scene.cameras[0].name);
+  scene.cameras[0].target_ws = scene.cameras[0].eye_ws + glm::vec3(0, 1, 0.01f);
+  EXPECT_EQ(choose(view, scene)->name, ViewFinder::kFrame);
+  view.camera = scene.cameras[0].name;
+  EXPECT_EQ(choose(view, scene)->name, view.camera);
+  view.camera = kNoCamera;
+  EXPECT_EQ(choose(view, scene)->name, ViewFinder::kFrame);
+}
+
 TEST(CameraFromOptions, CameraNamesInTheErrorMessageAreQuoted) {
   Scene scene;
   scene.cameras = {{.name = "great hall"}, {.name = "roof"}};

@@ -65,6 +65,20 @@ Triangles ball(float radius, bool inward, float bottom = -1.0f) {
   return out;
 }
 
+// A wall around the origin, which faces it.
+Triangles tube(float radius, float height) {
+  Triangles out;
+  out.add_lathe({0, 0, 0}, height, {radius, radius}, true);
+  return out;
+}
+
+std::vector<Triangles> tiles_under(const Triangles& subject) {
+  std::vector<Triangles> out{subject};
+  for (const float x : {-40.0f, 0.0f, 40.0f})
+    for (const float z : {-20.0f, 20.0f}) out.push_back(moved(flat(20), {x, 0, z}));
+  return out;
+}
+
 Triangles sliver(const glm::vec3& at) {
   return moved({{{0, 0, 0}, {0, 0.01f, 0}, {0, 0, 0.01f}}, {0, 1, 2}}, at);
 }
@@ -111,6 +125,9 @@ std::vector<File> files() {
   const auto hull = box({-4, 0, -3}, {4, 3, 3});
   const auto cloth = box({-0.6f, 0.3f, -0.01f}, {0.6f, 2.4f, 0.01f});
   const auto pole = box({-0.03f, 0, -0.03f}, {0.03f, 2.6f, 0.03f});
+  const auto needle = Triangles{{{0, 0, 0}, {0, 1, 0}, {8e4f, 4e4f, 0}}, {0, 1, 2}};
+  auto tub = box({-0.85f, 0, -0.4f}, {0.85f, 0.6f, 0.4f});
+  tub.indices.erase(tub.indices.begin() + 18, tub.indices.begin() + 24);  // the upper side
   std::vector<File> out{
       {"House", house(), scene_of({house()})},
       {"HouseOf1e-5", house(1e-5f), scene_of({house(1e-5f)})},
@@ -118,7 +135,20 @@ std::vector<File> files() {
       {"HouseFarFromTheOrigin", house(), scene_of({house()}, {}, {691000.0, 120.0, -5335000.0})},
       {"HouseOnAWideGround", house(), scene_of({house(), flat(2000)}), "ground"},
       {"HouseJoinedWithItsGround", flat(500), scene_of({joined(flat(500), house())})},
-      {"BodyAroundAHouse", ball(200, false), scene_of({house()}, {ball(200, false)})},
+      {"BodyAroundAHouse", ball(200, false), scene_of({house(), ball(200, false)})},
+      {"SkyThatFacesOut", house(), scene_of({}, {house(), flat(39), ball(40, false)}),
+       "sky or room, ground", 40},
+      {"NestedSkies", house(), scene_of({house(), ball(50, true), ball(40, true)}), "sky or room",
+       50},
+      {"PanoramaWithoutATop", house(), scene_of({house(), flat(50), tube(50, 25)}),
+       "sky or room, ground", 50},
+      {"HouseOnSixTiles", house(), scene_of(tiles_under(house())), "ground"},
+      {"BathtubWithADuck", tub, scene_of({}, {tub, moved(ball(0.04f, false), {0.2f, 0.06f, 0})})},
+      {"LampUnderACeiling", joined(flat(5), moved(flat(5), {0, 3, 0})),
+       scene_of({}, {flat(5), moved(flat(5), {0, 3, 0}), moved(ball(0.2f, false), {1, 2, 1})})},
+      {"VertexFarAway", house(), scene_of({joined(house(), needle)}), "stray triangles (1)"},
+      {"TwoClusters", moved(house(), {900, 0, 400}),
+       scene_of({house(0.9f), moved(house(), {900, 0, 400})}), "stray triangles (48)"},
       {"HouseInASkyJoinedWithItsGround", house(),
        scene_of({house(), joined(ball(150, true, 0), flat(150))}), "sky or room", 150},
       {"HouseInASkyBox", house(), scene_of({house(), box(glm::vec3(-50), glm::vec3(50), true)}),
@@ -127,7 +157,7 @@ std::vector<File> files() {
        scene_of({joined(house(), sliver({0, 3, 200})), flat(900), ball(500, true)}),
        "sky or room, ground, stray triangles (1)", 500},
       {"HouseAmongStrays", house(), scene_of({joined(house(), strays())}), "stray triangles (500)"},
-      {"HouseWithALampInside", hull, scene_of({}, {hull, moved(ball(0.2f, false), {1, 1, 0})})},
+      {"HouseWithALampInside", hull, scene_of({hull, moved(ball(0.2f, false), {1, 1, 0})})},
       {"HouseWithADoor", hull,
        scene_of({}, {hull, quad({0, 0, 3}, {1, 0, 3}, {1, 2, 3}, {0, 2, 3})})},
       {"BannerWithARod", joined(cloth, pole), scene_of({cloth, pole})},
@@ -189,8 +219,8 @@ TEST(FirstPicture, EyeIsInsideOfARoomWithoutAnOutside) {
   const auto table = box({-1, 0, -2}, {1, 0.8f, -1});
   auto open = room;  // without the wall at z = 4, as a Cornell box
   open.indices.erase(open.indices.end() - 6, open.indices.end());
-  for (const Scene& scene : {scene_of({room, table}), scene_of({table}, {room}),
-                             scene_of({table, open}), scene_of({table}, {open})}) {
+  for (const Scene& scene :
+       {scene_of({room, table}), scene_of({table}, {room}), scene_of({table, open})}) {
     const Camera camera = first_camera(scene);
     EXPECT_TRUE(contains(scene.bounds_ws, camera.eye_ws));
     EXPECT_EQ(ViewFinder(scene).radius(camera, kAspect).advice, "");
@@ -237,15 +267,20 @@ TEST(ViewAdvice, NamesARemedyIfTheViewShowsFewSurfaces) {
     return ViewFinder(scene).radius(camera, kAspect).advice;
   };
   EXPECT_EQ(advice(20, 0), "");
-  EXPECT_THAT(advice(90, 0), testing::HasSubstr("less than a tenth of the view"));
+  EXPECT_EQ(advice(90, 0), "");  // a twentieth of the view
+  EXPECT_THAT(advice(400, 0), testing::HasSubstr("hardly any of the view"));
   EXPECT_THAT(advice(20, 40), testing::HasSubstr("nothing but sky"));
   EXPECT_THAT(advice(-20, 0),
               testing::HasSubstr("back faces, which are not drawn: draw them by --both-sides"));
 }
 
-TEST(FirstPicture, PlaneThatFacesDownIsSeenFromAboveAndNotAsARoom) {
-  const Scene plane = scene_of({quad({-5, 0, 5}, {-5, 0, -5}, {5, 0, -5}, {5, 0, 5})});
-  EXPECT_GT(ViewFinder(plane).framing_camera(kAspect).eye_ws.y, 1.0f);
+TEST(FirstPicture, PlaneThatFacesDownIsSeenFromBelowWithANoteUnlessBothSidesAreDrawn) {
+  const Triangles plane = quad({-5, 0, 5}, {-5, 0, -5}, {5, 0, -5}, {5, 0, 5});
+  const Scene scene = scene_of({plane}), both = scene_of({}, {plane});
+  const Camera camera = ViewFinder(scene).framing_camera(kAspect);
+  EXPECT_LT(camera.eye_ws.y, -1.0f);
+  EXPECT_THAT(ViewFinder(scene).radius(camera, kAspect).advice, testing::HasSubstr("--both-sides"));
+  EXPECT_GT(ViewFinder(both).framing_camera(kAspect).eye_ws.y, 1.0f);
 }
 
 TEST(FirstPicture, SceneOfManyTrianglesIsFramedByItsBox) {
