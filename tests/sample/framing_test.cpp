@@ -264,6 +264,7 @@ TEST(ViewAdvice, NamesARemedyIfTheViewShowsFewSurfaces) {
     Camera camera;
     camera.eye_ws = {0, 0, eye};
     camera.target_ws = {0, 0, target};
+    camera.far_plane = 1000.0f;
     return ViewFinder(scene).radius(camera, kAspect).advice;
   };
   EXPECT_EQ(advice(20, 0), "");
