@@ -37,7 +37,8 @@ TEST(CameraFromOptions, DefaultCameraThatShowsNothingIsReplacedAndANamedOneIsNot
   Scene scene = builtin_scene();
   ViewOptions view;
   EXPECT_EQ(choose(view, scene)->name, scene.cameras[0].name);
-  scene.cameras[0].target_ws = scene.cameras[0].eye_ws + glm::vec3(0, 1, 0.01f);
+  scene.cameras[0].eye_ws = {0, 90, 0};  // above everything, and looks up
+  scene.cameras[0].target_ws = {0, 91, 0.01f};
   EXPECT_EQ(choose(view, scene)->name, ViewFinder::kFrame);
   view.camera = scene.cameras[0].name;
   EXPECT_EQ(choose(view, scene)->name, view.camera);
