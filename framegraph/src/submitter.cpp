@@ -98,7 +98,8 @@ VkResult Submitter::submit(const Plan& plan, const FrameInfo& info) {
   }
   for (std::size_t i = 0; i < submissions_.size() && result == VK_SUCCESS; ++i)
     if (submissions_[i].pending) result = flush(submissions_[i].queue);
-  several_before_ = several;
+  // After an error, work of the frame before may still be the last one of a queue.
+  several_before_ = several || (several_before_ && result != VK_SUCCESS);
   for (std::size_t q = 0; q < kQueueClasses; ++q) slots_[info.slot].queues[q].value = values_[q];
   return result;
 }
