@@ -29,6 +29,7 @@ int main() {
   const vk::raii::Device device(physical, {{}, 1, &queues, 0, nullptr, 1, &extension, {}, &v13});
   const vk::raii::Queue queue(device, 0, 0);
   constexpr auto kUsage = vk::ImageUsageFlagBits::eTransferDst;
+  constexpr auto kWaits = VK_PIPELINE_STAGE_2_COPY_BIT;  // the first use of an image waits here
   const vk::raii::SwapchainKHR swapchain(
       device, vk::SwapchainCreateInfoKHR({}, *surface, 3, vk::Format::eB8G8R8A8Unorm, {},
                                          {640, 360}, 1, kUsage));
@@ -49,13 +50,11 @@ int main() {
     graph.reset();
     const TextureDesc desc{VK_FORMAT_B8G8R8A8_UNORM, Extent::absolute(640, 360)};
     Texture scene = graph.create_texture("scene", desc);
-    Texture image =
-        graph.import_texture("window", {.image = images[index],
-                                        .desc = desc,
-                                        .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                        // The first use of the image waits in this stage.
-                                        .initial_state = {.stages = VK_PIPELINE_STAGE_2_COPY_BIT},
-                                        .final_state = access::present});
+    Texture image = graph.import_texture("window", {.image = images[index],
+                                                    .desc = desc,
+                                                    .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                    .initial_state = access::acquired(kWaits),
+                                                    .final_state = access::present});
     PassBuilder draw = graph.add_pass("draw");
     scene = draw.write(scene, access::color_attachment);
     draw.record([=](RecordContext& context) {
@@ -72,7 +71,7 @@ int main() {
       vkCmdCopyImage(context.commands, context.image(scene), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                      context.image(image), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &all);
     });
-    const QueueSemaphore wait{*acquired[slot]}, signal{*drawn[index]};
+    const QueueSemaphore wait{*acquired[slot], 0, kWaits}, signal{*drawn[index]};
     if (!executor.submit(graph, {slot, {&wait, 1}, {&signal, 1}})) return 1;
     (void)queue.presentKHR({1, &*drawn[index], 1, &*swapchain, &index});
   }

@@ -27,6 +27,7 @@ class Chainer {
       if (plan_.cull_reasons[pass].is_live()) add_pass(pass);
     s_.first_use.push_back(static_cast<std::uint32_t>(s_.uses.size()));
     add_final_states();
+    s_.first_move = static_cast<std::uint32_t>(s_.uses.size());
   }
 
  private:

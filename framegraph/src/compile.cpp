@@ -21,8 +21,8 @@ tl::expected<void, Errors> Compiler::compile(const GraphDescription& graph, cons
     cull(graph, workspace, plan);
     chain(graph, limits, workspace, plan);
     assign_queues(graph, limits, workspace, plan);
-    if (check_images(graph, limits, plan, errors)) {
-      place(graph, limits, workspace, plan);
+    if (check_images(graph, limits, plan, errors) &&
+        place(graph, limits, workspace, plan, errors)) {
       synchronise(graph, workspace, plan);
       return {};
     }

@@ -1,8 +1,9 @@
 // Culling: walks over the passes from the last to the first, and follows for each subresource
 // whether its contents are needed by an output or by a later pass that runs. One walk is enough,
 // because a pass can only read what earlier declared passes wrote. Histories are the exception:
-// they keep their contents for later frames. If a pass that runs uses a history, the walk is
-// repeated with the last contents of all its slots marked as needed.
+// they keep their contents for later frames. If a pass that runs uses a history, or one of its
+// older slots has no contents, the last contents of all its slots are needed. For each history that
+// a walk finds to be used, the walk is repeated.
 #include "workspace.h"
 
 namespace alcove::framegraph {
@@ -12,6 +13,7 @@ constexpr std::uint32_t kUnneeded = kNone;
 constexpr std::uint32_t kByOutput = kNone - 1;
 // This bit marks that a pass uses a history. The bits below it hold the pass.
 constexpr std::uint32_t kHistoryBit = 0x4000'0000;
+constexpr std::uint32_t kNoPass = kHistoryBit - 1;  // an older slot has no contents
 
 class Culler {
  public:
@@ -20,6 +22,7 @@ class Culler {
 
   void run() {
     workspace_.cull.history_user.assign(graph_.resources.size(), kNone);
+    find_new_histories();
     do {
       found_history_ = false;
       for (std::uint8_t& contents : plan_.contents) contents &= kHasContents;
@@ -28,6 +31,16 @@ class Culler {
   }
 
  private:
+  // A frame may declare a read of an older slot only once the slot has contents. Its writers run
+  // before, because no later frame would read it otherwise.
+  void find_new_histories() {
+    for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
+      const ResourceRecord& resource = graph_.resources[r];
+      if (resource.slot != 0 && !graph_.externals[resource.external].has_contents)
+        workspace_.cull.history_user[r - resource.slot] = kNoPass;
+    }
+  }
+
   void walk() {
     plan_.cull_reasons.resize(graph_.passes.size());
     workspace_.cull.needed_by.assign(workspace_.first_sub.back(), kUnneeded);
@@ -122,6 +135,7 @@ class Culler {
 
   static PassCullReason explain(std::uint32_t why, std::uint32_t resource) {
     if (why == kByOutput) return {CullReason::output, kNone, resource};
+    if (why == (kNoPass | kHistoryBit)) return {CullReason::feeds_history, kNone, resource};
     if (why & kHistoryBit) return {CullReason::feeds_history, why & ~kHistoryBit, resource};
     return {CullReason::feeds_pass, why, resource};
   }

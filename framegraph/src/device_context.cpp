@@ -52,9 +52,9 @@ MemoryRequirements device_requirements(const void* context, const ResourceRecord
     // Without VK_KHR_maintenance4 a device reports the requirements of existing resources only.
     VkImage image = VK_NULL_HANDLE;
     VkBuffer buffer = VK_NULL_HANDLE;
-    if (create_unbound(device, record, usage, concurrent, image, buffer,
-                       found.memoryRequirements) != VK_SUCCESS)
-      return {0, 0, 0};
+    if (const VkResult result = create_unbound(device, record, usage, concurrent, image, buffer,
+                                               found.memoryRequirements))
+      return {0, 0, 0, result};
     device.vk.vkDestroyImage(device.handles.device, image, device.callbacks());
     device.vk.vkDestroyBuffer(device.handles.device, buffer, device.callbacks());
   } else if (record.kind == ResourceKind::texture) {

@@ -2,13 +2,20 @@
 //
 // First fit in order of first use is tried first. It reaches the lower bound (the most bytes that
 // are live at once) if sizes are alike. If it does not, first fit by decreasing size is tried too.
+// The first one is faster: without it, a changed frame of 100 passes with equal sizes takes 141
+// instead of 111 ns a pass to compile, and random frames take 1 % more memory.
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
+#include "device_context.h"
 #include "workspace.h"
 
 namespace alcove::framegraph {
 namespace {
+
+// The most bytes of all transients together, far from overflow.
+constexpr VkDeviceSize kMostBytes = VkDeviceSize{1} << 62;
 
 VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
   return (value + alignment - 1) & ~(alignment - 1);
@@ -16,11 +23,18 @@ VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
 
 class Placer {
  public:
-  Placer(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan)
-      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.place) {}
+  Placer(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan,
+         Errors& errors)
+      : graph_(graph),
+        limits_(limits),
+        workspace_(workspace),
+        plan_(plan),
+        errors_(errors),
+        s_(workspace.place) {}
 
-  void run() {
+  bool run() {
     make_heaps();
+    if (!errors_.empty()) return false;
     s_.blocks.resize(std::max(s_.blocks.size(), plan_.passes.size() / kBlock + 1));
     for (std::uint32_t heap = 0; heap < plan_.heaps.size(); ++heap) {
       if (plan_.heaps.size() > 1) gather(heap);
@@ -32,6 +46,7 @@ class Placer {
       plan_.heaps[heap].size = best_;
       for (const PlaceItem& item : s_.items) plan_.placements[item.resource].offset = item.offset;
     }
+    return true;
   }
 
  private:
@@ -39,14 +54,17 @@ class Placer {
   void make_heaps() {
     s_.items.resize(workspace_.transients.size());
     PlaceItem* item = s_.items.data();
+    // A device may report 0. The specification allows powers of two only.
+    const VkDeviceSize page = std::bit_ceil(std::min(limits_.buffer_image_granularity, kMostBytes));
     for (const std::uint32_t r : workspace_.transients) {
       Placement& placement = plan_.placements[r];
       const MemoryRequirements needed =
           limits_.memory(graph_.resources[r], placement.usage, placement.concurrent);
       // Aligning to whole pages keeps buffers and images in different pages of
       // bufferImageGranularity.
-      placement.alignment = std::max(needed.alignment, limits_.buffer_image_granularity);
-      placement.size = align_up(needed.size, limits_.buffer_image_granularity);
+      placement.alignment = std::max(needed.alignment, page);
+      if (!can_place(r, needed, placement.alignment)) continue;
+      placement.size = align_up(needed.size, page);
       placement.heap = heap_of(needed.memory_types);
       Heap& into = plan_.heaps[placement.heap];
       into.alignment = std::max(into.alignment, placement.alignment);
@@ -55,6 +73,25 @@ class Placer {
       into.unaliased = align_up(into.unaliased, placement.alignment) + placement.size;
       *item++ = item_of(placement, r);
     }
+  }
+
+  // Adds an error if the device reports requirements that cannot be met, or none.
+  bool can_place(std::uint32_t resource, const MemoryRequirements& needed, VkDeviceSize alignment) {
+    if (needed.result == VK_SUCCESS && needed.size != 0 && needed.memory_types != 0 &&
+        std::has_single_bit(needed.alignment) && alignment <= bytes_left_ &&
+        needed.size <= bytes_left_ - alignment) {
+      // Aligning the size and the offset adds at most the alignment to each.
+      bytes_left_ -= std::min(bytes_left_, needed.size + 2 * alignment);
+      return true;
+    }
+    const VkResult result = needed.result != VK_SUCCESS ? needed.result : VK_ERROR_UNKNOWN;
+    errors_.push_back({ErrorCode::vulkan,
+                       "no memory for '" + std::string(graph_.resource_name(resource)) +
+                           "': the device asks for " + std::to_string(needed.size) +
+                           " bytes aligned to " + std::to_string(needed.alignment) + ": " +
+                           result_name(result),
+                       result, kNone, resource, 0});
+    return false;
   }
 
   std::uint32_t heap_of(std::uint32_t memory_types) {
@@ -199,14 +236,17 @@ class Placer {
   const Limits& limits_;
   Workspace& workspace_;
   Plan& plan_;
+  Errors& errors_;
   Workspace::Place& s_;
+  VkDeviceSize bytes_left_ = kMostBytes;
   VkDeviceSize best_ = 0;
 };
 
 }  // namespace
 
-void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan) {
-  Placer(graph, limits, workspace, plan).run();
+bool place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan,
+           Errors& errors) {
+  return Placer(graph, limits, workspace, plan, errors).run();
 }
 
 }  // namespace alcove::framegraph

@@ -64,13 +64,13 @@ VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
     const bool has_addresses = heap->has_addresses || wanted.device_address;
     if (heap->size >= wanted.size && heap->has_addresses == has_addresses) continue;
     const VkDeviceSize size = std::max(heap->size, wanted.size);
+    make_room(retired_, transients_.size() + 1);  // before anything is allocated or retired
     MemoryRange memory;
     if (const VkResult result = allocate({size, wanted.alignment, wanted.memory_types},
                                          has_addresses, MemoryLifetime::frame, memory))
       return result;
     // This includes transients of other heaps, because creating them again is cheap.
     retire_objects(transients_, frame);
-    make_room(retired_);
     if (heap->memory.memory) retired_.push_back({frame, nullptr, heap->memory, heap->size});
     heap->memory = memory;
     heap->size = size;

@@ -80,8 +80,8 @@ class Pool {
 
   // Returns a number that changes when transients or histories are created or destroyed.
   std::uint64_t generation() const { return generation_; }
-  // Returns a number that changes with `generation` and when views of imports are destroyed.
-  std::uint64_t resources_id() const { return generation_ + destroyed_views_; }
+  // See RecordContext: it changes with `generation` and when views of imports are destroyed.
+  std::uint64_t handle_epoch() const { return generation_ + destroyed_views_; }
   // Returns the allocated device memory in bytes, including retired objects that are not yet freed.
   VkDeviceSize allocated() const;
   VkDeviceSize history_size() const;

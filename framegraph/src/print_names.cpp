@@ -158,7 +158,8 @@ std::string reason(const GraphDescription& graph, const PassCullReason& cull_rea
     case CullReason::feeds_pass:
       return consumer;
     case CullReason::feeds_history:
-      return consumer.append(" in later frames");
+      return cull_reason.consumer != kNone ? consumer.append(" in later frames")
+                                           : "for a history without contents";
     case CullReason::unread:
       return "nobody reads what it writes";
     case CullReason::writes_nothing:

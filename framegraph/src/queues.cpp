@@ -32,7 +32,7 @@ class QueueAssigner {
     const auto count = static_cast<std::uint32_t>(plan_.passes.size());
     workspace_.final_submission = 0;
     if (workspace_.several_queues) {
-      find_moved_layouts();
+      add_moves();
       find_waits();
       cut();
       close();
@@ -56,21 +56,22 @@ class QueueAssigner {
     return limits_.queue_families[static_cast<std::size_t>(queue)];
   }
 
-  // Finds the writes after which the queue of the writer changes the layout: those whose
-  // subresources are next read by several queues, all in one layout. The subresources that one pass
-  // writes have neighbouring uses.
-  void find_moved_layouts() {
+  // Adds a move after each write whose subresource is next read by several queues in another
+  // layout. The subresources that one pass writes have neighbouring uses. They are moved together,
+  // and only if all that are read next are read in one layout.
+  void add_moves() {
     auto& uses = chain_.uses;
+    s_.next.assign(uses.size(), kNone);
     for (std::uint32_t u = 0; u < chain_.first_use.back(); ++u)
-      if (uses[u].previous != kNone) uses[uses[u].previous].next = u;
-    for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
+      if (uses[u].previous != kNone) s_.next[uses[u].previous] = u;
+    for (std::uint32_t i = 0, end = 0; i < chain_.first_move; i = end) {
       VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
       unsigned queues = 0;
-      bool alike = uses[i].writes && uses[i].first != kNone;
-      for (end = i; end < uses.size() && uses[end].resource == uses[i].resource &&
+      bool alike = uses[i].writes && !uses[i].is_initial_state();
+      for (end = i; end < chain_.first_move && uses[end].resource == uses[i].resource &&
                     uses[end].first == uses[i].first && uses[end].writes == uses[i].writes;
            ++end) {
-        const std::uint32_t next = uses[end].next;
+        const std::uint32_t next = s_.next[end];
         if (!uses[end].writes || next == kNone || uses[next].writes) continue;
         alike = alike && (queues == 0 || uses[next].layout == layout);
         layout = uses[next].layout;
@@ -79,9 +80,25 @@ class QueueAssigner {
       }
       if (!alike || queues == 0 || std::has_single_bit(queues)) continue;
       for (; i < end; ++i)
-        if (uses[i].next != kNone && !uses[uses[i].next].writes && uses[i].layout != layout)
-          uses[i].moved = layout;
+        if (s_.next[i] != kNone && !uses[s_.next[i]].writes && uses[i].layout != layout)
+          add_move(i, s_.next[i]);
     }
+  }
+
+  // Makes a move the head of a group of reads.
+  void add_move(std::uint32_t write, std::uint32_t reads) {
+    const auto index = static_cast<std::uint32_t>(chain_.uses.size());
+    const Use& before = chain_.uses[write];
+    chain_.uses.push_back({.layout = chain_.uses[reads].layout,
+                           .resource = before.resource,
+                           .sub = before.sub,
+                           .first = before.first,
+                           .last = before.last,
+                           .head = index,
+                           .sibling = reads,
+                           .previous = write,
+                           .queue = before.queue});
+    for (; reads != kNone; reads = chain_.uses[reads].sibling) chain_.uses[reads].head = index;
   }
 
   static std::uint8_t bit(QueueClass queue) {
@@ -119,7 +136,7 @@ class QueueAssigner {
     const Use& head = chain_.uses[use.head];
     const bool changes = changes_layout(workspace_, head);
     if (&use != &head && changes) return wait_for(head, head.first, use.queue, waits);
-    if (head.first == kNone) wait_for(head, kNone, use.queue, waits);
+    if (head.is_initial_state()) wait_for(head, kNone, use.queue, waits);
     if (head.previous == kNone) return;
     // A read that changes nothing only waits for a write.
     const bool all = use.writes || changes || chain_.uses[head.previous].writes;

@@ -57,7 +57,16 @@ VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType ty
 }
 
 VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted) const {
-  return attachment(wanted, recorder_.attachment_access(pass_, wanted.texture.index));
+  return attachment(wanted, attachment_access(wanted));
+}
+
+// Returns the index of the access that declares the attachment, or adds an error and returns kNone.
+std::uint32_t RecordContext::attachment_access(const Attachment& wanted) const {
+  const auto& resources = recorder_.graph_->description().resources;
+  const std::uint32_t index = wanted.texture.index;
+  const bool is_part = wanted.range != Range{} && index < resources.size();
+  return recorder_.attachment_access(
+      pass_, index, is_part ? Graph::resolved_range(wanted.range, resources[index]) : Range{});
 }
 
 VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted,
@@ -67,7 +76,7 @@ VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted,
   if (index == kNone) return info;
   const AccessRecord& access = recorder_.graph_->description().accesses[index];
   const std::uint8_t contents = recorder_.plan_->contents[index];
-  info.imageView = view(wanted.texture, access.range);
+  info.imageView = view(wanted.texture, wanted.range != Range{} ? wanted.range : access.range);
   info.imageLayout = access.layout;
   info.loadOp = (contents & kHasContents) != 0 ? VK_ATTACHMENT_LOAD_OP_LOAD
                 : wanted.clear                 ? VK_ATTACHMENT_LOAD_OP_CLEAR
@@ -81,7 +90,10 @@ VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted,
   const std::uint32_t to = recorder_.attachment_access(pass_, wanted.resolve.index);
   if (to == kNone) return info;
   const AccessRecord& resolve = recorder_.graph_->description().accesses[to];
-  info.resolveMode = wanted.resolve_mode;
+  info.resolveMode = wanted.resolve_mode != VK_RESOLVE_MODE_NONE ? wanted.resolve_mode
+                     : aspects(format(wanted.texture)) & VK_IMAGE_ASPECT_COLOR_BIT
+                         ? VK_RESOLVE_MODE_AVERAGE_BIT
+                         : VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
   info.resolveImageView = view(wanted.resolve, resolve.range);
   info.resolveImageLayout = resolve.layout;
   return info;
@@ -113,7 +125,8 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors, const At
     to = attachment(wanted, index);
     if (index == kNone || to.imageView == VK_NULL_HANDLE) return false;
     const ResourceRecord& record = graph.resources[wanted.texture.index];
-    const Range& range = graph.accesses[index].range;
+    const Range range = wanted.range != Range{} ? Graph::resolved_range(wanted.range, record)
+                                                : graph.accesses[index].range;
     const VkExtent3D size = extent(wanted.texture, range.base_mip);
     VkExtent2D& area = info.renderArea.extent;
     alike =
@@ -125,15 +138,13 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors, const At
     return true;
   };
   for (std::size_t i = 0; i < colors.size(); ++i) {
-    const std::uint32_t index = recorder_.attachment_access(pass_, colors[i].texture.index);
-    if (!add(colors[i], index, color_infos[i])) return false;
+    if (!add(colors[i], attachment_access(colors[i]), color_infos[i])) return false;
   }
   info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
   info.pColorAttachments = color_infos;
   if (depth.texture) {
     // Depth and stencil have the same view, whose own aspects Vulkan ignores.
-    if (!add(depth, recorder_.attachment_access(pass_, depth.texture.index), depth_info))
-      return false;
+    if (!add(depth, attachment_access(depth), depth_info)) return false;
     const VkImageAspectFlags bound = aspects(format(depth.texture));
     if (bound & VK_IMAGE_ASPECT_DEPTH_BIT) info.pDepthAttachment = &depth_info;
     if (bound & VK_IMAGE_ASPECT_STENCIL_BIT) info.pStencilAttachment = &depth_info;
@@ -167,6 +178,17 @@ VkImage RecordContext::image(Texture texture) const {
 VkBuffer RecordContext::buffer(Buffer buffer) const {
   const Physical* const used = physical(buffer.index, buffer.version);
   return used ? used->buffer : VK_NULL_HANDLE;
+}
+
+VkImageLayout RecordContext::layout(Texture texture, Range range) const {
+  const AccessRecord* const first = recorder_.declared(pass_, texture.index);
+  if (first == nullptr) return VK_IMAGE_LAYOUT_UNDEFINED;
+  const GraphDescription& graph = recorder_.graph_->description();
+  if (range == Range{}) return first->layout;
+  range = Graph::resolved_range(range, graph.resources[texture.index]);
+  for (const AccessRecord& access : graph.pass_accesses(pass_))
+    if (access.resource == texture.index && contains(access.range, range)) return access.layout;
+  return first->layout;
 }
 
 VkExtent3D RecordContext::extent(Texture texture, std::uint32_t mip) const {

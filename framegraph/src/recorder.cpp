@@ -75,7 +75,7 @@ void Recorder::pass(const PlannedPass& planned, VkCommandBuffer commands, Timest
   if (label) begin_label(name, commands);
   if (timestamps) timestamps->begin_pass(commands, time, planned.pass, name);
   RecordContext context(commands, device_.vk, *this, planned.pass);
-  context.resources_id = pool_.resources_id();
+  context.handle_epoch = pool_.handle_epoch();
   context.frame_slot = frame_.slot;
   const Graph::Callback& callback = graph_->callbacks_[planned.pass];
   if (callback.call)
@@ -182,20 +182,24 @@ const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resourc
   return nullptr;
 }
 
-std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t resource) const {
+std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t resource,
+                                          const Range& range) const {
   if (!declared(pass, resource) && frame_.check_uses) return kNone;
   constexpr VkFlags kDrawn =
       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   const GraphDescription& graph = graph_->description();
   std::uint32_t index = graph.passes[pass].first_access;
   for (const AccessRecord& access : graph.pass_accesses(pass)) {
-    if (access.resource == resource && (access.usage & kDrawn) != 0) return index;
+    if (access.resource == resource && (access.usage & kDrawn) != 0 &&
+        (range == Range{} || contains(access.range, range)))
+      return index;
     ++index;
   }
   errors_.push_back({ErrorCode::undeclared_use,
                      std::string("pass '").append(graph.pass_name(pass)) +
-                         "' draws to a texture that it did not declare as an attachment: write it "
-                         "with access::color_attachment or access::depth_attachment",
+                         "' draws to a texture, or a part of one, that it did not declare as an "
+                         "attachment: write it with access::color_attachment or "
+                         "access::depth_attachment",
                      VK_SUCCESS, pass, resource, 0});
   return kNone;
 }
@@ -220,9 +224,8 @@ bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Rang
   const auto is_declared = [&](std::uint32_t mip, std::uint32_t layer) {
     const auto accesses = graph.pass_accesses(pass);
     return std::any_of(accesses.begin(), accesses.end(), [&](const AccessRecord& access) {
-      const Range& own = access.range;
-      return access.resource == resource && mip >= own.base_mip && mip < own.base_mip + own.mips &&
-             layer >= own.base_layer && layer < own.base_layer + own.layers;
+      const Range one{static_cast<std::uint16_t>(mip), 1, static_cast<std::uint16_t>(layer), 1};
+      return access.resource == resource && contains(access.range, one);
     });
   };
   for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer)

@@ -11,6 +11,13 @@
 
 namespace alcove::framegraph {
 
+// Returns whether one range of mips and layers lies within another.
+constexpr bool contains(const Range& whole, const Range& part) {
+  return part.base_mip >= whole.base_mip && part.base_layer >= whole.base_layer &&
+         part.base_mip + part.mips <= whole.base_mip + whole.mips &&
+         part.base_layer + part.layers <= whole.base_layer + whole.layers;
+}
+
 // A frame that is being recorded. `physical` is indexed by resource; its entry is null if no pass
 // uses the resource.
 struct RecordedFrame {
@@ -49,9 +56,10 @@ class Recorder {
   // Returns the access with which the running pass declares this resource, or null if it declares
   // none. In that case adds an error if uses are checked.
   const AccessRecord* declared(std::uint32_t pass, std::uint32_t resource) const;
-  // Returns the index of the access that declares the resource as an attachment of the pass. If
-  // there is none, adds an error and returns kNone.
-  std::uint32_t attachment_access(std::uint32_t pass, std::uint32_t resource) const;
+  // Returns the index of the first access that declares `range` of the resource as an attachment of
+  // the pass. Range{} means any. If there is none, adds an error and returns kNone.
+  std::uint32_t attachment_access(std::uint32_t pass, std::uint32_t resource,
+                                  const Range& range = {}) const;
   // Returns whether `range` lies within the texture `resource` and, if check_uses_ is set, whether
   // the pass declared accesses to all mips and layers of that range. If not, adds an error and
   // returns false.

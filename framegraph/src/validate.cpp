@@ -19,6 +19,12 @@ constexpr bool reads_contents(const AccessRecord& access) {
          (access.access & ~(kWriteBits | kAttachmentBits)) != 0;
 }
 
+// Returns whether an access writes a part of contents that must exist.
+constexpr bool keeps_contents(const AccessRecord& access) {
+  return (access.flags & (kWrite | kDiscard)) == kWrite && (access.access & kWriteBits) != 0 &&
+         (access.access & kAttachmentBits) == 0;
+}
+
 class Replay {
  public:
   explicit Replay(Validation& validation) : v_(validation), s_(validation.workspace.validate) {}
@@ -54,6 +60,7 @@ class Replay {
     const FormatOracle& formats = v_.limits.formats;
     return r.external == kNone && access.kind() == r.kind && access.stages != 0 &&
            (access.stages & forbidden_) == 0 && access.access != 0 &&
+           can_make(access.stages, access.access) &&
            ((access.access & kWriteBits) != 0) == ((access.flags & kWrite) != 0) &&
            (r.kind == ResourceKind::buffer ||
             (layout_is_usable(access.layout) &&
@@ -75,6 +82,7 @@ class Replay {
       v_.plan.contents[static_cast<std::size_t>(&access - v_.graph.accesses.data())] = kHasContents;
     if (found.conflict) report_conflict(pass, access);
     if (found.unwritten) report_unwritten(pass, access);
+    if (!found.written && !found.unwritten && keeps_contents(access)) report_kept(pass, access);
   }
 
   // The contents of the range of an access, before the access.
@@ -137,6 +145,17 @@ class Replay {
                 v_.resource_text(access.resource) + " version " + std::to_string(access.version) +
                 ", parts of which nothing has written: write it in an earlier pass" +
                 (resource.origin == Origin::imported ? ", or import it with its contents" : ""),
+            pass, access.resource, access.version);
+  }
+
+  void report_kept(std::uint32_t pass, const AccessRecord& access) {
+    v_.fail(ErrorCode::read_before_write,
+            v_.pass_text(pass) + " writes " + v_.resource_text(access.resource) +
+                " and keeps its earlier contents (Contents::keep, the default), but nothing has "
+                "written any: write it with Contents::discard" +
+                (v_.graph.resources[access.resource].origin == Origin::imported
+                     ? ", or import it with its contents"
+                     : ""),
             pass, access.resource, access.version);
   }
 

@@ -33,6 +33,10 @@ struct Validation {
 // Checks descriptions, imports and histories, and numbers the subresources of valid resources.
 void validate_resources(Validation& validation);
 
+// Returns whether the graph knows all of these stages, and whether one of them can make each access
+// ("Supported access types" of the specification).
+bool can_make(VkPipelineStageFlags2 stages, VkAccessFlags2 access);
+
 // Returns the pipeline stages that a queue class does not support.
 VkPipelineStageFlags2 forbidden_stages(QueueClass queue);
 

@@ -1,28 +1,91 @@
+#include <array>
+#include <bit>
+
 #include "print_names.h"
 #include "validate.h"
 
 namespace alcove::framegraph {
 namespace {
 
-// The pipeline stages that only a graphics queue supports.
-constexpr VkPipelineStageFlags2 kGraphicsStages =
-    VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
-    VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
-    VK_PIPELINE_STAGE_2_TESSELLATION_CONTROL_SHADER_BIT |
+using Stages = VkPipelineStageFlags2;
+constexpr Stages kIndexInput =
+    VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT;
+constexpr Stages kAttributeInput =
+    VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT;
+constexpr Stages kGraphicsShaders =
+    VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_TESSELLATION_CONTROL_SHADER_BIT |
     VK_PIPELINE_STAGE_2_TESSELLATION_EVALUATION_SHADER_BIT |
     VK_PIPELINE_STAGE_2_GEOMETRY_SHADER_BIT | VK_PIPELINE_STAGE_2_PRE_RASTERIZATION_SHADERS_BIT |
-    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
-    VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT |
-    VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_2_TASK_SHADER_BIT_EXT |
-    VK_PIPELINE_STAGE_2_MESH_SHADER_BIT_EXT | VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT |
-    VK_PIPELINE_STAGE_2_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
-constexpr VkPipelineStageFlags2 kComputeStages =
-    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+    VK_PIPELINE_STAGE_2_TASK_SHADER_BIT_EXT | VK_PIPELINE_STAGE_2_MESH_SHADER_BIT_EXT |
+    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+constexpr Stages kTests =
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+constexpr Stages kColor = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+constexpr Stages kFeedback = VK_PIPELINE_STAGE_2_TRANSFORM_FEEDBACK_BIT_EXT;
+constexpr Stages kShadingRate = VK_PIPELINE_STAGE_2_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
+// The pipeline stages that only a graphics queue supports.
+constexpr Stages kGraphicsStages = kIndexInput | kAttributeInput | kGraphicsShaders | kTests |
+                                   kColor | kFeedback | kShadingRate |
+                                   VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+// The stages of acceleration structures.
+constexpr Stages kBuilds = VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR |
+                           VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_COPY_BIT_KHR;
+constexpr Stages kDispatches =
+    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR;
+constexpr Stages kComputeStages = kDispatches | kBuilds | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
 // The stage of blits, which need a graphics queue although they are transfers.
-constexpr VkPipelineStageFlags2 kBlitStages =
-    VK_PIPELINE_STAGE_2_BLIT_BIT | VK_PIPELINE_STAGE_2_RESOLVE_BIT;
+constexpr Stages kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT | VK_PIPELINE_STAGE_2_RESOLVE_BIT;
+
+// By the number of a stage's bit: the accesses that the stage can make. Stages that the graph does
+// not know, such as those of video, have none.
+constexpr auto kAccessesByStage = [] {
+  std::array<VkAccessFlags2, 64> table{};
+  const auto add = [&table](Stages stages, VkAccessFlags2 access) {
+    if ((stages & kGraphicsStages) != 0) stages |= VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+    for (stages |= VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT; stages != 0; stages &= stages - 1)
+      table[static_cast<std::size_t>(std::countr_zero(stages))] |=
+          access | VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  };
+  add(VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT,
+      VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_READ_BIT_EXT);
+  add(kIndexInput, VK_ACCESS_2_INDEX_READ_BIT);
+  add(kAttributeInput, VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT);
+  add(kGraphicsShaders | kDispatches,
+      VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
+          VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT);
+  add(kGraphicsShaders | kDispatches | kBuilds,
+      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_READ_BIT |
+          VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR);
+  add(kBuilds, VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR);
+  add(kColor, VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+  add(kTests, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+                  VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT);
+  add(VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT | kBlitStages | kBuilds |
+          VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+      VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+  add(kFeedback, VK_ACCESS_2_TRANSFORM_FEEDBACK_WRITE_BIT_EXT |
+                     VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_READ_BIT_EXT |
+                     VK_ACCESS_2_TRANSFORM_FEEDBACK_COUNTER_WRITE_BIT_EXT);
+  add(VK_PIPELINE_STAGE_2_CONDITIONAL_RENDERING_BIT_EXT | VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT,
+      VK_ACCESS_2_CONDITIONAL_RENDERING_READ_BIT_EXT);
+  add(kShadingRate, VK_ACCESS_2_FRAGMENT_SHADING_RATE_ATTACHMENT_READ_BIT_KHR);
+  return table;
+}();
 
 }  // namespace
+
+bool can_make(VkPipelineStageFlags2 stages, VkAccessFlags2 access) {
+  constexpr VkPipelineStageFlags2 kHost = VK_PIPELINE_STAGE_2_HOST_BIT;
+  VkAccessFlags2 possible = 0;
+  if ((stages & kHost) != 0) possible = VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
+  stages &= ~(kHost | VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT);
+  for (; stages != 0; stages &= stages - 1) {
+    const VkAccessFlags2 own = kAccessesByStage[static_cast<std::size_t>(std::countr_zero(stages))];
+    if (own == 0) return false;
+    possible |= own;
+  }
+  return (access & ~possible) == 0;
+}
 
 VkPipelineStageFlags2 forbidden_stages(QueueClass queue) {
   switch (queue) {
@@ -101,6 +164,10 @@ struct Checker {
       refuse_use(ErrorCode::bad_access,
                  " in layout undefined or preinitialised, in which nothing can be used: give the "
                  "layout of the use");
+    if (!can_make(access.stages, access.access))
+      refuse_use(ErrorCode::bad_access,
+                 " with an access that none of its stages can make, or in a stage that the graph "
+                 "does not know: use one of access.h");
     if (access.stages & forbidden_stages(v.graph.passes[pass].queue))
       refuse_use(ErrorCode::bad_access,
                  " in a stage that its queue class cannot run: put the pass on "

@@ -85,6 +85,13 @@ void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r)
         v.resource_text(index) + " is imported without a Vulkan handle: set " +
             (r.kind == ResourceKind::texture ? "ImportedTexture::image" : "ImportedBuffer::buffer"),
         kNone, index);
+  for (const State& state : {external.initial_state, external.final_state})
+    if (r.origin == Origin::imported && !can_make(state.stages, state.access))
+      v.fail(ErrorCode::bad_import,
+             v.resource_text(index) +
+                 " is imported with a state whose access none of its stages can make, or with a "
+                 "stage that the graph does not know: give stages that make the access",
+             kNone, index);
   if (r.origin == Origin::history && r.slots < 2)
     v.fail(
         ErrorCode::history_cycle,

@@ -15,27 +15,37 @@
 namespace alcove::framegraph {
 
 // The uses of a subresource by one queue that need not wait for each other: one write, or the reads
-// in one layout between two writes. Uses of several queues that only read form one group.
+// in one layout between two writes. Uses of several queues that only read form one group. The chain
+// of a subresource is the list of its groups:
+//
+//   initial state <- write <- reads on graphics -> reads on compute <- write <- final state
+//                 previous    (head)           sibling              previous
+//
+// A group takes the uses of the group before it as its source. If its layout differs, its head
+// changes the layout. If a write is followed by reads of several queues in another layout, no
+// reader can be the head, because the others would have to wait for it. The head is then a use of
+// its own on the queue of the write, which only changes the layout ("move"):
+//
+//   write <- move -> reads on graphics -> reads on compute
+//
 struct Use {
   VkPipelineStageFlags2 stages = 0;
   VkAccessFlags2 access = 0;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  // of a buffer, always undefined
-  // The layout to which the queue of this write changes the subresource at the end of its
-  // submission, because several queues read it in that layout; otherwise undefined.
-  VkImageLayout moved = VK_IMAGE_LAYOUT_UNDEFINED;
   std::uint32_t resource = kNone;
   std::uint32_t sub = 0;
   std::uint32_t first = kNone;  // positions; kNone for the state before the frame
   std::uint32_t last = kNone;
-  std::uint32_t head = kNone;      // the first use of its group, which changes the layout if needed
+  std::uint32_t head = kNone;      // the use of its group that changes the layout if needed
   std::uint32_t sibling = kNone;   // the next use of its group
-  std::uint32_t previous = kNone;  // of a head: the head of the group before
-  std::uint32_t next = kNone;      // of a head: the head of the group after, if in the frame; only
-                                   // with several queues
+  std::uint32_t previous = kNone;  // of a head: the first use of the group before
   QueueClass queue = QueueClass::graphics;
   bool writes = false;
   bool discards = false;
-  bool is_moved = false;  // the change to `moved` is in the plan
+
+  bool is_initial_state() const { return first == kNone; }
+  // Returns whether it is in the first group of a transient, which finds no contents.
+  bool is_first_of_transient() const { return previous == kNone && !is_initial_state(); }
 };
 
 // A transient, with the data that placement needs.
@@ -83,9 +93,11 @@ struct Workspace {
   } cull;
   struct Chain {
     std::vector<Use> uses;
-    std::vector<std::uint32_t> tails;  // by subresource: the head of its last group, or kNone
-    // By position: the first use that begins there. Those at the end are of the final states.
+    std::vector<std::uint32_t> tails;  // by subresource: the first use of its last group, or kNone
+    // By position: the first use that begins there. Then those of the final states, and then the
+    // moves, in order of their writes.
     std::vector<std::uint32_t> first_use;
+    std::uint32_t first_move = 0;
   } chain;
   // A position for each queue, or one of these values.
   using ByQueue = std::array<std::int32_t, kQueueClasses>;
@@ -96,6 +108,7 @@ struct Workspace {
     std::vector<ByQueue> known;              // by position: the last passes known to be done
     std::vector<std::uint8_t> waited_for;    // by position
     std::vector<std::uint32_t> taken_until;  // by position
+    std::vector<std::uint32_t> next;         // by write: the first use of the group after
     std::vector<QueueClass> last_queue;      // by resource: on which the frame leaves a history
   } queues;
   // A range of bytes of a heap that is in use up to and including a position.
@@ -127,7 +140,7 @@ struct Workspace {
     std::vector<std::uint8_t> owns_memory;      // by resource: a use has been reached
     std::vector<MemoryMap> memory;              // by heap
     std::vector<std::uint32_t> batch_memories;  // memory barriers of the last batch
-    std::vector<std::uint32_t> moves;           // writes of this submission with moved layouts
+    std::vector<std::uint32_t> moves;           // of this submission that are not in the plan yet
     std::vector<std::uint8_t> written;  // by subresource of histories: a live pass writes it
   } synchronise;
 };
@@ -140,10 +153,9 @@ inline QueueClass queue_of(const Limits& limits, QueueClass queue) {
 
 // Returns whether the head of a group changes the layout of its subresource.
 inline bool changes_layout(const Workspace& workspace, const Use& head) {
-  if (head.first == kNone || head.previous == kNone)
-    return head.first != kNone && head.layout != VK_IMAGE_LAYOUT_UNDEFINED;
-  const Use& before = workspace.chain.uses[head.previous];
-  return head.layout != (before.moved != VK_IMAGE_LAYOUT_UNDEFINED ? before.moved : before.layout);
+  if (head.is_initial_state()) return false;
+  return head.layout != (head.previous == kNone ? VK_IMAGE_LAYOUT_UNDEFINED
+                                                : workspace.chain.uses[head.previous].layout);
 }
 
 // Calls f(subresource index) for each subresource of an access.
@@ -185,8 +197,10 @@ bool check_images(const GraphDescription& graph, const Limits& limits, const Pla
 // Returns the usage with which a history is created: every usage that it can have. A later frame
 // that uses it in another way then does not need to create it again, which would lose the contents.
 VkFlags history_usage(const Limits& limits, const ResourceRecord& record);
-// Assigns each live transient an offset in a heap.
-void place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan);
+// Assigns each live transient an offset in a heap. Returns whether the device gives memory to all
+// of them, and adds an error for each one that gets none.
+bool place(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan,
+           Errors& errors);
 // Adds barriers, and the waits of submissions.
 void synchronise(const GraphDescription& graph, Workspace& workspace, Plan& plan);
 

@@ -27,7 +27,8 @@ class AllocationFailure : public ExecutorTest {
     Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
     for (std::uint32_t i = 0; i < kWords; ++i) {
       PassBuilder pass = graph_.add_pass("a pass with a name of some length");
-      out = pass.write(out, buffer_access::fill);
+      out = pass.write(out, buffer_access::fill,
+                       out.version == 0 ? Contents::discard : Contents::keep);
       pass.record([=, this](RecordContext& c) {
         if (during_) during_();
         vkCmdFillBuffer(c.commands, c.buffer(out), i * sizeof value, sizeof value, value);

@@ -71,11 +71,12 @@ TEST(Barriers, LayersAndMipsWrittenByDifferentPassesShareOneBarrierBeforeTheirRe
 TEST(Barriers, ReaderOfAMipChainWrittenByOnePassPerMipNeedsAtMostTwoBarriers) {
   Graph graph;
   Texture chain = graph.create_texture("chain", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5});
-  chain = graph.add_pass("mip 0").write(chain, access::storage_write_compute, Range::mip(0));
+  chain = graph.add_pass("mip 0").write(chain, access::storage_write_compute, Range::mip(0),
+                                        Contents::discard);
   for (std::uint32_t mip = 1; mip < 5; ++mip) {
     PassBuilder down = graph.add_pass("down");
     down.read(chain, access::sampled_compute, Range::mip(mip - 1));
-    chain = down.write(chain, access::storage_write_compute, Range::mip(mip));
+    chain = down.write(chain, access::storage_write_compute, Range::mip(mip), Contents::discard);
   }
   PassBuilder reader = graph.add_pass("reader");
   reader.read(chain, access::sampled_fragment);
@@ -90,7 +91,8 @@ TEST(Barriers, ReaderOfAMipChainWrittenByOnePassPerMipNeedsAtMostTwoBarriers) {
 TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-  texture = graph.add_pass("writer").write(texture, access::storage_write_compute);
+  texture =
+      graph.add_pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
   for (int i = 0; i < 5; ++i) {
     PassBuilder reader = graph.add_pass("reader");
     reader.read(texture, i % 2 ? access::sampled_fragment : access::sampled_compute);
@@ -110,7 +112,8 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
   Graph graph;
   Buffer data = graph.create_buffer("data", {64});
   Buffer other = graph.create_buffer("other", {64});
-  data = graph.add_pass("writer").write(data, buffer_access::storage_write_compute);
+  data =
+      graph.add_pass("writer").write(data, buffer_access::storage_write_compute, Contents::discard);
   const auto add_reader = [&](const Access& access) {
     PassBuilder reader = graph.add_pass("reader");
     reader.read(data, access);
@@ -119,7 +122,7 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
   add_reader(buffer_access::uniform(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT));
   // The barrier before this pass comes between the write and the second reader. The second reader's
   // dependency is added to it.
-  other = graph.add_pass("fill").write(other, buffer_access::fill);
+  other = graph.add_pass("fill").write(other, buffer_access::fill, Contents::discard);
   PassBuilder mixed = graph.add_pass("mixed");
   mixed.read(other, buffer_access::storage_read_compute);
   mixed.read(data, buffer_access::storage_read_compute);
@@ -241,7 +244,8 @@ TEST_F(InitialStates, HistoryWithOnlyOneMipWrittenIsReportedAsPartlyWrittenInThe
 TEST(Barriers, AllMipsAndLayersWrittenByOnePassShareOneBarrierBeforeTheirReader) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5, 3});
-  texture = graph.add_pass("writer").write(texture, access::storage_write_compute);
+  texture =
+      graph.add_pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
   PassBuilder reader = graph.add_pass("reader");
   reader.read(texture, access::sampled_compute);
   reader.side_effect();
@@ -263,7 +267,8 @@ TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands)
 TEST(Barriers, WriteAfterReadsNeedsNothingMadeAvailable) {
   Graph graph;
   Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-  texture = graph.add_pass("writer").write(texture, access::storage_write_compute);
+  texture =
+      graph.add_pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
   PassBuilder reader = graph.add_pass("reader");
   reader.read(texture, access::storage_read_compute);
   reader.side_effect();
@@ -297,7 +302,8 @@ TEST(Barriers, ManySubresourcesWithDifferentStatesShareFewBarriers) {
   Graph graph;
   Texture texture =
       graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(2048, 2048), 12, 2048});
-  texture = graph.add_pass("even").write(texture, access::storage_write_compute);
+  texture =
+      graph.add_pass("even").write(texture, access::storage_write_compute, {}, Contents::discard);
   texture = graph.add_pass("odd").write(texture, access::clear, Range::mip(1));
   PassBuilder reader = graph.add_pass("reader");
   reader.read(texture, access::sampled_compute);

@@ -325,7 +325,8 @@ class FrameMaker {
       pass.read(model.handle, access::transfer_source);
     else
       pass.read(model.buffer, buffer_access::transfer_source);
-    out = pass.write(out, buffer_access::transfer_destination);
+    out = pass.write(out, buffer_access::transfer_destination,
+                     out.version == 0 ? Contents::discard : Contents::keep);
     pass.record([offset, out, texture = model.texture, image = model.handle,
                  buffer = model.buffer](RecordContext& c) {
       if (!texture) {

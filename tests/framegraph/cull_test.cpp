@@ -11,13 +11,20 @@ const TextureDesc kDesc{VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 8)};
 
 class Cull : public testing::Test {
  protected:
-  Texture write(const char* name, Texture texture, Contents contents = Contents::keep) {
+  Texture write(const char* name, Texture texture, Contents contents = Contents::discard) {
     return graph_.add_pass(name).write(texture, access::storage_write_compute, {}, contents);
   }
   Texture write_from(const char* name, Texture input, Texture output) {
     PassBuilder pass = graph_.add_pass(name);
     pass.read(input, access::sampled_compute);
-    return pass.write(output, access::storage_write_compute);
+    return pass.write(output, access::storage_write_compute, {}, Contents::discard);
+  }
+  // Returns a history that an earlier frame has written.
+  TextureHistory make_history() {
+    (void)write("first", graph_.create_texture_history("h", kDesc).current, Contents::discard);
+    graph_.leave_histories(plan().finals);
+    graph_.reset();
+    return graph_.create_texture_history("h", kDesc);
   }
   Texture make(const char* name) { return write(name, graph_.create_texture(name, kDesc)); }
   Plan plan() {
@@ -71,7 +78,8 @@ TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
   for (std::uint32_t mip = 0; mip < 3; ++mip) {
-    texture = graph_.add_pass("mip").write(texture, access::storage_write_compute, Range::mip(mip));
+    texture = graph_.add_pass("mip").write(texture, access::storage_write_compute, Range::mip(mip),
+                                           Contents::discard);
   }
   PassBuilder reader = graph_.add_pass("reader");
   reader.read(texture, access::sampled_compute, Range::mip(1));
@@ -83,7 +91,7 @@ TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
 }
 
 TEST_F(Cull, PassThatWritesAHistoryIsKeptOnlyIfAKeptPassReadsThatHistory) {
-  const TextureHistory history = graph_.create_texture_history("h", kDesc);
+  const TextureHistory history = make_history();
   const Texture result =
       write_from("accumulate", history.previous(), graph_.create_texture("result", kDesc));
   (void)write("remember", history.current);
@@ -97,8 +105,31 @@ TEST_F(Cull, PassThatWritesAHistoryIsKeptOnlyIfAKeptPassReadsThatHistory) {
   EXPECT_EQ(kept.cull_reasons[1].consumer, 0u);
 }
 
+// A depth pyramid that only the culling of the next frame reads is declared in this way. After a
+// reset it starts anew, and a frame that does not read it need not write it.
+TEST_F(Cull, HistoryThatIsReadOnlyIfItIsValidIsWrittenInTheFirstFrame) {
+  for (const bool reads : {true, false}) {
+    graph_.reset_histories();
+    for (int frame = 0; frame < 3; ++frame) {
+      graph_.reset();
+      const TextureHistory history = graph_.create_texture_history("h", kDesc);
+      const bool is_valid = history.validity == HistoryValidity::valid;
+      EXPECT_EQ(is_valid, frame != 0);
+      PassBuilder reader = graph_.add_pass("reader");
+      if (is_valid && reads) reader.read(history.previous(), access::sampled_compute);
+      reader.side_effect();
+      (void)write("writer", history.current, Contents::discard);
+      const Plan result = plan();
+      EXPECT_EQ(result.cull_reasons[1].cull_reason,
+                is_valid && !reads ? CullReason::unread : CullReason::feeds_history);
+      EXPECT_EQ(result.cull_reasons[1].consumer, is_valid && reads ? 0u : kNone);
+      graph_.leave_histories(result.finals);
+    }
+  }
+}
+
 TEST_F(Cull, PassThatUpdatesAHistoryInPlaceIsKeptOnlyIfAKeptPassReadsThatHistory) {
-  const TextureHistory history = graph_.create_texture_history("h", kDesc);
+  const TextureHistory history = make_history();
   (void)write("remember", history.current);
   const Texture result =
       write_from("look", history.previous(), graph_.create_texture("result", kDesc));
@@ -179,7 +210,7 @@ TEST_F(Cull, AllWritersOfAHistoryAreKeptIfOneOfThemRuns) {
   PassBuilder update = graph_.add_pass("update");
   const Texture updated = update.write(filled, access::storage_write_compute);
   update.side_effect();
-  (void)write("finish", updated);
+  (void)write("finish", updated, Contents::keep);
   const Plan result = plan();
   EXPECT_EQ(result.passes.size(), 3u);
   EXPECT_TRUE(verify(graph_.description(), {}, result));

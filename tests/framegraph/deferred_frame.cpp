@@ -49,7 +49,8 @@ class DeferredFrame {
     light_tiles_ = graph_.create_buffer("light tiles", {16 * tiles});
     PassBuilder pass = graph_.add_pass("light tiles");
     pass.read(depth_, access::depth_read_compute);
-    light_tiles_ = pass.write(light_tiles_, buffer_access::storage_write_compute);
+    light_tiles_ =
+        pass.write(light_tiles_, buffer_access::storage_write_compute, Contents::discard);
     pass.record([](RecordContext&) {});
   }
 
@@ -60,7 +61,7 @@ class DeferredFrame {
     pass.read(light_tiles_, buffer_access::storage_read_compute);
     for (const Texture& read : {albedo_, normal_, emission_, ao})
       pass.read(read, access::sampled_compute);
-    lit = pass.write(lit, access::storage_write_compute);
+    lit = pass.write(lit, access::storage_write_compute, {}, Contents::discard);
     pass.record([](RecordContext&) {});
     return lit;
   }
@@ -71,7 +72,7 @@ class DeferredFrame {
     PassBuilder pass = graph_.add_pass(name);
     for (const Texture& read : from)
       pass.read(read, read == depth_ ? access::depth_read_compute : access::sampled_compute);
-    to = pass.write(to, access::storage_write_compute);
+    to = pass.write(to, access::storage_write_compute, {}, Contents::discard);
     pass.record([](RecordContext&) {});
     return to;
   }

@@ -22,7 +22,7 @@ TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
     const Texture other =
         graph.create_texture("other", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
     PassBuilder clear = graph.add_pass("clear");
-    const Texture cleared = clear.write(history.current, access::clear);
+    const Texture cleared = clear.write(history.current, access::clear, {}, Contents::discard);
     clear.record([=](RecordContext& c) {
       clear_image(c, c.image(cleared), value);
       if (mistake == 1) c.fail("table", VK_ERROR_OUT_OF_HOST_MEMORY);
@@ -54,9 +54,9 @@ TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
 }
 
 // Counts, over the last 100 of 300 frames, the frames in which the executor recorded a barrier over
-// everything, and the changes of RecordContext::resources_id. Each frame imports a buffer and an
+// everything, and the changes of RecordContext::handle_epoch. Each frame imports a buffer and an
 // image that no frame before has used.
-TEST_F(ExecutorTest, ImportsThatAreNewInEveryFrameCostNoFullBarrierAndKeepTheResourcesId) {
+TEST_F(ExecutorTest, ImportsThatAreNewInEveryFrameCostNoFullBarrierAndKeepTheHandleEpoch) {
   Executor executor = make();
   const TextureDesc desc{VK_FORMAT_R32_UINT, Extent::absolute(1, 1)};
   Graph graph;
@@ -80,8 +80,8 @@ TEST_F(ExecutorTest, ImportsThatAreNewInEveryFrameCostNoFullBarrierAndKeepTheRes
     texture = pass.write(texture, access::clear, {}, Contents::discard);
     pass.record([&, buffer, texture](RecordContext& c) {
       (void)c.view(texture);
-      changes += id != c.resources_id;
-      id = c.resources_id;
+      changes += id != c.handle_epoch;
+      id = c.handle_epoch;
       vkCmdFillBuffer(c.commands, c.buffer(buffer), 0, VK_WHOLE_SIZE, 5);
     });
     const auto report = gpu_.run(executor, graph);
@@ -174,7 +174,8 @@ TEST_F(ExecutorTest, ImageViewOfMipsOrLayersThatThePassDidNotDeclareIsRefused) {
       Graph graph;
       Texture texture = graph.create_texture("t", {VK_FORMAT_R32_UINT, Extent::absolute(8, 8), 4});
       PassBuilder pass = graph.add_pass("store");
-      texture = pass.write(texture, access::storage_write_compute, Range::mip(1));
+      texture =
+          pass.write(texture, access::storage_write_compute, Range::mip(1), Contents::discard);
       pass.side_effect();
       pass.record([=](RecordContext& context) {
         EXPECT_NE(context.view(texture), VkImageView{VK_NULL_HANDLE});
@@ -250,7 +251,7 @@ TEST_F(ExecutorTest, MultisampledTexturesThatTheDeviceCannotCreateAreRefused) {
     Texture texture = c.history ? graph.create_texture_history("t", desc).current
                                 : graph.create_texture("t", desc);
     PassBuilder pass = graph.add_pass("write");
-    texture = pass.write(texture, c.access);
+    texture = pass.write(texture, c.access, {}, Contents::discard);
     pass.side_effect();
     pass.record([](RecordContext&) {});
     const auto report = gpu_.run(executor, graph);
@@ -302,7 +303,7 @@ TEST_F(ExecutorTest, ExecutorRunsOnAVulkan12DeviceWithTheSynchronization2Extensi
   Texture other = graph.create_texture("u", desc);
   PassBuilder copy = graph.add_pass("copy");
   copy.read(texture, access::transfer_source);
-  other = copy.write(other, access::transfer_destination);
+  other = copy.write(other, access::transfer_destination, {}, Contents::discard);
   copy.side_effect();
   copy.record([](RecordContext&) {});
   auto report = executor.submit(graph);
@@ -368,7 +369,8 @@ TEST_F(ExecutorTest, BuffersUsedByDeviceAddressGetMemoryThatAllowsDeviceAddresse
     graph.reset();
     Buffer buffer = graph.create_buffer("b", {64});
     PassBuilder pass = graph.add_pass("store");
-    buffer = pass.write(buffer, by_address ? addressed : buffer_access::storage_write_compute);
+    buffer = pass.write(buffer, by_address ? addressed : buffer_access::storage_write_compute,
+                        Contents::discard);
     pass.side_effect();
     pass.record([&, buffer](RecordContext& c) {
       const VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr,

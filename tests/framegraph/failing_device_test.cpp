@@ -21,7 +21,7 @@ class FailingDeviceTest : public ExecutorTest {
     const TextureHistory history =
         graph.create_texture_history("history", {VK_FORMAT_R32_UINT, Extent::absolute(4, 4)});
     PassBuilder pass = graph.add_pass("remember", queue);
-    const Texture texture = pass.write(history.current, access::clear);
+    const Texture texture = pass.write(history.current, access::clear, {}, Contents::discard);
     pass.record([=](RecordContext& c) {
       (void)c.view(texture);
       clear_image(c, c.image(texture), 1);

@@ -49,7 +49,7 @@ inline void copy_image(RecordContext& context, VkImage image, VkBuffer buffer,
 
 // Adds a pass that clears a texture with one 32-bit channel. Returns the cleared texture.
 inline Texture add_clear(Graph& graph, Texture texture, std::uint32_t value,
-                         Contents contents = Contents::keep,
+                         Contents contents = Contents::discard,
                          QueueClass queue = QueueClass::graphics) {
   PassBuilder pass = graph.add_pass("clear", queue);
   texture = pass.write(texture, access::clear, {}, contents);
@@ -61,7 +61,8 @@ inline Texture add_clear(Graph& graph, Texture texture, std::uint32_t value,
 inline Buffer add_copy(Graph& graph, Texture texture, Buffer out, VkDeviceSize offset = 0) {
   PassBuilder pass = graph.add_pass("copy");
   pass.read(texture, access::transfer_source);
-  out = pass.write(out, buffer_access::transfer_destination);
+  out = pass.write(out, buffer_access::transfer_destination,
+                   out.version == 0 ? Contents::discard : Contents::keep);
   pass.record([=](RecordContext& c) { copy_image(c, c.image(texture), c.buffer(out), offset); });
   return out;
 }

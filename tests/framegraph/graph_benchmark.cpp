@@ -76,7 +76,7 @@ void declare(Graph& graph, std::span<const Reads> reads, std::span<Texture> text
     const auto [first, second] = reads[i];
     if (first != kNone) pass.read(textures[first], access::sampled_compute);
     if (second != first) pass.read(textures[second], access::sampled_compute);
-    texture = pass.write(texture, access::storage_write_compute);
+    texture = pass.write(texture, access::storage_write_compute, {}, Contents::discard);
     pass.record([texture](RecordContext& context) { (void)context.view(texture); });
     textures[i] = texture;
   }

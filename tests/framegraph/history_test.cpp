@@ -50,7 +50,9 @@ class GraphHistory : public ExecutorTest {
       vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 0xffff);
     });
     Texture newest = frame.in_place ? history.previous() : history.current;
-    if (frame.writes) newest = add_clear(*graph_, newest, frame.value);
+    if (frame.writes)
+      newest = add_clear(*graph_, newest, frame.value,
+                         frame.in_place ? Contents::keep : Contents::discard);
     if (frame.writes && frame.wanted) graph_->output(newest);
     for (std::uint32_t age = 1; age < kSlots && frame.wanted; ++age) {
       if (!frame.writes && validity_ != HistoryValidity::valid) continue;

@@ -101,7 +101,7 @@ TEST(Mutation, VerifierAcceptsAPlanOfAThousandPassesAndRefusesItIfOnePassLacksIt
     PassBuilder pass = graph.add_pass("pass");
     if (i > 0) pass.read(textures[i - 1], access::sampled_compute);
     if (i > 20) pass.read(textures[i - 2 - i % 20], access::sampled_compute);
-    textures.push_back(pass.write(texture, access::storage_write_compute));
+    textures.push_back(pass.write(texture, access::storage_write_compute, {}, Contents::discard));
     pass.side_effect();
   }
   auto plan = compile(graph.description());
@@ -123,7 +123,8 @@ TEST(Mutation, VerifierRefusesAWriteThatNoBarrierMakesVisibleToAFinalStateOfAllR
   import.final_state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                         VK_IMAGE_LAYOUT_UNDEFINED};
   const Buffer buffer = graph.import_buffer("buffer", import);
-  (void)graph.add_pass("write").write(buffer, buffer_access::storage_write_compute);
+  (void)graph.add_pass("write").write(buffer, buffer_access::storage_write_compute,
+                                      Contents::discard);
   auto plan = compile(graph.description());
   ASSERT_TRUE(plan) << to_string(plan.error());
   EXPECT_TRUE(verify(graph.description(), {}, *plan));

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "alcove/framegraph/framegraph.h"
@@ -18,6 +20,7 @@ int submits_until_failure = -1;  // negative: none fails
 bool image_fails = false;
 std::vector<std::uint32_t> waits;  // the number of semaphores that each submission waits for
 std::vector<VkImageMemoryBarrier2> barriers;
+std::vector<VkImageView> destroyed_views;
 
 VkResult VKAPI_CALL submit(VkQueue /*queue*/, std::uint32_t count, const VkSubmitInfo2* infos,
                            VkFence /*fence*/) {
@@ -30,6 +33,11 @@ VkResult VKAPI_CALL submit(VkQueue /*queue*/, std::uint32_t count, const VkSubmi
 void VKAPI_CALL barrier(VkCommandBuffer /*commands*/, const VkDependencyInfo* info) {
   barriers.insert(barriers.end(), info->pImageMemoryBarriers,
                   info->pImageMemoryBarriers + info->imageMemoryBarrierCount);
+}
+
+void VKAPI_CALL destroy_view(VkDevice /*device*/, VkImageView view,
+                             const VkAllocationCallbacks* /*callbacks*/) {
+  destroyed_views.push_back(view);
 }
 
 VkResult VKAPI_CALL create_image(VkDevice /*device*/, const VkImageCreateInfo* /*info*/,
@@ -45,6 +53,7 @@ PFN_vkVoidFunction VKAPI_CALL get_device_proc(VkDevice device, const char* name)
   if (std::strcmp(name, "vkQueueSubmit2") == 0) return as(submit);
   if (std::strcmp(name, "vkCmdPipelineBarrier2") == 0) return as(barrier);
   if (std::strcmp(name, "vkCreateImage") == 0) return as(create_image);
+  if (std::strcmp(name, "vkDestroyImageView") == 0) return as(destroy_view);
   return reinterpret_cast<PFN_vkGetDeviceProcAddr>(
       null_device().get_instance_proc_addr(VK_NULL_HANDLE, "vkGetDeviceProcAddr"))(device, name);
 }
@@ -122,6 +131,52 @@ TEST_F(NullDeviceTest, HistoryOfAFrameThatWasSubmittedInPartIsWaitedForInEverySt
   EXPECT_EQ(barriers[0].oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
   EXPECT_EQ(barriers[0].srcStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   EXPECT_EQ(barriers[0].srcAccessMask, VK_ACCESS_2_MEMORY_WRITE_BIT);
+}
+
+// The device says how much memory an image needs only after it has created one.
+TEST_F(NullDeviceTest, FrameIsRefusedAndNoPlanKeptIfTheMemoryOfAnImageCannotBeAskedFor) {
+  for (const bool fails : {true, false}) {
+    graph_.reset();
+    add_write(make_texture());
+    image_fails = fails;
+    const auto report = executor_->submit(graph_);
+    ASSERT_EQ(report.has_value(), !fails);
+    if (fails)
+      EXPECT_EQ(report.error()[0].result, VK_ERROR_OUT_OF_HOST_MEMORY);
+    else
+      EXPECT_TRUE(report->compiled);
+  }
+}
+
+// Textures of changing sizes and a history are used in turn, until some are evicted. No view that a
+// pass has got is destroyed while the number stays.
+TEST_F(NullDeviceTest, HandleEpochChangesBeforeAViewIsDestroyed) {
+  std::map<VkImageView, std::uint64_t> epochs;  // in which a pass got the view last
+  std::set<std::uint64_t> seen;
+  destroyed_views.clear();
+  for (std::uint32_t frame = 0; frame < 600; ++frame) {
+    graph_.reset();
+    const std::uint32_t width = frame < 200 ? 16 << frame / 20 % 3 : 16;
+    const TextureHistory history = graph_.create_texture_history(
+        "h", {VK_FORMAT_R32_UINT, Extent::absolute(frame < 100 ? 8 : 16, 8)});
+    PassBuilder pass = graph_.add_pass("pass");
+    const Texture textures[] = {
+        pass.write(make_texture(width), access::storage_write_compute, {}, Contents::discard),
+        pass.write(history.current, access::storage_write_compute, {}, Contents::discard)};
+    pass.read(history.previous(), access::sampled_compute);
+    pass.side_effect();
+    pass.record([&, textures, history](RecordContext& c) {
+      (void)c.validity(history.previous());
+      for (const VkImageView view : destroyed_views) EXPECT_LT(epochs[view], c.handle_epoch);
+      for (const Texture& texture : {textures[0], textures[1], history.previous()})
+        epochs[c.view(texture)] = c.handle_epoch;
+      seen.insert(c.handle_epoch);
+    });
+    const auto report = executor_->submit(graph_, {frame % 2});
+    ASSERT_TRUE(report) << to_string(report.error());
+  }
+  EXPECT_GE(destroyed_views.size(), 4u);
+  EXPECT_LE(seen.size(), 12u);
 }
 
 }  // namespace

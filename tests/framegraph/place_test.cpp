@@ -85,6 +85,50 @@ TEST(MemoryPlacement, TransientsOfDifferentMemoryTypesGetSeparateHeaps) {
   EXPECT_TRUE(verify(graph.description(), limits, *plan));
 }
 
+// A device that fails to say how much memory a resource needs, or says what cannot be.
+TEST(MemoryPlacement, FrameWhoseMemoryRequirementsCannotBeMetIsRefused) {
+  constexpr VkDeviceSize kHuge = VkDeviceSize{1} << 63;
+  static MemoryRequirements answer;
+  const MemoryRequirements cases[] = {{0, 0, 0, VK_ERROR_OUT_OF_HOST_MEMORY},
+                                      {0, 256, 1},
+                                      {64, 0, 1},
+                                      {64, 48, 1},
+                                      {64, 256, 0},
+                                      {kHuge, 256, 1},
+                                      {64, kHuge, 1},
+                                      {kHuge / 4, 256, 1}};  // three of them are too many
+  for (const MemoryRequirements& needed : cases) {
+    answer = needed;
+    Graph graph;
+    for (int i = 0; i < 3; ++i) {
+      PassBuilder pass = graph.add_pass("pass");
+      (void)pass.write(graph.create_buffer("b", {64}), buffer_access::fill, Contents::discard);
+      pass.side_effect();
+    }
+    Limits limits;
+    const auto right = compile(graph.description(), limits);
+    ASSERT_TRUE(right);
+    limits.memory.query = [](const void*, const ResourceRecord&, VkFlags, bool) { return answer; };
+    const auto plan = compile(graph.description(), limits);
+    ASSERT_FALSE(plan) << needed.size;
+    EXPECT_EQ(plan.error()[0].code, ErrorCode::vulkan);
+    EXPECT_EQ(plan.error()[0].result,
+              needed.result != VK_SUCCESS ? needed.result : VK_ERROR_UNKNOWN);
+    EXPECT_FALSE(verify(graph.description(), limits, *right));
+  }
+}
+
+// Devices may report a granularity of 0.
+TEST(MemoryPlacement, BuffersAndImagesArePlacedWithoutAGranularity) {
+  Graph graph;
+  declare_deferred_frame(graph, 640, 360);
+  Limits limits;
+  limits.buffer_image_granularity = 0;
+  const auto plan = compile(graph.description(), limits);
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  EXPECT_TRUE(verify(graph.description(), limits, *plan));
+}
+
 TEST(PassOrder, VerifierRefusesPassesWithSideEffectsOutOfTheirDeclaredOrder) {
   Graph graph;
   for (const char* name : {"first", "second"}) graph.add_pass(name).side_effect();

@@ -47,11 +47,11 @@ class Queues : public testing::Test {
 //         +--------------- y -------------------^
 TEST_F(Queues, SemaphoreWaitsImpliedByOtherWaitsAreLeftOut) {
   PassBuilder a = graph_.add_pass("a");
-  const Texture x = a.write(make("x"), access::storage_write_compute);
-  const Texture y = a.write(make("y"), access::storage_write_compute);
+  const Texture x = a.write(make("x"), access::storage_write_compute, {}, Contents::discard);
+  const Texture y = a.write(make("y"), access::storage_write_compute, {}, Contents::discard);
   PassBuilder b = graph_.add_pass("b", QueueClass::compute);
   b.read(x, access::storage_read_compute);
-  const Texture z = b.write(make("z"), access::storage_write_compute);
+  const Texture z = b.write(make("z"), access::storage_write_compute, {}, Contents::discard);
   PassBuilder c = graph_.add_pass("c", QueueClass::transfer);
   c.read(y, access::transfer_source);
   c.read(z, access::transfer_source);
@@ -68,7 +68,8 @@ TEST_F(Queues, AtTheEndOfAFrameTheGraphicsQueueWaitsOnlyForTheLastOfAChainOfQueu
   Texture y = import("y");
   PassBuilder first = graph_.add_pass("first", QueueClass::compute);
   x = first.write(x, access::storage_write_compute, {}, Contents::discard);
-  const Texture between = first.write(make("between"), access::storage_write_compute);
+  const Texture between =
+      first.write(make("between"), access::storage_write_compute, {}, Contents::discard);
   PassBuilder second = graph_.add_pass("second", QueueClass::transfer);
   second.read(between, access::transfer_source);
   y = second.write(y, access::transfer_destination, {}, Contents::discard);
@@ -100,7 +101,7 @@ TEST_F(Queues, UpdatingAPartOfAHistoryOnTheQueueThatOwnsItGivesAVerifiedPlan) {
   };
   TextureHistory history = declare();
   PassBuilder fill = graph_.add_pass("fill", QueueClass::compute);
-  graph_.output(fill.write(history.current, access::storage_write_compute));
+  graph_.output(fill.write(history.current, access::storage_write_compute, {}, Contents::discard));
   graph_.leave_histories(compiled().finals);
   history = declare();
   ASSERT_EQ(history.validity, HistoryValidity::valid);
@@ -117,7 +118,8 @@ TEST_F(Queues, HistoryWhoseMipsSeveralQueuesReadIsLeftInOneLayout) {
     const TextureHistory history =
         graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
     PassBuilder writer = graph_.add_pass("writer");
-    const Texture written = writer.write(history.current, access::storage_write_compute);
+    const Texture written =
+        writer.write(history.current, access::storage_write_compute, {}, Contents::discard);
     for (const QueueClass queue : {QueueClass::graphics, QueueClass::compute}) {
       PassBuilder reader = graph_.add_pass("reader", queue);
       reader.read(written, access::sampled_compute, Range::mip(1));
@@ -155,6 +157,29 @@ TEST_F(Queues, HistoryWhoseMipsEndTheFrameInDifferentStagesGivesAVerifiedPlan) {
     // The next frame would not wait for a use that the final state does not name.
     for (FinalState& final : plan.finals) final.state.stages = 0;
     EXPECT_FALSE(verify(graph_.description(), limits_, plan));
+  }
+}
+
+// The image of a window is imported without a state. The semaphore of its acquisition waits in any
+// stage of the queue that uses the image first, or of the graphics queue. The first change of the
+// layout comes after it.
+TEST_F(Queues, ImportWithTheDefaultStateIsFirstUsedAfterASemaphoreThatTheFrameWaitsFor) {
+  for (const QueueClass queue : {QueueClass::graphics, QueueClass::compute}) {
+    graph_.reset();
+    ImportedTexture import{.image = fake_handle<VkImage>(), .desc = kDesc};
+    import.usage = ~VkImageUsageFlags{0};
+    import.final_state = access::present;
+    PassBuilder draw = graph_.add_pass("draw", queue);
+    (void)draw.write(graph_.import_texture("window", import), access::storage_write_compute, {},
+                     Contents::discard);
+    const Plan plan = compiled();
+    ASSERT_FALSE(plan.transitions.empty());
+    EXPECT_NE(plan.transitions[0].src_stages &
+                  (VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT),
+              0u);
+    // The compute queue waits for a submission of the graphics queue.
+    EXPECT_EQ(plan.submissions[0].queue, QueueClass::graphics);
+    EXPECT_EQ(plan.submissions.size(), queue == QueueClass::graphics ? 1u : 3u);
   }
 }
 
@@ -233,7 +258,8 @@ TEST_F(Queues, HistoryWrittenOnOneQueueAndReadOnAnotherIsValidInTheNextFrame) {
       const TextureHistory history = graph_.create_texture_history("history", kDesc);
       validity = history.validity;
       PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
-      const Texture written = occlusion.write(history.current, access::storage_write_compute);
+      const Texture written =
+          occlusion.write(history.current, access::storage_write_compute, {}, Contents::discard);
       PassBuilder lighting = graph_.add_pass("lighting");
       lighting.read(written, access::sampled_fragment);
       lighting.side_effect();
@@ -271,7 +297,8 @@ TEST_F(Queues, ReadingAnImportThatNoQueueWritesNeedsNoSubmissionsWithoutPasses) 
     const Texture drawn = depth.write(make("depth"), access::color_attachment);
     PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
     occlusion.read(fixed, access::storage_read_compute);
-    const Texture occluded = occlusion.write(make("occlusion"), access::storage_write_compute);
+    const Texture occluded =
+        occlusion.write(make("occlusion"), access::storage_write_compute, {}, Contents::discard);
     PassBuilder lighting = graph_.add_pass("lighting");
     lighting.read(drawn, access::sampled_fragment);
     lighting.read(occluded, access::sampled_fragment);
@@ -286,7 +313,8 @@ TEST_F(Queues, ReadingAnImportThatNoQueueWritesNeedsNoSubmissionsWithoutPasses) 
 TEST_F(Queues, QueuesThatOnlyReadATextureDoNotWaitForEachOther) {
   limits_.queue_families[1] = 0;
   PassBuilder writer = graph_.add_pass("writer");
-  const Texture shared = writer.write(make("shared"), access::storage_write_compute);
+  const Texture shared =
+      writer.write(make("shared"), access::storage_write_compute, {}, Contents::discard);
   for (const QueueClass queue :
        {QueueClass::graphics, QueueClass::compute, QueueClass::graphics, QueueClass::compute}) {
     PassBuilder reader = graph_.add_pass("reader", queue);

@@ -262,23 +262,26 @@ class Declarer {
     // An older slot is updated in place.
     if ((resource.old && !resource.written[0]) || resource.last_pass == index) return;
     resource.last_pass = index;
-    const Contents contents =
-        !resource.old && dice_.chance(80) ? Contents::discard : Contents::keep;
+    const bool had_any =
+        std::find(resource.written.begin(), resource.written.end(), true) != resource.written.end();
+    Contents contents = !resource.old && dice_.chance(80) ? Contents::discard : Contents::keep;
     if (!resource.texture) {
       std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2});
       // A read-modify-write needs contents.
       if (way == 1 && !resource.written[0] && contents != Contents::discard) way = 0;
+      if (!had_any) contents = Contents::discard;
       resource.buffer = pass.write(resource.buffer, kBufferWrites[way], contents);
       resource.written[0] = true;
       return;
     }
     Range range;
     bool had_contents = true;
+    bool had_any_in_range = had_any;
     if (resource.written.size() > 1 && dice_.chance(150)) {
       const auto start = dice_.roll(static_cast<std::uint32_t>(resource.written.size()));
       range = {static_cast<std::uint16_t>(start % resource.mips), 1,
                static_cast<std::uint16_t>(start / resource.mips), 1};
-      had_contents = resource.written[start];
+      had_any_in_range = had_contents = resource.written[start];
       resource.written[start] = true;
     } else {
       had_contents = std::find(resource.written.begin(), resource.written.end(), false) ==
@@ -290,6 +293,8 @@ class Declarer {
     if (way == 2 && drawn_in_ == index) way = 4;
     if (way == 2) drawn_in_ = index;
     if (way == 1 && !had_contents && contents != Contents::discard) way = 0;
+    // A write that is no attachment keeps contents only if there are some.
+    if (way != 2 && !had_any_in_range) contents = Contents::discard;
     resource.handle = pass.write(resource.handle, kWrites[way], range, contents);
   }
 
@@ -328,7 +333,7 @@ void declare_sizes(Graph& graph, Dice& dice, std::uint32_t passes, std::uint32_t
       Extent extent = Extent::absolute(1 + dice.roll(2048), height);
       if (i == passes / 2 && w == 0 && width != 0) extent.width = width;
       const Texture texture = graph.create_texture("texture", {VK_FORMAT_R8_UNORM, extent});
-      textures.push_back(pass.write(texture, access::storage_write_compute));
+      textures.push_back(pass.write(texture, access::storage_write_compute, {}, Contents::discard));
     }
   }
 }

@@ -15,19 +15,20 @@ void declare(Graph& graph, const HostBuffer& host) {
   const TextureHistory history = graph.create_texture_history("history", desc);
   Buffer out = graph.import_buffer("out", Gpu::imported(host));
   PassBuilder remember = graph.add_pass("remember");
-  const Texture current = remember.write(history.current, access::clear);
+  const Texture current = remember.write(history.current, access::clear, {}, Contents::discard);
   remember.record([=](RecordContext& c) { clear_image(c, c.image(current), 0); });
   for (int i = 0; i < 10; ++i) {
     Texture texture = graph.create_texture("texture", desc);
     PassBuilder make = graph.add_pass("a pass with a name of some length");
     make.read(i % 2 ? history.previous() : current, access::sampled_compute);
-    texture = make.write(texture, access::clear);
+    texture = make.write(texture, access::clear, {}, Contents::discard);
     make.record([=](RecordContext& c) {
       if (c.view(texture) != VK_NULL_HANDLE) clear_image(c, c.image(texture), 0);
     });
     PassBuilder copy = graph.add_pass("copy", QueueClass::transfer);
     copy.read(texture, access::transfer_source);
-    out = copy.write(out, buffer_access::transfer_destination);
+    out = copy.write(out, buffer_access::transfer_destination,
+                     out.version == 0 ? Contents::discard : Contents::keep);
     copy.record([=](RecordContext& c) {
       copy_image(c, c.image(texture), c.buffer(out), 0, c.extent(texture));
     });

@@ -21,7 +21,7 @@ void declare(Graph& graph) {
       "history of frames", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
   declare_deferred_frame(graph, 1920, 1080);
   PassBuilder pass = graph.add_pass("remember");
-  graph.output(pass.write(history.current, access::storage_write_compute));
+  graph.output(pass.write(history.current, access::storage_write_compute, {}, Contents::discard));
 }
 
 TEST(SteadyFrame, DeclaringAnUnchangedFrameAgainAllocatesNoHostMemory) {

@@ -71,7 +71,7 @@ class TimestampsTest : public ExecutorTest {
     graph_.reset();
     Buffer out = graph_.import_buffer("host", Gpu::imported(host_));
     PassBuilder pass = graph_.add_pass("fill");
-    out = pass.write(out, buffer_access::fill);
+    out = pass.write(out, buffer_access::fill, Contents::discard);
     pass.record([out](RecordContext& c) {
       vkCmdFillBuffer(c.commands, c.buffer(out), 0, VK_WHOLE_SIZE, 1);
     });

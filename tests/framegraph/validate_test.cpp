@@ -25,7 +25,7 @@ class Validate : public testing::Test {
   }
   Texture written(const char* name) {
     Texture texture = graph_.create_texture(name, kDesc);
-    return pass("writer").write(texture, access::storage_write_compute);
+    return pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
   }
   // Checks that compiling gives exactly this error, and that its sentence contains `text`.
   void expect(ErrorCode code, const char* text, const Limits& limits = {}) {
@@ -50,6 +50,29 @@ TEST_F(Validate, ReadModifyWriteOfUnwrittenContentsIsRefused) {
   expect(
       ErrorCode::read_before_write,
       "pass 'update' reads and writes texture 't' version 0, parts of which nothing has written");
+}
+
+TEST_F(Validate, WriteThatKeepsContentsThatNothingWroteIsRefusedUnlessItIsAnAttachment) {
+  const char* const text = "pass 'writer' writes";
+  (void)pass("writer").write(graph_.create_texture("t", kDesc), access::storage_write_compute);
+  expect(ErrorCode::read_before_write, text);
+  graph_.reset();
+  (void)pass("writer").write(graph_.create_buffer("b", {64}), buffer_access::fill);
+  expect(ErrorCode::read_before_write, "nothing has written any: write it with Contents::discard");
+  graph_.reset();
+  (void)pass("writer").write(graph_.create_texture_history("h", kDesc).current, access::clear);
+  expect(ErrorCode::read_before_write, text);
+  graph_.reset();
+  Texture window = graph_.import_texture(
+      "w", {.image = fake_handle<VkImage>(), .desc = kDesc, .usage = ~VkImageUsageFlags{0}});
+  (void)pass("writer").write(window, access::storage_write_compute);
+  expect(ErrorCode::read_before_write, "or import it with its contents");
+  graph_.reset();
+  // A part of the range has contents.
+  Texture mips = graph_.create_texture("m", {kDesc.format, kDesc.extent, 2});
+  mips = pass("mip").write(mips, access::clear, Range::mip(1), Contents::discard);
+  (void)pass("writer").write(mips, access::storage_write_compute);
+  EXPECT_TRUE(compile(graph_.description()));
 }
 
 TEST_F(Validate, AttachmentsAndDiscardingWritesOfUnwrittenTexturesAreAllowed) {
@@ -148,7 +171,8 @@ TEST_F(Validate, ReadingAMipThatNoPassWroteIsRefused) {
   TextureDesc desc = kDesc;
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
-  texture = pass("writer").write(texture, access::storage_write_compute, Range::mip(1));
+  texture = pass("writer").write(texture, access::storage_write_compute, Range::mip(1),
+                                 Contents::discard);
   pass("fine").read(texture, access::sampled_compute, Range::mip(1));
   pass("reader").read(texture, access::sampled_compute, Range::mip(2));
   expect(ErrorCode::read_before_write, "'reader'");
@@ -166,18 +190,19 @@ TEST_F(Validate, PassMayReadOneMipAndWriteAnotherMipOfTheSameTexture) {
   TextureDesc desc = kDesc;
   desc.mips = 2;
   Texture texture = graph_.create_texture("t", desc);
-  texture = pass("first").write(texture, access::storage_write_compute, Range::mip(0));
+  texture =
+      pass("first").write(texture, access::storage_write_compute, Range::mip(0), Contents::discard);
   PassBuilder both = pass("both");
   both.read(texture, access::sampled_general(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT),
             Range::mip(0));
-  (void)both.write(texture, access::storage_write_compute, Range::mip(1));
+  (void)both.write(texture, access::storage_write_compute, Range::mip(1), Contents::discard);
   EXPECT_TRUE(compile(graph_.description()));
 }
 
 TEST_F(Validate, TwoWritesOfOneSubresourceInAPassAreRefused) {
   Texture texture = graph_.create_texture("t", kDesc);
   PassBuilder twice = pass("twice");
-  texture = twice.write(texture, access::storage_write_compute);
+  texture = twice.write(texture, access::storage_write_compute, {}, Contents::discard);
   (void)twice.write(texture, access::storage_write_compute);
   expect(ErrorCode::two_writers, "'twice' writes a subresource of texture 't' twice");
 }
@@ -188,7 +213,7 @@ TEST_F(Validate, ImportWithoutTheVulkanUsageThatAPassNeedsIsRefused) {
   import.desc = kDesc;
   import.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   Texture texture = graph_.import_texture("swap", import);
-  (void)pass("writer").write(texture, access::storage_write_compute);
+  (void)pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
   expect(ErrorCode::missing_usage,
          "with usage STORAGE, but it was imported with SAMPLED: create it with STORAGE too");
 }
@@ -235,12 +260,12 @@ TEST_F(Validate, ReadingAHistoryThatNoPassWritesIsRefused) {
 
 // A write that keeps contents that do not exist is the default of every first write. It must cost
 // nothing: the plan is that of a write that discards.
-TEST_F(Validate, KeepingContentsThatDoNotExistGivesThePlanOfDiscardingThem) {
+TEST_F(Validate, AttachmentThatKeepsContentsThatDoNotExistHasThePlanOfOneThatDiscardsThem) {
   Plan plans[2];
   for (const Contents contents : {Contents::keep, Contents::discard}) {
     graph_.reset();
     const Texture texture = pass("writer").write(graph_.create_texture("t", kDesc),
-                                                 access::storage_write_compute, {}, contents);
+                                                 access::color_attachment, {}, contents);
     graph_.output(texture);
     const auto plan = compile(graph_.description());
     ASSERT_TRUE(plan) << to_string(plan.error());
@@ -373,8 +398,8 @@ TEST_F(Validate, QueuesRefuseEachStageThatTheyCannotRun) {
                                                 VK_PIPELINE_STAGE_2_CLEAR_BIT};
   const auto is_refused = [&](VkPipelineStageFlags2 stage, QueueClass queue) {
     graph_.reset();
-    const Buffer buffer =
-        pass("writer").write(graph_.create_buffer("b", {64}), buffer_access::storage_write_compute);
+    const Buffer buffer = pass("writer").write(
+        graph_.create_buffer("b", {64}), buffer_access::storage_write_compute, Contents::discard);
     pass("reader", queue).read(buffer, {stage, VK_ACCESS_2_MEMORY_READ_BIT});
     return !compile(graph_.description());
   };
@@ -389,10 +414,64 @@ TEST_F(Validate, QueuesRefuseEachStageThatTheyCannotRun) {
   }
 }
 
+// The stages of accesses that are not in access.h: those that the graph does not know are refused,
+// as are accesses that no stage can make. The verifier accepts the plans of all others.
+TEST_F(Validate, AccessIsRefusedIfItsStagesCannotMakeItAndVerifiedOtherwise) {
+  const auto storage = [](VkPipelineStageFlags2 stages) {
+    return buffer_access::storage_write(stages);
+  };
+  constexpr VkPipelineStageFlags2 kRays = VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR;
+  constexpr VkPipelineStageFlags2 kBuild = VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+  const struct {
+    Access write;
+    Access read;
+    bool is_valid;
+  } cases[] = {
+      {storage(kRays), buffer_access::storage_read_compute, true},
+      {storage(kRays), buffer_access::storage_read(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT), true},
+      {buffer_access::fill, {kBuild, VK_ACCESS_2_SHADER_READ_BIT}, true},
+      {{kBuild, VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR},
+       {kRays, VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR},
+       true},
+      {storage(VK_PIPELINE_STAGE_2_MESH_SHADER_BIT_EXT), buffer_access::vertex_buffer, true},
+      {storage(VK_PIPELINE_STAGE_2_COPY_BIT), buffer_access::indirect, false},
+      {{kRays, VK_ACCESS_2_TRANSFER_WRITE_BIT}, buffer_access::indirect, false},
+      {buffer_access::fill,
+       {VK_PIPELINE_STAGE_2_VIDEO_DECODE_BIT_KHR, VK_ACCESS_2_MEMORY_READ_BIT},
+       false},
+      {buffer_access::fill, {kBuild, VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT}, false},
+  };
+  for (const auto& c : cases) {
+    graph_.reset();
+    Buffer buffer = graph_.create_buffer("b", {64});
+    buffer = pass("writer").write(buffer, c.write, Contents::discard);
+    pass("reader").read(buffer, c.read);
+    if (!c.is_valid) {
+      expect(ErrorCode::bad_access, "access that none of its stages can make, or in a stage that");
+      continue;
+    }
+    const auto plan = compile(graph_.description());
+    ASSERT_TRUE(plan) << to_string(plan.error());
+    const auto verified = verify(graph_.description(), {}, *plan);
+    EXPECT_TRUE(verified) << to_string(verified.error());
+  }
+}
+
+TEST_F(Validate, StateOfAnImportIsRefusedIfItsStagesCannotMakeItsAccess) {
+  for (const bool initial : {false, true}) {
+    graph_.reset();
+    ImportedBuffer import{.buffer = fake_handle<VkBuffer>(), .desc = {64}};
+    (initial ? import.initial_state : import.final_state) = {VK_PIPELINE_STAGE_2_COPY_BIT,
+                                                             VK_ACCESS_2_SHADER_READ_BIT};
+    (void)graph_.import_buffer("b", import);
+    expect(ErrorCode::bad_import, "with a state whose access none of its stages can make");
+  }
+}
+
 TEST_F(Validate, ImageAtTheDevicesLimitsIsAcceptedAndBeyondEachOfThemRefused) {
   const ImageLimits most{.extent = {8, 8, 1}, .mips = 3, .layers = 2, .samples = 1};
   Texture texture = graph_.create_texture("t", {kDesc.format, Extent::absolute(8, 8), 3, 2});
-  texture = pass("writer").write(texture, access::storage_write_compute);
+  texture = pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
   ImageLimits allowed = most;
   Limits limits;
   limits.images = {[](const void* context, const ResourceRecord&, VkFlags) {

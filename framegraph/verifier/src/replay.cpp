@@ -174,7 +174,8 @@ void Replay::batch(std::uint32_t index, QueueClass queue) {
 
 // Checks that every earlier use of the subresource, and of the bytes that it occupies, is ordered
 // before the layout change. The memory dependency of an image barrier covers the bytes of its
-// image, including those that another resource wrote.
+// image, including those that another resource wrote. A barrier over some mips or layers is taken
+// to cover all of these bytes, because Vulkan does not say which bytes a mip or layer occupies.
 void Replay::check_order_of_change(std::uint32_t resource, const Barrier& barrier, const Sub& sub) {
   for (const Operation& read : sub.last.reads)
     if (!order_.is_before(read, barrier))

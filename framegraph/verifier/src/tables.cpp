@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -148,7 +149,14 @@ class Tables {
     }
     const MemoryRequirements needed =
         limits_.memory(graph_.resources[r], placement.usage, placement.concurrent);
-    if (placement.offset % needed.alignment != 0) fail(name(r) + " is not aligned");
+    if (needed.result != VK_SUCCESS) {
+      errors_.push_back({ErrorCode::vulkan,
+                         "the device does not say how much memory " + name(r) + " needs",
+                         needed.result, kNone, r, 0});
+      return;
+    }
+    if (!std::has_single_bit(needed.alignment) || placement.offset % needed.alignment != 0)
+      fail(name(r) + " is not aligned");
     if (placement.size < needed.size) fail(name(r) + " has too few bytes");
     const Heap& heap = plan_.heaps[placement.heap];
     if (placement.size > heap.size || placement.offset > heap.size - placement.size)
@@ -198,7 +206,7 @@ class Tables {
   void check_neighbours(std::uint32_t a, std::uint32_t b) {
     if (meet(a, b, 1)) fail(name(a) + " and " + name(b) + " live together on the same bytes");
     if (graph_.resources[a].kind != graph_.resources[b].kind &&
-        meet(a, b, limits_.buffer_image_granularity))
+        meet(a, b, std::max(limits_.buffer_image_granularity, VkDeviceSize{1})))
       fail(name(a) + " and " + name(b) + " share a page of the buffer-image granularity");
   }
 

@@ -80,7 +80,7 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Pipelines
                                        .final_state = framegraph::buffer_access::host_read});
   auto copying = graph.add_pass("read samples");
   copying.read(samples, framegraph::access::transfer_source);
-  buffer = copying.write(buffer, framegraph::buffer_access::fill);
+  buffer = copying.write(buffer, framegraph::buffer_access::fill, framegraph::Contents::discard);
   copying.record([samples, buffer, serial = serial_](RecordContext& context) {
     const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                    .imageExtent = context.extent(samples)};

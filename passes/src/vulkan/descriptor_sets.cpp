@@ -95,11 +95,11 @@ VkDeviceSize DescriptorSets::parameter_bytes() const {
 }
 
 // Returns whether the set still holds the resources that the dispatch binds. Equal handles mean
-// equal views only if no image was replaced since (RecordContext::resources_id). A view that the
+// equal views only if no image was replaced since (RecordContext::handle_epoch). A view that the
 // caller imported may have been replaced at any time.
 bool DescriptorSets::holds(const Set& set, const DispatchBindings& bound,
                            const framegraph::RecordContext& context) {
-  return set.shader == bound.shader && set.resources_id == context.resources_id &&
+  return set.shader == bound.shader && set.handle_epoch == context.handle_epoch &&
          !context.gave_imported_view() && set.parameter_bytes == bound.parameters.size() &&
          std::ranges::equal(std::span(set.views).first(set.view_count), bound.views);
 }
@@ -147,7 +147,7 @@ DescriptorSets::Claim DescriptorSets::claim(framegraph::RecordContext& context,
     context.fail("descriptor set", result);
     return {};
   }
-  replaced.resources_id = context.resources_id;
+  replaced.handle_epoch = context.handle_epoch;
   replaced.parameter_bytes = bound.parameters.size();
   replaced.view_count = bound.views.size();
   std::ranges::copy(bound.views, replaced.views.begin());

@@ -59,7 +59,7 @@ class DescriptorSets {
   struct Set {
     Shader shader = Shader::count;
     VkDescriptorSet set = VK_NULL_HANDLE;
-    std::uint64_t resources_id = 0;  // RecordContext::resources_id at that time
+    std::uint64_t handle_epoch = 0;  // RecordContext::handle_epoch at that time
     VkDeviceSize parameter_bytes = 0;
     std::size_t view_count = 0;
     std::array<VkImageView, kMaxBindings> views{};

@@ -74,13 +74,22 @@ inline constexpr Access color_attachment{
     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
 // The access of a resolve target: the texture with one sample per texel into which a multisampled
-// colour or depth attachment is resolved.
+// colour attachment is resolved.
 inline constexpr Access resolve_target{
     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
 inline constexpr Access depth_attachment{
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+    VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
+// Accesses of a rendering that resolves depth: of the texture with one sample per texel, and of the
+// multisampled one, which a pass declares as depth_attachment | depth_resolve_source. Vulkan
+// resolves depth in the stage of colour attachments.
+inline constexpr Access depth_resolve_target{
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+    VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
+inline constexpr Access depth_resolve_source{
+    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
     VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
 // Depth test without writes.
 inline constexpr Access depth_test{
@@ -103,6 +112,10 @@ inline constexpr Access blit_destination{
 inline constexpr Access clear{VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                               VK_IMAGE_USAGE_TRANSFER_DST_BIT};
+// Returns the initial state of a swapchain image without contents. `stages` are those in which
+// FrameInfo::waits has the semaphore of vkAcquireNextImageKHR wait: the change of the layout comes
+// after that wait. They are usually the stages of the image's first use.
+constexpr State acquired(VkPipelineStageFlags2 stages) { return {stages}; }
 // The final state of a swapchain image that is presented after the frame.
 inline constexpr State present{VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 0,
                                VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};

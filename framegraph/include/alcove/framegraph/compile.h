@@ -18,12 +18,14 @@ struct MemoryRequirements {
   VkDeviceSize size = 0;
   VkDeviceSize alignment = 1;        // a power of two
   std::uint32_t memory_types = ~0u;  // allowed types, as a mask
+  VkResult result = VK_SUCCESS;      // an error if the device could not be asked
 };
 
 // A function that returns the memory requirements of a transient. The compiler calls it for each
 // transient that a live pass uses. `usage` is the union of the usages of these passes, and
-// `concurrent` is Placement::concurrent. It must be a pure function. Without a query, a texel of
-// mip 0 counts as 4 bytes, which only tests of plans without a device use.
+// `concurrent` is Placement::concurrent. It must be a pure function. A frame whose
+// requirements cannot be met is refused. Without a query, a texel of mip 0 counts as 4 bytes, which
+// only tests of plans without a device use.
 struct MemoryOracle {
   MemoryRequirements (*query)(const void* context, const ResourceRecord& record, VkFlags usage,
                               bool concurrent) = nullptr;

@@ -83,8 +83,9 @@ struct FrameInfo {
   std::uint32_t slot = 0;
   // Semaphores for submit(). record() ignores them, because its caller submits the commands. For a
   // swapchain image, add the semaphore of vkAcquireNextImageKHR to `waits`, with the queue that
-  // uses the image first. Add the semaphore that vkQueuePresentKHR waits for to `signals`, with the
-  // graphics queue, because the graphics queue brings imports into their final states.
+  // uses the image first and the stages of access::acquired(). Add the semaphore that
+  // vkQueuePresentKHR waits for to `signals`, with the graphics queue, because the graphics queue
+  // brings imports into their final states.
   std::span<const QueueSemaphore> waits = {};
   std::span<const QueueSemaphore> signals = {};
 };

@@ -14,7 +14,8 @@ enum class CullReason : std::uint8_t {
   side_effect,    // the pass runs because it has effects outside the graph
   output,         // the pass runs because it writes an output, or an import with a final state
   feeds_pass,     // the pass runs because `consumer` reads what it writes
-  feeds_history,  // the pass runs because `consumer` reads its history slot in later frames
+  feeds_history,  // the pass runs because `consumer` uses the history that it writes, or, without a
+                  // consumer, because an older slot of that history has no contents yet
   unread,         // the pass is culled because no pass that runs reads what it writes
   writes_nothing  // the pass is culled because it writes nothing and has no side effect
 };

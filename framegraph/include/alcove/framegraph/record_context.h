@@ -22,7 +22,11 @@ struct Attachment {
   const VkClearValue* clear = nullptr;
   // The texture with one sample that a multisampled texture is resolved to, if any.
   Texture resolve = {};
-  VkResolveModeFlagBits resolve_mode = VK_RESOLVE_MODE_AVERAGE_BIT;
+  // NONE stands for AVERAGE, or for SAMPLE_ZERO of a depth attachment.
+  VkResolveModeFlagBits resolve_mode = VK_RESOLVE_MODE_NONE;
+  // The mip and layers, if the pass draws to several parts of the texture. By default, it is the
+  // range of the first access that declares the texture as an attachment.
+  Range range = {};
 };
 
 // How a rendering covers its attachments. By default it covers all texels, and all layers of the
@@ -38,9 +42,10 @@ struct Rendering {
 // The argument of a recording callback. It is valid only during the callback. Any version of a
 // handle refers to the same image or buffer.
 //
-// Views and buffers are the same handles in every frame as long as the declarations do not change,
-// so that descriptor sets made from them may be kept; `resources_id` changes when they do. Imported
-// handles are those that the caller gave in this frame.
+// A frame of an unchanged declaration gets the same buffers, and the same views except of
+// histories, whose slots swap. A descriptor set may be kept as long as the handles that it was
+// written with are those of this frame and `handle_epoch` is that of then. Imported handles are
+// those that the caller gave in this frame.
 //
 // If uses are checked (ExecutorOptions::check_uses, on in debug builds), a texture or buffer that
 // the pass did not declare gives a null handle, and Executor::record() returns an error.
@@ -48,9 +53,10 @@ class RecordContext {
  public:
   VkCommandBuffer commands = VK_NULL_HANDLE;
   const VulkanFunctions& vk;  // the few functions that the libraries call
-  // A number that changes whenever a handle that passes can see may have changed, except for
-  // imported views. Two executors never have the same number.
-  std::uint64_t resources_id = 0;
+  // A number that changes before a view or buffer that passes have got is destroyed, except for
+  // imported ones. While it stays, equal handles are the same object. Two executors never have the
+  // same number.
+  std::uint64_t handle_epoch = 0;
   // FrameInfo::slot, for objects that a pass keeps per frame in flight.
   std::uint32_t frame_slot = 0;
 
@@ -65,7 +71,7 @@ class RecordContext {
                    VkFormat format = VK_FORMAT_UNDEFINED) const;
   // Returns whether view() has returned a view that the caller imported (ImportedTexture::view).
   // The caller may destroy such a view after the frame, and another view may get the same handle,
-  // without a new resources_id.
+  // in the same handle_epoch.
   bool gave_imported_view() const { return gave_imported_view_; }
   // Returns the attachment for vkCmdBeginRendering. Earlier contents are loaded if there are any
   // and the access keeps them. The result is stored if a later pass or frame needs it.
@@ -79,6 +85,9 @@ class RecordContext {
   void end_rendering() const { vk.vkCmdEndRendering(commands); }
   VkImage image(Texture texture) const;
   VkBuffer buffer(Buffer buffer) const;
+  // Returns the layout in which the pass finds a range of a texture, for descriptors and commands.
+  // Without `range`, it is that of the first access that names the texture.
+  VkImageLayout layout(Texture texture, Range range = {}) const;
   // Returns the size of a mip in texels.
   VkExtent3D extent(Texture texture, std::uint32_t mip = 0) const;
   VkDeviceSize size(Buffer buffer) const;
@@ -94,6 +103,7 @@ class RecordContext {
  private:
   friend class Recorder;
   VkRenderingAttachmentInfo attachment(const Attachment& attachment, std::uint32_t access) const;
+  std::uint32_t attachment_access(const Attachment& attachment) const;
   // Returns the physical resource of a texture or buffer that the pass declared, or null.
   struct Physical* physical(std::uint32_t resource, std::uint32_t version) const;
   RecordContext(VkCommandBuffer command_buffer, const VulkanFunctions& functions,

@@ -117,7 +117,10 @@ struct ImportedTexture {
   // of the graph, layer 0 is this layer. A callback that uses the VkImage directly must add
   // first_layer to its layer numbers.
   std::uint32_t first_layer = 0;
-  State initial_state;
+  // By default, the image has no contents, and its first use comes after all earlier work on the
+  // graphics queue and after the semaphores that the frame waits for. For an image of a swapchain,
+  // access::acquired() names the stages instead, so that less work has to wait.
+  State initial_state{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
   // The state in which the graph leaves the image. A write to an image with a final_state is an
   // output of the frame. All work of the frame on the image is ordered before later work in the
   // stages of final_state. Without a final_state (undefined layout and no stages), a write that
@@ -138,12 +141,14 @@ struct ImportedBuffer {
 
 // The effect of a write on the earlier contents of its range.
 enum class Contents : std::uint8_t {
-  // The write may cover a part of the range, so the earlier contents are kept. If there are none,
-  // the rest of the range is undefined. If the result is
-  // needed, the passes that wrote the earlier contents run too. If the access also reads (blending,
-  // a depth test, atomics), they run whenever the pass of this access runs.
+  // The write may cover a part of the range, so the earlier contents are kept. There must be some,
+  // except of an attachment, which is then cleared or undefined. If the result is needed, the
+  // passes
+  // that wrote the earlier contents run too. If the access also reads (blending, a depth test,
+  // atomics), they run whenever the pass of this access runs.
   keep,
-  // The pass writes every texel and reads none: the earlier contents may be thrown away.
+  // No earlier contents are needed: the pass writes every texel and reads none, or it is the first
+  // to write. Texels that it does not write are undefined.
   discard,
 };
 
