@@ -298,8 +298,8 @@ void add_occlusion(Table& table, Options& o) {
             "settings that `alcove recommend --out` wrote, instead of --quality");
   table.add_each(kAll, "--set", "NAME=VALUE", occlusion.set, read_change,
                  "changes one setting; --help-all lists them. May be repeated");
-  table.add(kRender | kCompare | kMotion | kView | kRecommend, "--guard-band", "PERCENT", occlusion.guard_band,
-            number(0.0, 50.0, "a percentage of the image's height, 0 to 50"),
+  table.add(kRender | kCompare | kMotion | kView | kRecommend, "--guard-band", "PERCENT",
+            occlusion.guard_band, number(0.0, 50.0, "a percentage of the image's height, 0 to 50"),
             "also render this part of the height beyond each border, unseen, so that "
             "occluders just outside count. Default: 0");
   table.add(kAll, "--normals", "NAME", occlusion.normals, one_of<NormalSource>(kNormalSourceNames),

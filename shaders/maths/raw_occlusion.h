@@ -57,7 +57,8 @@ ALCOVE_INLINE uint raw_occlusion_normal(uint bits) { return bits >> 24u; }
 const float kLargestResidual = 4.0f / 3.0f;
 
 // Packs a residual. Components are clamped to +-kLargestResidual, and the code of 0 is 512. The
-// error after unpack_residual() is at most 0.0014, and 0 for a component of 0. From the highest bit:
+// error after unpack_residual() is at most 0.0014, and 0 for a component of 0. From the highest
+// bit:
 //     | 0 2 | z 10 | y 10 | x 10 |
 ALCOVE_INLINE uint pack_residual(vec3 residual) {
   vec3 scaled = clamp(residual * (1.0f / kLargestResidual), -1.0f, 1.0f) * 511.0f + 512.5f;

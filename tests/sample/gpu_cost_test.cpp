@@ -25,8 +25,8 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // Two loops, one within the other, as ACO prints them before registers are assigned.
 constexpr const char* kNestedLoops =
