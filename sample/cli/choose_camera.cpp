@@ -51,8 +51,11 @@ Result<Camera> choose_camera(const ViewOptions& view, const ViewFinder& finder) 
   camera.origin = scene.origin;
   if (view.eye) camera.eye_ws = *view.eye - scene.origin;
   if (view.target) camera.target_ws = *view.target - scene.origin;
-  // The up vector of the scene's camera only applies to that camera's own view.
-  if (view.eye || view.target) camera.up_ws = Camera().up_ws;
+  // The name and the up vector of a camera only apply to that camera's own view.
+  if (view.eye || view.target) {
+    camera.name = "--eye";
+    camera.up_ws = Camera().up_ws;
+  }
   camera.up_ws = view.up_ws.value_or(camera.up_ws);
   if (view.fov_y) {
     camera.orthographic = false;

@@ -28,7 +28,8 @@ struct RadiusChoice {
 // alone.
 class ViewFinder {
  public:
-  static constexpr const char* kFrame = "frame";  // the name of framing_camera()
+  static constexpr const char* kFrame =
+      "";  // the name of framing_camera(): cameras of files have one
 
   explicit ViewFinder(const Scene& scene);
 

@@ -61,9 +61,7 @@ struct RecordDispatch {
 }  // namespace
 
 HistoryName::HistoryName(std::uint32_t view_id, HistoryRole role) {
-  constexpr std::array<const char*, ALCOVE_MAX_WORK_HISTORIES> kHistoryNames{
-      "visibility", "depth", "bent normal", "specular"};
-  std::snprintf(text_.data(), text_.size(), "%s history of view %u",
+  std::snprintf(text_.data(), text_.size(), "%s of view %u",
                 kHistoryNames.at(static_cast<std::size_t>(role)), static_cast<unsigned>(view_id));
 }
 

@@ -55,7 +55,7 @@ class HistoryName {
   operator std::string_view() const { return text_.data(); }
 
  private:
-  std::array<char, 40> text_{};  // "bent normal history of view 4294967295"
+  std::array<char, 40> text_{};  // "bent-normal history of view 4294967295"
 };
 
 inline constexpr std::array kHistoryRoles{HistoryRole::visibility, HistoryRole::depth,

@@ -1,7 +1,6 @@
 #include "work/work_builder.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 
 #include "work/output_format.h"
@@ -10,9 +9,6 @@
 namespace alcove::passes {
 
 namespace {
-
-constexpr std::array kHistoryNames{"visibility history", "depth history", "bent-normal history",
-                                   "lobe history"};
 
 AlcoveBindingType binding_type(VkDescriptorType type) {
   switch (type) {

@@ -1,6 +1,7 @@
 // Fills a list of work (alcove_work.h).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,6 +16,8 @@ namespace alcove::passes {
 
 // The histories of a view.
 enum class HistoryRole : std::uint8_t { visibility, depth, bent_normal, lobe };
+inline constexpr std::array kHistoryNames{"visibility history", "depth history",
+                                          "bent-normal history", "lobe history"};
 
 // A resource of the list, by its index, or null.
 struct ResourceHandle {
