@@ -31,7 +31,7 @@ std::optional<Number> parse_number(std::string_view text) {
 
 // A number from `low` to `high`.
 template <typename Number>
-auto number(Number low, Number high, std::string wanted) {
+auto number(Number low, Number high, const std::string& wanted) {
   return [=](std::string_view text) -> Result<Number> {
     const auto value = parse_number<Number>(text);
     if (!value || !(*value >= low && *value <= high)) return Failure(wanted);
@@ -41,20 +41,20 @@ auto number(Number low, Number high, std::string wanted) {
 
 // A number above 0.
 template <typename Number>
-auto positive(std::string wanted) {
+auto positive(const std::string& wanted) {
   return number(std::numeric_limits<Number>::denorm_min(), std::numeric_limits<Number>::max(),
-                std::move(wanted));
+                wanted);
 }
 
 // An angle in degrees, as radians.
-inline auto degrees(float low, float high, std::string wanted) {
-  return [read = number(low, high, std::move(wanted))](std::string_view text) {
+inline auto degrees(float low, float high, const std::string& wanted) {
+  return [read = number(low, high, wanted)](std::string_view text) {
     return read(text).transform([](float angle) { return glm::radians(angle); });
   };
 }
 
 // A text that is not empty.
-inline auto text(std::string wanted) {
+inline auto text(const std::string& wanted) {
   return [=](std::string_view value) -> Result<std::string> {
     if (value.empty()) return Failure(wanted);
     return std::string(value);
