@@ -10,7 +10,7 @@
 #include "reconstruct_previous.h"
 #include "reconstruct_store.h"
 
-// What a program defines for its texels.
+// Each of the two programs defines these functions for its own texels.
 Surface fetch_surface(Place place);
 // The history at the four texels around `uv`, the corner that they share; `part` is the position
 // between them.

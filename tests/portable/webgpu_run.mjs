@@ -6,7 +6,7 @@ import { create, globals } from 'webgpu';
 import { formats, translate } from './webgpu_translate.mjs';
 
 Object.assign(globalThis, globals);
-// Of all values of an image, and in units of 1/255.
+// The share counts all values of an image; the difference is in units of 1/255.
 const LARGEST_SHARE_THAT_DIFFERS = 0.002, LARGEST_DIFFERENCE = 8;
 const PARAMETERS = 0, TABLE = 1, SAMPLER = 2, STORAGE_IMAGE = 4;  // AlcoveBindingType
 const INPUT = 0, OUTPUT = 1, HISTORY_PREVIOUS = 3, HISTORY_CURRENT = 4, BUFFER = 5;  // AlcoveResourceKind

@@ -136,7 +136,7 @@ TEST(Recommendation, AnswersByBudgetAndByToleranceAgree) {
   }
 }
 
-// What only the host can give is measured and not used, unless the host says that it has it.
+// A feature that only the host can give is measured, and used only if the host says that it has it.
 TEST(Recommendation, FeatureOfTheHostIsOnlyUsedIfTheHostHasIt) {
   World world{.layer_gain = 0.5};
   RecommendationWorld functions = world.functions();

@@ -3,7 +3,7 @@
 
 namespace alcove::passes {
 
-// What is compared to find a mistake. One comparison finds one mistake of its group at most.
+// The comparison that finds a mistake. It finds one mistake of its group at most.
 enum MistakeGroup : unsigned {
   kByCalls = 1,      // none: each mistake is noted by itself
   kByDepth = 2,      // depth of one frame
