@@ -289,7 +289,7 @@ void add_occlusion(Table& table, Options& o) {
   table.heading("Occlusion");
   table.add(kAll, "--quality", "NAME", occlusion.quality,
             one_of<AlcoveQuality>(passes::kQualityNames),
-            "preset: console, low, medium, high, ultra or reference. Default: medium");
+            "preset: console, low, medium, high, ultra or height_field. Default: medium");
   table.add(kAll, "--radius", "LENGTH", occlusion.radius,
             positive<float>("a length above 0, in the scene's units"),
             "distance up to which occluders count, scene units. Default: from what the view "

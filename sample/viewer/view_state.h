@@ -27,9 +27,9 @@ inline constexpr std::array<std::string_view, 9> kPictureNames{
     "normals",    "depth", "albedo",       "motion"};
 
 // The settings that the right part of the window shows for comparison, if any.
-enum class Comparison : std::uint8_t { none, horizons, reference, saved };
+enum class Comparison : std::uint8_t { none, horizons, height_field, saved };
 inline constexpr std::array<std::string_view, 4> kComparisonNames{
-    "nothing", "estimator horizons", "preset reference", "kept settings"};
+    "nothing", "estimator horizons", "preset height_field", "kept settings"};
 
 // Everything that the user can choose in the window.
 struct ViewState {
@@ -52,8 +52,8 @@ struct ViewState {
     case Comparison::horizons:
       settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
       return settings;
-    case Comparison::reference:
-      settings = OcclusionSettings(ALCOVE_QUALITY_REFERENCE, settings.radius);
+    case Comparison::height_field:
+      settings = OcclusionSettings(ALCOVE_QUALITY_HEIGHT_FIELD, settings.radius);
       settings.specular = state.settings.specular;
       return settings;
     case Comparison::saved:

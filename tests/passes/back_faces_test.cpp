@@ -15,12 +15,12 @@ class BackFaceDepth : public HiddenDepthTest {};
 
 OcclusionSettings exact(float radius) {
   OcclusionSettings settings = without_hidden_occlusion(radius);
-  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   return settings;
 }
 
 OcclusionSettings of_thickness(OcclusionSettings settings, float thickness) {
-  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_RADIUS;
+  settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_RADIUS;
   settings.thickness = thickness;
   return settings;
 }

@@ -68,7 +68,7 @@ TEST_F(CInterface, EightViewsWithAllInputsAndOutputsCanBeRecordedInOneFrame) {
     HostView& view = views.emplace_back(draw_view(8, 6, groove(0.8)));
     view.id = id;
     request_all_outputs(view);
-    view.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+    view.settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
     view.settings.depth_layers = 2;
     if (id % 2 == 1) {
       view.normals = {};  // a pass more, an image less

@@ -131,7 +131,7 @@ TEST_F(CPipelines, PreparingAFrameCreatesAllPipelinesThatItsViewsEverNeed) {
        }},
       {"hidden depths, every output by the table",
        [](HostView& v) {
-         v.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+         v.settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
          v.settings.depth_layers = 2;
          request_all_outputs(v);
          v.settings.specular = ALCOVE_SPECULAR_TABLE;

@@ -164,7 +164,7 @@ TEST_F(CRefusals, InvalidFramesAreRefusedWithAMessageThatNamesTheMistake) {
        [](V& v) { v.images[ALCOVE_IMAGE_ROUGHNESS].format = VK_FORMAT_R8_UNORM; }},
       {"no image of back-face depth",
        [](D& d) {
-         d.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+         d.settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
          d.views[0].images[ALCOVE_IMAGE_BACK_DEPTH] = {};
        }},
       {"no image of second depth",

@@ -124,7 +124,7 @@ void CResize::TearDown() {
 Kind CResize::any_kind() {
   OcclusionSettings settings(static_cast<AlcoveQuality>(below(3)));
   settings.estimator = static_cast<AlcoveEstimator>(below(2));
-  settings.thickness_unit = static_cast<AlcoveThicknessUnit>(below(2));
+  settings.thickness_limit = static_cast<AlcoveThicknessLimit>(below(2));
   settings.depth_layers = 1 + below(2);
   settings.specular = static_cast<AlcoveSpecular>(1 + below(2));
   settings.roughness_channel = below(2);

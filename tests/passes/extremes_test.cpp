@@ -24,7 +24,7 @@ OcclusionSettings everything(AlcoveQuality quality, float radius) {
   settings.bent_normal = true;
   settings.specular = ALCOVE_SPECULAR_SLICES;
   settings.precision = ALCOVE_PRECISION_FLOAT32;
-  // The preset `reference` with fewer samples, which compile and run faster.
+  // The preset `height_field` with fewer samples, which compile and run faster.
   settings.slices = std::min(settings.slices, 4u);
   settings.steps = std::min(settings.steps, 16u);
   return settings;
@@ -262,7 +262,7 @@ TEST_P(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
 INSTANTIATE_TEST_SUITE_P(Presets, Extremes,
                          testing::Values(ALCOVE_QUALITY_CONSOLE, ALCOVE_QUALITY_LOW,
                                          ALCOVE_QUALITY_MEDIUM, ALCOVE_QUALITY_HIGH,
-                                         ALCOVE_QUALITY_ULTRA, ALCOVE_QUALITY_REFERENCE),
+                                         ALCOVE_QUALITY_ULTRA, ALCOVE_QUALITY_HEIGHT_FIELD),
                          [](const auto& each) {
                            return std::string(kQualityNames.at(each.param));
                          });

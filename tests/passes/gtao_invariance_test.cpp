@@ -191,8 +191,8 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
         settings.bent_normal = true;
         settings.slices = 4;  // with a filter
         settings.history_frames = 8;
-        settings.thickness_unit =
-            all_inputs ? ALCOVE_THICKNESS_UNIT_BACK_FACES : ALCOVE_THICKNESS_UNIT_RADIUS;
+        settings.thickness_limit =
+            all_inputs ? ALCOVE_THICKNESS_LIMIT_BACK_FACES : ALCOVE_THICKNESS_LIMIT_RADIUS;
         settings.depth_layers = all_inputs ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
           const HostOutputs images =

@@ -17,7 +17,7 @@ namespace {
 // Returns settings with which any estimator assumes infinitely thick occluders, so that its result
 // can be compared with that of the estimator `horizons`.
 OcclusionSettings exact(AlcoveEstimator estimator, float radius) {
-  OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
+  OcclusionSettings settings(ALCOVE_QUALITY_HEIGHT_FIELD, radius);
   settings.estimator = estimator;
   settings.hidden_occlusion = 1.0f;
   return settings;

@@ -9,7 +9,7 @@ namespace alcove::passes {
 
 // Returns settings without hidden occlusion, so that only the given depths occlude.
 inline OcclusionSettings without_hidden_occlusion(float radius) {
-  OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, radius);
+  OcclusionSettings settings(ALCOVE_QUALITY_HEIGHT_FIELD, radius);
   settings.estimator = ALCOVE_ESTIMATOR_CONNECTED;
   settings.slices = 16;
   settings.hidden_occlusion = 0.0f;

@@ -121,7 +121,7 @@ OcclusionSettings all_outputs(AlcoveQuality quality, float radius) {
   settings.bent_normal = true;
   settings.specular =
       quality == ALCOVE_QUALITY_HIGH ? ALCOVE_SPECULAR_TABLE : ALCOVE_SPECULAR_SLICES;
-  // The preset `reference` with fewer samples, which compile and run faster.
+  // The preset `height_field` with fewer samples, which compile and run faster.
   settings.slices = std::min(settings.slices, 4u);
   settings.steps = std::min(settings.steps, 16u);
   return settings;

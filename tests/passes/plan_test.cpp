@@ -125,7 +125,7 @@ TEST_F(OcclusionPlan, MotionVectorsAreNotReadIfHistoryIsOff) {
 // AlcoveEstimator horizons assumes infinitely thick occluders, which already cover hidden surfaces.
 TEST_F(OcclusionPlan, BackFacesAndSecondDepthLayersCostNothingUnlessTheSettingsReadThem) {
   constexpr void (*kReads[])(OcclusionSettings&) = {
-      [](OcclusionSettings& s) { s.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; },
+      [](OcclusionSettings& s) { s.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES; },
       [](OcclusionSettings& s) { s.depth_layers = 2; }};
   for (const auto read : kReads) {
     const FramePlan horizons = plan(least());

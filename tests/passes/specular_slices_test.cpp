@@ -78,7 +78,7 @@ TEST_F(SpecularOcclusionFromSlices, SpecularOcclusionAgreesWithRaysCastThroughTh
           SCOPED_TRACE(testing::Message()
                        << scene.name << ", " << view.name << ", roughness " << roughness
                        << (estimator == ALCOVE_ESTIMATOR_CONNECTED ? ", connected" : ", horizons"));
-          OcclusionSettings settings = settings_of(ALCOVE_QUALITY_REFERENCE, radius, roughness);
+          OcclusionSettings settings = settings_of(ALCOVE_QUALITY_HEIGHT_FIELD, radius, roughness);
           settings.estimator = estimator;
           settings.hidden_occlusion = 1.0f;
           const auto images = render(drawing, settings);

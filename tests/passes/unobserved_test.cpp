@@ -20,7 +20,7 @@ class UnobservedDirectionsPass : public PassTest {
   HostImage visibility(const TestView& view, const Drawing& drawing,
                        AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED,
                        const HostImage& second_layer = {}) {
-    OcclusionSettings settings(ALCOVE_QUALITY_REFERENCE, kRadius);
+    OcclusionSettings settings(ALCOVE_QUALITY_HEIGHT_FIELD, kRadius);
     settings.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
     settings.depth_layers = second_layer.texels.empty() ? 1 : 2;

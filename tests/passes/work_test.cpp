@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
                     Case{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
                     Case{"Ultra", ALCOVE_QUALITY_ULTRA, request_all_outputs},
-                    Case{"Reference", ALCOVE_QUALITY_REFERENCE, request_all_outputs},
+                    Case{"Reference", ALCOVE_QUALITY_HEIGHT_FIELD, request_all_outputs},
                     Case{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
                     Case{"ConsoleVisibilityAlone", ALCOVE_QUALITY_CONSOLE},
                     Case{"DepthCopiedFrom16Bits", ALCOVE_QUALITY_MEDIUM,
@@ -199,7 +199,7 @@ TEST_F(WorkOfView, LargestTilesSearchACopyOfEverySecondPixelOfDepth) {
   };
   EXPECT_EQ(searched(8), "half depth");
   EXPECT_EQ(searched(4), "depth");
-  settings_.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  settings_.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   image(ALCOVE_IMAGE_BACK_DEPTH) = image(ALCOVE_IMAGE_DEPTH);
   EXPECT_EQ(searched(8), "depth");
 }

@@ -51,7 +51,7 @@ TEST_F(FeaturesTest, BackFacesHardlyIncreaseTheErrorAndASecondDepthLayerReducesT
   const FrameImages images = draw(base_);
   const TracedTruth truth = truth_of(images);
   OcclusionSettings back_faces = base_;
-  back_faces.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  back_faces.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   OcclusionSettings second_layer = base_;
   second_layer.depth_layers = 2;
   const double base = truth.rmse(images.visibility);
@@ -88,7 +88,7 @@ TEST_F(FeaturesTest, MoreStepsAndSlicesDoNotRaiseTheErrorByMoreThanTwoPercent) {
 // One renderer alternates between settings with and without hidden depths.
 TEST_F(FeaturesTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThem) {
   OcclusionSettings backs = base_;
-  backs.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  backs.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   OcclusionSettings layers = base_;
   layers.depth_layers = 2;
   const auto renderer =

@@ -150,7 +150,7 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
   EXPECT_THAT(search_iterations(settings, {loop(1, 10), loop(2, 10), loop(3, 2)}),
               ElementsAre(2, 2, 7))
       << "the loop over steps of the second layer is unrolled";
-  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   EXPECT_THAT(search_iterations(settings, {loop(1, 44), loop(2, 44)}), ElementsAre(2, 2))
       << "both layers load the depth of back faces";
 }

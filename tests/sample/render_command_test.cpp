@@ -121,7 +121,7 @@ TEST(PrintedRenderCommand, EverySettingInAPrintedCommandParsesBackUnchanged) {
   settings.steps = 7;
   settings.estimator = ALCOVE_ESTIMATOR_HORIZONS;
   settings.thickness = 1.0f / 7.0f;
-  settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   settings.hidden_occlusion = 0.123456789f;
   settings.tile_size = 4;
   settings.history_frames = 17;

@@ -146,7 +146,7 @@ TEST_F(ViewerWindowTest, InvalidSettingIsReportedAndAnImageStaysVisible) {
 TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDepthLayer) {
   ViewState& state = view_->state();
   state.saved = state.settings;
-  state.saved.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  state.saved.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   state.comparison = Comparison::saved;
   state.settings.depth_layers = 2;
   state.settings.specular = ALCOVE_SPECULAR_TABLE;

@@ -12,7 +12,7 @@ extern "C" {
 
 // Presets for alcoveGetSettings. A field that is not in the table has the default that
 // AlcoveSettings states. There are three exceptions: CONSOLE sets half_resolution, ULTRA sets
-// depth_layers to 2, and REFERENCE sets the precision FLOAT32 and the paper's estimator HORIZONS.
+// depth_layers to 2, and HEIGHT_FIELD sets precision FLOAT32 and the paper's estimator HORIZONS.
 //
 //              slices  steps  tile_size  history_frames  depth fetches per pixel and frame
 //   CONSOLE         1     10        8              32                                0.31
@@ -20,7 +20,7 @@ extern "C" {
 //   MEDIUM          2     12        4              32                                3
 //   HIGH            2     12        2              32                               12
 //   ULTRA           2     10        2              32                               20
-//   REFERENCE      32     64        1               0                             4096
+//   HEIGHT_FIELD   32     64        1               0                             4096
 typedef enum AlcoveQuality {
   ALCOVE_QUALITY_CONSOLE = 0,  // traces one of 8x8 pixels in each frame, filters at half resolution
   ALCOVE_QUALITY_LOW = 1,      // traces one of 4x4 pixels in each frame
@@ -29,7 +29,10 @@ typedef enum AlcoveQuality {
   // HIGH with 10 steps in each of two depth layers. A view without the image
   // ALCOVE_IMAGE_SECOND_DEPTH then fails with a sentence; set depth_layers to 1, or choose HIGH.
   ALCOVE_QUALITY_ULTRA = 4,
-  ALCOVE_QUALITY_REFERENCE = 5,  // traces every pixel: a static image to compare with
+  // The exact integral over the depth buffer, with occluders of infinite thickness: a static image
+  // to compare with. Its error against ray-traced truth exceeds that of MEDIUM where objects are
+  // thin.
+  ALCOVE_QUALITY_HEIGHT_FIELD = 5,
   ALCOVE_QUALITY_MAX_ENUM = 0x7fffffff
 } AlcoveQuality;
 
@@ -56,14 +59,14 @@ typedef enum AlcoveWeighting {
 } AlcoveWeighting;
 
 // What limits the thickness of occluders.
-typedef enum AlcoveThicknessUnit {
+typedef enum AlcoveThicknessLimit {
   // AlcoveSettings::thickness, in radii.
-  ALCOVE_THICKNESS_UNIT_RADIUS = 0,
+  ALCOVE_THICKNESS_LIMIT_RADIUS = 0,
   // The back faces in ALCOVE_IMAGE_BACK_DEPTH, at which occluders end. At pixels without a back
   // face the thickness is that of RADIUS.
-  ALCOVE_THICKNESS_UNIT_BACK_FACES = 1,
-  ALCOVE_THICKNESS_UNIT_MAX_ENUM = 0x7fffffff
-} AlcoveThicknessUnit;
+  ALCOVE_THICKNESS_LIMIT_BACK_FACES = 1,
+  ALCOVE_THICKNESS_LIMIT_MAX_ENUM = 0x7fffffff
+} AlcoveThicknessLimit;
 
 // How specular occlusion is computed, if a view has the image ALCOVE_IMAGE_SPECULAR.
 typedef enum AlcoveSpecular {
@@ -85,7 +88,7 @@ typedef enum AlcovePrecision {
 } AlcovePrecision;
 
 // The settings of a view. Fill the struct with alcoveGetSettings, then change individual fields.
-// Values in square brackets are the defaults of all qualities except REFERENCE, if not said
+// Values in square brackets are the defaults of all qualities but HEIGHT_FIELD, if not said
 // otherwise. If a value is out of range, the call fails with ALCOVE_ERROR_INVALID_INPUT, and
 // alcoveGetMessage names the field and its range.
 typedef struct AlcoveSettings {
@@ -110,7 +113,7 @@ typedef struct AlcoveSettings {
   // occluder is no thicker than it is seen to be wide. Read by CONNECTED, as are the next three.
   // [0.3]
   float thickness;
-  AlcoveThicknessUnit thickness_unit;  // [RADIUS]
+  AlcoveThicknessLimit thickness_limit;  // [RADIUS]
   // The average fraction of the volume hidden behind occluders that is treated as solid, 0 to 1.
   // The actual fraction grows with the occluder's width in the image: it is larger behind a wall
   // than behind a twig. [0.286]

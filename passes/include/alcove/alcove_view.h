@@ -40,7 +40,7 @@ typedef enum AlcoveImageRole {
   ALCOVE_IMAGE_MOTION = 2,
   ALCOVE_IMAGE_ROUGHNESS = 3,  // perceptual, [0,1]; without an image, AlcoveSettings::roughness
   // The depth of the nearest back faces: the scene drawn like DEPTH, but with front faces culled.
-  // Required with ALCOVE_THICKNESS_UNIT_BACK_FACES, and not read otherwise.
+  // Required with ALCOVE_THICKNESS_LIMIT_BACK_FACES, and not read otherwise.
   ALCOVE_IMAGE_BACK_DEPTH = 4,
   // The second depth layer: the scene drawn like DEPTH, but with back faces culled and without the
   // fragments that are not behind DEPTH by at least a thousandth of their distance. Required if

@@ -80,7 +80,7 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
                         .estimator = ALCOVE_ESTIMATOR_CONNECTED,
                         .weighting = ALCOVE_WEIGHTING_COSINE,
                         .thickness = 0.3f,
-                        .thickness_unit = ALCOVE_THICKNESS_UNIT_RADIUS,
+                        .thickness_limit = ALCOVE_THICKNESS_LIMIT_RADIUS,
                         .hidden_occlusion = 0.286f,
                         .depth_layers = 1,
                         .history_frames = 32,
@@ -110,7 +110,7 @@ AlcoveResult alcoveGetSettings(AlcoveQuality quality, float radius, AlcoveSettin
     case ALCOVE_QUALITY_HIGH:
       preset.tile_size = 2;
       break;
-    case ALCOVE_QUALITY_REFERENCE:
+    case ALCOVE_QUALITY_HEIGHT_FIELD:
       preset.tile_size = 1;
       preset.slices = 32;
       preset.steps = 64;

@@ -54,7 +54,7 @@ Checked check_given(const AlcoveWorkInfo& info) {
         "slices or table, or leave the image out.");
   }
   if (needs_back_depth(settings) && lacks(ALCOVE_IMAGE_BACK_DEPTH))
-    return refuse(ALCOVE_IMAGE_BACK_DEPTH, "which the setting 'thickness_unit' needs");
+    return refuse(ALCOVE_IMAGE_BACK_DEPTH, "which the setting 'thickness_limit' needs");
   if (needs_second_depth(settings) && lacks(ALCOVE_IMAGE_SECOND_DEPTH)) {
     return refuse(ALCOVE_IMAGE_SECOND_DEPTH,
                   "which the setting 'depth_layers' needs; give it, or set depth_layers to 1");

@@ -21,7 +21,7 @@ using Names = std::array<std::string_view, kCount>;
 constexpr Names<2> kSwitch{"false", "true"};
 constexpr Names<2> kEstimators{"horizons", "connected"};
 constexpr Names<2> kWeightings{"cosine", "uniform"};
-constexpr Names<2> kThicknessUnits{"radius", "back_faces"};
+constexpr Names<2> kThicknessLimits{"radius", "back_faces"};
 constexpr Names<3> kSpeculars{"none", "slices", "table"};
 constexpr Names<3> kPrecisions{"unorm8", "float16", "float32"};
 
@@ -73,13 +73,13 @@ constexpr SettingInfo kTable[] = {
      .kind = Kind::real,
      .slider = {.maximum = 1.0f},
      .matters = has_thickness},
-    {.name = "thickness_unit",
+    {.name = "thickness_limit",
      .help = "What limits the thickness of occluders: the setting thickness (radius), or the back "
              "face behind them in a second depth buffer and, where there is none, the setting "
              "thickness (back_faces).",
-     .offset = offsetof(AlcoveSettings, thickness_unit),
+     .offset = offsetof(AlcoveSettings, thickness_limit),
      .kind = Kind::choice,
-     .choices = kThicknessUnits,
+     .choices = kThicknessLimits,
      .matters = has_thickness},
     {.name = "hidden_occlusion",
      .help = "Average fraction of the volume hidden behind occluders that is treated as solid. "

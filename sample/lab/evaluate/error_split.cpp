@@ -117,7 +117,7 @@ Result<ErrorSplit> Splitter::split(const StaticSetup& setup, const OcclusionSett
   layers.depth_layers = 2;
   ALCOVE_TRY_VOID(try_settings("layer", "hidden surfaces, which a second layer shows", layers));
   OcclusionSettings back_faces = best;
-  back_faces.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES;
+  back_faces.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   ALCOVE_TRY_VOID(try_settings("back_faces", "thickness, which back faces tell", back_faces));
   averaged.guard_band = {setup.width / 2, setup.height / 2};
   ALCOVE_TRY(Image<float> wide, draw(averaged, best));

@@ -33,7 +33,7 @@ constexpr Feature kFeatures[] = {
     {"a second depth layer", [](Choice& c) { c.settings.depth_layers = 2; }, true,
      "--second-layer MS, the time of drawing it", &RecommendationWorld::second_layer},
     {"thickness from back faces, whose time differs most between GPUs",
-     [](Choice& c) { c.settings.thickness_unit = ALCOVE_THICKNESS_UNIT_BACK_FACES; }, true,
+     [](Choice& c) { c.settings.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES; }, true,
      "--back-faces MS, the time of drawing them", &RecommendationWorld::back_faces},
     {"a guard band of 10 % of the height",
      [](Choice& c) { c.guard_band = std::max(c.guard_band, kGuardBand); }, true,

@@ -15,7 +15,7 @@
 
 namespace alcove::sample {
 
-// Returns the text of the file for every preset except `reference`, and for `medium` with bent
+// Returns the text of the file for every preset except `height_field`, and for `medium` with bent
 // normals and with specular occlusion.
 [[nodiscard]] Result<std::string> gpu_budget();
 

@@ -49,7 +49,7 @@ struct SettingInfo {
 
 // Each name is terminated by zero, so that data() is a C string.
 inline constexpr auto kQualityNames =
-    std::to_array<std::string_view>({"console", "low", "medium", "high", "ultra", "reference"});
+    std::to_array<std::string_view>({"console", "low", "medium", "high", "ultra", "height_field"});
 
 // Returns the settings, in the order in which they are printed.
 [[nodiscard]] std::span<const SettingInfo> setting_table();
@@ -99,7 +99,7 @@ void set_setting(AlcoveSettings& settings, const SettingInfo& info, Value value)
 // Returns whether the image BACK_DEPTH is read. If not, an engine need not draw back faces.
 [[nodiscard]] constexpr bool needs_back_depth(const AlcoveSettings& settings) {
   return settings.estimator == ALCOVE_ESTIMATOR_CONNECTED &&
-         settings.thickness_unit == ALCOVE_THICKNESS_UNIT_BACK_FACES;
+         settings.thickness_limit == ALCOVE_THICKNESS_LIMIT_BACK_FACES;
 }
 
 // Returns whether the image SECOND_DEPTH is read.
