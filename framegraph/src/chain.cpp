@@ -110,18 +110,18 @@ class Chainer {
     VkPipelineStageFlags2 left = access.stages;
     std::uint32_t last = group;
     for (; group != kNone; group = s_.uses[group].sibling) {
-      Use& there = s_.uses[group];
+      Use& other = s_.uses[group];
       last = group;
-      if (there.queue != queue || there.first == kNone) continue;
+      if (other.queue != queue || other.first == kNone) continue;
       if (is_one_use) {
-        there.stages |= access.stages;
-        there.access |= access.access;
+        other.stages |= access.stages;
+        other.access |= access.access;
         left = 0;
-      } else if ((access.access & ~there.access) == 0) {
-        left &= ~there.stages;
+      } else if ((access.access & ~other.access) == 0) {
+        left &= ~other.stages;
       }
       if (left != 0 || position == plan_.passes.size()) continue;
-      there.last = position;
+      other.last = position;
       return kNone;
     }
     return last;

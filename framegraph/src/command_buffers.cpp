@@ -16,18 +16,19 @@ VkResult CommandBuffers::next(const DeviceContext& device, QueueClass queue,
         device.vk.vkCreateCommandPool(device.handles.device, &info, device.callbacks(), &pool_);
     if (result != VK_SUCCESS) return result;
   }
-  if (used_ == made_.size()) {
+  if (used_ == buffers_.size()) {
     VkCommandBufferAllocateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     info.commandPool = pool_;
     info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     info.commandBufferCount = 1;
-    VkCommandBuffer made = VK_NULL_HANDLE;
-    const VkResult result = device.vk.vkAllocateCommandBuffers(device.handles.device, &info, &made);
+    VkCommandBuffer buffer = VK_NULL_HANDLE;
+    const VkResult result =
+        device.vk.vkAllocateCommandBuffers(device.handles.device, &info, &buffer);
     if (result != VK_SUCCESS) return result;
-    made_.push_back(made);
+    buffers_.push_back(buffer);
   }
-  commands = made_[used_++];
+  commands = buffers_[used_++];
   return VK_SUCCESS;
 }
 

@@ -21,7 +21,7 @@ class CommandBuffers {
 
  private:
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> made_;
+  std::vector<VkCommandBuffer> buffers_;
   std::size_t used_ = 0;
 };
 

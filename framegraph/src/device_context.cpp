@@ -47,13 +47,13 @@ VkBufferCreateInfo buffer_info(const DeviceContext& device, const ResourceRecord
 MemoryRequirements device_requirements(const void* context, const ResourceRecord& record,
                                        VkFlags usage, bool concurrent) {
   const auto& device = *static_cast<const DeviceContext*>(context);
-  VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
+  VkMemoryRequirements2 requirements{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
   if (!device.vk.vkGetDeviceImageMemoryRequirements) {
     // Without VK_KHR_maintenance4 a device reports the requirements of existing resources only.
     VkImage image = VK_NULL_HANDLE;
     VkBuffer buffer = VK_NULL_HANDLE;
     if (const VkResult result = create_unbound(device, record, usage, concurrent, image, buffer,
-                                               found.memoryRequirements))
+                                               requirements.memoryRequirements))
       return {0, 0, 0, result};
     device.vk.vkDestroyImage(device.handles.device, image, device.callbacks());
     device.vk.vkDestroyBuffer(device.handles.device, buffer, device.callbacks());
@@ -61,14 +61,14 @@ MemoryRequirements device_requirements(const void* context, const ResourceRecord
     const VkImageCreateInfo info = image_info(device, record, usage, concurrent);
     const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
                                                 nullptr, &info, VK_IMAGE_ASPECT_COLOR_BIT};
-    device.vk.vkGetDeviceImageMemoryRequirements(device.handles.device, &query, &found);
+    device.vk.vkGetDeviceImageMemoryRequirements(device.handles.device, &query, &requirements);
   } else {
     const VkBufferCreateInfo info = buffer_info(device, record, usage, concurrent);
     const VkDeviceBufferMemoryRequirements query{
         VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS, nullptr, &info};
-    device.vk.vkGetDeviceBufferMemoryRequirements(device.handles.device, &query, &found);
+    device.vk.vkGetDeviceBufferMemoryRequirements(device.handles.device, &query, &requirements);
   }
-  const VkMemoryRequirements& r = found.memoryRequirements;
+  const VkMemoryRequirements& r = requirements.memoryRequirements;
   return {r.size, r.alignment, r.memoryTypeBits};
 }
 
@@ -82,15 +82,15 @@ ImageLimits image_limits(const void* context, const ResourceRecord& record, VkFl
                                               image.tiling,
                                               image.usage,
                                               image.flags};
-  VkImageFormatProperties2 found{};
-  found.sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_PROPERTIES_2;
+  VkImageFormatProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_PROPERTIES_2;
   const VkResult result = device.vk.vkGetPhysicalDeviceImageFormatProperties2(
-      device.handles.physical_device, &info, &found);
+      device.handles.physical_device, &info, &properties);
   if (result != VK_SUCCESS) return {};
   // Storage of several samples needs a feature that the library does not ask for.
   if (usage & VK_IMAGE_USAGE_STORAGE_BIT)
-    found.imageFormatProperties.sampleCounts &= VK_SAMPLE_COUNT_1_BIT;
-  const VkImageFormatProperties& p = found.imageFormatProperties;
+    properties.imageFormatProperties.sampleCounts &= VK_SAMPLE_COUNT_1_BIT;
+  const VkImageFormatProperties& p = properties.imageFormatProperties;
   return {p.maxExtent, p.maxMipLevels, p.maxArrayLayers, p.sampleCounts};
 }
 

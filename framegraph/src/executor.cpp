@@ -25,7 +25,7 @@ enum class Queues : std::uint8_t { one, all };
 }  // namespace
 
 struct Executor::Implementation {
-  explicit Implementation(const ExecutorOptions& wanted) : options(wanted) {}
+  explicit Implementation(const ExecutorOptions& executor_options) : options(executor_options) {}
 
   tl::expected<CachedPlan*, Errors> plan_for(const Graph& graph, Queues queues, bool& compiled);
   tl::expected<void, Errors> find_physical(const Graph& graph, CachedPlan& cached);
@@ -89,22 +89,24 @@ struct Executor::Attempt {
 
 tl::expected<Executor, Errors> Executor::create(const DeviceHandles& device,
                                                 const ExecutorOptions& options) {
-  auto made = std::make_unique<Implementation>(options);
-  made->options.frames_in_flight = std::clamp(options.frames_in_flight, 1u, 8u);
+  auto implementation = std::make_unique<Implementation>(options);
+  implementation->options.frames_in_flight = std::clamp(options.frames_in_flight, 1u, 8u);
 #ifdef ALCOVE_FRAMEGRAPH_VERIFIES
-  if (made->options.verify == nullptr) made->options.verify = verify;
+  if (implementation->options.verify == nullptr) implementation->options.verify = verify;
 #endif
-  if (auto opened = open(made->device, device); !opened)
+  if (auto opened = open(implementation->device, device); !opened)
     return tl::unexpected(std::move(opened.error()));
-  made->device.limits.alias = options.alias;
-  for (PlanCache& plans : made->plans)
+  implementation->device.limits.alias = options.alias;
+  for (PlanCache& plans : implementation->plans)
     plans.set_capacity(std::clamp(options.cached_plans, 1u, 4096u));
-  made->pool = std::make_unique<Pool>(made->device);
-  made->recorder = std::make_unique<Recorder>(made->device, *made->pool);
-  made->slot_frames.resize(made->options.frames_in_flight);
-  made->submitter = std::make_unique<Submitter>(made->device, made->options.frames_in_flight);
-  made->create_timestamps();
-  return Executor(std::move(made));
+  implementation->pool = std::make_unique<Pool>(implementation->device);
+  implementation->recorder =
+      std::make_unique<Recorder>(implementation->device, *implementation->pool);
+  implementation->slot_frames.resize(implementation->options.frames_in_flight);
+  implementation->submitter =
+      std::make_unique<Submitter>(implementation->device, implementation->options.frames_in_flight);
+  implementation->create_timestamps();
+  return Executor(std::move(implementation));
 }
 
 void Executor::Implementation::create_timestamps() {
@@ -158,15 +160,15 @@ VkResult Executor::Implementation::find_external(const Graph& graph, CachedPlan&
   const GraphDescription& description = graph.description();
   const ResourceRecord& record = description.resources[resource];
   const ImportHandles& handles = graph.imports_[record.external];
-  Physical*& found = cached.physical[resource];
+  Physical*& physical = cached.physical[resource];
   if (record.origin == Origin::imported) {
-    found = &pool->import(record, handles);
+    physical = &pool->import(record, handles);
     return VK_SUCCESS;
   }
   const HistoryEntry& entry = graph.histories().entries()[handles.history];
   return pool->history(graph.histories(), handles.history, entry.physical(record.slot), record,
                        history_usage(device.limits, record), description.resource_name(resource),
-                       found);
+                       physical);
 }
 
 // Finds the images and buffers of the frame. Those of transients stay the same until the pool
@@ -260,9 +262,9 @@ tl::expected<FrameReport, Errors> Executor::Implementation::prepare(Graph& graph
   if (auto right = adopt(graph); !right) return tl::unexpected(std::move(right.error()));
   pool->retire_histories(graph.histories(), frame);
   FrameReport report;
-  auto found = plan_for(graph, queues, report.compiled);
-  if (!found) return tl::unexpected(std::move(found.error()));
-  cached = *found;
+  auto plan = plan_for(graph, queues, report.compiled);
+  if (!plan) return tl::unexpected(std::move(plan.error()));
+  cached = *plan;
   if (auto done = find_physical(graph, *cached); !done)
     return tl::unexpected(std::move(done.error()));
   cached->last_frame = frame;

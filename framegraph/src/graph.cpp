@@ -235,25 +235,25 @@ void Graph::add_stale_builder() {
 
 TextureHistory Graph::create_texture_history(std::string_view name, const TextureDesc& desc,
                                              std::uint32_t slots) {
-  TextureHistory made;
-  made.slots = std::clamp(slots, 1u, kMaxHistorySlots);
+  TextureHistory history;
+  history.slots = std::clamp(slots, 1u, kMaxHistorySlots);
   ResourceRecord record = texture_record(desc);
   record.origin = Origin::history;
-  record.slots = static_cast<std::uint8_t>(made.slots);
+  record.slots = static_cast<std::uint8_t>(history.slots);
   ImportHandles handles;
   handles.history = histories_.declare(name, record);
   const HistoryEntry& entry = histories_.entries()[handles.history];
-  for (std::uint32_t slot = 0; slot < made.slots; ++slot) {
+  for (std::uint32_t slot = 0; slot < history.slots; ++slot) {
     const ExternalRecord external = external_of(entry, slot);
     record.external = static_cast<std::uint32_t>(description_.externals.size());
     record.slot = static_cast<std::uint8_t>(slot);
     imports_.push_back(handles);
     add(description_.externals, external);
     const std::uint32_t index = add_resource(name, record);
-    if (slot == 0) made.current = {index, 0, tag_};
-    if (slot == 1) made.validity = external.validity;
+    if (slot == 0) history.current = {index, 0, tag_};
+    if (slot == 1) history.validity = external.validity;
   }
-  return made;
+  return history;
 }
 
 void Graph::leave_histories(std::span<const FinalState> finals) {

@@ -58,14 +58,14 @@ class Placer {
     const VkDeviceSize page = std::bit_ceil(std::min(limits_.buffer_image_granularity, kMostBytes));
     for (const std::uint32_t r : workspace_.transients) {
       Placement& placement = plan_.placements[r];
-      const MemoryRequirements needed =
+      const MemoryRequirements requirements =
           limits_.memory(graph_.resources[r], placement.usage, placement.concurrent);
       // Aligning to whole pages keeps buffers and images in different pages of
       // bufferImageGranularity.
-      placement.alignment = std::max(needed.alignment, page);
-      if (!can_place(r, needed, placement.alignment)) continue;
-      placement.size = align_up(needed.size, page);
-      placement.heap = heap_of(needed.memory_types);
+      placement.alignment = std::max(requirements.alignment, page);
+      if (!can_place(r, requirements, placement.alignment)) continue;
+      placement.size = align_up(requirements.size, page);
+      placement.heap = heap_of(requirements.memory_types);
       Heap& into = plan_.heaps[placement.heap];
       into.alignment = std::max(into.alignment, placement.alignment);
       into.device_address |= graph_.resources[r].kind == ResourceKind::buffer &&
@@ -76,19 +76,21 @@ class Placer {
   }
 
   // Adds an error if the device reports requirements that cannot be met, or none.
-  bool can_place(std::uint32_t resource, const MemoryRequirements& needed, VkDeviceSize alignment) {
-    if (needed.result == VK_SUCCESS && needed.size != 0 && needed.memory_types != 0 &&
-        std::has_single_bit(needed.alignment) && alignment <= bytes_left_ &&
-        needed.size <= bytes_left_ - alignment) {
+  bool can_place(std::uint32_t resource, const MemoryRequirements& requirements,
+                 VkDeviceSize alignment) {
+    if (requirements.result == VK_SUCCESS && requirements.size != 0 &&
+        requirements.memory_types != 0 && std::has_single_bit(requirements.alignment) &&
+        alignment <= bytes_left_ && requirements.size <= bytes_left_ - alignment) {
       // Aligning the size and the offset adds at most the alignment to each.
-      bytes_left_ -= std::min(bytes_left_, needed.size + 2 * alignment);
+      bytes_left_ -= std::min(bytes_left_, requirements.size + 2 * alignment);
       return true;
     }
-    const VkResult result = needed.result != VK_SUCCESS ? needed.result : VK_ERROR_UNKNOWN;
+    const VkResult result =
+        requirements.result != VK_SUCCESS ? requirements.result : VK_ERROR_UNKNOWN;
     errors_.push_back({ErrorCode::vulkan,
                        "no memory for '" + std::string(graph_.resource_name(resource)) +
-                           "': the device asks for " + std::to_string(needed.size) +
-                           " bytes aligned to " + std::to_string(needed.alignment) + ": " +
+                           "': the device asks for " + std::to_string(requirements.size) +
+                           " bytes aligned to " + std::to_string(requirements.alignment) + ": " +
                            result_name(result),
                        result, kNone, resource, 0});
     return false;
@@ -96,8 +98,8 @@ class Placer {
 
   std::uint32_t heap_of(std::uint32_t memory_types) {
     std::uint32_t heap = 0;
-    for (const Heap& there : plan_.heaps) {
-      if (there.memory_types == memory_types) return heap;
+    for (const Heap& other : plan_.heaps) {
+      if (other.memory_types == memory_types) return heap;
       ++heap;
     }
     plan_.heaps.push_back({memory_types});
@@ -213,7 +215,7 @@ class Placer {
       auto& placed = s_.blocks[block];
       const auto at = std::upper_bound(
           placed.begin(), placed.end(), item.offset,
-          [](VkDeviceSize value, const PlaceItem& there) { return value < there.offset; });
+          [](VkDeviceSize value, const PlaceItem& other) { return value < other.offset; });
       placed.insert(at, item);
     }
     return item.offset + item.size;

@@ -12,8 +12,8 @@ namespace {
 // Makes room for `more` values before they exist, so that no object is lost if memory runs out.
 template <typename Value>
 void make_room(std::vector<Value>& values, std::size_t more = 1) {
-  const std::size_t needed = values.size() + more;
-  if (needed > values.capacity()) values.reserve(std::max(needed, 2 * values.size()));
+  const std::size_t size = values.size() + more;
+  if (size > values.capacity()) values.reserve(std::max(size, 2 * values.size()));
 }
 
 bool belongs_to(const std::weak_ptr<const char>& life, const HistoryTable& table) {
@@ -52,21 +52,21 @@ Pool::~Pool() {
 }
 
 VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
-  for (const Heap& wanted : plan.heaps) {
-    auto heap = std::find_if(heaps_.begin(), heaps_.end(), [&](const HeapMemory& made) {
-      return made.memory_types == wanted.memory_types;
+  for (const Heap& plan_heap : plan.heaps) {
+    auto heap = std::find_if(heaps_.begin(), heaps_.end(), [&](const HeapMemory& memory) {
+      return memory.memory_types == plan_heap.memory_types;
     });
     if (heap == heaps_.end()) {
-      heaps_.push_back({wanted.memory_types});
+      heaps_.push_back({plan_heap.memory_types});
       heap = heaps_.end() - 1;
     }
-    heap->needed = std::max(heap->needed, wanted.size);
-    const bool has_addresses = heap->has_addresses || wanted.device_address;
-    if (heap->size >= wanted.size && heap->has_addresses == has_addresses) continue;
-    const VkDeviceSize size = std::max(heap->size, wanted.size);
+    heap->needed = std::max(heap->needed, plan_heap.size);
+    const bool has_addresses = heap->has_addresses || plan_heap.device_address;
+    if (heap->size >= plan_heap.size && heap->has_addresses == has_addresses) continue;
+    const VkDeviceSize size = std::max(heap->size, plan_heap.size);
     make_room(retired_, transients_.size() + 1);  // before anything is allocated or retired
     MemoryRange memory;
-    if (const VkResult result = allocate({size, wanted.alignment, wanted.memory_types},
+    if (const VkResult result = allocate({size, plan_heap.alignment, plan_heap.memory_types},
                                          has_addresses, MemoryLifetime::frame, memory))
       return result;
     // This includes transients of other heaps, because creating them again is cheap.
@@ -96,52 +96,52 @@ void Pool::retire_transients(std::uint64_t frame) {
 }
 
 VkResult Pool::transient(const ResourceRecord& record, const Plan& plan, const Placement& placement,
-                         std::string_view name, Physical*& found) {
+                         std::string_view name, Physical*& output) {
   const std::uint32_t types = plan.heaps[placement.heap].memory_types;
   const auto heap = std::find_if(heaps_.begin(), heaps_.end(),
                                  [types](const HeapMemory& h) { return h.memory_types == types; });
   const auto index = static_cast<std::uint32_t>(heap - heaps_.begin());
   const auto [first, last] = transients_.equal_range(placement.offset);
   for (auto at = first; at != last; ++at) {
-    Physical& there = *at->second;
-    if (there.heap == index && there.usage == placement.usage &&
-        there.concurrent == placement.concurrent && same(there.record, record)) {
-      found = &there;
+    Physical& other = *at->second;
+    if (other.heap == index && other.usage == placement.usage &&
+        other.concurrent == placement.concurrent && same(other.record, record)) {
+      output = &other;
       return VK_SUCCESS;
     }
   }
-  auto made = std::make_unique<Physical>();
-  made->record = record;
-  made->usage = placement.usage;
-  made->concurrent = placement.concurrent;
-  made->heap = index;
-  made->offset = placement.offset;
-  if (const VkResult result = create(*made, name)) return result;
-  found = transients_.emplace(placement.offset, std::move(made))->second.get();
+  auto physical = std::make_unique<Physical>();
+  physical->record = record;
+  physical->usage = placement.usage;
+  physical->concurrent = placement.concurrent;
+  physical->heap = index;
+  physical->offset = placement.offset;
+  if (const VkResult result = create(*physical, name)) return result;
+  output = transients_.emplace(placement.offset, std::move(physical))->second.get();
   return VK_SUCCESS;
 }
 
 VkResult Pool::history(const HistoryTable& table, std::uint32_t entry, std::uint32_t position,
                        const ResourceRecord& record, VkFlags usage, std::string_view name,
-                       Physical*& found) {
+                       Physical*& output) {
   const std::uint32_t generation = table.entries()[entry].generation;
-  for (const HistoryImage& there : histories_) {
-    if (there.entry == entry && there.position == position && there.generation == generation &&
-        belongs_to(there.table, table)) {
-      found = there.physical.get();
+  for (const HistoryImage& other : histories_) {
+    if (other.entry == entry && other.position == position && other.generation == generation &&
+        belongs_to(other.table, table)) {
+      output = other.physical.get();
       return VK_SUCCESS;
     }
   }
   make_room(histories_);
-  auto made = std::make_unique<Physical>();
-  made->record = record;
-  made->usage = usage;
+  auto physical = std::make_unique<Physical>();
+  physical->record = record;
+  physical->usage = usage;
   // Passes of any queue may use it in later frames.
-  made->concurrent = device_.families.size() > 1;
-  if (const VkResult result = create(*made, name)) return result;
-  histories_.push_back({table.life(), entry, generation, position, std::move(made)});
+  physical->concurrent = device_.families.size() > 1;
+  if (const VkResult result = create(*physical, name)) return result;
+  histories_.push_back({table.life(), entry, generation, position, std::move(physical)});
   ++generation_;
-  found = histories_.back().physical.get();
+  output = histories_.back().physical.get();
   return VK_SUCCESS;
 }
 
@@ -162,18 +162,18 @@ Physical& Pool::import(const ResourceRecord& record, const ImportHandles& handle
   const std::uint64_t key = handle_key(handles.image, handles.buffer);
   const auto [first, last] = imports_.equal_range(key);
   for (auto at = first; at != last; ++at) {
-    Physical& there = *at->second;
-    if (there.image == handles.image && there.buffer == handles.buffer &&
-        there.layer == handles.layer && same(there.record, record))
-      return there;
+    Physical& other = *at->second;
+    if (other.image == handles.image && other.buffer == handles.buffer &&
+        other.layer == handles.layer && same(other.record, record))
+      return other;
   }
-  auto made = std::make_unique<Physical>();
-  made->record = record;
-  made->image = handles.image;
-  made->buffer = handles.buffer;
-  made->layer = handles.layer;
-  made->owned = false;
-  return *imports_.emplace(key, std::move(made))->second;
+  auto physical = std::make_unique<Physical>();
+  physical->record = record;
+  physical->image = handles.image;
+  physical->buffer = handles.buffer;
+  physical->layer = handles.layer;
+  physical->owned = false;
+  return *imports_.emplace(key, std::move(physical))->second;
 }
 
 void Pool::forget(VkImage image, std::uint64_t frame) {
@@ -265,18 +265,18 @@ VkResult Pool::create(Physical& physical, std::string_view name) {
 
 VkResult Pool::create_bound(Physical& physical, std::string_view name) {
   const VkDevice device = device_.handles.device;
-  VkMemoryRequirements needed{};
+  VkMemoryRequirements requirements{};
   VkResult result = create_unbound(device_, physical.record, physical.usage, physical.concurrent,
-                                   physical.image, physical.buffer, needed);
+                                   physical.image, physical.buffer, requirements);
   if (result != VK_SUCCESS) return result;
   set_name(physical, name);
   MemoryRange memory;
   if (physical.heap != kNone) {
     memory = heaps_[physical.heap].memory;
   } else {
-    result = allocate(needed, false, MemoryLifetime::persistent, physical.own_memory);
+    result = allocate(requirements, false, MemoryLifetime::persistent, physical.own_memory);
     if (result != VK_SUCCESS) return result;
-    physical.own_size = needed.size;
+    physical.own_size = requirements.size;
     memory = physical.own_memory;
   }
   const VkDeviceSize offset = memory.offset + physical.offset;

@@ -59,11 +59,11 @@ class Pool {
   // Finds or creates the transient with this description at this place.
   [[nodiscard]] VkResult transient(const ResourceRecord& record, const Plan& plan,
                                    const Placement& placement, std::string_view name,
-                                   Physical*& found);
+                                   Physical*& output);
   // Finds or creates one slot of a history, which has memory of its own.
   [[nodiscard]] VkResult history(const HistoryTable& table, std::uint32_t entry,
                                  std::uint32_t position, const ResourceRecord& record,
-                                 VkFlags usage, std::string_view name, Physical*& found);
+                                 VkFlags usage, std::string_view name, Physical*& output);
   // Moves the slots of histories that no longer exist to the list of objects to be destroyed: those
   // that were dropped, those that got another description in an earlier frame, and those whose
   // graph is gone. Histories of other graphs stay.

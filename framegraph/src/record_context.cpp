@@ -56,45 +56,45 @@ VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType ty
   return view;
 }
 
-VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted) const {
-  return attachment(wanted, attachment_access(wanted));
+VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& target) const {
+  return attachment(target, attachment_access(target));
 }
 
 // Returns the index of the access that declares the attachment, or adds an error and returns kNone.
-std::uint32_t RecordContext::attachment_access(const Attachment& wanted) const {
+std::uint32_t RecordContext::attachment_access(const Attachment& target) const {
   const auto& resources = recorder_.graph_->description().resources;
-  const std::uint32_t index = wanted.texture.index;
-  const bool is_part = wanted.range != Range{} && index < resources.size();
+  const std::uint32_t index = target.texture.index;
+  const bool is_part = target.range != Range{} && index < resources.size();
   return recorder_.attachment_access(
-      pass_, index, is_part ? Graph::resolved_range(wanted.range, resources[index]) : Range{});
+      pass_, index, is_part ? Graph::resolved_range(target.range, resources[index]) : Range{});
 }
 
-VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& wanted,
+VkRenderingAttachmentInfo RecordContext::attachment(const Attachment& target,
                                                     std::uint32_t index) const {
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   if (index == kNone) return info;
   const AccessRecord& access = recorder_.graph_->description().accesses[index];
   const std::uint8_t contents = recorder_.plan_->contents[index];
-  info.imageView = view(wanted.texture, wanted.range != Range{} ? wanted.range : access.range);
+  info.imageView = view(target.texture, target.range != Range{} ? target.range : access.range);
   info.imageLayout = access.layout;
   info.loadOp = (contents & kHasContents) != 0 ? VK_ATTACHMENT_LOAD_OP_LOAD
-                : wanted.clear                 ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                : target.clear                 ? VK_ATTACHMENT_LOAD_OP_CLEAR
                                                : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   // An attachment that is only tested against is not stored, because storing is a write.
   info.storeOp = !(access.flags & kWrite)      ? VK_ATTACHMENT_STORE_OP_NONE
                  : (contents & kIsNeeded) != 0 ? VK_ATTACHMENT_STORE_OP_STORE
                                                : VK_ATTACHMENT_STORE_OP_DONT_CARE;
-  if (wanted.clear) info.clearValue = *wanted.clear;
-  if (!wanted.resolve) return info;
-  const std::uint32_t to = recorder_.attachment_access(pass_, wanted.resolve.index);
+  if (target.clear) info.clearValue = *target.clear;
+  if (!target.resolve) return info;
+  const std::uint32_t to = recorder_.attachment_access(pass_, target.resolve.index);
   if (to == kNone) return info;
   const AccessRecord& resolve = recorder_.graph_->description().accesses[to];
-  info.resolveMode = wanted.resolve_mode != VK_RESOLVE_MODE_NONE ? wanted.resolve_mode
-                     : aspects(format(wanted.texture)) & VK_IMAGE_ASPECT_COLOR_BIT
+  info.resolveMode = target.resolve_mode != VK_RESOLVE_MODE_NONE ? target.resolve_mode
+                     : aspects(format(target.texture)) & VK_IMAGE_ASPECT_COLOR_BIT
                          ? VK_RESOLVE_MODE_AVERAGE_BIT
                          : VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
-  info.resolveImageView = view(wanted.resolve, resolve.range);
+  info.resolveImageView = view(target.resolve, resolve.range);
   info.resolveImageLayout = resolve.layout;
   return info;
 }
@@ -120,14 +120,14 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors, const At
   const GraphDescription& graph = recorder_.graph_->description();
   std::uint32_t samples = 0;
   bool alike = true;
-  const auto add = [&](const Attachment& wanted, std::uint32_t index,
+  const auto add = [&](const Attachment& target, std::uint32_t index,
                        VkRenderingAttachmentInfo& to) {
-    to = attachment(wanted, index);
+    to = attachment(target, index);
     if (index == kNone || to.imageView == VK_NULL_HANDLE) return false;
-    const ResourceRecord& record = graph.resources[wanted.texture.index];
-    const Range range = wanted.range != Range{} ? Graph::resolved_range(wanted.range, record)
+    const ResourceRecord& record = graph.resources[target.texture.index];
+    const Range range = target.range != Range{} ? Graph::resolved_range(target.range, record)
                                                 : graph.accesses[index].range;
-    const VkExtent3D size = extent(wanted.texture, range.base_mip);
+    const VkExtent3D size = extent(target.texture, range.base_mip);
     VkExtent2D& area = info.renderArea.extent;
     alike =
         alike && (samples == 0 || (area.width == size.width && area.height == size.height &&

@@ -130,10 +130,10 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
 
 // Adds a memory barrier unless the dependency already contains the same one.
 void Recorder::add_memory(const VkMemoryBarrier2& barrier) {
-  for (const VkMemoryBarrier2& there : memories_)
-    if (there.srcStageMask == barrier.srcStageMask && there.dstStageMask == barrier.dstStageMask &&
-        (barrier.srcAccessMask & ~there.srcAccessMask) == 0 &&
-        (barrier.dstAccessMask & ~there.dstAccessMask) == 0)
+  for (const VkMemoryBarrier2& other : memories_)
+    if (other.srcStageMask == barrier.srcStageMask && other.dstStageMask == barrier.dstStageMask &&
+        (barrier.srcAccessMask & ~other.srcAccessMask) == 0 &&
+        (barrier.dstAccessMask & ~other.dstAccessMask) == 0)
       return;
   memories_.push_back(barrier);
 }

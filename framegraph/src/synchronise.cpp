@@ -338,20 +338,20 @@ class Synchroniser {
   // only for the stages of that state, so that a barrier from the other reading stages to those
   // stages is added.
   void order_after_reads(const Use& use, std::uint32_t end) {
-    Transition wanted;
-    wanted.dst_stages = use.stages;
+    Transition transition;
+    transition.dst_stages = use.stages;
     std::int32_t time = kBeforeFrame;
     for (std::uint32_t u = use.head; u != kNone; u = uses_[u].sibling) {
       const Use& read = uses_[u];
       if (&read == &use || read.stages == 0) continue;
       if (read.queue != queue_) add_stages(waited_stages(use.stages));
       if (read.queue != queue_ || (read.stages & ~use.stages) == 0) continue;
-      wanted.src_stages |= read.stages & ~use.stages;
+      transition.src_stages |= read.stages & ~use.stages;
       time = std::max(time, pass_time(read.last));
     }
-    if (wanted.src_stages != 0 && use.stages != 0 &&
+    if (transition.src_stages != 0 && use.stages != 0 &&
         (use.stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) == 0)
-      add_memory(time, end, wanted);
+      add_memory(time, end, transition);
   }
 
   // Finds the state in which the frame leaves a history slot. It names no reads: over 3,000 random
@@ -389,24 +389,24 @@ class Synchroniser {
   void change_layout(const Use& use, const Source& source, VkImageLayout from,
                      std::uint32_t position) {
     Batch& batch = batch_after(source.time, position);
-    Transition& wanted = plan_.transitions.emplace_back();
-    wanted.src_stages = source.stages;
-    wanted.src_access = source.access;
+    Transition& transition = plan_.transitions.emplace_back();
+    transition.src_stages = source.stages;
+    transition.src_access = source.access;
     if (source.by_wait || source.by_last_frame) {
       // The change comes after a semaphore wait if it comes after stages in which the wait is made.
-      if (wanted.src_stages == 0) wanted.src_stages = waited_stages(use.stages);
-      wait_in(wanted.src_stages, source, position);
+      if (transition.src_stages == 0) transition.src_stages = waited_stages(use.stages);
+      wait_in(transition.src_stages, source, position);
     }
-    wanted.dst_stages = use.stages;
-    wanted.dst_access = use.access;
-    wanted.resource = use.resource;
-    wanted.old_layout = use.discards ? VK_IMAGE_LAYOUT_UNDEFINED : from;
-    wanted.new_layout = use.layout;
-    wanted.range = {0, 1, 0, 1};
+    transition.dst_stages = use.stages;
+    transition.dst_access = use.access;
+    transition.resource = use.resource;
+    transition.old_layout = use.discards ? VK_IMAGE_LAYOUT_UNDEFINED : from;
+    transition.new_layout = use.layout;
+    transition.range = {0, 1, 0, 1};
     if (const std::uint32_t index = use.sub - workspace_.first_sub[use.resource]; index != 0) {
       const std::uint32_t mips = graph_.resources[use.resource].mips;
-      wanted.range.base_mip = static_cast<std::uint16_t>(index % mips);
-      wanted.range.base_layer = static_cast<std::uint16_t>(index / mips);
+      transition.range.base_mip = static_cast<std::uint16_t>(index % mips);
+      transition.range.base_layer = static_cast<std::uint16_t>(index / mips);
     }
     ++batch.count;
     while (batch.count >= 2 && extend(*(plan_.transitions.end() - 2), plan_.transitions.back())) {
@@ -436,19 +436,20 @@ class Synchroniser {
     return true;
   }
 
-  void add_memory(std::int32_t time, std::uint32_t position, const Transition& wanted) {
+  void add_memory(std::int32_t time, std::uint32_t position, const Transition& transition) {
     Batch& batch = batch_after(time, position);
     for (const std::uint32_t i : s_.batch_memories) {
-      Transition& there = plan_.transitions[i];
-      if (there.src_stages != wanted.src_stages && there.dst_stages != wanted.dst_stages) continue;
-      there.src_stages |= wanted.src_stages;
-      there.src_access |= wanted.src_access;
-      there.dst_stages |= wanted.dst_stages;
-      there.dst_access |= wanted.dst_access;
+      Transition& other = plan_.transitions[i];
+      if (other.src_stages != transition.src_stages && other.dst_stages != transition.dst_stages)
+        continue;
+      other.src_stages |= transition.src_stages;
+      other.src_access |= transition.src_access;
+      other.dst_stages |= transition.dst_stages;
+      other.dst_access |= transition.dst_access;
       return;
     }
     s_.batch_memories.push_back(static_cast<std::uint32_t>(plan_.transitions.size()));
-    plan_.transitions.push_back(wanted);
+    plan_.transitions.push_back(transition);
     ++batch.count;
   }
 

@@ -74,15 +74,15 @@ class Replay {
     if (access.flags & kWrite) ++version;
     const auto& first = v_.workspace.first_sub;
     if (first[access.resource] == first[access.resource + 1]) return;  // its description is invalid
-    EarlierContents found;
+    EarlierContents earlier;
     for_each_sub(v_.graph, v_.workspace, access,
-                 [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub], found); });
+                 [&](std::uint32_t sub) { touch(pass, access, s_.touches[sub], earlier); });
     // The contents are those of passes that run, because an attachment also reads them.
-    if ((access.access & kAttachmentBits) != 0 && found.written && !(access.flags & kDiscard))
+    if ((access.access & kAttachmentBits) != 0 && earlier.written && !(access.flags & kDiscard))
       v_.plan.contents[static_cast<std::size_t>(&access - v_.graph.accesses.data())] = kHasContents;
-    if (found.conflict) report_conflict(pass, access);
-    if (found.unwritten) report_unwritten(pass, access);
-    if (!found.written && !found.unwritten && keeps_contents(access)) report_kept(pass, access);
+    if (earlier.conflict) report_conflict(pass, access);
+    if (earlier.unwritten) report_unwritten(pass, access);
+    if (!earlier.written && !earlier.unwritten && keeps_contents(access)) report_kept(pass, access);
   }
 
   // The contents of the range of an access, before the access.
@@ -93,18 +93,18 @@ class Replay {
   };
 
   static void touch(std::uint32_t pass, const AccessRecord& access, Workspace::Touch& touched,
-                    EarlierContents& found) {
+                    EarlierContents& earlier) {
     const bool again = touched.stamp == pass + 1;
     const bool reads = again && touched.reads;
     const bool writes = again && touched.writes;
-    found.written |= touched.written;
+    earlier.written |= touched.written;
     if (access.flags & kWrite) {
-      found.conflict |= reads || writes;
-      found.unwritten |= !touched.written && reads_contents(access);
+      earlier.conflict |= reads || writes;
+      earlier.unwritten |= !touched.written && reads_contents(access);
       touched = {pass + 1, access.layout, reads, true, true};
     } else {
-      found.conflict |= writes || (reads && touched.layout != access.layout);
-      found.unwritten |= !touched.written;
+      earlier.conflict |= writes || (reads && touched.layout != access.layout);
+      earlier.unwritten |= !touched.written;
       touched = {pass + 1, access.layout, true, writes, touched.written};
     }
   }

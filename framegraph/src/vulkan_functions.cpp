@@ -13,7 +13,7 @@ PFN_vkVoidFunction find(const Get& get, const char* name) {
   for (const char* suffix : {"", "KHR", "EXT"}) {
     char full[64];
     std::snprintf(full, sizeof full, "%s%s", name, suffix);
-    if (const PFN_vkVoidFunction found = get(full)) return found;
+    if (const PFN_vkVoidFunction function = get(full)) return function;
   }
   return nullptr;
 }

@@ -220,16 +220,16 @@ bool HappensBefore::is_available_by(const Operation& operation, const Barrier& b
 
 bool HappensBefore::is_ordered(const Operation& operation, std::uint8_t queue,
                                Stages stages) const {
-  const Stages wanted = expand_stages(stages);
+  const Stages bits = expand_stages(stages);
   return all_parts(operation,
-                   [&](const Reach& reach) { return (wanted & ~reach.ordered[queue]) == 0; });
+                   [&](const Reach& reach) { return (bits & ~reach.ordered[queue]) == 0; });
 }
 
 bool HappensBefore::is_available(const Operation& operation, std::uint8_t queue,
                                  Stages stages) const {
-  const Stages wanted = expand_stages(stages);
+  const Stages bits = expand_stages(stages);
   return all_parts(operation,
-                   [&](const Reach& reach) { return (wanted & ~reach.available[queue]) == 0; });
+                   [&](const Reach& reach) { return (bits & ~reach.available[queue]) == 0; });
 }
 
 bool HappensBefore::is_visible(const Operation& operation, std::uint8_t queue, Stages stages,

@@ -147,21 +147,22 @@ class Tables {
       fail(name(r) + " is used but has no memory");
       return;
     }
-    const MemoryRequirements needed =
+    const MemoryRequirements requirements =
         limits_.memory(graph_.resources[r], placement.usage, placement.concurrent);
-    if (needed.result != VK_SUCCESS) {
+    if (requirements.result != VK_SUCCESS) {
       errors_.push_back({ErrorCode::vulkan,
                          "the device does not say how much memory " + name(r) + " needs",
-                         needed.result, kNone, r, 0});
+                         requirements.result, kNone, r, 0});
       return;
     }
-    if (!std::has_single_bit(needed.alignment) || placement.offset % needed.alignment != 0)
+    if (!std::has_single_bit(requirements.alignment) ||
+        placement.offset % requirements.alignment != 0)
       fail(name(r) + " is not aligned");
-    if (placement.size < needed.size) fail(name(r) + " has too few bytes");
+    if (placement.size < requirements.size) fail(name(r) + " has too few bytes");
     const Heap& heap = plan_.heaps[placement.heap];
     if (placement.size > heap.size || placement.offset > heap.size - placement.size)
       fail(name(r) + " reaches beyond its heap");
-    if (heap.memory_types == 0 || heap.memory_types & ~needed.memory_types)
+    if (heap.memory_types == 0 || heap.memory_types & ~requirements.memory_types)
       fail(name(r) + " lies in a heap whose memory types it does not allow");
   }
 
@@ -193,10 +194,10 @@ class Tables {
       }
       const std::uint32_t heap = placements[r].heap;
       most[heap] = std::max(most[heap], bytes[heap] += placements[r].size);
-      auto& there = live[heap];
-      const auto at = there.insert({placements[r].offset, r}).first;
-      if (at != there.begin()) check_neighbours(std::prev(at)->second, r);
-      if (std::next(at) != there.end()) check_neighbours(r, std::next(at)->second);
+      auto& neighbours = live[heap];
+      const auto at = neighbours.insert({placements[r].offset, r}).first;
+      if (at != neighbours.begin()) check_neighbours(std::prev(at)->second, r);
+      if (std::next(at) != neighbours.end()) check_neighbours(r, std::next(at)->second);
     }
     for (std::size_t heap = 0; heap < most.size(); ++heap)
       if (plan_.heaps[heap].lower_bound != most[heap])
