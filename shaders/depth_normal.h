@@ -35,7 +35,7 @@ DepthCross fetch_depth_cross(texture2D image, ivec2 pixel, ivec2 origin, ivec2 s
 // of the pixel: how far a line through them misses it. A quarter of the step to the first neighbour
 // is added. It is needed on a strip that is two pixels wide: there, the lines on both sides miss,
 // and the addition prefers the neighbour on the strip itself. At a crease between two planes the
-// addition is too small to change the choice.
+// addition is too small to change the choice. The quarter is chosen.
 float miss(float here, float first, float second) {
   return abs(2.0 * first - second - here) + 0.25 * abs(first - here);
 }

@@ -92,7 +92,7 @@ SearchLine opposite(SearchLine search_line) {
 bool reaches_samples(Surface surface) {
   vec2 per_px = abs(parameters.slope.xy * search_scale());
   // The least length of a pixel on the surface. The factor allows for the part of the sphere that
-  // is nearer to the eye.
+  // is nearer to the eye: 1 - radius / depth, for radii of up to a tenth of the depth.
   float length_per_px =
       0.9 * min(per_px.x, per_px.y) * surface.view.z * (kPerspective ? surface.depth : 1.0);
   return parameters.radius >= nearest_px() * length_per_px;
@@ -116,7 +116,8 @@ struct HalfSlice {
 };
 
 // Offsets from the surface's pixel to the border of the image that is searched: along the line (x)
-// and against it (y).
+// and against it (y). They end a hundredth of a pixel before it, which is ten times the spacing of
+// floats at 16384 pixels.
 vec2 border_offsets(Surface surface, SearchLine search_line) {
   vec2 centre = kHalfSearch ? vec2(surface.pixel >> 1) + 0.5 : centre_of(surface);
   vec2 size = vec2(kHalfSearch ? textureSize(search_image, 0) : size_px());
@@ -199,7 +200,8 @@ HalfSlice make_half_slice(Surface surface, SearchLine search_line, Slice slice, 
         reduced_steps((min(distance, border.x) - nearest) / search_line.offset_per_px);
   }
   float steps = float(half_slice.steps);
-  // Samples stay apart if the radius spans few pixels, and inside the image in any case.
+  // Samples stay apart if the radius spans few pixels, by a quarter of a pixel on average (chosen),
+  // and inside the image in any case. The last number is no more than a length above 0.
   float apart = max(distance - nearest, 0.25 * steps * search_line.offset_per_px);
   float reach = max(min(apart, border.x - nearest), 1e-3 * search_line.offset_per_px);
   half_slice.growth = empty ? 0.0 : reach * (1.0 / (steps * steps));

@@ -31,7 +31,8 @@ void store_history(Surface surface, Result result, float weight, float recent);
 void store_alone(Surface surface, Result result);
 
 // Reads the history between four texels. A texel's weight is its bilinear weight, reduced with the
-// distance of its depth from the surface's tangent plane.
+// distance of its depth from the surface's tangent plane. Of texels that agree by less than a
+// twentieth in all (chosen) there is no history.
 History read_moving(Surface surface) {
   Previous previous = reproject(surface);
   vec2 part = fract(previous.position);

@@ -43,7 +43,8 @@ Previous reproject(Surface surface) {
     vec2 motion = texelFetch(motion_image, in_inputs(surface.pixel), 0).rg * parameters.motion.xy;
     vec2 moved =
         surface.place.centre * parameters.previous_extent.zw - parameters.motion.zw - motion;
-    // More than the rounding of motion vectors, which is 2^-11 in half precision.
+    // More than the rounding of motion vectors, which is 2^-11 in half precision: four times that,
+    // and a tenth of a pixel (both chosen).
     previous.moves = any(
         greaterThan(abs(moved - position), abs(motion) * (1.0 / 512.0) + 0.1 / float(kTexelSize)));
     // A NaN would stay in the history.

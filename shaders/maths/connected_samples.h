@@ -90,7 +90,7 @@ ALCOVE_INLINE float height_of_back(float height, float scale, float thickness) {
 const float kExtrapolationRatio = 4.0f;
 
 // Returns how far beyond the border a plane is extrapolated: `way`, but in perspective views at
-// most until the plane is ten times as far away from the eye as its last sample. `last` is the
+// most until the plane is ten times (chosen) as far from the eye as its last sample. `last` is the
 // inverse depth of that sample, and `slope` the change of inverse depth per unit of `way`.
 ALCOVE_INLINE float extrapolated_way(float last, float slope, float way, bool perspective) {
   return perspective ? min(way, 0.9f * last / max(-slope, 1e-30f)) : way;

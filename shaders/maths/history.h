@@ -179,10 +179,10 @@ ALCOVE_INLINE float update_recent(float recent, float weight, float now, float o
 
 // Returns how certain it is, [0,1], that the mean of the last few frames, `recent`, differs from
 // the mean of the whole history, `all`: 0 if the difference is within the noise of a few samples,
-// and 1 if it is well above. The noise is assumed to be largest for a visibility of 0.5.
+// and 1 if it is 0.1 (chosen) above. The noise is assumed to be largest for a visibility of 0.5.
 ALCOVE_INLINE float visibility_changed(float all, float recent) {
   float spread = sqrt(max(min(all * (1.0f - all), recent * (1.0f - recent)), 0.0f));
-  float beyond = abs(recent - all) - (0.01f + 0.25f * spread);
+  float beyond = abs(recent - all) - (0.01f + 0.25f * spread);  // of the mean of 16 times 0 or 1
   return clamp(beyond * 10.0f, 0.0f, 1.0f);
 }
 

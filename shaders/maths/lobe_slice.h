@@ -104,7 +104,7 @@ ALCOVE_INLINE HalfLobe make_half_lobe(Slice s, float side, float alpha) {
   float integral = abs(lobe_antiderivative(lobe.density, tangent) - lobe.at_view);
   lobe.knee = min(abs(lobe_antiderivative(lobe.density, knee) - lobe.at_view), integral);
   lobe.inner = lobe_shadowing(s, halfway_to_view(knee, side), a);
-  // Beyond the knee, shadowing falls ever faster, so its value a little past the middle is used.
+  // Beyond the knee, shadowing falls ever faster: its value past the middle is used, 5/8 (chosen).
   lobe.outer = lobe_shadowing(s, knee * 0.375f + tangent * 0.625f, a);
   lobe.whole = lobe.inner * lobe.knee + lobe.outer * (integral - lobe.knee);
   return lobe;

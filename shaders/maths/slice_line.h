@@ -157,8 +157,8 @@ ALCOVE_INLINE float depth_step_at(DepthStep s, float inverse_depth) {
 }
 
 // The fraction by which occlusion is faded to open because the depth buffer is too coarse: 0 if its
-// step at the surface (`step_length`, scene units) is at most a quarter of the radius, 1 if it is
-// at least the radius, linear in between.
+// step at the surface (`step_length`, scene units) is at most a quarter of the radius (chosen), 1
+// if it is at least the radius, linear in between.
 ALCOVE_INLINE float unresolved_occlusion(float step_length, float radius) {
   return saturate((step_length / radius - 0.25f) * (4.0f / 3.0f));
 }
