@@ -76,7 +76,7 @@ class WebGpuLists : public CInterface {
 TEST_F(WebGpuLists, low) { write(ALCOVE_QUALITY_LOW); }
 TEST_F(WebGpuLists, medium) { write(ALCOVE_QUALITY_MEDIUM); }
 TEST_F(WebGpuLists, console) { write(ALCOVE_QUALITY_CONSOLE); }
-TEST_F(WebGpuLists, all_outputs) { write(ALCOVE_QUALITY_MEDIUM, request_all_outputs); }
+TEST_F(WebGpuLists, all_outputs) { write(ALCOVE_QUALITY_LOW, request_all_outputs); }
 TEST_F(WebGpuLists, table) {
   write(ALCOVE_QUALITY_LOW, [](HostView& view) { view.settings.specular = ALCOVE_SPECULAR_TABLE; });
 }

@@ -6,7 +6,7 @@ import { create, globals } from 'webgpu';
 import { formats, translate } from './webgpu_translate.mjs';
 
 Object.assign(globalThis, globals);
-// The share counts all values of an image; the difference is in units of 1/255.
+// The share counts all values of an image; the difference is in units of 1/255 of its range.
 const LARGEST_SHARE_THAT_DIFFERS = 0.002, LARGEST_DIFFERENCE = 8;
 const PARAMETERS = 0, TABLE = 1, SAMPLER = 2, STORAGE_IMAGE = 4;  // AlcoveBindingType
 const INPUT = 0, OUTPUT = 1, HISTORY_PREVIOUS = 3, HISTORY_CURRENT = 4, BUFFER = 5;  // AlcoveResourceKind
@@ -110,8 +110,9 @@ for (const [index, frame] of frames.entries()) {
   for (const [i, resource] of frame.resources.entries()) {
     if (resource.kind !== OUTPUT) continue;
     const expected = frame.results[resource.role];
+    const stepsPerUnit = expected.some(value => value < 0) ? 255 / 2 : 255;  // bent normals: -1 to 1
     const steps = (await read(found[i], channelsOf(resource, expected)))
-        .map((value, k) => Math.abs(value - expected[k]) * 255);
+        .map((value, k) => Math.abs(value - expected[k]) * stepsPerUnit);
     const differing = steps.filter(step => !(step <= 1)).length;
     const largest = steps.reduce((a, b) => b > a || Number.isNaN(b) ? b : a);
     console.log(`frame ${index}, ${resource.name}: ${differing} of ${steps.length} values differ by ` +
