@@ -4,10 +4,9 @@
 
 // Copies samples of a view's inputs, which the CPU then checks for mistakes (alcoveDiagnose).
 //
-// The samples are on a grid over the image. Each sample takes three texels, one above the other.
-// The first has the depths of the pixel and of its left, right and upper neighbours. The second has
-// the depth of the lower neighbour and the normal as it is stored, and the third the motion vector
-// as it is stored. The last row begins with the sizes of the images of depth and normals.
+// The samples are on a grid over the image. Each sample takes three texels side by side, with the
+// members of PixelSample in diagnose/inspect.h. The last row begins with the sizes of the images of
+// depth and normals.
 
 #include "inspect_parameters.h"
 
@@ -34,8 +33,7 @@ float fetch_depth(ivec2 pixel) {
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (cell == ivec2(0, kInspectRows)) {
-    imageStore(sample_image, ivec2(0, 3 * int(kInspectRows)),
-               vec4(rest_of(depth_image), rest_of(normal_image)));
+    imageStore(sample_image, cell, vec4(rest_of(depth_image), rest_of(normal_image)));
   }
   if (cell.x >= int(kInspectColumns) || cell.y >= int(kInspectRows)) return;
   vec2 position = (vec2(cell) + 0.5) / vec2(kInspectColumns, kInspectRows);
@@ -46,10 +44,10 @@ void main() {
   vec2 motion = vec2(0.0);
   if (parameters.has_motion != 0u)
     motion = texelFetch(motion_image, place_in(motion_image, pixel), 0).xy;
-  imageStore(sample_image, ivec2(cell.x, 3 * cell.y),
+  ivec2 texel = ivec2(3 * cell.x, cell.y);
+  imageStore(sample_image, texel,
              vec4(fetch_depth(pixel), fetch_depth(pixel - ivec2(1, 0)),
                   fetch_depth(pixel + ivec2(1, 0)), fetch_depth(pixel - ivec2(0, 1))));
-  imageStore(sample_image, ivec2(cell.x, 3 * cell.y + 1),
-             vec4(fetch_depth(pixel + ivec2(0, 1)), normal));
-  imageStore(sample_image, ivec2(cell.x, 3 * cell.y + 2), vec4(motion, 0.0, 0.0));
+  imageStore(sample_image, texel + ivec2(1, 0), vec4(fetch_depth(pixel + ivec2(0, 1)), normal));
+  imageStore(sample_image, texel + ivec2(2, 0), vec4(motion, pixel));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/packing.hpp>
 #include <utility>
 #include <vector>
 
@@ -165,7 +166,8 @@ CameraMatrices EngineRun::matrices_at(std::uint32_t frame, bool with_jitter) con
   const glm::vec3 right = glm::normalize(glm::cross(ahead, now.up_ws));
   const glm::vec3 shift =
       (course_.straight ? step * (0.06f * right + 0.03f * ahead) : glm::vec3(0)) +
-      (course_.stereo && frame % 2 == 1 ? 0.4f * right : glm::vec3(0));
+      (course_.stereo && frame % 2 == 1 ? 0.4f * right : glm::vec3(0)) +
+      (frame % 2 == 1 ? course_.tremble * right : glm::vec3(0));
   now.eye_ws += shift;
   now.target_ws += shift;
   if (course_.zoom) now.fov_y *= std::pow(0.985f, step);
@@ -209,7 +211,7 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
         Target{view.images[ALCOVE_IMAGE_NORMALS], kNormalFormat, size, kColourUsage},
         Target{view.images[ALCOVE_IMAGE_MOTION], kMotionFormat, size, kColourUsage},
         Target{view.images[ALCOVE_IMAGE_VISIBILITY], kVisibilityFormat, size, kVisibilityUsage},
-        Target{drawn.other.albedo, kAlbedoFormat, size, kColourUsage},
+        Target{drawn.other[Other::albedo], kAlbedoFormat, size, kColourUsage},
         Target{drawn.other.half_depth,
                kDepthFormat,
                {size.width / 2, size.height / 2},
@@ -223,7 +225,7 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
     (void)gbuffer->add(graph, seen,
                        {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH], true),
                         .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS], true),
-                        .albedo = import(graph, drawn.other.albedo, true),
+                        .albedo = import(graph, drawn.other[Other::albedo], true),
                         .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION], true)});
     if (course_.other_inputs)
       (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
@@ -249,54 +251,71 @@ Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t fra
   const CameraMatrices now = matrices_at(frame, true);
   const auto depths = read<float>(drawn.view.images[ALCOVE_IMAGE_DEPTH]);
   const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.images[ALCOVE_IMAGE_NORMALS]);
-  AlcoveImage half_image = drawn.other.half_depth;
-  half_image.width = size.width / 2;
-  half_image.height = size.height / 2;
-  const auto half_depths = read<float>(half_image);
-  if (!depths || !halves || !half_depths) return Failure("The images could not be read back.");
-  std::vector<float> linear, coarse, gamma, filtered;
-  std::vector<glm::vec4> octahedral, in_view, transposed;
-  for (std::size_t i = 0; i < depths->size(); ++i) {
-    const double distance = view_depth(now.clip_from_view, (*depths)[i]);
-    linear.push_back(static_cast<float>(std::min(distance, 1e3)));
-    coarse.push_back(std::round((*depths)[i] * 65535.0f) / 65535.0f);
-    gamma.push_back(std::pow((*depths)[i], 1.0f / 2.2f));
-    const auto half_at = [&](std::uint32_t x, std::uint32_t y) {
-      return (*half_depths)[std::min(y, half_image.height - 1) * half_image.width +
-                            std::min(x, half_image.width - 1)];
-    };
-    const auto row = static_cast<std::uint32_t>(i) / size.width;
-    const auto column = static_cast<std::uint32_t>(i) % size.width;
-    const std::uint32_t x = (column + 1) / 2, y = (row + 1) / 2;  // of the farther texels
-    const float s = column % 2 == 1 ? 0.25f : 0.75f, t = row % 2 == 1 ? 0.25f : 0.75f;
-    const std::uint32_t left = std::max(x, 1u) - 1, top = std::max(y, 1u) - 1;
-    filtered.push_back(std::lerp(std::lerp(half_at(left, top), half_at(x, top), s),
-                                 std::lerp(half_at(left, y), half_at(x, y), s), t));
-    const auto& half = (*halves)[i];
+  if (!depths || !halves) return Failure("The images could not be read back.");
+  const int width = static_cast<int>(size.width), height = static_cast<int>(size.height);
+  const auto at = [&](int x, int y) {
+    return (*depths)[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * size.width +
+                     static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
+  };
+  // The distance along the view axis, at most 1e3.
+  const auto distance = [&](float depth) {
+    return static_cast<float>(std::min(view_depth(now.clip_from_view, depth), 1e3));
+  };
+  const float sky = camera_.reversed_z ? 0.0f : 1.0f;
+  const std::pair<Other, std::function<float(int, int)>> kinds[] = {
+      {Other::linear_depth, [&](int x, int y) { return distance(at(x, y)); }},
+      {Other::linear_to_far_depth,
+       [&](int x, int y) { return distance(at(x, y)) / distance(sky); }},
+      {Other::log_depth,
+       [&](int x, int y) { return std::log1p(distance(at(x, y))) / std::log1p(distance(sky)); }},
+      {Other::coarse_depth,
+       [&](int x, int y) { return std::round(at(x, y) * 65535.0f) / 65535.0f; }},
+      {Other::float16_depth,
+       [&](int x, int y) { return glm::unpackHalf1x16(glm::packHalf1x16(at(x, y))); }},
+      {Other::gamma_depth, [&](int x, int y) { return std::pow(at(x, y), 1.0f / 2.2f); }},
+      {Other::filtered_depth,
+       [&](int x, int y) {
+         const int left = (x + 1) / 2 * 2 - 2, top = (y + 1) / 2 * 2 - 2;
+         const float s = x % 2 == 1 ? 0.25f : 0.75f, t = y % 2 == 1 ? 0.25f : 0.75f;
+         return std::lerp(std::lerp(at(left, top), at(left + 2, top), s),
+                          std::lerp(at(left, top + 2), at(left + 2, top + 2), s), t);
+       }},
+      {Other::maximum_depth,
+       [&](int x, int y) {
+         float most = 0.0f;
+         for (int i = 0; i < 16; ++i)
+           most = std::max(most, at(x / 4 * 4 + i % 4, y / 4 * 4 + i / 4));
+         return most;
+       }},
+      {Other::chequered_depth, [&](int x, int y) { return (x + y) % 2 == 1 ? sky : at(x, y); }},
+      {Other::letterbox_depth,
+       [&](int x, int y) {
+         return std::abs(2 * y + 1 - height) * 4 > 3 * height ? sky : at(x, y);
+       }},
+      {Other::noise, [](int x, int y) {
+         const float s =
+             std::sin(12.9898f * static_cast<float>(x) + 78.233f * static_cast<float>(y));
+         return 43758.547f * s - std::floor(43758.547f * s);
+       }}};
+  for (const auto& [which, depth_at] : kinds) {
+    std::vector<float> texels;
+    for (int i = 0; i < width * height; ++i) texels.push_back(depth_at(i % width, i / width));
+    ALCOVE_TRY(drawn.other[which], create_filled(VK_FORMAT_R32_SFLOAT, size, texels));
+  }
+  std::array<std::vector<glm::vec4>, 3> normals;
+  for (const auto& half : *halves) {
     const glm::vec3 normal(half_to_float(half[0]), half_to_float(half[1]), half_to_float(half[2]));
     const bool is_sky = glm::dot(normal, normal) < 0.25f;
-    octahedral.emplace_back(is_sky ? glm::vec2(0.0f) : maths::octahedral_encode(normal), 0.0f,
+    normals[0].emplace_back(is_sky ? glm::vec2(0.0f) : maths::octahedral_encode(normal), 0.0f,
                             0.0f);
-    in_view.emplace_back(glm::mat3(now.view_from_world) * normal, 0.0f);
-    transposed.emplace_back(normal * glm::mat3(now.view_from_world), 0.0f);
+    normals[1].emplace_back(glm::mat3(now.view_from_world) * normal, 0.0f);
+    normals[2].emplace_back(normal * glm::mat3(now.view_from_world), 0.0f);
   }
-  const auto fill = [&](AlcoveImage& into, VkFormat format, const auto& texels) {
-    return create_filled(format, size, texels).map([&](const AlcoveImage& texture) {
-      into = texture;
-    });
-  };
-  return fill(drawn.other.linear_depth, VK_FORMAT_R32_SFLOAT, linear)
-      .and_then([&] { return fill(drawn.other.coarse_depth, VK_FORMAT_R32_SFLOAT, coarse); })
-      .and_then([&] {
-        return fill(drawn.other.octahedral_normals, VK_FORMAT_R32G32B32A32_SFLOAT, octahedral);
-      })
-      .and_then([&] { return fill(drawn.other.gamma_depth, VK_FORMAT_R32_SFLOAT, gamma); })
-      .and_then([&] { return fill(drawn.other.filtered_depth, VK_FORMAT_R32_SFLOAT, filtered); })
-      .and_then([&] {
-        return fill(drawn.other.transposed_normals, VK_FORMAT_R32G32B32A32_SFLOAT, transposed);
-      })
-      .and_then(
-          [&] { return fill(drawn.other.view_normals, VK_FORMAT_R32G32B32A32_SFLOAT, in_view); });
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    ALCOVE_TRY(drawn.other.images.at(static_cast<std::size_t>(Other::octahedral_normals) + i),
+               create_filled(VK_FORMAT_R32G32B32A32_SFLOAT, size, normals.at(i)));
+  }
+  return {};
 }
 
 EngineFrame EngineRun::describe(std::uint32_t frame) const {
@@ -306,10 +325,8 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
   EngineFrame result;
   result.settings.struct_size = sizeof result.settings;
   alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, course_.radius, &result.settings);
-  if (course_.quick) {
-    result.settings.slices = 1;
-    result.settings.steps = 2;
-  }
+  result.settings.slices = 1;  // few samples, as nobody looks at the visibility
+  result.settings.steps = 2;
   result.back = course_.stereo ? 2 : 1;
   result.view = drawn(0).view;
   result.view.info.id = 2 * next_id_ + (course_.stereo ? frame % 2 : 0);
@@ -336,21 +353,19 @@ VkResult EngineRun::submit(VkCommandBuffer recorded) const {
   return result == VK_SUCCESS ? vkQueueWaitIdle(gpu_.device().queue()) : result;
 }
 
-Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
-                                     bool submit_late) {
+Result<std::string> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
+                                    bool submit_late) {
   ALCOVE_TRY(AlcoveContext * context, engine_.context());
-  EngineResult result;
+  std::string said;
   VkCommandBuffer waiting = VK_NULL_HANDLE;  // recorded and not submitted
-  AlcoveImage visibility{};
   VkResult device = VK_SUCCESS;
   std::vector<std::uint32_t> ids;
-  for (std::uint32_t i = 0; result.said.empty() && i < course_.frames; ++i) {
+  for (std::uint32_t i = 0; said.empty() && i < course_.frames; ++i) {
     EngineFrame described = describe(i);
     const bool late = submit_late && i >= begin;
     if (late) described.frame.slot = 0;
     if (change && i >= begin) change(described);
     ids.push_back(described.view.info.id);
-    visibility = frames_.at(i).view.images[ALCOVE_IMAGE_VISIBILITY];
     described.view.info.settings = &described.settings;
     described.frame.views = &described.view;
     const VkCommandBuffer commands = commands_.at(i % kEngineSlots);
@@ -358,7 +373,7 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
     device = vkBeginCommandBuffer(commands, &info);
     for (std::uint32_t record = 0; device == VK_SUCCESS && record < described.records; ++record) {
       if (alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
-        result.said = std::string(alcoveGetMessage(context)) + "\n";
+        said = std::string(alcoveGetMessage(context)) + "\n";
     }
     device = device == VK_SUCCESS ? vkEndCommandBuffer(commands) : device;
     if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) device = submit(waiting);
@@ -368,14 +383,10 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
   }
   if (waiting != VK_NULL_HANDLE && submit(waiting) != VK_SUCCESS)
     return Failure("The last frame could not be run.");
-  if (result.said.empty()) {
-    result.said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
-    alcoveDiagnose(context, result.said.data(), result.said.size());
-    result.said.pop_back();
-    ALCOVE_TRY(auto texels, read<std::uint8_t>(visibility));
-    result.visibility = Image<float>(visibility.width, visibility.height);
-    std::ranges::transform(texels, result.visibility.pixels.begin(),
-                           [](std::uint8_t texel) { return static_cast<float>(texel) / 255.0f; });
+  if (said.empty()) {
+    said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
+    alcoveDiagnose(context, said.data(), said.size());
+    said.pop_back();
   }
   ++next_id_;
   if (submit_late) {
@@ -384,7 +395,7 @@ Result<EngineResult> EngineRun::draw(const ChangeFrame& change, std::uint32_t be
   } else {
     for (const std::uint32_t id : ids) alcoveDropView(context, id);
   }
-  return result;
+  return said;
 }
 
 }  // namespace alcove::sample

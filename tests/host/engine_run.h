@@ -13,7 +13,6 @@
 #include "render/gbuffer.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
-#include "support/image.h"
 #include "support/result.h"
 
 namespace alcove::sample {
@@ -31,27 +30,44 @@ struct EngineCourse {
   bool resize = false;     // the images before the frame `change_at` are smaller
   bool cut = false;        // the camera before it is another
   bool straight = false;   // the camera also moves, without a rotation
+  float tremble = 0.0f;    // it also goes to and fro by this distance, from frame to frame
   bool zoom = false;       // the angle of view changes
   bool sway = false;       // each Mesh::moves sways
   bool stereo = false;     // two eyes alternate, each with a view of its own
   bool relative = false;   // the eye of each frame is the origin of its cameras
   std::uint32_t change_at = 4;
-  bool quick = false;         // few samples, for callers that do not look at the visibility
   bool other_inputs = false;  // creates OtherInputs, which takes time
 };
 
-// Images that engines give by mistake instead of the right ones, and cameras without jitter.
+// Images that engines give by mistake instead of the right ones, all of the right size.
+enum class Other : std::uint8_t {
+  linear_depth,
+  linear_to_far_depth,  // from 0 to 1
+  log_depth,            // the logarithm of the distance
+  coarse_depth,         // rounded to 16 bits
+  float16_depth,
+  gamma_depth,      // with an exponent of 2.2
+  filtered_depth,   // half the size, enlarged with a linear filter
+  maximum_depth,    // the largest of 4x4 pixels, as in a hi-Z level
+  chequered_depth,  // every second pixel is at the far plane
+  letterbox_depth,  // without a quarter of the rows, at the top and at the bottom
+  noise,            // a resource that is no depth
+  octahedral_normals,
+  view_normals,        // in view space
+  transposed_normals,  // the same, by the transposed matrix
+  albedo,
+  count
+};
+
+// The mistaken images, and a camera without jitter.
 struct OtherInputs {
   AlcoveCamera camera_without_jitter{};
   AlcoveImage half_depth{};  // half the width and height
-  AlcoveImage linear_depth{};
-  AlcoveImage coarse_depth{};    // rounded to 16 bits
-  AlcoveImage gamma_depth{};     // with an exponent of 2.2
-  AlcoveImage filtered_depth{};  // the half depth, enlarged with a linear filter
-  AlcoveImage octahedral_normals{};
-  AlcoveImage view_normals{};        // in view space
-  AlcoveImage transposed_normals{};  // the same, by the transposed matrix
-  AlcoveImage albedo{};
+  std::array<AlcoveImage, static_cast<std::size_t>(Other::count)> images{};
+  const AlcoveImage& operator[](Other which) const {
+    return images.at(static_cast<std::size_t>(which));
+  }
+  AlcoveImage& operator[](Other which) { return images.at(static_cast<std::size_t>(which)); }
 };
 
 // A frame that an engine passes to the C interface.
@@ -72,12 +88,6 @@ struct EngineFrame {
 
 // Changes a frame before it is recorded.
 using ChangeFrame = std::function<void(EngineFrame& frame)>;
-
-struct EngineResult {
-  Image<float> visibility;  // of the last frame
-  // The lines of alcoveDiagnose, which looks at pixels too, or the message of a refused frame.
-  std::string said;
-};
 
 // A scene on a device and a context of the library, which several runs share.
 class Engine {
@@ -116,9 +126,10 @@ class EngineRun {
 
   // Records the frames from 0 to `frames` as a new view. `change`, if it is given, changes them
   // from the frame `begin` on. If `submit_late` is true, each of these is submitted after the next
-  // one was recorded.
-  [[nodiscard]] Result<EngineResult> draw(const ChangeFrame& change = {}, std::uint32_t begin = 0,
-                                          bool submit_late = false);
+  // one was recorded. Returns the lines of alcoveDiagnose, which looks at pixels too, or the
+  // message of a refused frame.
+  [[nodiscard]] Result<std::string> draw(const ChangeFrame& change = {}, std::uint32_t begin = 0,
+                                         bool submit_late = false);
 
  private:
   // A frame of the course, before a mistake is made.

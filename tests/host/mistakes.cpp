@@ -121,9 +121,8 @@ void change_size(F& frame) {
            frame.view.images[ALCOVE_IMAGE_DEPTH].height);
 }
 
-void set_normals(F& frame, const AlcoveImage& image, AlcoveNormalEncoding encoding,
-                 bool in_view_space = false) {
-  frame.view.images[ALCOVE_IMAGE_NORMALS] = image;
+void set_normals(F& frame, Other image, AlcoveNormalEncoding encoding, bool in_view_space) {
+  frame.view.images[ALCOVE_IMAGE_NORMALS] = frame.other[image];
   frame.view.info.normal_encoding = encoding;
   frame.view.info.normals_in_view_space = in_view_space ? VK_TRUE : VK_FALSE;
 }
@@ -138,60 +137,73 @@ void scale_motion(F& frame, float x, float y) {
   set_motion(frame, frame.right.images[ALCOVE_IMAGE_MOTION], x, y);
 }
 
+// Gives the two eyes one id.
+void give_one_id(F& frame) {
+  frame.view.info.id &= ~1u;
+  frame.view.info.previous_camera = frame.right_before.info.camera;
+}
+
+void set_depth(F& frame, Other image) {
+  frame.view.images[ALCOVE_IMAGE_DEPTH] = frame.other[image];
+}
+
+// Returns a change of frames with these arguments.
+template <typename... Arguments>
+ChangeFrame with(void (*change)(F&, Arguments...), std::type_identity_t<Arguments>... arguments) {
+  return [=](F& frame) { change(frame, arguments...); };
+}
+
 }  // namespace
 
 const std::vector<PlantedMistake>& planted_mistakes() {
   static const std::vector<PlantedMistake> mistakes{
       // Projection and depth.
-      {"reversed projection, depth not reversed", "depth runs the other way",
-       [](F& f) { change_depth_row(f, -1.0f, 1.0f); }},
-      {"depth reversed, projection not", "depth runs the other way",
-       [](F& f) { change_depth_row(f, -1.0f, 1.0f); }, PlantedMistake::reversed},
-      {"OpenGL's projection, depth from -1 to 1", "looks like OpenGL's",
-       [](F& f) { change_depth_row(f, 2.0f, -1.0f); }},
-      {"OpenGL's projection with a near plane that is no round number", "depth from -1 to 1",
-       [](F& f) { change_depth_row(f, 2.0f, -1.0f); }, PlantedMistake::odd_planes},
-      {"DEPTH_FROM_MINUS_ONE for depth from 0 to 1", "without that bit",
-       [](F& f) { change_depth_row(f, 0.5f, 0.5f); }},
-      {"the same, with reversed depth", "no range of depth",
-       [](F& f) { change_depth_row(f, 0.5f, 0.5f); }, PlantedMistake::reversed},
-      {"projection of a narrower angle of view", "another angle of view",
-       [](F& f) { scale_tangents(f, 1.5f, 1.5f); }},
-      {"projection of a wider angle of view", "another angle of view",
-       [](F& f) { scale_tangents(f, 0.7f, 0.7f); }},
-      {"angle of view five degrees too wide", "another angle of view",
-       [](F& f) { scale_tangents(f, 0.906f, 0.906f); }},
-      {"aspect 13 % wrong", "another angle of view", [](F& f) { scale_tangents(f, 1.13f, 1.0f); }},
-      {"near plane ten times too far away", "other near and far planes",
-       [](F& f) { set_planes(f, 10.0f * kNear, kFar); }},
-      {"near plane ten times too far away, infinite", "the near plane of clip_from_view",
-       [](F& f) { change_depth_row(f, 10.0f, 0.0f); }, PlantedMistake::reversed},
-      {"far plane ten times too near", "other near and far planes",
-       [](F& f) { set_planes(f, kNear, 0.1f * kFar); }},
-      {"y of the projection with the wrong sign", "the other way round",
-       [](F& f) { scale_tangents(f, 1.0f, -1.0f); }},
-      {"x of the projection with the wrong sign", "the other way round",
-       [](F& f) { scale_tangents(f, -1.0f, 1.0f); }},
+      {"reversed projection, other depth", "depth runs the other way",
+       with(change_depth_row, -1.0f, 1.0f)},
+      {"reversed depth, other projection", "depth runs the other way",
+       with(change_depth_row, -1.0f, 1.0f), PlantedMistake::reversed},
+      {"OpenGL's projection", "looks like OpenGL's", with(change_depth_row, 2.0f, -1.0f)},
+      {"the same, near plane not round", "depth from -1 to 1", with(change_depth_row, 2.0f, -1.0f),
+       PlantedMistake::odd_planes},
+      {"DEPTH_FROM_MINUS_ONE by mistake", "without that bit", with(change_depth_row, 0.5f, 0.5f)},
+      {"narrower angle of view", "another angle of view", with(scale_tangents, 1.5f, 1.5f)},
+      {"wider angle of view", "another angle of view", with(scale_tangents, 0.7f, 0.7f)},
+      {"five degrees too wide", "another angle of view", with(scale_tangents, 0.906f, 0.906f)},
+      {"aspect 13 % wrong", "another angle of view", with(scale_tangents, 1.13f, 1.0f)},
+      {"near plane ten times too far", "other near and far planes",
+       with(set_planes, 10.0f * kNear, kFar)},
+      {"the same, infinite", "the near plane of clip_from_view",
+       with(change_depth_row, 10.0f, 0.0f), PlantedMistake::reversed},
+      {"far plane too near", "other near and far planes", with(set_planes, kNear, 0.1f * kFar)},
+      {"y of the projection negated", "the other way round", with(scale_tangents, 1.0f, -1.0f)},
+      {"x of the projection negated", "the other way round", with(scale_tangents, -1.0f, 1.0f)},
       {"view-projection given as projection", "view-projection",
        [](F& f) { change_cameras(f, multiply_by_view); }},
       {"transposed projection", "transposed",
        [](F& f) { change_cameras(f, [](AlcoveCamera& c) { transpose(c.clip_from_view, 4); }); }},
-      {"projection of a camera along +Z", "ALCOVE_CAMERA_CONVENTION_FORWARD_Z",
+      {"DIRECT3D for a camera along -Z", "without it",
        [](F& f) {
          change_cameras(f, [](AlcoveCamera& c) {
-           for (std::size_t i = 8; i < 12; ++i) c.clip_from_view[i] *= -1.0f;
+           alcoveConvertCamera(c.clip_from_view, c.view_from_world,
+                               ALCOVE_CAMERA_CONVENTION_DIRECT3D, &c);
          });
        }},
-      {"projection with NaN", "not finite",
-       [](F& f) { f.view.info.camera.clip_from_view[0] = std::nanf(""); }},
-      {"linear depth", "not a linear depth",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.linear_depth; }},
-      {"16-bit depth copied to 32 bits", "the steps of another format",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.coarse_depth; }},
-      {"depth with a gamma", "a gamma was applied to depth",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.gamma_depth; }},
-      {"depth filtered while it was scaled", "between those of the surfaces",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = f.other.filtered_depth; }},
+      {"linear depth", "not a linear depth", with(set_depth, Other::linear_depth)},
+      {"linear depth from 0 to 1", "a linear depth", with(set_depth, Other::linear_to_far_depth)},
+      {"16-bit depth in 32 bits", "the steps of another format",
+       with(set_depth, Other::coarse_depth)},
+      {"depth with a gamma", "a gamma was applied to depth", with(set_depth, Other::gamma_depth)},
+      {"filtered depth", "between those of the surfaces", with(set_depth, Other::filtered_depth)},
+      {"logarithmic depth", "a logarithmic", with(set_depth, Other::log_depth)},
+      {"half-float depth", "half floats", with(set_depth, Other::float16_depth)},
+      {"hi-Z maximum", "not look like surfaces", with(set_depth, Other::maximum_depth)},
+      {"checkerboard", "not look like surfaces", with(set_depth, Other::chequered_depth)},
+      {"another resource", "not look like surfaces", with(set_depth, Other::noise)},
+      {"a letterbox", "another angle of view",
+       [](F& f) {
+         scale_tangents(f, 1.0f, 4.0f / 3.0f);
+         f.view.images[ALCOVE_IMAGE_DEPTH] = f.other[Other::letterbox_depth];
+       }},
       // The view matrix.
       {"world_from_view instead of view_from_world", "only if it is inverted",
        [](F& f) { change_view_matrices(f, invert); }},
@@ -232,15 +244,20 @@ const std::vector<PlantedMistake>& planted_mistakes() {
          f.view.images[ALCOVE_IMAGE_NORMALS] = f.right_before.images[ALCOVE_IMAGE_NORMALS];
        }},
       // Jitter.
-      {"jitter of depth in neither camera", "clip_from_view lacks",
-       [](F& f) { scale_jitter(f, 0.0f, 0.0f); }},
-      {"jitter with the other sign", "the jitter of camera.clip_from_view differs",
-       [](F& f) { scale_jitter(f, -1.0f, -1.0f); }},
-      {"jitter with the other sign of y", "the jitter of camera.clip_from_view differs",
-       [](F& f) { scale_jitter(f, 1.0f, -1.0f); }},
-      {"jitter twice too large", "the jitter of camera.clip_from_view differs",
-       [](F& f) { scale_jitter(f, 2.0f, 2.0f); }},
-      {"jitter in pixels", "the jitter of camera.clip_from_view differs",
+      {"jitter in neither camera", "clip_from_view lacks", with(scale_jitter, 0.0f, 0.0f)},
+      {"jitter with the other sign", "jitter of camera.clip_from_view differs",
+       with(scale_jitter, -1.0f, -1.0f)},
+      {"jitter with the other sign of y", "jitter of camera.clip_from_view differs",
+       with(scale_jitter, 1.0f, -1.0f)},
+      {"the same, standing", "jitter of camera.clip_from_view differs",
+       with(scale_jitter, 1.0f, -1.0f), PlantedMistake::standing},
+      {"half the jitter, standing", "jitter of camera.clip_from_view differs",
+       with(scale_jitter, 0.5f, 0.5f), PlantedMistake::standing},
+      {"half the jitter", "jitter of camera.clip_from_view differs",
+       with(scale_jitter, 0.5f, 0.5f)},
+      {"jitter twice too large", "jitter of camera.clip_from_view differs",
+       with(scale_jitter, 2.0f, 2.0f)},
+      {"jitter in pixels", "jitter of camera.clip_from_view differs",
        [](F& f) {
          scale_jitter(f, 0.5f * static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].width),
                       0.5f * static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].height));
@@ -275,12 +292,11 @@ const std::vector<PlantedMistake>& planted_mistakes() {
          f.records = 2;
          f.frame.diagnose_pixels = VK_FALSE;  // the samples would be written twice
        }},
-      {"two eyes with one id", "an AlcoveView::id of its own",
-       [](F& f) {
-         f.view.info.id &= ~1u;
-         f.view.info.previous_camera = f.right_before.info.camera;
-       },
-       PlantedMistake::stereo},
+      {"two eyes with one id", "an AlcoveView::id of its own", give_one_id, PlantedMistake::stereo},
+      {"two eyes with one id, on a straight path", "an AlcoveView::id of its own", give_one_id,
+       PlantedMistake::straight_stereo},
+      {"half_resolution in every second frame", "half_resolution",
+       [](F& f) { f.settings.half_resolution = f.frame.index % 2; }},
       {"slot recorded again before its frame has finished", "AlcoveFrame::slot was recorded again",
        nullptr},
       {"a new id in every frame", "More views have a history",
@@ -315,40 +331,41 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"normals of world space declared to be of view space", "in the other space",
        [](F& f) { f.view.info.normals_in_view_space = VK_TRUE; }},
       {"normals of view space declared to be of world space", "in the other space",
-       [](F& f) { set_normals(f, f.other.view_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ); }},
+       with(set_normals, Other::view_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, false)},
       {"signed normals declared to be packed", "decoded in another way",
        [](F& f) { f.view.info.normal_encoding = ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ; }},
       {"octahedral normals read as xyz", "decoded in another way",
-       [](F& f) { set_normals(f, f.other.octahedral_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ); }},
+       with(set_normals, Other::octahedral_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, false)},
       {"octahedral normals declared to be packed", "decoded in another way",
-       [](F& f) {
-         set_normals(f, f.other.octahedral_normals, ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL);
-       }},
+       with(set_normals, Other::octahedral_normals, ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL,
+            false)},
       {"xyz read as octahedral normals", "decoded in another way",
        [](F& f) { f.view.info.normal_encoding = ALCOVE_NORMAL_ENCODING_OCTAHEDRAL; }},
       {"normals_forward_z for a camera along -Z", "the other sign of z",
        [](F& f) {
-         set_normals(f, f.other.view_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, true);
+         set_normals(f, Other::view_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, true);
          f.view.info.normals_forward_z = VK_TRUE;
        }},
       {"albedo given as normals", "under no reading",
-       [](F& f) { set_normals(f, f.other.albedo, ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ); }},
+       with(set_normals, Other::albedo, ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, false)},
       {"normals of view space by the transposed matrix", "transposed",
-       [](F& f) {
-         set_normals(f, f.other.transposed_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, true);
-       }},
+       with(set_normals, Other::transposed_normals, ALCOVE_NORMAL_ENCODING_SIGNED_XYZ, true)},
       // Motion vectors.
       {"motion vectors that point back", "the other sign of x or y",
-       [](F& f) { scale_motion(f, -1.0f, -1.0f); }},
-      {"motion vectors with y up", "the other sign of x or y",
-       [](F& f) { scale_motion(f, 1.0f, -1.0f); }},
+       with(scale_motion, -1.0f, -1.0f)},
+      {"motion vectors with y up", "the other sign of x or y", with(scale_motion, 1.0f, -1.0f)},
       {"motion vectors in pixels, declared to be in uv", "in another unit",
        [](F& f) {
          scale_motion(f, static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].width),
                       static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].height));
        }},
+      {"motion vectors in uv, declared to be in pixels", "in another unit",
+       [](F& f) {
+         scale_motion(f, 1.0f / static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].width),
+                      1.0f / static_cast<float>(f.view.images[ALCOVE_IMAGE_DEPTH].height));
+       }},
       {"motion vectors in normalised device coordinates", "in another unit",
-       [](F& f) { scale_motion(f, 2.0f, 2.0f); }},
+       with(scale_motion, 2.0f, 2.0f)},
       {"jitter added to motion vectors that have it", "with a constant offset",
        [](F& f) {
          scale_motion(f, 1.0f, 1.0f);
@@ -358,36 +375,14 @@ const std::vector<PlantedMistake>& planted_mistakes() {
                        f.view.info.camera.clip_from_view[8 + i]);
        }},
       {"motion vectors without the camera's motion", "motion vectors are 0",
-       [](F& f) { scale_motion(f, 1e-6f, 1e-6f); }},
+       with(scale_motion, 1e-6f, 1e-6f)},
       {"motion vectors with a constant offset", "with a constant offset",
        [](F& f) {
          scale_motion(f, 1.0f, 1.0f);
          f.view.info.motion_offset[0] = 0.01f;
        }},
       {"normals given as motion vectors", "under no reading",
-       [](F& f) { set_motion(f, f.other.view_normals, 1.0f, 1.0f); }},
-      // Calls that are refused.
-      {"struct_size is 0", "struct_size", [](F& f) { f.view.struct_size = 0; }},
-      {"radius is 0", "radius", [](F& f) { f.settings.radius = 0.0f; }},
-      {"tile_size is 3", "tile_size", [](F& f) { f.settings.tile_size = 3; }},
-      {"no depth", "no image of depth", [](F& f) { f.view.images[ALCOVE_IMAGE_DEPTH] = {}; }},
-      {"no output", "to write to", [](F& f) { f.view.images[ALCOVE_IMAGE_VISIBILITY] = {}; }},
-      {"slot beyond the frames in flight", "AlcoveFrame::slot is", [](F& f) { f.frame.slot = 5; }},
-      {"normals of another size than depth", "make them equal",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_NORMALS].width -= 1; }},
-      {"depth without a layout", "without contents",
-       [](F& f) {
-         f.view.images[ALCOVE_IMAGE_DEPTH].initial_state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-       }},
-      {"output without STORAGE", "VK_IMAGE_USAGE_STORAGE_BIT",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_VISIBILITY].usage = VK_IMAGE_USAGE_SAMPLED_BIT; }},
-      {"normals with four samples per pixel", "resolve it first",
-       [](F& f) { f.view.images[ALCOVE_IMAGE_NORMALS].samples = 4; }},
-      {"a size above the largest", "the largest size",
-       [](F& f) {
-         f.view.info.largest_width = f.view.images[ALCOVE_IMAGE_DEPTH].width - 1;
-         f.view.info.largest_height = f.view.images[ALCOVE_IMAGE_DEPTH].height;
-       }},
+       [](F& f) { set_motion(f, f.other[Other::view_normals], 1.0f, 1.0f); }},
   };
   return mistakes;
 }
@@ -410,21 +405,26 @@ std::vector<RightCourse> right_courses(const EngineCourse& base) {
   add("swaying", &EngineCourse::sway);
   add("stereo", &EngineCourse::stereo);
   add("camera-relative", &EngineCourse::relative);
+  courses.push_back({"trembling", jittered});
+  courses.back().course.tremble = 0.01f;
   return courses;
 }
 
 Result<std::string> diagnose_right_frames(EngineRun& run) {
   const ChangeFrame ways[] = {{},
                               [](F& f) { scale_motion(f, 1.0f, 1.0f); },
-                              [](F& f) { f.view.images[ALCOVE_IMAGE_NORMALS] = {}; },
+                              [](F& f) {  // as a host of VulkanSceneGraph does
+                                f.view.images[ALCOVE_IMAGE_NORMALS] = {};
+                                if (f.frame.index == 0) f.view.info.previous_camera = {};
+                              },
                               [](F& f) {
                                 change_size(f);
                                 f.view.info.static_frames = 0;
                               }};
   std::string said;
   for (const ChangeFrame& way : ways) {
-    ALCOVE_TRY(auto drawn, run.draw(way));
-    said += drawn.said;
+    ALCOVE_TRY(const std::string drawn, run.draw(way));
+    said += drawn;
   }
   return said;
 }
@@ -437,23 +437,21 @@ Result<EngineRun*> MistakeRun::run_of(PlantedMistake::Frames frames) {
     from.near_plane = frames == PlantedMistake::odd_planes ? 0.1370519f : kNear;
     from.far_plane = from.reversed_z ? std::numeric_limits<float>::infinity() : kFar;
     EngineCourse course = course_;
-    course.jitter = course.other_inputs = true;
-    course.straight = frames == PlantedMistake::straight;
-    course.stereo = frames == PlantedMistake::stereo;
-    course.orbit = course.straight ? 0.0f : 0.02f;
+    course.jitter = true;
+    course.other_inputs = frames == PlantedMistake::orbit;
+    course.straight =
+        frames == PlantedMistake::straight || frames == PlantedMistake::straight_stereo;
+    course.stereo = frames == PlantedMistake::stereo || frames == PlantedMistake::straight_stereo;
+    course.orbit = course.straight || frames == PlantedMistake::standing ? 0.0f : 0.02f;
     ALCOVE_TRY(run, EngineRun::create(engine_, from, course));
   }
   return run.get();
 }
 
-Result<EngineResult> MistakeRun::draw(const PlantedMistake& mistake, std::uint32_t begin) {
+Result<std::string> MistakeRun::draw(const PlantedMistake& mistake, std::uint32_t begin) {
   return run_of(mistake.frames).and_then([&](EngineRun* run) {
     return run->draw(mistake.plant, begin, !mistake.plant);
   });
-}
-
-Result<EngineResult> MistakeRun::draw_right(PlantedMistake::Frames frames) {
-  return run_of(frames).and_then([](EngineRun* run) { return run->draw(); });
 }
 
 bool names(const std::string& said, const PlantedMistake& mistake) {

@@ -17,8 +17,18 @@ struct PlantedMistake {
   const char* sentence;  // part of the only sentence of alcoveDiagnose, or of the refused call
   ChangeFrame plant;     // makes the mistake in a frame; null for a late submission
   // The frames: of an orbiting camera, with a reversed depth buffer and an infinite far plane, of a
-  // camera that moves straight ahead, with two eyes, or with a near plane that is no round number.
-  enum Frames { orbit, reversed, straight, stereo, odd_planes, kinds } frames = orbit;
+  // camera that moves straight ahead, with two eyes, with a near plane that is no round number, or
+  // of a camera that stands still.
+  enum Frames {
+    orbit,
+    reversed,
+    straight,
+    stereo,
+    straight_stereo,
+    odd_planes,
+    standing,
+    kinds
+  } frames = orbit;
 };
 
 [[nodiscard]] const std::vector<PlantedMistake>& planted_mistakes();
@@ -42,8 +52,7 @@ class MistakeRun {
       : engine_(engine), camera_(camera), course_(course) {}
 
   // Makes a mistake from the frame `begin` on.
-  [[nodiscard]] Result<EngineResult> draw(const PlantedMistake& mistake, std::uint32_t begin);
-  [[nodiscard]] Result<EngineResult> draw_right(PlantedMistake::Frames frames);
+  [[nodiscard]] Result<std::string> draw(const PlantedMistake& mistake, std::uint32_t begin);
 
  private:
   Result<EngineRun*> run_of(PlantedMistake::Frames frames);

@@ -1,6 +1,7 @@
 #include "diagnose/inspect.h"
 
 #include <array>
+#include <bit>
 #include <set>
 
 #include "diagnose/picture.h"
@@ -11,12 +12,9 @@ namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
-// Limits for the comparison of the angles to the view axis.
-constexpr double kSameSurface = 15.0;          // degrees between the normals of successive samples
-constexpr double kSameAngleAboutAxis = 0.966;  // cosine of 15 degrees about the view axis
-constexpr double kOblique = 0.04;              // half the sine of twice the angle: 2 to 88 degrees
-constexpr double kRatioError = 0.05;           // of the logarithm of a ratio, at most, to agree
-constexpr double kLeastScale = 0.14;  // logarithm of 1.15, below which a scale is not reported
+// The angle in degrees below which normals count as equal: their format rounds them.
+constexpr double kSameNormal = 0.5;
+constexpr double kSameSurface = 15.0;  // degrees between the normals of successive samples
 
 // Returns true if a number has at most so many significant digits, as near planes that people type.
 bool is_round(double value, double digits) {
@@ -35,13 +33,13 @@ double angle_between(const dvec3& a, const dvec3& b) {
 
 // Returns the normal, in view space and towards the eye, of the plane on which depth has a
 // gradient. It is not normalised.
-dvec3 plane_normal(const Eye& eye, const PixelSample& s, const dvec2& gradient, bool perspective) {
+dvec3 plane_normal(const Eye& eye, const PixelSample& s, const dvec2& gradient) {
   // The plane in clip space, depth = slope.x * x + slope.y * y + offset, and then in view space.
   const dvec2 slope = 0.5 * gradient * eye.size;
   const double offset = s.depth - maths::dot(slope, eye.ndc(s));
-  const dvec4 plane = maths::transpose(eye.clip_from_view) * dvec4(slope, -1.0, offset);
-  const double to_eye = perspective ? plane.w : plane.z;
-  return to_eye < 0.0 ? -dvec3(plane) : dvec3(plane);
+  const dvec4 plane = dvec4(slope, -1.0, offset) * eye.clip_from_view;
+  const bool perspective = eye.clip_from_view[3][3] == 0.0;
+  return (perspective ? plane.w : plane.z) < 0.0 ? -dvec3(plane) : dvec3(plane);
 }
 
 class Inspector {
@@ -59,6 +57,7 @@ class Inspector {
     if (pictures_.size() > 1 && same_rotation(previous, frames[1].info.camera) &&
         to_rigid(previous.view_from_world) != now_.view_from_world)
       pictures_[1].view_from_world = to_rigid(previous.view_from_world);
+    choose_samples();
   }
 
   // Stops at the first mistake of the geometry, because others would be its consequences. Those of
@@ -73,20 +72,24 @@ class Inspector {
       return true;
     };
     if (compares(kByDepth, true)) found = mistake_of_depth();
-    if (compares(kBySurfaces, surfaces() >= kEnoughSamples)) found = mistake_of_surfaces();
+    const bool sees_surfaces = surfaces() >= kEnoughSamples;
+    if (compares(kBySurfaces, sees_surfaces)) found = mistake_of_surfaces();
     if (compares(kByNormals, frame_.has_normals)) found = mistake_of_normals();
     const bool continues = pictures_.size() > 1 && frame_.continues_history();
     if (continues) note_size(sightings);
     if (continues && frame_.info.static_frames > 0) {
-      if (found == nullptr) sightings.note(mistakes::static_in_motion, changes());
+      if (found == nullptr) sightings.note(mistakes::static_in_motion, depth_changes());
     } else if (compares(kByCameras, continues)) {
-      const CameraFit fit = fit_cameras(pictures_, given_);
+      const double error = std::max(2.0, error_of(given_));
+      const CameraFit fit = fit_cameras(
+          pictures_, given_, [&](const Reading& reading) { return error_of(reading) <= error; });
       found = fit.mistake;
       measure_ = fit.measure;
       const auto motion =
           frame_.has_motion ? mistake_of_motion(pictures_, given_, fit.share) : std::nullopt;
       if (motion) sightings.note_groups(kByMotion, *motion);
     }
+    if (compares(kByRadius, sees_surfaces)) found = mistake_of_radius();
     if ((compared & (kByNormals | kByCameras)) != 0) compared |= kByGeometry;
     sightings.note_groups(compared, found, measure_);
   }
@@ -109,9 +112,10 @@ class Inspector {
 
   // Returns the first mistake that shows in the depth of surfaces.
   const Mistake* mistake_of_surfaces() const {
-    if (is_depth_filtered()) return &mistakes::depth_filtered;
     if (is_another_format()) return &mistakes::depth_format;
-    return mistake_of_radius();
+    if (!is_surface()) return &mistakes::not_surfaces;
+    if (is_depth_filtered()) return &mistakes::depth_filtered;
+    return is_curved() ? &mistakes::depth_curved : nullptr;
   }
 
   bool is_too_small() const {
@@ -124,23 +128,26 @@ class Inspector {
                     [](const PixelSample& s) { return s.depth < 0.0f || s.depth > 1.0f; }) > 0.02;
   }
 
+  // Calls `call` with the depths of each three pixels in a row or a column, none of the sky.
+  template <typename Call>
+  void for_lines(const Call& call) const {
+    for (const PixelSample& s : frame_.samples)
+      for (const auto& [a, c] : {std::pair{s.left, s.right}, std::pair{s.up, s.down}})
+        if (!is_sky(a) && !is_sky(s.depth) && !is_sky(c))
+          call(double{a}, double{s.depth}, double{c});
+  }
+
   // At the edge of an object each pixel has the depth of one of two surfaces. A linear filter gives
   // it a depth between them, which is neither theirs nor, as on a steep surface, their mean.
   bool is_depth_filtered() const {
     std::size_t edges = 0, between = 0;
-    const auto look_at = [&](float before, float here, float after) {
-      if (is_sky(before) || is_sky(here) || is_sky(after)) return;
+    for_lines([&](double before, double here, double after) {
       const double a = now_.distance(before), b = now_.distance(here), c = now_.distance(after);
-      const double least = std::min(std::abs(here - before), std::abs(after - here));
-      const double most = std::max(std::abs(here - before), std::abs(after - here));
+      const auto [least, most] = std::minmax({std::abs(here - before), std::abs(after - here)});
       if (std::abs(a - c) < 0.15 * b || least > 0.8 * most) return;
       ++edges;
       between += (b - a) * (c - b) > 0.0 && least > 0.2 * most;
-    };
-    for (const PixelSample& s : frame_.samples) {
-      look_at(s.left, s.depth, s.right);
-      look_at(s.up, s.depth, s.down);
-    }
+    });
     return edges >= kEnoughOfSome && 2 * between > edges;
   }
 
@@ -179,7 +186,8 @@ class Inspector {
     return (now_.perspective && behind) || near_is_round_with(-0.5);
   }
 
-  // Compares the steps of the depths with those of 16 bits. Other formats cannot be told apart.
+  // Compares the steps of the depths with those of 16 bits and of half floats, whose last 13 bits
+  // are 0. Other formats cannot be told apart.
   bool is_another_format() const {
     std::set<float> depths;
     for (const PixelSample& sample : frame_.samples)
@@ -187,8 +195,55 @@ class Inspector {
     const double in_steps = share_of(depths, [](float depth) {
       return std::abs(65535.0 * depth - std::round(65535.0 * depth)) < 0.01;
     });
+    const double halves = share_of(
+        depths, [](float depth) { return (std::bit_cast<std::uint32_t>(depth) & 0x1fffu) == 0; });
     const bool says_16_bits = now_.depth_step(0.0f) == 1.0 / 65535.0;
-    return depths.size() >= kEnoughSamples && (says_16_bits ? in_steps < 0.1 : in_steps > 0.99);
+    return depths.size() >= kEnoughSamples &&
+           (says_16_bits ? in_steps < 0.1 : std::max(in_steps, halves) > 0.99);
+  }
+
+  // Returns whether neighbouring pixels are related as those of surfaces are, of leaves too: a few
+  // lie on planes, and where depth has a slope few pixels repeat that of a neighbour in x and in y.
+  bool is_surface() const {
+    std::size_t smooth = 0, sloped = 0, repeated = 0;
+    const double least = 16.0 * now_.depth_step(1.0f);
+    for (std::size_t i = 0; i < frame_.samples.size(); ++i) {
+      const PixelSample& s = frame_.samples[i];
+      smooth += now_.gradients[i].has_value();
+      const auto steps = [&](float a, float b) {
+        return std::minmax({std::abs(double{a} - s.depth), std::abs(double{b} - s.depth)});
+      };
+      const auto x = steps(s.left, s.right), y = steps(s.up, s.down);
+      sloped += std::max(x.second, y.second) > least;
+      repeated += x.first == 0.0 && y.first == 0.0 && std::min(x.second, y.second) > least;
+    }
+    return 100 * smooth >= surfaces() && (sloped < kEnoughSamples || 8 * repeated <= sloped);
+  }
+
+  // Returns whether the depths of planes become linear in screen space, as those of a projection
+  // are, if they are read as a distance or its logarithm.
+  bool is_curved() const {
+    std::vector<dvec3> lines;
+    for_lines([&](double before, double here, double after) {
+      const double steps = std::abs(after - before), bend = std::abs(before + after - 2.0 * here);
+      if (steps > 1e-3 && bend < 0.3 * steps) lines.emplace_back(before, here, after);
+    });
+    if (lines.size() < kEnoughSamples) return false;
+    const auto curvature = [&](const auto& read) {
+      std::vector<double> curvatures;
+      for (const dvec3& line : lines) {
+        const double a = read(line.x), c = read(line.z);
+        curvatures.push_back(std::abs((a + c - 2.0 * read(line.y)) / (c - a)));
+      }
+      return quantile(curvatures, 0.5);
+    };
+    const double least = 0.15 * curvature([](double depth) { return depth; });
+    // The logarithm of 1 plus the distance times a factor, over that of the far plane. At small
+    // rates it is the distance itself.
+    for (double rate = 0.1; rate < 25.0 && least > 1e-4; rate *= 1.1)
+      if (curvature([&](double depth) { return 1.0 / std::expm1(rate * depth); }) < least)
+        return true;
+    return false;
   }
 
   const Mistake* mistake_of_radius() const {
@@ -215,59 +270,71 @@ class Inspector {
                                                                  : nullptr;
   }
 
+  // A sample whose normal is given, and known from depth.
+  struct SmoothSample {
+    std::size_t index;
+    std::size_t direction;  // of six, in which its normal from depth points
+  };
+
+  // Leaves out where the format of depth is so coarse that it would tilt the normal.
+  void choose_samples() {
+    for (std::size_t i = 0; i < frame_.samples.size(); ++i) {
+      const PixelSample& s = frame_.samples[i];
+      const auto& gradient = now_.gradients[i];
+      if (!gradient || !maths::has_direction({s.normal[0], s.normal[1], s.normal[2]})) continue;
+      const dvec3 own = plane_normal(eye_, s, *gradient), size = maths::abs(own);
+      const dvec3 tilted = plane_normal(eye_, s, *gradient + 0.5 * now_.depth_step(s.depth));
+      if (angle_between(own, tilted) > 0.02 * kDegrees) continue;
+      const std::size_t axis = size.x > std::max(size.y, size.z) ? 0 : size.y > size.z ? 1 : 2;
+      smooth_.push_back({i, 2 * axis + (own[static_cast<int>(axis)] < 0.0 ? 1 : 0)});
+    }
+  }
+
   // A normal from depth and the given one at the same sample.
   struct Normals {
     dvec3 own;
     dvec3 given;
   };
 
-  // Returns the normals of the samples on smooth surfaces. Samples at which the depth format is so
-  // coarse that it would tilt the normal are left out.
   std::vector<Normals> normals(const Reading& reading) const {
     const Eye eye = now_.eye(reading);
+    dmat4 view_from_given(1.0);
+    if (reading.transposed_normals)
+      view_from_given = eye.view_from_world * eye.view_from_world;
+    else if (!reading.normals.in_view_space)
+      view_from_given = eye.view_from_world;
+    else if (reading.normals.forward_z)
+      view_from_given[2][2] = -1.0;
     std::vector<Normals> result;
-    for (std::size_t i = 0; i < frame_.samples.size(); ++i) {
+    for (const auto& [i, direction] : smooth_) {
       const PixelSample& s = frame_.samples[i];
-      const maths::vec3 stored{s.normal[0], s.normal[1], s.normal[2]};
-      if (!now_.gradients[i] || !maths::has_direction(stored)) continue;
-      const dvec3 own = plane_normal(eye, s, *now_.gradients[i], now_.perspective);
-      const dvec3 tilted = plane_normal(eye, s, *now_.gradients[i] + 0.5 * now_.depth_step(s.depth),
-                                        now_.perspective);
-      if (angle_between(own, tilted) <= 0.02 * kDegrees)
-        result.push_back({own, given_normal(stored, reading, eye.view_from_world)});
+      const dvec3 given(maths::decode_normal({s.normal[0], s.normal[1], s.normal[2]},
+                                             static_cast<std::uint32_t>(reading.normals.encoding)));
+      result.push_back(
+          {plane_normal(eye, s, *now_.gradients[i]), dvec3(view_from_given * dvec4(given, 0.0))});
     }
     return result;
   }
 
-  static dvec3 given_normal(const maths::vec3& stored, const Reading& reading, const dmat4& view) {
-    dvec3 given(maths::decode_normal(stored, static_cast<std::uint32_t>(reading.normals.encoding)));
-    if (reading.transposed_normals) return dvec3(view * view * dvec4(given, 0.0));
-    if (!reading.normals.in_view_space) return dvec3(view * dvec4(given, 0.0));
-    if (reading.normals.forward_z) given.z = -given.z;
-    return given;
-  }
-
-  // Returns the angle, in degrees, that the normals of depth and the given ones have between them
-  // at three quarters of the samples at most, for the surfaces of six directions the largest. A
-  // floor that fills most of the image would hide mistakes: its normal may be the same in many
-  // readings. With too few samples it is 0.
+  // Returns the typical angle, in degrees, between the normals of depth and the given ones: the
+  // geometric mean, so that a reading counts where it makes normals equal. Each direction with
+  // enough samples counts the same: a floor that fills most of the image would hide mistakes,
+  // because its normal may be the same in many readings.
   double error_of(const Reading& reading) const {
-    std::array<std::vector<double>, 6> angles;
-    for (const auto& [own, given] : normals(reading)) {
-      const dvec3 size = maths::abs(own);
-      const int axis = size.x > std::max(size.y, size.z) ? 0 : size.y > size.z ? 1 : 2;
-      angles.at(2 * static_cast<std::size_t>(axis) + (own[axis] < 0.0 ? 1 : 0))
-          .push_back(angle_between(own, given));
-    }
-    double largest = 0.0;
-    for (const std::vector<double>& direction : angles)
-      if (direction.size() >= kEnoughOfSome) largest = std::max(largest, quantile(direction, 0.75));
-    return largest;
+    const std::vector<Normals> all = normals(reading);
+    std::array<std::vector<double>, 6> logarithms;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      logarithms.at(smooth_[i].direction)
+          .push_back(std::log(angle_between(all[i].own, all[i].given) + kSameNormal));
+    std::vector<double> means;
+    for (const auto& each : logarithms)
+      if (each.size() >= kEnoughOfSome) means.push_back(std::exp(mean(each)));
+    return mean(means);
   }
 
-  // Returns the median of these angles on continuous surfaces, where successive samples have nearly
-  // the same normal, or 0 if there are too few. Leaves often have the normals of their crown, and
-  // may be seen from behind.
+  // Returns the median angle between these normals on continuous surfaces, where successive samples
+  // have nearly the same normal, or 0 if there are too few. Leaves often have the normals of their
+  // crown, and may be seen from behind.
   double typical_angle() const {
     const std::vector<Normals> all = normals(given_);
     std::vector<double> angles;
@@ -284,9 +351,7 @@ class Inspector {
 
   // Returns the mistake that shows in depth and normals, or null.
   const Mistake* mistake_of_normals() {
-    const Mistake* found = best_reading(error_of(given_));
-    if (found == nullptr && now_.perspective && angles_to_view_axis_differ())
-      found = &mistakes::field_of_view;
+    const Mistake* found = best_reading();
     // A jitter in another unit shifts the whole projection.
     const double jitter =
         pictures_.size() > 1 ? maths::length(now_.jitter() - pictures_[1].jitter()) : 0.0;
@@ -299,18 +364,19 @@ class Inspector {
   }
 
   // Returns the mistake whose correction makes the given normals match those from depth, if there
-  // is one. `now` is the error without a correction.
-  const Mistake* best_reading(double now) const {
-    // Normal maps tilt normals by some degrees from the surface.
-    if (now < 4.0) return nullptr;
-    double least = std::min(0.4 * now, 15.0);
+  // is one.
+  const Mistake* best_reading() const {
+    double least = 0.4 * error_of(given_);
+    if (least <= kSameNormal) return nullptr;
     const Mistake* best = nullptr;
+    // What the cameras explain from frame to frame, a remedy must explain too.
+    const bool moves = pictures_.size() > 1 && frame_.continues_history();
+    const bool fits = moves && share_explained(pictures_, given_) > kMisfits;
     const auto consider = [&](const Mistake* mistake, const Reading& reading) {
       const double error = error_of(reading);
-      if (error < least - 0.1) {
-        least = error;
-        best = mistake;
-      }
+      if (error > 0.9 * least || (fits && share_explained(pictures_, reading) <= kMisfits)) return;
+      least = error;
+      best = mistake;
     };
     Reading reading = given_;
     for (const bool other_space : {true, false}) {
@@ -332,42 +398,9 @@ class Inspector {
       reading = given_;
       reading.transposed_normals = true;
       consider(&mistakes::normals_transposed, reading);
-    } else {
-      reading.invert_view = true;
-      consider(&mistakes::view_inverted, reading);
     }
-    for_projections(now_, given_, [&](const Mistake* mistake, const Reading& projection) {
-      if (mistake == &mistakes::field_of_view) least = std::min(least, 3.1);
-      consider(mistake, projection);
-    });
+    for_cameras(now_, given_, consider);
     return best;
-  }
-
-  // Compares the angles between normals and the view axis: those of normals from depth with those
-  // of given normals. A wrong angle of view multiplies the tangent of every such angle by one
-  // number. Returns true if more than half of the ratios agree on one that is not near 1. Surfaces
-  // that are parallel or perpendicular to the view axis keep their angle and are left out.
-  bool angles_to_view_axis_differ() const {
-    std::vector<double> logarithms;  // of the ratio of the tangents
-    for (const auto& pair : normals(given_)) {
-      const dvec3 own = maths::normalize(pair.own), given = maths::normalize(pair.given);
-      const double own_across = std::hypot(own.x, own.y);
-      const double given_across = std::hypot(given.x, given.y);
-      const double side = own.z * given.z < 0.0 ? -1.0 : 1.0;  // either may face away
-      // An angle of view does not rotate a normal about the view axis.
-      const double in_same_direction = side * (own.x * given.x + own.y * given.y);
-      const double oblique = std::min(own_across * std::abs(own.z),  // half the sine of twice the
-                                      given_across * std::abs(given.z));  // angle to the view axis
-      if (in_same_direction > kSameAngleAboutAxis * own_across * given_across && oblique > kOblique)
-        logarithms.push_back(
-            std::log(own_across * std::abs(given.z) / (given_across * std::abs(own.z))));
-    }
-    if (logarithms.size() < kEnoughSamples) return false;
-    const double median = quantile(logarithms, 0.5);
-    const auto share_near = [&](double value) {
-      return share_of(logarithms, [&](double log) { return std::abs(log - value) <= kRatioError; });
-    };
-    return std::abs(median) > kLeastScale && share_near(median) > 0.5 && share_near(0.0) < 0.1;
   }
 
   // A size that changes within images of one size shows in frames in which it changes.
@@ -380,14 +413,11 @@ class Inspector {
     }
   }
 
-  // Returns whether depth changed.
-  bool changes() const {
-    std::size_t changed = 0;
-    for (std::size_t i = 0; i < frame_.samples.size(); ++i) {
-      const float a = frame_.samples[i].depth, b = pictures_[1].frame.samples[i].depth;
-      changed += std::abs(double{a} - b) > 4.0 * now_.depth_step(a);
-    }
-    return changed * 50 > frame_.samples.size();
+  bool depth_changes() const {
+    return share_of(frame_.samples, [&](const PixelSample& s) {
+             const PixelSample& before = pictures_[1].frame.samples[&s - frame_.samples.data()];
+             return std::abs(double{s.depth} - before.depth) > 4.0 * now_.depth_step(s.depth);
+           }) > 0.02;
   }
 
   std::vector<Picture> pictures_;  // this frame, then earlier ones
@@ -396,6 +426,7 @@ class Inspector {
   Reading given_;
   Eye eye_;
   bool reversed_;
+  std::vector<SmoothSample> smooth_;
   double measure_ = 0.0;  // the number of the sentence of the mistake that was found
 };
 

@@ -56,11 +56,10 @@ class Sightings {
   std::array<Sighting, 64> seen_{};  // more than there are mistakes
 };
 
-// A sampled pixel: its depth and those of its four neighbours, its normal and its motion vector,
-// all as they are stored in the textures, and in the order in which inspect.comp writes them.
+// A sampled pixel, as inspect.comp writes it: its depth and those of its four neighbours, its
+// normal and its motion vector, all as they are stored in the textures, and its position in the
+// image.
 struct PixelSample {
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
   float depth = 0.0f;
   float left = 0.0f;
   float right = 0.0f;
@@ -68,6 +67,8 @@ struct PixelSample {
   float down = 0.0f;
   std::array<float, 3> normal{};
   std::array<float, 2> motion{};
+  float x = 0.0f;
+  float y = 0.0f;
 };
 
 // A frame of a view as the engine describes it, and its samples. They lie on the grid of

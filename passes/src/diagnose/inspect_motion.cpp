@@ -13,7 +13,6 @@ using maths::kInspectRows;
 // Limits for the comparison of successive frames.
 constexpr double kSamePlace = 0.15;  // pixels
 constexpr double kFits = 0.75;       // the share of the samples at the same place if cameras fit
-constexpr double kMisfits = 0.5;     // the share at most if they do not
 
 // How far a sample is from the place at which the cameras expect it in the earlier frame. Only the
 // distance in the direction of the gradient of depth shows.
@@ -150,7 +149,13 @@ Displacements displacements(const Picture& now, const Picture& before, const Eye
 
 }  // namespace
 
-CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given) {
+double share_explained(const std::vector<Picture>& pictures, const Reading& reading) {
+  return explained(
+      displacements(pictures[0], pictures[1], pictures[0].eye(reading), pictures[1].eye(reading)));
+}
+
+CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given,
+                      const std::function<bool(const Reading&)>& fits_normals) {
   const Picture &now = pictures[0], &before = pictures[1];
   const Eye eye = now.eye(given), eye_before = before.eye(given);
   const Displacements by_cameras = displacements(now, before, eye, eye_before);
@@ -160,28 +165,23 @@ CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given
   // A hypothesis must explain most samples, and more than those before it, which are simpler. If
   // almost no sample stays on the image, a hypothesis under which samples stay is right.
   double most = std::max(kFits, share + 0.3);
-  const auto consider = [&](const Mistake* mistake, double measure,
-                            const Displacements& displaced) {
-    const double its_share = explained(displaced);
+  const auto consider = [&](const Mistake* mistake, double measure, double its_share) {
     if (its_share <= most) return;
     most = its_share + 0.02;
     fit.mistake = mistake;
     fit.measure = measure;
   };
   const auto consider_reading = [&](const Mistake* mistake, const Reading& reading) {
-    consider(mistake, 0.0, displacements(now, before, now.eye(reading), before.eye(reading)));
+    const double its_share = share_explained(pictures, reading);
+    if (its_share > most && fits_normals(reading)) consider(mistake, 0.0, its_share);
   };
   if (pictures.size() > 2) {
     const Picture& oldest = pictures[2];
     consider(&mistakes::camera_of_another_frame, 0.0,
-             displacements(before, oldest, eye, eye_before));
+             explained(displacements(before, oldest, eye, eye_before)));
     consider(&mistakes::camera_of_another_frame, 0.0,
-             displacements(now, before, eye_before, oldest.eye(given)));
+             explained(displacements(now, before, eye_before, oldest.eye(given))));
   }
-  Reading inverted = given;
-  inverted.invert_view = true;
-  consider_reading(&mistakes::view_inverted, inverted);
-  for_projections(now, given, consider_reading);
   // Jitter: the whole image is shifted from where the cameras expect it. A change of the size may
   // also move the view axis.
   const bool resized = eye.size != eye_before.size;
@@ -195,9 +195,10 @@ CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given
       consider(maths::length(in_cameras) < 0.02 ? &mistakes::jitter_missing
                : maths::length(in_depth) < 0.1  ? &mistakes::jitter_unused
                                                 : &mistakes::jitter_wrong,
-               maths::length(shift), shifted(by_cameras, shift));
+               maths::length(shift), explained(shifted(by_cameras, shift)));
     }
   }
+  for_cameras(now, given, consider_reading);
   // Another translation of the camera.
   const auto by_translation = [&](const dvec3& by) {
     return displacements(now, before, eye, moved(eye, eye_before, by));
@@ -214,7 +215,7 @@ CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given
   consider(has_none    ? &mistakes::no_translation
            : is_scaled ? &mistakes::translation_scale
                        : &mistakes::translation_wrong,
-           scale, by_translation(best));
+           scale, explained(by_translation(best)));
   if (fit.mistake != nullptr) return fit;
   // Where objects move, depth alone does not tell whether the cameras fit.
   const bool shows = by_cameras.size() >= kEnoughSamples && !now.frame.has_motion &&
@@ -278,9 +279,6 @@ std::optional<const Mistake*> mistake_of_motion(const std::vector<Picture>& pict
   };
   const double with_given = share(dvec2(1.0), dvec2(0.0));
   if (with_given >= kMisfits) return nullptr;
-  const double zeros = share_of(
-      vectors, [&](const Vector& v) { return maths::length(scale * v.stored * eye.size) < 0.02; });
-  if (zeros > 0.9) return &mistakes::motion_zero;
   const Mistake* found = nullptr;
   double most = std::max(kFits, with_given + 0.3);
   for (const bool has_offset : {false, true}) {
@@ -299,6 +297,9 @@ std::optional<const Mistake*> mistake_of_motion(const std::vector<Picture>& pict
       }
     }
   }
+  const double zeros = share_of(
+      vectors, [&](const Vector& v) { return maths::length(scale * v.stored * eye.size) < 0.02; });
+  if (found == nullptr && zeros > 0.9) return &mistakes::motion_zero;
   const bool disagrees = found == nullptr && share_of_cameras > kFits && with_given < 0.25;
   return disagrees ? &mistakes::motion_disagrees : found;
 }

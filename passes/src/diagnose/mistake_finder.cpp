@@ -32,22 +32,6 @@ VkExtent2D read_size(const AlcoveView& view) {
                         : VkExtent2D{depth.width, depth.height};
 }
 
-// `seen` has a bit for each frame that could show the mistake.
-bool is_reported(const Mistake& mistake, std::uint32_t seen) {
-  if (&mistake == &mistakes::index_goes_back)  // once it may, for example when a game restarts
-    return std::popcount(seen) >= 2;
-  if (&mistake == &mistakes::index_repeats)  // in every second record of a view recorded twice
-    return std::popcount(seen & 0xffu) >= 3;
-  if (&mistake == &mistakes::slot_reused)  // a right frame never shows it
-    return std::popcount(seen & 0xffu) >= 2;
-  if (&mistake == &mistakes::history_reset ||  // a film may have a cut or two
-      &mistake == &mistakes::resolution_changes)
-    return std::popcount(seen & 0xffffu) >= 3;
-  if (&mistake == &mistakes::eyes_alternate)  // a camera may shake
-    return (seen & 0xffu) == 0xffu;
-  return std::popcount(seen & 0xffu) >= 5;
-}
-
 maths::dvec3 eye_of(const AlcoveCamera& camera) {
   return maths::inverse(to_rigid(camera.view_from_world))[3];
 }
@@ -164,8 +148,8 @@ std::string MistakeFinder::describe() const {
   for (const View& view : views_) {
     for (const Sighting& sighting : view.sightings) {
       const auto& [mistake, seen, measure, last] = sighting;
-      if (!view.used || mistake == nullptr || !is_reported(*mistake, seen) ||
-          !view.sightings.is_recent(sighting))
+      if (!view.used || mistake == nullptr || !view.sightings.is_recent(sighting) ||
+          std::popcount(seen << (32 - mistake->frames)) < mistake->least)
         continue;
       std::string sentence = mistake->sentence;
       if (const std::size_t at = sentence.find('#'); at != std::string::npos) {

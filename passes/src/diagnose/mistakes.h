@@ -12,26 +12,32 @@ enum MistakeGroup : unsigned {
   kByGeometry = 16,  // depth and normals, or depth of successive frames
   kByCameras = 32,   // depth of successive frames
   kByMotion = 64,    // motion vectors
+  kByRadius = 128,   // depth, if nothing else is wrong
 };
 
 struct Mistake {
   MistakeGroup group;
   const char* sentence;  // what is wrong and what to do; a # stands for Sighting::measure
+  // It is reported if `least` of the last `frames` frames that could show it, 32 at most, did.
+  int least;
+  int frames;
 };
 
 // A mistake is known by its address.
 namespace mistakes {
 
 template <MistakeGroup kGroup>
-constexpr Mistake of(const char* sentence) {
-  return {kGroup, sentence};
+constexpr Mistake of(const char* sentence, int least = 5, int frames = 8) {
+  return {kGroup, sentence, least, frames};
 }
 
 inline constexpr Mistake index_repeats = of<kByCalls>(
     "AlcoveFrame::index is that of the last record of the view; count it up, or set static_noise "
-    "if no temporal filter follows, and record a view once a frame.");
+    "if no temporal filter follows, and record a view once a frame.",
+    3);  // in every second record of a view recorded twice
 inline constexpr Mistake index_goes_back = of<kByCalls>(
-    "AlcoveFrame::index goes back again and again; count it up, so that the noise averages out.");
+    "AlcoveFrame::index goes back again and again; count it up, so that the noise averages out.", 2,
+    32);  // once it may, for example when a game restarts
 inline constexpr Mistake previous_is_this = of<kByCalls>(
     "previous_camera is this frame's camera although the camera moves; give the one before.");
 inline constexpr Mistake previous_is_another = of<kByCalls>(
@@ -44,23 +50,27 @@ inline constexpr Mistake previous_size_is_wrong = of<kByCalls>(
 inline constexpr Mistake static_in_motion = of<kByCalls>(
     "static_frames is not 0 although the image changes; it counts frames that are the same.");
 inline constexpr Mistake history_reset = of<kByCalls>(
-    "reset_history is set again and again, so that no history accumulates; set it at cuts only.");
+    "reset_history is set again and again, so that no history accumulates; set it at cuts only.", 3,
+    16);  // a film may have a cut or two
 inline constexpr Mistake resolution_changes = of<kByCalls>(
-    "half_resolution changes again and again, and each change begins a new history; keep it.");
+    "half_resolution changes again and again, and each change begins a new history; keep it.", 3,
+    16);
 inline constexpr Mistake eyes_alternate = of<kByCalls>(
     "the camera goes to and fro from frame to frame, as if two eyes alternated; give each eye an "
-    "AlcoveView::id of its own, and its own previous_camera.");
+    "AlcoveView::id of its own, and its own previous_camera.",
+    8);  // a camera may shake
 inline constexpr Mistake slot_reused = of<kByCalls>(
     "AlcoveFrame::slot was recorded again before the device had finished its last frame; wait for "
-    "the fence of the slot, and call alcoveDiscardFrame for a frame that is not submitted.");
+    "the fence of the slot, and call alcoveDiscardFrame for a frame that is not submitted.",
+    2);  // a right frame never shows it
 inline constexpr Mistake size_changes = of<kByCalls>(
     "the size changes within an image of one size, and each change begins a new history; give "
     "largest_width and largest_height, and previous_width and previous_height.");
 inline constexpr Mistake image_too_small =
     of<kByDepth>("an image is smaller than AlcoveImage::width and height say.");
 inline constexpr Mistake depth_outside = of<kByDepth>(
-    "the image of depth holds values below 0 or above 1; give the depth buffer as the projection "
-    "writes it, not a linear depth.");
+    "the image of depth holds values below 0 or above 1; give the projection's, not a linear "
+    "depth.");
 inline constexpr Mistake depth_converted_from_minus_one = of<kByDepth>(
     "camera.clip_from_view looks as if it had depth from 0 to 1 and was converted with "
     "ALCOVE_CAMERA_CONVENTION_DEPTH_FROM_MINUS_ONE; convert it without that bit.");
@@ -75,12 +85,19 @@ inline constexpr Mistake depth_filtered = of<kBySurfaces>(
     "makes them; scale depth with the nearest value.");
 inline constexpr Mistake depth_format = of<kBySurfaces>(
     "the values of the image of depth have the steps of another format than AlcoveImage::format "
-    "says; give the format that its view was created with.");
-inline constexpr Mistake radius_too_small = of<kBySurfaces>(
+    "says, such as 16 bits or half floats; give the depth buffer itself, with its own format.");
+inline constexpr Mistake depth_curved = of<kBySurfaces>(
+    "planes are curved in the image of depth, as in a logarithmic or a linear depth, which no "
+    "matrix "
+    "gives; give a copy with the depth of the projection.");
+inline constexpr Mistake not_surfaces = of<kBySurfaces>(
+    "depth does not look like surfaces: pixels repeat or are unrelated, as in another resource, a "
+    "hi-Z level or a checkerboard; give depth as it was drawn, at the size at which it was drawn.");
+inline constexpr Mistake radius_too_small = of<kByRadius>(
     "the radius is less than a pixel almost everywhere; give it in the units of the scene.");
-inline constexpr Mistake radius_too_large = of<kBySurfaces>(
+inline constexpr Mistake radius_too_large = of<kByRadius>(
     "the radius is larger than twice the height of the image, or than half of all that is seen; "
-    "give it in the units of the scene.");
+    "give it in the units of the scene, or the matrix that depth was drawn with.");
 inline constexpr Mistake normal_space =
     of<kByNormals>("normals fit the depth in the other space; change normals_in_view_space.");
 inline constexpr Mistake normal_encoding = of<kByNormals>(
@@ -111,8 +128,8 @@ inline constexpr Mistake camera_of_another_frame = of<kByCameras>(
     "the pixels fit the camera of the frame before or after: camera and depth are not of the same "
     "frame; give the camera that this frame's depth was drawn with.");
 inline constexpr Mistake jitter_missing = of<kByCameras>(
-    "depth is shifted by jitter that camera.clip_from_view lacks; give the matrix that depth was "
-    "drawn with (pixels from frame to frame: #).");
+    "depth is shifted by jitter that camera.clip_from_view lacks; give depth's own matrix (pixels "
+    "from frame to frame: #).");
 inline constexpr Mistake jitter_unused = of<kByCameras>(
     "camera.clip_from_view has a jitter that depth was not drawn with; give the matrix that depth "
     "was drawn with (pixels from frame to frame: #).");

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -20,6 +22,8 @@ using maths::dvec4;
 inline constexpr std::size_t kEnoughSamples = 100;
 // The least number of samples of some kind, for example of one direction, among enough samples.
 inline constexpr std::size_t kEnoughOfSome = 12;
+// The share of the samples that are at the same place, at most, if cameras do not fit.
+inline constexpr double kMisfits = 0.5;
 // The largest jitter of a camera from one frame to the next, in pixels.
 inline constexpr double kLargestJitter = 1.5;
 
@@ -28,6 +32,7 @@ struct Reading {
   NormalConvention normals;
   bool transposed_normals = false;   // rotated by world_from_view instead of view_from_world
   dvec2 tangent_scale = dvec2(1.0);  // of the tangents of half the angles of view
+  double far_shift = 0.0;            // added to all inverse distances, as by another far plane
   bool invert_view = false;          // view_from_world is world_from_view
   bool whole_image = false;          // the whole image is in use
 };
@@ -40,6 +45,12 @@ inline double quantile(std::vector<double> values, double share) {
       values.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(values.size()) * share);
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+// Returns the mean, or 0 if there are no values.
+inline double mean(const std::vector<double>& values) {
+  const double count = static_cast<double>(std::max(values.size(), std::size_t{1}));
+  return std::accumulate(values.begin(), values.end(), 0.0) / count;
 }
 
 template <typename Values, typename Predicate>
@@ -84,6 +95,7 @@ class Picture {
       eye.clip_from_view[column][0] /= reading.tangent_scale.x;
       eye.clip_from_view[column][1] /= reading.tangent_scale.y;
     }
+    eye.clip_from_view[2][2] += reading.far_shift * clip_from_view[3][2];
     return eye;
   }
 
@@ -131,18 +143,21 @@ class Picture {
       return !is_sky(before) && !is_sky(after) &&
              std::abs(second) <= 0.02 * std::abs(double{after} - before) + 2.0 * step;
     };
-    const bool inside =
-        s.x > 0 && s.y > 0 && s.x + 1 < frame.size.width && s.y + 1 < frame.size.height;
+    const dvec2 last = to_vector(frame.size) - 1.0;
+    const bool inside = s.x > 0.0f && s.y > 0.0f && s.x < last.x && s.y < last.y;
     if (!inside || is_sky(s.depth) || !is_line(s.left, s.right) || !is_line(s.up, s.down))
       return std::nullopt;
     return 0.5 * dvec2(double{s.right} - s.left, double{s.down} - s.up);
   }
 };
 
-// Calls `call` with each hypothesis about the projection of a picture.
+// Calls `call` with each hypothesis about the camera of a picture.
 template <typename Call>
-void for_projections(const Picture& picture, const Reading& given, const Call& call) {
+void for_cameras(const Picture& picture, const Reading& given, const Call& call) {
   Reading reading = given;
+  reading.invert_view = true;
+  call(&mistakes::view_inverted, reading);
+  reading = given;
   reading.whole_image = true;
   if (is_smaller(picture.frame.size, picture.frame.depth_size))
     call(&mistakes::image_too_large, reading);
@@ -151,12 +166,24 @@ void for_projections(const Picture& picture, const Reading& given, const Call& c
     reading.tangent_scale = sign;
     call(&mistakes::flipped, reading);
   }
-  // Factors by which the tangent of half the field of view, or the aspect, may be wrong.
-  for (double scale = 0.25; picture.perspective && scale < 4.2; scale *= 1.03) {
-    for (const dvec2& scales : {dvec2(scale), dvec2(scale, 1.0)}) {
+  if (!picture.perspective) return;
+  // Factors by which the tangents of half the angles of view may be wrong.
+  for (double scale = 0.25; scale < 4.2; scale *= 1.05) {
+    if (std::abs(std::log(scale)) < 0.05) continue;
+    const bool is_aspect = scale > 0.5 && scale < 2.0;
+    for (const dvec2& scales : {dvec2(scale), dvec2(scale, 1.0), dvec2(1.0, scale)}) {
       reading.tangent_scale = scales;
-      if (std::abs(std::log(scale)) > 0.05) call(&mistakes::field_of_view, reading);
+      if (is_aspect || scales.x == scales.y) call(&mistakes::field_of_view, reading);
     }
+  }
+  std::vector<double> distances;
+  for (const PixelSample& s : picture.frame.samples)
+    if (!is_sky(s.depth)) distances.push_back(picture.distance(s.depth));
+  if (distances.empty()) return;
+  reading = given;
+  for (double shift = -0.9; shift < 3.0; shift += 0.1) {
+    reading.far_shift = shift / quantile(distances, 0.5);
+    call(&mistakes::field_of_view, reading);
   }
 }
 
@@ -169,7 +196,11 @@ struct CameraFit {
 
 // `pictures` begins with the frame that is inspected, followed by one or two earlier frames, and
 // `given` is how their inputs are described.
-CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given);
+// `fits_normals` returns whether the normals fit depth under another reading as well.
+CameraFit fit_cameras(const std::vector<Picture>& pictures, const Reading& given,
+                      const std::function<bool(const Reading&)>& fits_normals);
+// Returns the share of the samples that lie where the cameras expect them, or 0 if they are few.
+double share_explained(const std::vector<Picture>& pictures, const Reading& reading);
 // Returns the mistake of the motion vectors, or null if there is none, or nothing if the cameras do
 // not fit or do not move. `share` is that of fit_cameras().
 std::optional<const Mistake*> mistake_of_motion(const std::vector<Picture>& pictures,

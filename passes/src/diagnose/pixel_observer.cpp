@@ -17,10 +17,10 @@ using framegraph::Texture;
 using maths::kInspectColumns;
 using maths::kInspectRows;
 
-using Texel = std::array<float, 4>;
-constexpr std::uint32_t kTexelsOfASample = 3;
-constexpr std::uint32_t kTexelRows = kTexelsOfASample * kInspectRows + 1;
-constexpr VkDeviceSize kTexelBytes = VkDeviceSize{kInspectColumns} * kTexelRows * sizeof(Texel);
+// The image that inspect.comp writes: the samples, row by row, and the sizes of the images.
+constexpr std::uint32_t kTexelColumns = sizeof(PixelSample) / sizeof(float[4]) * kInspectColumns;
+constexpr std::size_t kSampleBytes = sizeof(PixelSample) * kInspectColumns * kInspectRows;
+constexpr std::size_t kTexelBytes = kSampleBytes + sizeof(PixelSample) * kInspectColumns;
 // The serial number of the frame follows the texels.
 constexpr VkDeviceSize kBytes = kTexelBytes + sizeof(std::uint32_t);
 constexpr std::size_t kFrames = 3;  // that inspect() compares
@@ -55,8 +55,8 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Pipelines
                    .has_normals = bool(normals),
                    .has_motion = bool(motion)};
   Texture samples = graph.create_texture(
-      "samples",
-      {VK_FORMAT_R32G32B32A32_SFLOAT, framegraph::Extent::absolute(kInspectColumns, kTexelRows)});
+      "samples", {VK_FORMAT_R32G32B32A32_SFLOAT,
+                  framegraph::Extent::absolute(kTexelColumns, kInspectRows + 1)});
   auto sampling = graph.add_pass("inspect");
   sampling.read(depth, framegraph::access::sampled_compute);
   for (const Texture texture : {normals, motion})
@@ -108,37 +108,19 @@ void PixelObserver::collect(std::uint32_t slot, MistakeFinder& finder) {
   if (sightings == nullptr) return;
   sightings->note(mistakes::slot_reused, finished != frame.serial);
   if (finished != frame.serial) return;
-  const auto texel = [&](std::uint32_t x, std::uint32_t y) {
-    Texel result;
-    std::memcpy(result.data(),
-                pending.buffer->bytes() + (std::size_t{y} * kInspectColumns + x) * sizeof result,
-                sizeof result);
-    return result;
+  std::array<float, 4> sizes{};
+  std::memcpy(sizes.data(), pending.buffer->bytes() + kSampleBytes, sizeof sizes);
+  const auto extent = [](float width, float height) {
+    return VkExtent2D{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
   };
-  const auto whole = [](float number) { return static_cast<std::uint32_t>(number); };
-  const Texel sizes = texel(0, kTexelsOfASample * kInspectRows);
-  frame.depth_size = {whole(sizes[0]), whole(sizes[1])};
+  frame.depth_size = extent(sizes[0], sizes[1]);
+  frame.normals_size = extent(sizes[2], sizes[3]);
   if (frame.info.read_area.width > 0) {  // the images are known to be larger
     frame.depth_size = {std::min(frame.depth_size.width, frame.size.width),
                         std::min(frame.depth_size.height, frame.size.height)};
   }
-  frame.normals_size = {whole(sizes[2]), whole(sizes[3])};
-  const auto pixel = [&](std::uint32_t cell, std::uint32_t cells, std::uint32_t size) {
-    return whole((static_cast<float>(cell) + 0.5f) / static_cast<float>(cells) *
-                 static_cast<float>(size));
-  };
-  for (std::uint32_t y = 0; y < kInspectRows; ++y) {
-    for (std::uint32_t x = 0; x < kInspectColumns; ++x) {
-      const std::array<Texel, kTexelsOfASample> stored{texel(x, 3 * y), texel(x, 3 * y + 1),
-                                                       texel(x, 3 * y + 2)};
-      PixelSample sample{.x = pixel(x, kInspectColumns, frame.size.width),
-                         .y = pixel(y, kInspectRows, frame.size.height)};
-      constexpr std::size_t kFirst = offsetof(PixelSample, depth);
-      std::memcpy(reinterpret_cast<std::byte*>(&sample) + kFirst, stored.data(),
-                  sizeof sample - kFirst);
-      frame.samples.push_back(sample);
-    }
-  }
+  frame.samples.resize(kInspectColumns * kInspectRows);
+  std::memcpy(frame.samples.data(), pending.buffer->bytes(), kSampleBytes);
   if (!frames_.empty() &&
       (frame.info.id != frames_.front().info.id || frame.serial != frames_.front().serial + 1))
     frames_.clear();
