@@ -12,15 +12,6 @@ using testing::HasSubstr;
 
 class BadInput : public PassTest {
  protected:
-  framegraph::DeviceHandles handles() {
-    framegraph::DeviceHandles handles;
-    handles.instance = gpu().device().instance();
-    handles.physical_device = gpu().device().physical_device();
-    handles.device = gpu().device().device();
-    handles.get_instance_proc_addr = vkGetInstanceProcAddr;
-    return handles;
-  }
-
   void expect_a_good_frame() {
     const Drawing plane = draw(test_views()[2], 16, 12, {tilted_plane(10.0, 4.0)});
     EXPECT_THAT(render(plane, OcclusionSettings()).visibility.texels,

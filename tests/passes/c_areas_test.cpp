@@ -64,7 +64,7 @@ class CAreas : public CInterface, public testing::WithParamInterface<Case> {
     HostImage contents{
         kSheet.width, kSheet.height, {}, like.format == VK_FORMAT_R32_SFLOAT ? 1u : 4u};
     contents.texels.assign(std::size_t{kSheet.width} * kSheet.height * contents.channels, kPoison);
-    fill_image(image, contents);
+    engine().write(image, std::as_bytes(std::span(contents.texels)));
     return image;
   }
 
@@ -75,13 +75,11 @@ class CAreas : public CInterface, public testing::WithParamInterface<Case> {
 void CAreas::run_sheet(bool band) {
   std::array<HostView, 2> from{create_host_view(37, 45, ball_on_floor()),
                                create_host_view(42, 33, groove(0.8))};
-  for (std::uint32_t index = 0; index < 5 && !HasFailure(); ++index) {
+  for (std::uint32_t index = 0; index < kSeriesFrames && !HasFailure(); ++index) {
     SCOPED_TRACE("frame " + std::to_string(index));
     std::array<AlcoveView, 2> own, shared;
     for (std::size_t i = 0; i < 2; ++i) {
-      from[i].previous_view = from[i].view;
-      if (index == 1 || index == 2) from[i].view.view_from_world[12] += 0.03f;
-      from[i].static_frames = index < 3 ? 0 : index == 3 ? 1 : 16;
+      advance(from[i], index);
       own[i] = create_view(from[i]);
       if (band)
         own[i].info.read_area = {0, 0, own[i].images[ALCOVE_IMAGE_DEPTH].width,

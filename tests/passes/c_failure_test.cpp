@@ -22,7 +22,6 @@ bool has_synchronization2 = true;
 bool has_write_without_format = true;
 std::uint32_t api_version = VK_API_VERSION_1_3;
 std::uint32_t storage_images = 10;  // that a shader can bind
-const char* missing_function = "";
 
 VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* all) {
   vkGetPhysicalDeviceFeatures2(device, all);
@@ -39,22 +38,6 @@ VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
   properties->limits.maxPerStageDescriptorStorageImages = storage_images;
 }
 
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
-  return std::string(name) == missing_function ? nullptr : vkGetDeviceProcAddr(device, name);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
-                                                                const char* name) {
-  const std::string wanted(name);
-  if (wanted == "vkGetPhysicalDeviceFeatures2")
-    return reinterpret_cast<PFN_vkVoidFunction>(&get_features);
-  if (wanted == "vkGetPhysicalDeviceProperties")
-    return reinterpret_cast<PFN_vkVoidFunction>(&get_properties);
-  if (wanted == "vkGetDeviceProcAddr")
-    return reinterpret_cast<PFN_vkVoidFunction>(&get_device_proc_addr);
-  return wanted == missing_function ? nullptr : vkGetInstanceProcAddr(instance, name);
-}
-
 class CFailure : public CInterface {
  protected:
   void SetUp() override {
@@ -62,7 +45,8 @@ class CFailure : public CInterface {
     has_synchronization2 = has_write_without_format = true;
     api_version = VK_API_VERSION_1_3;
     storage_images = 10;
-    missing_function = "";
+    replaced_functions = {{"vkGetPhysicalDeviceFeatures2", untyped(&get_features)},
+                          {"vkGetPhysicalDeviceProperties", untyped(&get_properties)}};
     framegraph::failing::fail_at(0);
     framegraph::failing::lose(false);
   }
@@ -78,7 +62,7 @@ class CFailure : public CInterface {
 
 TEST_F(CFailure, VulkanFeaturesAndFunctionsThatTheDeviceLacksAreReported) {
   AlcoveContextInfo info = engine().context_info();
-  info.get_instance_proc_addr = get_instance_proc_addr;
+  info.get_instance_proc_addr = get_replaced_function;
   EXPECT_EQ(error_of_context(info, ALCOVE_SUCCESS), "");
   has_synchronization2 = false;
   EXPECT_THAT(
@@ -97,9 +81,9 @@ TEST_F(CFailure, VulkanFeaturesAndFunctionsThatTheDeviceLacksAreReported) {
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
               HasSubstr("5 storage images to a shader; the occlusion passes need 6."));
   storage_images = 10;
-  missing_function = "vkCmdPipelineBarrier2";
+  replaced_functions["vkCmdPipelineBarrier2"] = nullptr;
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));
-  missing_function = "vkGetPhysicalDeviceQueueFamilyProperties2";
+  replaced_functions = {{"vkGetPhysicalDeviceQueueFamilyProperties2", nullptr}};
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("instance"));
 }
 

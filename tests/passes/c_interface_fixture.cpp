@@ -9,31 +9,10 @@
 namespace alcove::passes {
 namespace {
 
-using framegraph::Graph;
-using framegraph::Texture;
-
 constexpr VkImageUsageFlags kInputUsage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 constexpr VkImageUsageFlags kOutputUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-
-framegraph::State to_state(const AlcoveState& state) {
-  return {state.stages, state.access, state.layout};
-}
-
-// Imports an image that is in its final state.
-Texture import_image(Graph& graph, const AlcoveImage& image, const AlcoveState& final_state) {
-  return graph.import_texture(
-      "image", {.image = image.image,
-                .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
-                .usage = image.usage,
-                .first_layer = image.layer,
-                .initial_state = to_state(image.final_state),
-                .final_state = to_state(final_state)});
-}
-Texture import_image(Graph& graph, const AlcoveImage& image) {
-  return import_image(graph, image, image.final_state);
-}
 
 HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> texel) {
   HostImage image{width, height, {}, static_cast<std::uint32_t>(texel.size())};
@@ -140,6 +119,7 @@ void CInterface::SetUp() {
 
 void CInterface::TearDown() {
   if (engine_) engine_->wait();
+  replaced_functions.clear();
   plain_context_.reset();
   if (shared_context) {
     engine_->forget_images(*shared_context);
@@ -153,14 +133,6 @@ void CInterface::TearDown() {
 AlcoveContext& CInterface::context() {
   if (!shared_context) shared_context = create_context();
   return *shared_context;
-}
-
-Context CInterface::create_context(const AlcoveContextInfo& info) {
-  AlcoveContext* handle = nullptr;
-  char message[ALCOVE_MAX_MESSAGE];
-  EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_SUCCESS) << message;
-  EXPECT_STREQ(message, "");
-  return Context(handle);
 }
 
 Context CInterface::create_context() {
@@ -178,7 +150,7 @@ AlcoveImage CInterface::input(const HostImage& contents) {
   if (shares_inputs_ && known != inputs_.end()) return known->second;
   const AlcoveImage image = engine_->make_image(float_format(contents.channels), contents.width,
                                                 contents.height, kInputUsage);
-  fill_image(image, contents);
+  engine_->write(image, std::as_bytes(std::span(contents.texels)));
   inputs_.emplace_back(contents, image);
   return image;
 }
@@ -189,46 +161,16 @@ AlcoveImage CInterface::output(VkFormat format, std::uint32_t width, std::uint32
   return image;
 }
 
-void CInterface::fill_image(const AlcoveImage& image, const HostImage& contents,
-                            const AlcoveState& final_state) {
-  run([&](Graph& graph) { fill(graph, import_image(graph, image, final_state), contents); });
-}
-
-void CInterface::write_bytes(const AlcoveImage& image, const Bytes& bytes) {
-  const auto buffer =
-      sample::HostBuffer::create(gpu().device(), bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  ASSERT_TRUE(buffer) << buffer.error();
-  std::memcpy((*buffer)->bytes().data(), bytes.data(), bytes.size());
-  run([&](Graph& graph) { sample::add_copy(graph, **buffer, import_image(graph, image)); });
-}
-
-Bytes CInterface::read_bytes(const AlcoveImage& image, std::size_t texel_bytes) {
-  Bytes bytes(std::size_t{image.width} * image.height * texel_bytes);
-  const auto buffer =
-      sample::HostBuffer::create(gpu().device(), bytes.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  EXPECT_TRUE(buffer) << buffer.error();
-  run([&](Graph& graph) { sample::add_read_back(graph, import_image(graph, image), **buffer); });
-  std::memcpy(bytes.data(), (*buffer)->bytes().data(), bytes.size());
-  return bytes;
-}
-
 HostImage CInterface::read(const AlcoveImage& image) {
-  run([&](Graph& graph) { read_back(graph, import_image(graph, image)); });
-  return result();
+  return decode(engine_->read(image, texel_bytes(image.format)), image.format, image.width,
+                image.height);
 }
 
 HostOutputs CInterface::read_results(const AlcoveView& view) {
-  const auto is_given = [&](const OutputMember& each) {
-    return view.images[each.role].image != VK_NULL_HANDLE;
-  };
-  run([&](Graph& graph) {
-    for (const OutputMember& each : kOutputs)
-      if (is_given(each)) read_back(graph, import_image(graph, view.images[each.role]));
-  });
   HostOutputs results;
-  std::size_t next = 0;
   for (const OutputMember& each : kOutputs)
-    if (is_given(each)) results.*each.texels = result(next++);
+    if (view.images[each.role].image != VK_NULL_HANDLE)
+      results.*each.texels = read(view.images[each.role]);
   return results;
 }
 

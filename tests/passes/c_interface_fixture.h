@@ -20,8 +20,6 @@
 
 namespace alcove::passes {
 
-using Bytes = std::vector<std::byte>;
-
 // Draws a view of a scene with every input. Tests change its settings and its camera.
 HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene = ball_on_floor(),
                    const TestView& view = test_views()[2]);
@@ -62,17 +60,15 @@ class CInterface : public PassTest {
   // The context that the tests of a suite share, so that pipelines are created once. After each
   // test its views are dropped and its images forgotten.
   AlcoveContext& context();
-  static Context create_context(const AlcoveContextInfo& info);
   Context create_context();
+  static Context create_context(const AlcoveContextInfo& info) {
+    return passes::create_context(info);
+  }
 
   // Creates an image that holds `contents`, or returns one with the same contents.
   AlcoveImage input(const HostImage& contents);
   AlcoveImage output(VkFormat format, std::uint32_t width, std::uint32_t height);
-  // Fills an image, which is in the state kResting, and leaves it in `final_state`.
-  void fill_image(const AlcoveImage& image, const HostImage& contents,
-                  const AlcoveState& final_state = kResting);
-  void write_bytes(const AlcoveImage& image, const Bytes& bytes);
-  Bytes read_bytes(const AlcoveImage& image, std::size_t texel_bytes);
+  // Returns the texels of an image as floats.
   HostImage read(const AlcoveImage& image);
   HostOutputs read_results(const AlcoveView& view);
 

@@ -56,7 +56,7 @@ class CMask : public CInterface {
     Bytes bytes;
     for (const bool shows : shows_weapon_)
       bytes.push_back(static_cast<std::byte>(shows ? bits : 64));
-    write_bytes(image, bytes);
+    engine().write(image, bytes);
     return image;
   }
 

@@ -32,19 +32,6 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
   return vkCreateComputePipelines(device, cache, count, infos, callbacks, made);
 }
 
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
-  return std::strcmp(name, "vkCreateComputePipelines") == 0
-             ? reinterpret_cast<PFN_vkVoidFunction>(&create_pipelines)
-             : vkGetDeviceProcAddr(device, name);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
-                                                                const char* name) {
-  return std::strcmp(name, "vkGetDeviceProcAddr") == 0
-             ? reinterpret_cast<PFN_vkVoidFunction>(&get_device_proc_addr)
-             : vkGetInstanceProcAddr(instance, name);
-}
-
 class CPipelines : public CInterface {
  protected:
   void SetUp() override {
@@ -52,12 +39,13 @@ class CPipelines : public CInterface {
     pipelines = 0;
     caches.clear();
     compiles = true;
+    replaced_functions = {{"vkCreateComputePipelines", untyped(&create_pipelines)}};
   }
 
   // Creates a context whose calls of vkCreateComputePipelines are counted.
   Context create_counted(VkPipelineCache cache = VK_NULL_HANDLE) {
     AlcoveContextInfo info = engine().context_info();
-    info.get_instance_proc_addr = get_instance_proc_addr;
+    info.get_instance_proc_addr = get_replaced_function;
     info.pipeline_cache = cache;
     return create_context(info);
   }

@@ -193,28 +193,17 @@ TEST_P(CSteadyFrame, SteadyFrameAllocatesNothingCreatesNoVulkanObjectAndUpdatesN
   AlcoveContextInfo info = engine.context_info();
   info.frames_in_flight = GetParam();
   info.get_instance_proc_addr = framegraph::failing::get_instance_proc_addr;
-  AlcoveContext* handle = nullptr;
-  ASSERT_EQ(alcoveCreateContext(&info, &handle, nullptr), ALCOVE_SUCCESS);
-  const Context context(handle);
+  const Context context = create_context(info);
   AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
   settings.specular = ALCOVE_SPECULAR_TABLE;
-  const auto make = [&](VkFormat format) {
-    return engine.make_image(format, 24, 16,
-                             VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
-  };
   std::array<AlcoveView, 2> views{};
-  for (std::uint32_t i = 0; i < views.size(); ++i) {
-    AlcoveView& view = views.at(i);
-    view = {.struct_size = sizeof view,
-            .info = {.id = 4000000000u + i, .settings = &settings, .camera = test_views()[2].view}};
-    view.images[ALCOVE_IMAGE_DEPTH] = make(VK_FORMAT_R32_SFLOAT);
-    view.images[ALCOVE_IMAGE_NORMALS] = make(VK_FORMAT_R16G16B16A16_SFLOAT);
-    view.images[ALCOVE_IMAGE_ROUGHNESS] = make(VK_FORMAT_R8_UNORM);
-    view.images[ALCOVE_IMAGE_ALBEDO] = make(VK_FORMAT_R8G8B8A8_UNORM);
-    view.images[ALCOVE_IMAGE_VISIBILITY] = make(VK_FORMAT_R8_UNORM);
-    view.images[ALCOVE_IMAGE_BENT_NORMAL] = make(VK_FORMAT_R8G8B8A8_SNORM);
-    view.images[ALCOVE_IMAGE_SPECULAR] = make(VK_FORMAT_R8_UNORM);
-    view.images[ALCOVE_IMAGE_MULTI_BOUNCE] = make(VK_FORMAT_R8G8B8A8_UNORM);
+  for (AlcoveView& view : views) {
+    view = engine.make_view(settings, 24, 16,
+                            {ALCOVE_IMAGE_DEPTH, ALCOVE_IMAGE_NORMALS, ALCOVE_IMAGE_ROUGHNESS,
+                             ALCOVE_IMAGE_ALBEDO, ALCOVE_IMAGE_VISIBILITY, ALCOVE_IMAGE_BENT_NORMAL,
+                             ALCOVE_IMAGE_SPECULAR, ALCOVE_IMAGE_MULTI_BOUNCE});
+    view.info.id = 4000000000u + static_cast<std::uint32_t>(&view - views.data());
+    view.info.camera = test_views()[2].view;
   }
   AlcoveFrame frame = make_frame(views, 0);
   std::size_t steady = 0;

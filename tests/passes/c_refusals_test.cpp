@@ -59,7 +59,7 @@ class CRefusals : public CInterface {
     view_ = create_view(from_);
     view_.images[ALCOVE_IMAGE_MASK] = engine().make_image(
         VK_FORMAT_R8_UINT, 16, 12, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    write_bytes(view_.images[ALCOVE_IMAGE_MASK], Bytes(16UL * 12));  // without effect
+    engine().write(view_.images[ALCOVE_IMAGE_MASK], Bytes(16UL * 12));  // without effect
     view_.info.not_receiving = 1;
   }
 

@@ -164,7 +164,8 @@ void CResize::use_part(ViewState& state, VkExtent2D size) {
     AlcoveImage whole = state.view.images[each.role];
     whole.width = state.largest.width;
     whole.height = state.largest.height;
-    fill_image(whole, placed_in(state.largest, part.*each.texels));
+    const HostImage contents = placed_in(state.largest, part.*each.texels);
+    engine().write(whole, std::as_bytes(std::span(contents.texels)));
   }
   for (AlcoveImage& image : state.view.images) {
     image.width = size.width;

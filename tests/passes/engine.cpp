@@ -2,98 +2,247 @@
 
 #include <gtest/gtest.h>
 
-namespace alcove::passes {
+#include <algorithm>
+#include <string_view>
 
-TestEngine::TestEngine(const sample::VulkanDevice& device) : device_(device) {
+#include "gpu/gpu_image.h"
+
+namespace alcove::passes {
+namespace {
+
+// Changes the layout of an image between its use by any commands.
+void change_layout(VkCommandBuffer commands, const AlcoveImage& image, VkImageLayout from,
+                   VkImageLayout to) {
+  const VkImageMemoryBarrier barrier{
+      .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+      .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
+      .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+      .oldLayout = from,
+      .newLayout = to,
+      .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+      .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+      .image = image.image,
+      .subresourceRange = {sample::aspect_of(image.format), 0, 1, image.layer,
+                           from == VK_IMAGE_LAYOUT_UNDEFINED ? VK_REMAINING_ARRAY_LAYERS : 1}};
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                       VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+}
+
+VkBufferImageCopy whole(const AlcoveImage& image) {
+  return {.imageSubresource = {sample::aspect_of(image.format), 0, image.layer, 1},
+          .imageExtent = {image.width, image.height, 1}};
+}
+
+}  // namespace
+
+TestEngine::TestEngine(const sample::VulkanDevice& device)
+    : TestEngine(EngineDevice{device.instance(), device.physical_device(), device.device(),
+                              device.queue(), device.queue_family()}) {}
+
+TestEngine::TestEngine(const EngineDevice& device) : device_(device) {
   const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                     .queueFamilyIndex = device.queue_family()};
-  EXPECT_EQ(vkCreateCommandPool(device.device(), &pool, nullptr, &pool_), VK_SUCCESS);
+                                     .queueFamilyIndex = device.queue_family};
+  EXPECT_EQ(vkCreateCommandPool(device.device, &pool, nullptr, &pool_), VK_SUCCESS);
   for (Slot& slot : slots_) {
     const VkCommandBufferAllocateInfo commands{
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
         .commandPool = pool_,
         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
         .commandBufferCount = 1};
-    EXPECT_EQ(vkAllocateCommandBuffers(device.device(), &commands, &slot.commands), VK_SUCCESS);
+    EXPECT_EQ(vkAllocateCommandBuffers(device.device, &commands, &slot.commands), VK_SUCCESS);
     const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
                                   .flags = VK_FENCE_CREATE_SIGNALED_BIT};
-    EXPECT_EQ(vkCreateFence(device.device(), &fence, nullptr, &slot.fence), VK_SUCCESS);
+    EXPECT_EQ(vkCreateFence(device.device, &fence, nullptr, &slot.fence), VK_SUCCESS);
   }
 }
 
 TestEngine::~TestEngine() {
   wait();
-  for (const Slot& slot : slots_) vkDestroyFence(device_.device(), slot.fence, nullptr);
-  vkDestroyCommandPool(device_.device(), pool_, nullptr);
+  for (const Image& image : images_) destroy(image);
+  for (const Slot& slot : slots_) vkDestroyFence(device_.device, slot.fence, nullptr);
+  vkDestroyCommandPool(device_.device, pool_, nullptr);
 }
 
 AlcoveContextInfo TestEngine::context_info() const {
   return {.struct_size = sizeof(AlcoveContextInfo),
-          .queue_family = device_.queue_family(),
-          .instance = device_.instance(),
-          .physical_device = device_.physical_device(),
-          .device = device_.device(),
+          .queue_family = device_.queue_family,
+          .instance = device_.instance,
+          .physical_device = device_.physical_device,
+          .device = device_.device,
           .get_instance_proc_addr = vkGetInstanceProcAddr,
           .frames_in_flight = kSlots,
           .timestamps = VK_TRUE};
 }
 
+VkDeviceMemory TestEngine::allocate(const VkMemoryRequirements& needs,
+                                    VkMemoryPropertyFlags flags) const {
+  VkPhysicalDeviceMemoryProperties properties;
+  vkGetPhysicalDeviceMemoryProperties(device_.physical_device, &properties);
+  const std::span types(properties.memoryTypes, properties.memoryTypeCount);
+  VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                            .allocationSize = needs.size};
+  while ((needs.memoryTypeBits >> info.memoryTypeIndex & 1u) == 0 ||
+         (types[info.memoryTypeIndex].propertyFlags & flags) != flags)
+    ++info.memoryTypeIndex;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  EXPECT_EQ(vkAllocateMemory(device_.device, &info, nullptr, &memory), VK_SUCCESS);
+  return memory;
+}
+
 AlcoveImage TestEngine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                                    VkImageUsageFlags usage, std::uint32_t layers,
                                    VkSampleCountFlagBits samples) {
-  auto created = sample::GpuImage::create(
-      device_, {format, framegraph::Extent::absolute(width, height), 1, layers, samples}, usage);
-  EXPECT_TRUE(created) << created.error();
-  if (!created) return {};
-  const VkImage image = (*created)->image();
-  images_.push_back(std::move(*created));
+  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = format,
+                               .extent = {width, height, 1},
+                               .mipLevels = 1,
+                               .arrayLayers = layers,
+                               .samples = samples,
+                               .usage = usage};
+  Image made;
+  EXPECT_EQ(vkCreateImage(device_.device, &info, nullptr, &made.image), VK_SUCCESS);
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device_.device, made.image, &needs);
+  made.memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  EXPECT_EQ(vkBindImageMemory(device_.device, made.image, made.memory, 0), VK_SUCCESS);
+  images_.push_back(made);
+  const AlcoveImage image{.image = made.image,
+                          .format = format,
+                          .width = width,
+                          .height = height,
+                          .usage = usage,
+                          .initial_state = kResting,
+                          .final_state = kResting};
   submit(0, [&](VkCommandBuffer commands) {
-    const VkImageMemoryBarrier2 barrier{
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-        .dstStageMask = kResting.stages,
-        .dstAccessMask = kResting.access,
-        .newLayout = kResting.layout,
-        .image = image,
-        .subresourceRange = {sample::aspect_of(format), 0, 1, 0, layers}};
-    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                      .imageMemoryBarrierCount = 1,
-                                      .pImageMemoryBarriers = &barrier};
-    vkCmdPipelineBarrier2(commands, &dependency);
+    change_layout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, kResting.layout);
   });
   wait();
-  return {.image = image,
-          .format = format,
-          .width = width,
-          .height = height,
-          .usage = usage,
-          .initial_state = kResting,
-          .final_state = kResting};
+  return image;
+}
+
+AlcoveView TestEngine::make_view(const AlcoveSettings& settings, std::uint32_t width,
+                                 std::uint32_t height,
+                                 std::initializer_list<AlcoveImageRole> roles) {
+  AlcoveView view{.struct_size = sizeof view, .info = {.settings = &settings}};
+  const auto format_of = [](AlcoveImageRole role) {
+    switch (role) {
+      case ALCOVE_IMAGE_DEPTH:
+        return VK_FORMAT_R32_SFLOAT;
+      case ALCOVE_IMAGE_NORMALS:
+        return VK_FORMAT_R16G16B16A16_SFLOAT;
+      case ALCOVE_IMAGE_BENT_NORMAL:
+        return VK_FORMAT_R8G8B8A8_SNORM;
+      case ALCOVE_IMAGE_ALBEDO:
+      case ALCOVE_IMAGE_MULTI_BOUNCE:
+        return VK_FORMAT_R8G8B8A8_UNORM;
+      default:
+        return VK_FORMAT_R8_UNORM;
+    }
+  };
+  for (const AlcoveImageRole role : roles)
+    view.images[role] =
+        make_image(format_of(role), width, height,
+                   VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                       VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  return view;
+}
+
+void TestEngine::destroy(const Image& image) const {
+  vkDestroyImage(device_.device, image.image, nullptr);
+  vkFreeMemory(device_.device, image.memory, nullptr);
 }
 
 void TestEngine::destroy_image(const AlcoveImage& image) {
-  std::erase_if(images_, [&](const auto& each) { return each->image() == image.image; });
+  std::erase_if(images_, [&](const Image& each) {
+    if (each.image == image.image) destroy(each);
+    return each.image == image.image;
+  });
 }
 
 void TestEngine::forget_images(AlcoveContext& context) const {
-  for (const auto& image : images_)
-    EXPECT_EQ(alcoveForgetImage(&context, image->image()), ALCOVE_SUCCESS);
+  for (const Image& image : images_)
+    EXPECT_EQ(alcoveForgetImage(&context, image.image), ALCOVE_SUCCESS);
 }
 
-void TestEngine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
+TestEngine::Buffer TestEngine::create_buffer(VkBufferUsageFlags usage, VkDeviceSize size) const {
+  const VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+  Buffer made;
+  EXPECT_EQ(vkCreateBuffer(device_.device, &info, nullptr, &made.buffer), VK_SUCCESS);
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(device_.device, made.buffer, &needs);
+  made.memory =
+      allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  EXPECT_EQ(vkBindBufferMemory(device_.device, made.buffer, made.memory, 0), VK_SUCCESS);
+  void* mapped = nullptr;
+  EXPECT_EQ(vkMapMemory(device_.device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
+  made.bytes = {static_cast<std::byte*>(mapped), size};
+  return made;
+}
+
+void TestEngine::destroy_buffer(const Buffer& buffer) const {
+  vkDestroyBuffer(device_.device, buffer.buffer, nullptr);
+  vkFreeMemory(device_.device, buffer.memory, nullptr);
+}
+
+void TestEngine::write(const AlcoveImage& image, std::span<const std::byte> texels,
+                       const AlcoveState& final_state) {
+  const Buffer buffer = create_buffer(VK_BUFFER_USAGE_TRANSFER_SRC_BIT, texels.size());
+  std::ranges::copy(texels, buffer.bytes.begin());
+  submit(0, [&](VkCommandBuffer commands) {
+    constexpr VkImageLayout kFilled = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    const VkBufferImageCopy copy = whole(image);
+    change_layout(commands, image, kResting.layout, kFilled);
+    vkCmdCopyBufferToImage(commands, buffer.buffer, image.image, kFilled, 1, &copy);
+    change_layout(commands, image, kFilled, final_state.layout);
+  });
+  wait();
+  destroy_buffer(buffer);
+}
+
+Bytes TestEngine::read(const AlcoveImage& image, std::size_t texel_bytes) {
+  const Buffer buffer = create_buffer(VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                      std::size_t{image.width} * image.height * texel_bytes);
+  submit(0, [&](VkCommandBuffer commands) {
+    constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    const VkBufferImageCopy copy = whole(image);
+    change_layout(commands, image, image.final_state.layout, kRead);
+    vkCmdCopyImageToBuffer(commands, image.image, kRead, buffer.buffer, 1, &copy);
+    change_layout(commands, image, kRead, image.final_state.layout);
+  });
+  wait();
+  Bytes bytes(buffer.bytes.begin(), buffer.bytes.end());
+  destroy_buffer(buffer);
+  return bytes;
+}
+
+void TestEngine::record(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
   const Slot& used = slots_.at(slot);
-  EXPECT_EQ(vkWaitForFences(device_.device(), 1, &used.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
-  EXPECT_EQ(vkResetFences(device_.device(), 1, &used.fence), VK_SUCCESS);
+  EXPECT_EQ(vkWaitForFences(device_.device, 1, &used.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   EXPECT_EQ(vkBeginCommandBuffer(used.commands, &begin), VK_SUCCESS);
   record(used.commands);
   EXPECT_EQ(vkEndCommandBuffer(used.commands), VK_SUCCESS);
+}
+
+void TestEngine::submit(std::uint32_t slot) {
+  const Slot& used = slots_.at(slot);
   const VkSubmitInfo submission{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                                 .commandBufferCount = 1,
                                 .pCommandBuffers = &used.commands};
-  EXPECT_EQ(vkQueueSubmit(device_.queue(), 1, &submission, used.fence), VK_SUCCESS);
+  EXPECT_EQ(vkResetFences(device_.device, 1, &used.fence), VK_SUCCESS);
+  EXPECT_EQ(vkQueueSubmit(device_.queue, 1, &submission, used.fence), VK_SUCCESS);
 }
+
+void TestEngine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& commands) {
+  record(slot, commands);
+  submit(slot);
+}
+
+void TestEngine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue), VK_SUCCESS); }
 
 AlcoveSettings get_settings(AlcoveQuality quality, float radius) {
   AlcoveSettings settings{.struct_size = sizeof settings};
@@ -107,6 +256,30 @@ void throw_away(VkCommandBuffer commands) {
   vkBeginCommandBuffer(commands, &begin);
 }
 
-void TestEngine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue()), VK_SUCCESS); }
+Context create_context(const AlcoveContextInfo& info) {
+  AlcoveContext* handle = nullptr;
+  char message[ALCOVE_MAX_MESSAGE];
+  EXPECT_EQ(alcoveCreateContext(&info, &handle, message), ALCOVE_SUCCESS) << message;
+  EXPECT_STREQ(message, "");
+  return Context(handle);
+}
+
+namespace {
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device, const char* name) {
+  const auto replaced = replaced_functions.find(std::string_view(name));
+  return replaced != replaced_functions.end() ? replaced->second
+                                              : vkGetDeviceProcAddr(device, name);
+}
+
+}  // namespace
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_replaced_function(VkInstance instance,
+                                                               const char* name) {
+  if (std::string_view(name) == "vkGetDeviceProcAddr") return untyped(&get_device_function);
+  const auto replaced = replaced_functions.find(std::string_view(name));
+  return replaced != replaced_functions.end() ? replaced->second
+                                              : vkGetInstanceProcAddr(instance, name);
+}
 
 }  // namespace alcove::passes

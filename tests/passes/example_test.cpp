@@ -63,14 +63,8 @@ framegraph::ImportedTexture import_of(const AlcoveImage& image) {
 class Example : public passes::CInterface {
  protected:
   std::unique_ptr<Engine> start() {
-    framegraph::DeviceHandles device;
-    device.instance = gpu().device().instance();
-    device.physical_device = gpu().device().physical_device();
-    device.device = gpu().device().device();
-    device.get_instance_proc_addr = vkGetInstanceProcAddr;
-    device.queues[0] = {gpu().device().queue(), gpu().device().queue_family()};
-    auto executor = framegraph::Executor::create(device, {.frames_in_flight = 2});
-    auto pipelines = passes::Pipelines::create(device, 2);
+    auto executor = framegraph::Executor::create(handles(), {.frames_in_flight = 2});
+    auto pipelines = passes::Pipelines::create(handles(), 2);
     if (!executor || !pipelines) return nullptr;
     return std::unique_ptr<Engine>(new Engine{
         .graph = {}, .pipelines = std::move(*pipelines), .executor = std::move(*executor)});

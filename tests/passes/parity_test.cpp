@@ -18,8 +18,7 @@ TEST_F(CInterface, ShaderFunctionsGiveTheSameValuesOnTheDeviceAndTheCpu) {
   work.dispatches[0] = {
       .label = "parity", .shader = "parity", .groups = {32, 32, 1}, .binding_count = 1};
   work.dispatches[0].bindings[0] = {.name = "values", .type = ALCOVE_BINDING_TYPE_STORAGE_IMAGE};
-  WorkExecutor executor(gpu().device().physical_device(), gpu().device().device(),
-                        {kParity, sizeof kParity});
+  WorkExecutor executor(engine(), {kParity, sizeof kParity});
   engine().submit(0, [&](VkCommandBuffer commands) {
     executor.record(commands, work, {&image.image, 1});
   });

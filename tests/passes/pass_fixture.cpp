@@ -40,26 +40,35 @@ TexelLayout find_layout(VkFormat format) {
   return {};
 }
 
-void decode(std::span<const std::byte> bytes, VkFormat format, std::vector<float>& texels) {
-  const std::uint32_t size = find_layout(format).channel_bytes;
-  for (std::size_t i = 0; i < texels.size(); ++i) {
+}  // namespace
+
+std::size_t texel_bytes(VkFormat format) {
+  return std::size_t{find_layout(format).channels} * find_layout(format).channel_bytes;
+}
+
+HostImage decode(std::span<const std::byte> bytes, VkFormat format, std::uint32_t width,
+                 std::uint32_t height) {
+  const auto [unused, channels, size] = find_layout(format);
+  HostImage image{width, height, {}, channels};
+  image.texels.resize(std::size_t{width} * height * channels);
+  for (std::size_t i = 0; i < image.texels.size(); ++i) {
     const std::byte* from = bytes.data() + i * size;
+    float& texel = image.texels[i];
     if (size == 4) {
-      std::memcpy(&texels[i], from, 4);
+      std::memcpy(&texel, from, 4);
     } else if (size == 2) {
       std::uint16_t half = 0;
       std::memcpy(&half, from, 2);
-      texels[i] = sample::half_to_float(half);
+      texel = sample::half_to_float(half);
     } else if (format == VK_FORMAT_R8_UNORM) {
-      texels[i] = static_cast<float>(std::to_integer<int>(*from)) / 255.0f;
+      texel = static_cast<float>(std::to_integer<int>(*from)) / 255.0f;
     } else {
       const auto stored = static_cast<std::int8_t>(*from);
-      texels[i] = std::max(static_cast<float>(stored) / 127.0f, -1.0f);
+      texel = std::max(static_cast<float>(stored) / 127.0f, -1.0f);
     }
   }
+  return image;
 }
-
-}  // namespace
 
 VkFormat float_format(std::uint32_t channels) {
   return channels == 1   ? VK_FORMAT_R32_SFLOAT
@@ -125,6 +134,16 @@ void PassTest::TearDown() {
 
 sample::Gpu& PassTest::gpu() { return *shared.gpu; }
 
+framegraph::DeviceHandles PassTest::handles() {
+  framegraph::DeviceHandles handles;
+  handles.instance = gpu().device().instance();
+  handles.physical_device = gpu().device().physical_device();
+  handles.device = gpu().device().device();
+  handles.get_instance_proc_addr = vkGetInstanceProcAddr;
+  handles.queues[0] = {gpu().device().queue(), gpu().device().queue_family()};
+  return handles;
+}
+
 Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) {
   return fill(
       graph,
@@ -146,17 +165,11 @@ Texture PassTest::fill(Graph& graph, Texture target, const HostImage& image) {
 void PassTest::read_back(Graph& graph, Texture texture) {
   const VkExtent3D extent = graph.extent(texture);
   const VkFormat format = graph.format(texture);
-  HostImage image;
-  image.width = extent.width;
-  image.height = extent.height;
-  image.channels = find_layout(format).channels;
-  image.texels.resize(std::size_t{image.width} * image.height * image.channels);
-  auto buffer = sample::HostBuffer::create(gpu().device(),
-                                           image.texels.size() * find_layout(format).channel_bytes,
-                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  auto buffer = sample::HostBuffer::create(
+      gpu().device(), std::size_t{extent.width} * extent.height * texel_bytes(format),
+      VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   ASSERT_TRUE(buffer) << buffer.error();
-  downloads_.push_back({std::move(*buffer), format});
-  results_.push_back(std::move(image));
+  downloads_.push_back({std::move(*buffer), format, extent});
   sample::add_read_back(graph, texture, *downloads_.back().buffer);
 }
 
@@ -168,9 +181,10 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
     declare(graph);
     return {};
   });
+  for (const Download& each : downloads_)
+    results_.push_back(
+        decode(each.buffer->bytes(), each.format, each.extent.width, each.extent.height));
   ASSERT_TRUE(report) << report.error();
-  for (std::size_t i = 0; i < results_.size(); ++i)
-    decode(downloads_[i].buffer->bytes(), downloads_[i].format, results_[i].texels);
 }
 
 AlcoveViewInfo view_info(const HostView& view) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,11 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Returns the format of 32-bit floats with 1, 2 or 4 channels.
 VkFormat float_format(std::uint32_t channels);
+// Returns the bytes of a texel, and texels as floats, of a format that the passes write or of
+// floats.
+std::size_t texel_bytes(VkFormat format);
+HostImage decode(std::span<const std::byte> bytes, VkFormat format, std::uint32_t width,
+                 std::uint32_t height);
 // Returns the root mean square of the differences between two images of one size.
 double rms(const HostImage& a, const HostImage& b);
 // Returns the mean of all values of an image.
@@ -160,6 +166,7 @@ class PassTest : public testing::Test {
   void poison_memory(std::uint32_t width, std::uint32_t height);
 
   static sample::Gpu& gpu();
+  static framegraph::DeviceHandles handles();
   // Replaces the device that tests share by another, for tests that count pipelines and tables.
   static void open_gpu();
 
@@ -167,6 +174,7 @@ class PassTest : public testing::Test {
   struct Download {
     std::unique_ptr<sample::HostBuffer> buffer;
     VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent3D extent{};
   };
   std::vector<std::unique_ptr<sample::HostBuffer>> uploads_;
   std::vector<Download> downloads_;

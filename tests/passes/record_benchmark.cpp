@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <vector>
 
 #include "engine.h"
@@ -22,28 +21,7 @@ VKAPI_ATTR void VKAPI_CALL nothing(Arguments...) {}
 
 template <typename... Arguments>
 PFN_vkVoidFunction empty(void(VKAPI_PTR*)(Arguments...)) {
-  return reinterpret_cast<PFN_vkVoidFunction>(&nothing<Arguments...>);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char* name) {
-  struct Entry {
-    const char* name;
-    PFN_vkVoidFunction function;
-  };
-  const Entry entries[] = {{"vkCmdPipelineBarrier2", empty(PFN_vkCmdPipelineBarrier2{})},
-                           {"vkCmdBindPipeline", empty(PFN_vkCmdBindPipeline{})},
-                           {"vkCmdBindDescriptorSets", empty(PFN_vkCmdBindDescriptorSets{})},
-                           {"vkCmdDispatch", empty(PFN_vkCmdDispatch{})}};
-  for (const Entry& entry : entries)
-    if (std::strcmp(entry.name, name) == 0) return entry.function;
-  return vkGetDeviceProcAddr(device, name);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance,
-                                                                const char* name) {
-  return std::strcmp(name, "vkGetDeviceProcAddr") == 0
-             ? reinterpret_cast<PFN_vkVoidFunction>(&get_device_proc_addr)
-             : vkGetInstanceProcAddr(instance, name);
+  return untyped(&nothing<Arguments...>);
 }
 
 // Returns the median time of alcoveRecordFrame in microseconds, or a negative number if it fails.
@@ -52,24 +30,15 @@ double median_microseconds(const sample::VulkanDevice& device, bool library_alon
   TestEngine engine(device);
   AlcoveContextInfo info = engine.context_info();
   info.timestamps = VK_FALSE;
-  if (library_alone) info.get_instance_proc_addr = get_instance_proc_addr;
-  AlcoveContext* made = nullptr;
-  if (alcoveCreateContext(&info, &made, nullptr) != ALCOVE_SUCCESS) return -1.0;
-  const Context context(made);
-  AlcoveSettings settings{.struct_size = sizeof settings};
-  if (alcoveGetSettings(ALCOVE_QUALITY_MEDIUM, 0.5f, &settings) != ALCOVE_SUCCESS) return -1.0;
-  const auto make = [&](VkFormat format) {
-    return engine.make_image(format, 16, 16,
-                             VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
-  };
-  AlcoveView view{.struct_size = sizeof view, .info = {.settings = &settings}};
-  view.images[ALCOVE_IMAGE_DEPTH] = make(VK_FORMAT_R32_SFLOAT);
-  view.images[ALCOVE_IMAGE_NORMALS] = make(VK_FORMAT_R16G16B16A16_SFLOAT);
-  view.images[ALCOVE_IMAGE_VISIBILITY] = make(VK_FORMAT_R8_UNORM);
-  if (all_outputs) {
-    view.images[ALCOVE_IMAGE_BENT_NORMAL] = make(VK_FORMAT_R8G8B8A8_SNORM);
-    view.images[ALCOVE_IMAGE_SPECULAR] = make(VK_FORMAT_R8_UNORM);
-  }
+  if (library_alone) info.get_instance_proc_addr = get_replaced_function;
+  const Context context = create_context(info);
+  if (!context) return -1.0;
+  const AlcoveSettings settings = get_settings(ALCOVE_QUALITY_MEDIUM, 0.5f);
+  AlcoveView view =
+      engine.make_view(settings, 16, 16,
+                       {ALCOVE_IMAGE_DEPTH, ALCOVE_IMAGE_NORMALS, ALCOVE_IMAGE_VISIBILITY,
+                        ALCOVE_IMAGE_BENT_NORMAL, ALCOVE_IMAGE_SPECULAR});
+  if (!all_outputs) view.images[ALCOVE_IMAGE_BENT_NORMAL] = view.images[ALCOVE_IMAGE_SPECULAR] = {};
   view.info.camera = test_views()[2].view;
   AlcoveFrame frame{.struct_size = sizeof frame, .view_count = 1, .views = &view};
   std::vector<double> times;
@@ -96,6 +65,11 @@ double median_microseconds(const sample::VulkanDevice& device, bool library_alon
 
 int main() {
   using namespace alcove;
+  passes::replaced_functions = {
+      {"vkCmdPipelineBarrier2", passes::empty(PFN_vkCmdPipelineBarrier2{})},
+      {"vkCmdBindPipeline", passes::empty(PFN_vkCmdBindPipeline{})},
+      {"vkCmdBindDescriptorSets", passes::empty(PFN_vkCmdBindDescriptorSets{})},
+      {"vkCmdDispatch", passes::empty(PFN_vkCmdDispatch{})}};
   const auto device = sample::VulkanDevice::create();
   if (!device) {
     std::fprintf(stderr, "%s\n", device.error().c_str());

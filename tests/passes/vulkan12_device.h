@@ -3,14 +3,9 @@
 // runs under the validation layers.
 #pragma once
 
-#include <vulkan/vulkan.h>
-
-#include <cstdint>
-#include <functional>
 #include <string>
-#include <vector>
 
-#include "alcove/alcove.h"
+#include "engine.h"
 
 namespace alcove::passes {
 
@@ -21,32 +16,14 @@ class Vulkan12Device {
   Vulkan12Device(const Vulkan12Device&) = delete;
   Vulkan12Device& operator=(const Vulkan12Device&) = delete;
 
-  // Returns the info for a context with one frame in flight and the loader's vkGetInstanceProcAddr.
-  AlcoveContextInfo context_info() const;
-  AlcoveImage make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
-                         VkImageUsageFlags usage);
-  // Lets `record` record commands, submits them and waits for them.
-  void run(const std::function<void(VkCommandBuffer)>& record);
-  // Returns the bytes of a colour image that is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
-  std::vector<unsigned char> read(const AlcoveImage& image, std::uint32_t bytes_per_pixel);
-
-  VkInstance instance() const { return instance_; }
-  VkDevice device() const { return device_; }
+  const EngineDevice& handles() const { return handles_; }
   // Returns the messages of the validation layers so far.
   const std::string& messages() const { return messages_; }
 
  private:
-  VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) const;
-
   std::string messages_;
-  VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-  VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
-  VkDevice device_ = VK_NULL_HANDLE;
-  VkQueue queue_ = VK_NULL_HANDLE;
-  VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::vector<VkImage> images_;
-  std::vector<VkDeviceMemory> memories_;
+  EngineDevice handles_;
 };
 
 }  // namespace alcove::passes

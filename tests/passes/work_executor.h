@@ -1,6 +1,6 @@
 // Executes lists of work with plain Vulkan: an example of a backend that has nothing in common with
-// the library but alcove_work.h. It allocates its own memory, in which transients share bytes by
-// their lifetimes, records its own barriers, and keeps its own histories.
+// the library but alcove_work.h. It allocates its own memory from the engine, in which transients
+// share bytes by their lifetimes, records its own barriers, and keeps its own histories.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,14 +16,15 @@
 #include <vector>
 
 #include "alcove/alcove_work.h"
+#include "engine.h"
 
 namespace alcove::passes {
 
 class WorkExecutor {
  public:
   // With `own_shader`, every dispatch runs it instead of the library's shader.
-  WorkExecutor(VkPhysicalDevice physical_device, VkDevice device, AlcoveShader own_shader = {})
-      : physical_device_(physical_device), device_(device), own_shader_(own_shader) {
+  explicit WorkExecutor(const TestEngine& engine, AlcoveShader own_shader = {})
+      : engine_(engine), device_(engine.device().device), own_shader_(own_shader) {
     const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -103,19 +104,6 @@ class WorkExecutor {
     return kTypes.at(binding_type);
   }
 
-  VkDeviceMemory allocate(const VkMemoryRequirements& needed, VkMemoryPropertyFlags flags) const {
-    VkPhysicalDeviceMemoryProperties properties{};
-    vkGetPhysicalDeviceMemoryProperties(physical_device_, &properties);
-    VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                              .allocationSize = needed.size};
-    while ((needed.memoryTypeBits & (1u << info.memoryTypeIndex)) == 0 ||
-           (properties.memoryTypes[info.memoryTypeIndex].propertyFlags & flags) != flags)
-      ++info.memoryTypeIndex;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    check(vkAllocateMemory(device_, &info, nullptr, &memory));
-    return memory;
-  }
-
   Image create_image(const AlcoveWorkResource& resource) const {
     // A history is stored to in one frame and sampled in the next.
     const bool history = resource.kind != ALCOVE_RESOURCE_KIND_TRANSIENT;
@@ -135,7 +123,7 @@ class WorkExecutor {
     if (history) {
       VkMemoryRequirements needed{};
       vkGetImageMemoryRequirements(device_, made.image, &needed);
-      made.memory = allocate(needed, 0);
+      made.memory = engine_.allocate(needed, 0);
       check(vkBindImageMemory(device_, made.image, made.memory, 0));
     }
     return made;
@@ -195,7 +183,7 @@ class WorkExecutor {
       all.memoryTypeBits &= needed.memoryTypeBits;
       places.push_back(place);
     }
-    transients_ = places.empty() ? VK_NULL_HANDLE : allocate(all, 0);
+    transients_ = places.empty() ? VK_NULL_HANDLE : engine_.allocate(all, 0);
     for (const Place& place : places)
       check(vkBindImageMemory(device_, place.image, transients_, place.begin));
   }
@@ -303,20 +291,9 @@ class WorkExecutor {
   }
 
   VkBuffer create_buffer(VkBufferUsageFlags usage, const void* bytes, VkDeviceSize size) {
-    const VkBufferCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
-    VkBuffer buffer = VK_NULL_HANDLE;
-    check(vkCreateBuffer(device_, &info, nullptr, &buffer));
-    VkMemoryRequirements needed{};
-    vkGetBufferMemoryRequirements(device_, buffer, &needed);
-    const VkDeviceMemory memory = allocate(
-        needed, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-    check(vkBindBufferMemory(device_, buffer, memory, 0));
-    void* mapped = nullptr;
-    check(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &mapped));
-    std::memcpy(mapped, bytes, size);
-    buffers_.emplace_back(buffer, memory);
-    return buffer;
+    buffers_.push_back(engine_.create_buffer(usage, size));
+    std::memcpy(buffers_.back().bytes.data(), bytes, size);
+    return buffers_.back().buffer;
   }
 
   VkDescriptorSet create_set(const AlcoveWork& work, const AlcoveWorkDispatch& dispatch,
@@ -367,17 +344,14 @@ class WorkExecutor {
   }
   void destroy_frame() {
     std::ranges::for_each(images_, [&](const Image& image) { destroy(image); });
-    for (const auto& [buffer, memory] : buffers_) {
-      vkDestroyBuffer(device_, buffer, nullptr);
-      vkFreeMemory(device_, memory, nullptr);
-    }
+    for (const TestEngine::Buffer& buffer : buffers_) engine_.destroy_buffer(buffer);
     vkFreeMemory(device_, std::exchange(transients_, VK_NULL_HANDLE), nullptr);
     check(vkResetDescriptorPool(device_, pool_, 0));
     images_.clear();
     buffers_.clear();
   }
 
-  VkPhysicalDevice physical_device_;
+  const TestEngine& engine_;
   VkDevice device_;
   AlcoveShader own_shader_;
   VkSampler sampler_ = VK_NULL_HANDLE;
@@ -386,7 +360,7 @@ class WorkExecutor {
   std::map<std::string, Image> histories_;     // written in the last frame, by name
   // State of the current frame.
   std::vector<Image> images_;  // parallel to the resources
-  std::vector<std::pair<VkBuffer, VkDeviceMemory>> buffers_;
+  std::vector<TestEngine::Buffer> buffers_;
   VkDeviceMemory transients_ = VK_NULL_HANDLE;
 };
 

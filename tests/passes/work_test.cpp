@@ -52,14 +52,13 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
         VK_FORMAT_R8_UNORM, 37, 26, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     Bytes bytes(37UL * 26);
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i % 37 / 10);
-    write_bytes(image, bytes);
+    engine().write(image, bytes);
     return image;
   }
 
   void SetUp() override {
     CInterface::SetUp();
-    executor_ =
-        std::make_unique<WorkExecutor>(gpu().device().physical_device(), gpu().device().device());
+    executor_ = std::make_unique<WorkExecutor>(engine());
   }
   void TearDown() override {
     executor_.reset();
@@ -100,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
                     Case{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
                     Case{"Ultra", ALCOVE_QUALITY_ULTRA, request_all_outputs},
-                    Case{"Reference", ALCOVE_QUALITY_HEIGHT_FIELD, request_all_outputs},
+                    Case{"HeightField", ALCOVE_QUALITY_HEIGHT_FIELD, request_all_outputs},
                     Case{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
                     Case{"ConsoleVisibilityAlone", ALCOVE_QUALITY_CONSOLE},
                     Case{"DepthCopiedFrom16Bits", ALCOVE_QUALITY_MEDIUM,
