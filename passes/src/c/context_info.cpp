@@ -31,26 +31,26 @@ struct Features {
 // that vkCreateDevice takes and vkGetPhysicalDeviceFeatures2 fills. Its structs may have any order.
 Features features_in(const void* chain) {
   constexpr int kMostStructs = 1000;  // Vulkan allows each type once, and has a few hundred
-  Features found;
+  Features all;
   int count = 0;
   for (auto* next = static_cast<const VkBaseInStructure*>(chain); next != nullptr;
        next = next->pNext) {
     if (++count > kMostStructs) return {.ends = false};
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2) {
       const auto* core = reinterpret_cast<const VkPhysicalDeviceFeatures2*>(next);
-      found.has_features2 = true;
-      found.write_without_format |= core->features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
+      all.has_features2 = true;
+      all.write_without_format |= core->features.shaderStorageImageWriteWithoutFormat != VK_FALSE;
     }
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES) {
       const auto* vulkan13 = reinterpret_cast<const VkPhysicalDeviceVulkan13Features*>(next);
-      found.synchronization2 |= vulkan13->synchronization2 != VK_FALSE;
+      all.synchronization2 |= vulkan13->synchronization2 != VK_FALSE;
     }
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES) {
       const auto* alone = reinterpret_cast<const VkPhysicalDeviceSynchronization2Features*>(next);
-      found.synchronization2 |= alone->synchronization2 != VK_FALSE;
+      all.synchronization2 |= alone->synchronization2 != VK_FALSE;
     }
   }
-  return found;
+  return all;
 }
 
 tl::expected<void, Failure> check_features(const Features& features, std::string_view who,
@@ -146,8 +146,8 @@ tl::expected<void, Failure> check(const AlcoveContextInfo* info) {
       {"physical_device", info->physical_device != VK_NULL_HANDLE},
       {"device", info->device != VK_NULL_HANDLE},
       {"get_instance_proc_addr", info->get_instance_proc_addr != nullptr}};
-  for (const auto& [name, given] : needed)
-    if (!given) return invalid(std::string("AlcoveContextInfo::") + name + " is null.");
+  for (const auto& [name, is_set] : needed)
+    if (!is_set) return invalid(std::string("AlcoveContextInfo::") + name + " is null.");
   if (info->frames_in_flight < 1 || info->frames_in_flight > ALCOVE_MAX_FRAMES_IN_FLIGHT) {
     return invalid("AlcoveContextInfo::frames_in_flight is " +
                    std::to_string(info->frames_in_flight) + "; it must be 1 to " +

@@ -31,18 +31,19 @@ void HostAdapter::log(AlcoveSeverity severity, const char* sentence) const {
 VkResult HostAdapter::allocate(void* user, const framegraph::MemoryRequest& request,
                                framegraph::MemoryRange& range) {
   const AlcoveMemoryFunctions& memory = static_cast<HostAdapter*>(user)->memory_;
-  const AlcoveMemoryRequest asked{request.requirements, request.required, request.preferred,
-                                  static_cast<AlcoveMemoryLifetime>(request.lifetime)};
-  AlcoveMemoryRange given{};
-  const VkResult result = memory.allocate(memory.user, &asked, &given);
-  range = {given.memory, given.offset, given.mapped, given.handle};
+  const AlcoveMemoryRequest engine_request{request.requirements, request.required,
+                                           request.preferred,
+                                           static_cast<AlcoveMemoryLifetime>(request.lifetime)};
+  AlcoveMemoryRange engine_range{};
+  const VkResult result = memory.allocate(memory.user, &engine_request, &engine_range);
+  range = {engine_range.memory, engine_range.offset, engine_range.mapped, engine_range.handle};
   return result;
 }
 
 void HostAdapter::free(void* user, const framegraph::MemoryRange& range) {
   const AlcoveMemoryFunctions& memory = static_cast<HostAdapter*>(user)->memory_;
-  const AlcoveMemoryRange given{range.memory, range.offset, range.mapped, range.handle};
-  memory.free(memory.user, &given);
+  const AlcoveMemoryRange engine_range{range.memory, range.offset, range.mapped, range.handle};
+  memory.free(memory.user, &engine_range);
 }
 
 void HostAdapter::write(void* user, framegraph::Severity severity, const char* sentence) {

@@ -19,13 +19,13 @@ AlcoveResult alcoveGetMemory(AlcoveContext* context, AlcoveMemory* memory) {
     if (auto valid = passes::check_size(memory->struct_size, sizeof *memory, "AlcoveMemory");
         !valid)
       return valid;
-    const framegraph::MemoryStatistics& found = context->report.memory;
+    const framegraph::MemoryStatistics& sizes = context->report.memory;
     const bool recorded = context->report.plan != nullptr;
     *memory = {.struct_size = sizeof *memory,
-               .transients = found.aliased,
-               .transients_unshared = found.unaliased,
-               .history = found.history,
-               .allocated = recorded ? found.allocated + context->pipelines.memory_bytes() : 0};
+               .transients = sizes.aliased,
+               .transients_unshared = sizes.unaliased,
+               .history = sizes.history,
+               .allocated = recorded ? sizes.allocated + context->pipelines.memory_bytes() : 0};
     return {};
   });
 }
@@ -37,13 +37,13 @@ AlcoveResult alcoveGetTimings(AlcoveContext* context, uint32_t slot, uint32_t* c
     if (slot >= context->frames_in_flight)
       return invalid("Slot " + std::to_string(slot) + " is not below the " +
                      std::to_string(context->frames_in_flight) + " frames in flight.");
-    const auto found = context->executor.timings(slot);
-    const auto there = static_cast<std::uint32_t>(found.size());
+    const auto times = context->executor.timings(slot);
+    const auto there = static_cast<std::uint32_t>(times.size());
     *count = timings == nullptr ? there : std::min(*count, there);
     for (std::uint32_t i = 0; timings != nullptr && i < *count; ++i) {
-      copy_text(found[i].name, timings[i].pass, sizeof timings[i].pass);
-      timings[i].view = context->passes_of_views[slot].view_of(found[i].pass);
-      timings[i].milliseconds = found[i].milliseconds;
+      copy_text(times[i].name, timings[i].pass, sizeof timings[i].pass);
+      timings[i].view = context->passes_of_views[slot].view_of(times[i].pass);
+      timings[i].milliseconds = times[i].milliseconds;
     }
     return {};
   });

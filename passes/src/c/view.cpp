@@ -78,28 +78,28 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
     return fail(problem);
   const AlcoveArea part = output_area(view);
   const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
-  const auto found = std::find_if(entries_.begin(), end, [&](const Entry& entry) {
+  const auto duplicate = std::find_if(entries_.begin(), end, [&](const Entry& entry) {
     return entry.image.image == image.image && entry.image.layer == image.layer;
   });
-  if (found != end) {
+  if (duplicate != end) {
     // Several views may write to an image, each to another area of it.
     const bool in_part = read_area(view.info, {image.width, image.height}).width > 0;
-    const bool may_repeat = output ? found->output && in_part : !found->output;
-    if (!may_repeat || !same_description(found->image, image)) {
+    const bool may_repeat = output ? duplicate->output && in_part : !duplicate->output;
+    if (!may_repeat || !same_description(duplicate->image, image)) {
       return fail(
           "is given twice in the frame; only inputs may be, and outputs of several views with "
           "areas, described alike.");
     }
     for (const Part& other : std::span(parts_).first(output ? part_count_ : 0)) {
-      if (other.entry == &*found && overlap(other.area, part)) {
+      if (other.entry == &*duplicate && overlap(other.area, part)) {
         return fail("is written by view " + std::to_string(other.view) + " in " +
                     area_text(other.area) + " and by this view in " + area_text(part) +
                     "; give each view pixels of its own by output_x and output_y, or an image of "
                     "its own.");
       }
     }
-    if (output) parts_.at(part_count_++) = {&*found, part, view.info.id};
-    return graph.latest(found->texture);
+    if (output) parts_.at(part_count_++) = {&*duplicate, part, view.info.id};
+    return graph.latest(duplicate->texture);
   }
   // The name is on the stack, because a steady frame must not allocate memory.
   std::array<char, 64> name{};

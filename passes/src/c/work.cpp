@@ -34,10 +34,10 @@ Result check(const AlcoveWorkInfo* info) {
 
 passes::Failure failed(const passes::Error& error) { return passes::failure_of(error, "The view"); }
 
-Result describe(const AlcoveWorkInfo& given, AlcoveWork& work) {
-  AlcoveWorkInfo info = given;
+Result describe(const AlcoveWorkInfo& original, AlcoveWork& work) {
+  AlcoveWorkInfo info = original;
   AlcoveViewInfo& view = info.view;
-  const AlcoveWork* const previous = view.reset_history != 0 ? nullptr : given.previous;
+  const AlcoveWork* const previous = view.reset_history != 0 ? nullptr : original.previous;
   if (previous != nullptr) {
     view.previous_camera = previous->camera;
     view.previous_width = previous->width;
@@ -50,10 +50,10 @@ Result describe(const AlcoveWorkInfo& given, AlcoveWork& work) {
 Result list_pipelines(const AlcoveWorkInfo& info, std::uint32_t& count,
                       AlcoveWorkPipeline* pipelines) {
   const auto work = std::make_unique<AlcoveWork>();
-  return passes::list_pipelines(*work, info).map_error(failed).map([&](const auto& found) {
-    const auto there = static_cast<std::uint32_t>(found.size());
+  return passes::list_pipelines(*work, info).map_error(failed).map([&](const auto& list) {
+    const auto there = static_cast<std::uint32_t>(list.size());
     count = pipelines == nullptr ? there : std::min(count, there);
-    if (pipelines != nullptr) std::copy_n(found.begin(), count, pipelines);
+    if (pipelines != nullptr) std::copy_n(list.begin(), count, pipelines);
   });
 }
 
@@ -87,10 +87,9 @@ size_t alcovePrintWork(const AlcoveWork* work, char* text, size_t size) {
 }
 
 AlcoveResult alcoveGetShader(const char* name, AlcoveShader* shader) {
-  const passes::Shader found =
-      name == nullptr ? passes::Shader::count : passes::shader_of_name(name);
-  if (shader == nullptr || found == passes::Shader::count) return ALCOVE_ERROR_INVALID_INPUT;
-  const auto code = passes::shader_source(found).code;
+  const passes::Shader id = name == nullptr ? passes::Shader::count : passes::shader_of_name(name);
+  if (shader == nullptr || id == passes::Shader::count) return ALCOVE_ERROR_INVALID_INPUT;
+  const auto code = passes::shader_source(id).code;
   *shader = {code.data(), code.size_bytes()};
   return ALCOVE_SUCCESS;
 }

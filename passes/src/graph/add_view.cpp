@@ -32,10 +32,10 @@ tl::expected<void, Error> prepare_view(const Graph& graph, Pipelines& pipelines,
       list_pipelines(pipelines.state().scratch, work_info(graph, info, 0, textures));
   if (!needed) return tl::unexpected(needed.error());
   for (const AlcoveWorkPipeline& pipeline : *needed) {
-    const auto made =
+    const auto result =
         pipelines.state().get(shader_of_name(pipeline.shader),
                               std::span(pipeline.constants).first(pipeline.constant_count));
-    if (!made) return tl::unexpected(made.error());
+    if (!result) return tl::unexpected(result.error());
   }
   return {};
 }

@@ -92,12 +92,12 @@ GraphAdapter::GraphAdapter(Graph& graph, Pipelines& pipelines, std::uint32_t vie
 bool GraphAdapter::declare_history(HistoryRole role, const WorkBuilder::History& history) {
   declared_.at(static_cast<std::size_t>(role)) = true;
   const VkExtent2D size = list_.size(history.current);
-  const framegraph::TextureHistory made = graph_.create_texture_history(
+  const framegraph::TextureHistory texture_history = graph_.create_texture_history(
       HistoryName(view_id_, role),
       {list_.format(history.current), framegraph::Extent::absolute(size.width, size.height)});
-  textures_[history.previous.index] = made.previous();
-  textures_[history.current.index] = made.current;
-  return made.validity == framegraph::HistoryValidity::valid;
+  textures_[history.previous.index] = texture_history.previous();
+  textures_[history.current.index] = texture_history.current;
+  return texture_history.validity == framegraph::HistoryValidity::valid;
 }
 
 tl::expected<void, Error> GraphAdapter::add() {

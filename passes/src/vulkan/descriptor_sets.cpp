@@ -25,19 +25,19 @@ std::uint32_t most_bound(VkDescriptorType type) {
 tl::expected<std::unique_ptr<DescriptorSets>, Error> DescriptorSets::create(
     const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
     std::uint32_t slot_count) {
-  std::unique_ptr<DescriptorSets> made(new DescriptorSets(vk, device));
-  if (const VkResult result = made->create_pools(slot_count); result != VK_SUCCESS) {
+  std::unique_ptr<DescriptorSets> sets(new DescriptorSets(vk, device));
+  if (const VkResult result = sets->create_pools(slot_count); result != VK_SUCCESS) {
     return tl::unexpected(
         Error{"The occlusion passes could not create a descriptor pool.", result});
   }
   auto parameters =
-      HostBuffer::create(vk, device, made->parameter_bytes(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+      HostBuffer::create(vk, device, sets->parameter_bytes(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   if (!parameters) {
     return tl::unexpected(Error{"The occlusion passes could not create the buffer of parameters.",
                                 parameters.error()});
   }
-  made->parameters_ = std::move(*parameters);
-  return made;
+  sets->parameters_ = std::move(*parameters);
+  return sets;
 }
 
 DescriptorSets::~DescriptorSets() {
@@ -115,11 +115,11 @@ VkResult DescriptorSets::allocate(Set& set, const DispatchBindings& bound) {
                                          .descriptorPool = pool,
                                          .descriptorSetCount = 1,
                                          .pSetLayouts = &bound.layout};
-  VkDescriptorSet made = VK_NULL_HANDLE;
-  const VkResult result = vk_.vkAllocateDescriptorSets(device_.device, &info, &made);
+  VkDescriptorSet handle = VK_NULL_HANDLE;
+  const VkResult result = vk_.vkAllocateDescriptorSets(device_.device, &info, &handle);
   if (result == VK_SUCCESS) {
     set.shader = bound.shader;
-    set.set = made;
+    set.set = handle;
   }
   return result;
 }

@@ -22,14 +22,14 @@ std::uint32_t coherent_type(const VkPhysicalDeviceMemoryProperties& memory, std:
 tl::expected<std::unique_ptr<HostBuffer>, VkResult> HostBuffer::create(
     const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
     VkDeviceSize size, VkBufferUsageFlags usage) {
-  std::unique_ptr<HostBuffer> made(new HostBuffer(vk, device));
+  std::unique_ptr<HostBuffer> host_buffer(new HostBuffer(vk, device));
   const VkBufferCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
-  VkResult result =
-      vk.vkCreateBuffer(device.device, &info, device.host.allocation_callbacks, &made->buffer_);
-  if (result == VK_SUCCESS) result = made->allocate();
+  VkResult result = vk.vkCreateBuffer(device.device, &info, device.host.allocation_callbacks,
+                                      &host_buffer->buffer_);
+  if (result == VK_SUCCESS) result = host_buffer->allocate();
   if (result != VK_SUCCESS) return tl::unexpected(result);
-  return made;
+  return host_buffer;
 }
 
 VkResult HostBuffer::allocate() {

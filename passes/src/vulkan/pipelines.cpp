@@ -77,16 +77,16 @@ tl::expected<void, Error> Pipelines::State::create_layout(std::size_t shader) {
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
       .bindingCount = static_cast<std::uint32_t>(bindings.size()),
       .pBindings = described.data()};
-  ShaderObjects& made = shaders[shader];
+  ShaderObjects& objects = shaders[shader];
   if (const VkResult result =
-          vk.vkCreateDescriptorSetLayout(device(), &set_info, callbacks(), &made.set_layout);
+          vk.vkCreateDescriptorSetLayout(device(), &set_info, callbacks(), &objects.set_layout);
       result != VK_SUCCESS)
     return failure("a descriptor set layout", result);
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
-                                        .pSetLayouts = &made.set_layout};
+                                        .pSetLayouts = &objects.set_layout};
   if (const VkResult result =
-          vk.vkCreatePipelineLayout(device(), &info, callbacks(), &made.pipeline_layout);
+          vk.vkCreatePipelineLayout(device(), &info, callbacks(), &objects.pipeline_layout);
       result != VK_SUCCESS)
     return failure("a pipeline layout", result);
   return {};
@@ -100,9 +100,9 @@ tl::expected<void, Error> Pipelines::State::create_layouts() {
 }
 
 tl::expected<void, Error> Pipelines::State::create_sets(std::uint32_t slot_count) {
-  auto made = DescriptorSets::create(vk, handles, slot_count);
-  if (!made) return tl::unexpected(std::move(made.error()));
-  sets = std::move(*made);
+  auto descriptor_sets = DescriptorSets::create(vk, handles, slot_count);
+  if (!descriptor_sets) return tl::unexpected(std::move(descriptor_sets.error()));
+  sets = std::move(*descriptor_sets);
   return {};
 }
 
@@ -123,19 +123,19 @@ tl::expected<void, Error> Pipelines::State::create_module(std::size_t shader) {
 tl::expected<void, Error> Pipelines::State::create_table(std::size_t shader) {
   const std::span<const std::uint32_t> table = shader_source(static_cast<Shader>(shader)).table;
   if (table.empty() || shaders[shader].table) return {};
-  auto made =
+  auto buffer =
       HostBuffer::create(vk, handles, table.size_bytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  if (!made) return failure("the buffer of a table", made.error());
-  std::memcpy((*made)->bytes(), table.data(), table.size_bytes());
-  shaders[shader].table = std::move(*made);
+  if (!buffer) return failure("the buffer of a table", buffer.error());
+  std::memcpy((*buffer)->bytes(), table.data(), table.size_bytes());
+  shaders[shader].table = std::move(*buffer);
   return {};
 }
 
 tl::expected<Pipeline, Error> Pipelines::State::create_pipeline(
     Shader shader, std::span<const AlcoveWorkConstant> constants) {
   const auto index = static_cast<std::size_t>(shader);
-  if (auto made = create_module(index).and_then([&] { return create_table(index); }); !made)
-    return tl::unexpected(std::move(made.error()));
+  if (auto result = create_module(index).and_then([&] { return create_table(index); }); !result)
+    return tl::unexpected(std::move(result.error()));
   std::array<VkSpecializationMapEntry, ALCOVE_MAX_WORK_CONSTANTS> entries;
   for (std::uint32_t i = 0; i < constants.size(); ++i) {
     entries.at(i) = {constants[i].id,
@@ -157,12 +157,12 @@ tl::expected<Pipeline, Error> Pipelines::State::create_pipeline(
   // The vector grows before the pipeline is created, so that a failed allocation
   // cannot leak the pipeline.
   if (cached.size() == cached.capacity()) cached.reserve(2 * cached.size() + 8);
-  CachedPipeline made{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
+  CachedPipeline pipeline{shader, {constants.begin(), constants.end()}, VK_NULL_HANDLE};
   if (const VkResult result =
-          vk.vkCreateComputePipelines(device(), cache, 1, &info, callbacks(), &made.pipeline);
+          vk.vkCreateComputePipelines(device(), cache, 1, &info, callbacks(), &pipeline.pipeline);
       result != VK_SUCCESS)
     return failure("a compute pipeline", result);
-  cached.push_back(std::move(made));
+  cached.push_back(std::move(pipeline));
   if (const framegraph::Log& log = handles.host.log; log.write != nullptr)
     log.write(log.user, framegraph::Severity::info, "A compute pipeline has been created.");
   return Pipeline{cached.back().pipeline, shader};
@@ -210,11 +210,11 @@ void Pipelines::begin_frame(std::uint32_t slot) { state_->sets->begin_frame(slot
 
 tl::expected<Pipeline, Error> Pipelines::State::get(Shader shader,
                                                     std::span<const AlcoveWorkConstant> constants) {
-  for (const CachedPipeline& made : cached)
-    if (made.shader == shader &&
-        std::ranges::equal(made.constants, constants, {}, &AlcoveWorkConstant::value,
+  for (const CachedPipeline& pipeline : cached)
+    if (pipeline.shader == shader &&
+        std::ranges::equal(pipeline.constants, constants, {}, &AlcoveWorkConstant::value,
                            &AlcoveWorkConstant::value))
-      return Pipeline{made.pipeline, shader};
+      return Pipeline{pipeline.pipeline, shader};
   return create_pipeline(shader, constants);
 }
 

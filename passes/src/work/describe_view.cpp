@@ -33,7 +33,7 @@ bool fits(std::uint32_t begin, std::uint32_t size, std::uint64_t end) {
 VkExtent2D size_of(const AlcoveWorkImage& image) { return {image.width, image.height}; }
 
 // Checks which images are given.
-Checked check_given(const AlcoveWorkInfo& info) {
+Checked check_required(const AlcoveWorkInfo& info) {
   const AlcoveSettings& settings = *info.view.settings;
   const auto lacks = [&](AlcoveImageRole role) { return info.images[role].format == 0; };
   const auto refuse = [](AlcoveImageRole role, const std::string& what) {
@@ -109,9 +109,9 @@ Checked check_conventions(const AlcoveWorkInfo& info) {
 
 // Checks that the area that is read lies in the images, and the area that is written in it.
 Checked check_areas(const AlcoveArea& read, const AlcoveArea& written, VkExtent2D whole) {
-  const auto refuse = [](const char* name, const AlcoveArea& area, const std::string& wanted) {
+  const auto refuse = [](const char* name, const AlcoveArea& area, const std::string& rule) {
     return refusal("The area that is " + std::string(name) + " has " + area_text(area) + "; " +
-                   wanted + ".");
+                   rule + ".");
   };
   for (const auto& [name, area] : {std::pair{"read", read}, {"written", written}})
     if (is_given(area) && (area.width == 0 || area.height == 0))
@@ -186,33 +186,33 @@ bool same_camera(const AlcoveCamera& a, const AlcoveCamera& b) {
          std::ranges::equal(a.view_from_world, b.view_from_world);
 }
 
-tl::expected<ViewInputs, Error> begin_view(WorkBuilder& list, const AlcoveWorkInfo& given) {
-  const AlcoveViewInfo& info = given.view;
+tl::expected<ViewInputs, Error> begin_view(WorkBuilder& list, const AlcoveWorkInfo& request) {
+  const AlcoveViewInfo& info = request.view;
   if (info.settings == nullptr)
     return refusal("There are no settings: alcoveGetSettings gives some.");
-  const AlcoveWorkImage& depth = given.images[ALCOVE_IMAGE_DEPTH];
+  const AlcoveWorkImage& depth = request.images[ALCOVE_IMAGE_DEPTH];
   const AlcoveArea read = read_area(info, size_of(depth));
   ViewInputs view{.list = list, .info = info, .settings = *info.settings};
   const auto checked =
       validate(view.settings)
-          .and_then([&] { return check_given(given); })
-          .and_then([&] { return check_conventions(given); })
-          .and_then([&] { return check_images(given); })
+          .and_then([&] { return check_required(request); })
+          .and_then([&] { return check_conventions(request); })
+          .and_then([&] { return check_images(request); })
           .and_then([&] { return check_areas(read, info.written_area, size_of(depth)); })
           .and_then([&] {
             set_areas(view, read, size_of(depth));
-            return check_outputs(view, given);
+            return check_outputs(view, request);
           })
           .and_then([&] { return check_largest(view); })
           .and_then([&] { return projection_of(info.camera, view.size); });
   if (!checked) return tl::unexpected(checked.error());
   view.projection = *checked;
-  view.index = has_static_noise(view.settings) ? kStaticNoise : given.index;
+  view.index = has_static_noise(view.settings) ? kStaticNoise : request.index;
   view.static_frames = info.reset_history != 0 ? 0 : info.static_frames;
   view.depth_format =
       static_cast<VkFormat>(info.depth_format != 0 ? info.depth_format : depth.format);
   for (std::uint32_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
-    const AlcoveWorkImage& image = given.images[role];
+    const AlcoveWorkImage& image = request.images[role];
     if (image.format == 0) continue;
     view.images[role] = list.add(
         is_output(role) ? ALCOVE_RESOURCE_KIND_OUTPUT : ALCOVE_RESOURCE_KIND_INPUT, role_name(role),
@@ -247,7 +247,7 @@ tl::expected<void, Error> describe_view(WorkBuilder& list, const AlcoveWorkInfo&
 tl::expected<std::vector<AlcoveWorkPipeline>, Error> list_pipelines(AlcoveWork& work,
                                                                     const AlcoveWorkInfo& info) {
   enum class Past : std::uint8_t { none, moving, unchanged };
-  std::vector<AlcoveWorkPipeline> found;
+  std::vector<AlcoveWorkPipeline> pipelines;
   for (const Past past : {Past::none, Past::moving, Past::unchanged}) {
     AlcoveWorkInfo frame = info;
     AlcoveViewInfo& view = frame.view;
@@ -267,15 +267,15 @@ tl::expected<std::vector<AlcoveWorkPipeline>, Error> list_pipelines(AlcoveWork& 
       const AlcoveWorkDispatch& dispatch = work.dispatches[i];
       AlcoveWorkPipeline pipeline{dispatch.shader, dispatch.constant_count, {}};
       std::ranges::copy_n(dispatch.constants, dispatch.constant_count, pipeline.constants);
-      const bool known = std::ranges::any_of(found, [&](const AlcoveWorkPipeline& other) {
+      const bool known = std::ranges::any_of(pipelines, [&](const AlcoveWorkPipeline& other) {
         return other.shader == pipeline.shader &&
                std::ranges::equal(other.constants, pipeline.constants, {},
                                   &AlcoveWorkConstant::value, &AlcoveWorkConstant::value);
       });
-      if (!known) found.push_back(pipeline);
+      if (!known) pipelines.push_back(pipeline);
     }
   }
-  return found;
+  return pipelines;
 }
 
 }  // namespace alcove::passes

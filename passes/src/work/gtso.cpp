@@ -21,11 +21,11 @@ void describe_gtso(const ViewInputs& view, const OutputImages& results, Resource
                                {"result_image", view.image(ALCOVE_IMAGE_SPECULAR)}};
   const AlcoveArea& written = view.written;
   // Normals that were computed from depth have the size of the area that is read.
-  const bool given = bool(view.image(ALCOVE_IMAGE_NORMALS));
+  const bool image = bool(view.image(ALCOVE_IMAGE_NORMALS));
   const auto x = static_cast<int>(view.info.output_x) - static_cast<int>(written.x);
   const auto y = static_cast<int>(view.info.output_y) - static_cast<int>(written.y);
   const maths::GtsoParameters parameters{
-      maths::uvec4(given ? view.read.x : 0u, given ? view.read.y : 0u, view.read.x, view.read.y),
+      maths::uvec4(image ? view.read.x : 0u, image ? view.read.y : 0u, view.read.x, view.read.y),
       maths::ivec4(written.x, written.y, x, y),
       view.projection,
       view_from_normal(view.info.camera, convention),

@@ -36,13 +36,13 @@ Depths describe_mask(const ViewInputs& view, ResourceHandle depth) {
   parameters.not_receiving = view.info.not_receiving;
   parameters.not_occluding = view.info.not_occluding;
   parameters.sky = is_reversed(view.projection) ? 0.0f : 1.0f;
-  const Depths made{.all = depth,
-                    .receivers = add_copy(view, "receivers"),
-                    .occluders = add_copy(view, "depth of occluders")};
+  const Depths depths{.all = depth,
+                      .receivers = add_copy(view, "receivers"),
+                      .occluders = add_copy(view, "depth of occluders")};
   const NamedImage images[] = {{"depth_image", depth},
                                {"mask_image", mask},
-                               {"receiver_image", made.receivers},
-                               {"occluder_image", made.occluders}};
+                               {"receiver_image", depths.receivers},
+                               {"occluder_image", depths.occluders}};
   view.list.dispatch({.label = "mask depth",
                       .shader = view.list.format(mask) == VK_FORMAT_R8_UINT
                                     ? Shader::mask_depth_integer
@@ -50,7 +50,7 @@ Depths describe_mask(const ViewInputs& view, ResourceHandle depth) {
                       .images = images,
                       .parameters = bytes_of(parameters),
                       .size = {view.size.width, view.size.height, 1}});
-  return made;
+  return depths;
 }
 
 // Copies one of each 2x2 pixels of the area that is read: that with the parity of the traced
@@ -75,8 +75,8 @@ ResourceHandle describe_half(const ViewInputs& view, ResourceHandle depth) {
 }  // namespace
 
 Depths describe_depths(const ViewInputs& view) {
-  const ResourceHandle given = view.image(ALCOVE_IMAGE_DEPTH);
-  const ResourceHandle depth = view.list.samples(given) > 1 ? describe_resolve(view) : given;
+  const ResourceHandle input = view.image(ALCOVE_IMAGE_DEPTH);
+  const ResourceHandle depth = view.list.samples(input) > 1 ? describe_resolve(view) : input;
   const AlcoveSettings& settings = view.settings;
   Depths depths =
       view.image(ALCOVE_IMAGE_MASK) ? describe_mask(view, depth) : Depths{depth, depth, depth};

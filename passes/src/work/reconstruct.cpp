@@ -76,14 +76,14 @@ Textures add_textures(const ViewInputs& view) {
   if (view.lobe()) textures.results.specular = view.image(ALCOVE_IMAGE_SPECULAR);
   textures.valid = has_history(view);
   // Adds a history, or at half resolution without history the texture that the upsampling reads.
-  const auto add = [&](bool wanted, HistoryRole role, const char* name, VkFormat format) {
-    if (wanted && has_history(view)) {
+  const auto add = [&](bool exists, HistoryRole role, const char* name, VkFormat format) {
+    if (exists && has_history(view)) {
       const WorkBuilder::History added =
           view.list.add_history(role, format, texels(view.largest, half));
       textures.valid = textures.valid && added.valid;
       return added;
     }
-    return wanted && half ? WorkBuilder::History{.current = view.list.add_transient(
+    return exists && half ? WorkBuilder::History{.current = view.list.add_transient(
                                                      name, format, texels(view.size, half))}
                           : WorkBuilder::History{};
   };

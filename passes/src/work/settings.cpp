@@ -231,9 +231,9 @@ tl::expected<void, Error> parse_setting(AlcoveSettings& settings, std::string_vi
   };
   bool good = false;
   if (info->kind == Kind::choice) {
-    const auto found = std::ranges::find(info->choices, value);
-    good = found != info->choices.end();
-    set_setting(changed, *info, static_cast<std::uint32_t>(found - info->choices.begin()));
+    const auto choice = std::ranges::find(info->choices, value);
+    good = choice != info->choices.end();
+    set_setting(changed, *info, static_cast<std::uint32_t>(choice - info->choices.begin()));
   } else {
     good = info->kind == Kind::real ? parse(0.0f) : parse(std::uint32_t{0});
   }

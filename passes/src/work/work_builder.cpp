@@ -108,29 +108,29 @@ tl::expected<void, Error> WorkBuilder::add_dispatch(const DispatchRequest& info)
   if (work_.dispatch_count == ALCOVE_MAX_WORK_DISPATCHES ||
       info.parameters.size() > ALCOVE_MAX_WORK_PARAMETER_BYTES)
     return fail("does not fit into the list of work");
-  AlcoveWorkDispatch& made = work_.dispatches[work_.dispatch_count];
-  made.label = info.label;
-  made.shader = source.name.data();
-  made.groups[0] = groups(info.size.width);
-  made.groups[1] = groups(info.size.height);
-  made.groups[2] = info.size.depth;
-  const auto constants = resolve_constants(info.shader, info.constants, made.constants);
+  AlcoveWorkDispatch& entry = work_.dispatches[work_.dispatch_count];
+  entry.label = info.label;
+  entry.shader = source.name.data();
+  entry.groups[0] = groups(info.size.width);
+  entry.groups[1] = groups(info.size.height);
+  entry.groups[2] = info.size.depth;
+  const auto constants = resolve_constants(info.shader, info.constants, entry.constants);
   if (!constants) return tl::unexpected(constants.error());
-  made.constant_count = *constants;
-  made.binding_count = 0;
+  entry.constant_count = *constants;
+  entry.binding_count = 0;
   std::size_t images = 0;
   for (const ShaderBinding& binding : shader_interface(info.shader).bindings) {
-    const NamedImage* const given =
+    const NamedImage* const image =
         binding.is_image() ? find_named(info.images, binding.name, images++) : nullptr;
-    const ResourceHandle texture = given == nullptr ? ResourceHandle{} : given->texture;
-    if (!bind(made, binding, texture, source.table)) {
+    const ResourceHandle texture = image == nullptr ? ResourceHandle{} : image->texture;
+    if (!bind(entry, binding, texture, source.table)) {
       return fail(std::string("has a binding '").append(binding.name) +
                   "', for which its pass gives no image; name it in the pass's list of images");
     }
   }
-  made.parameter_bytes = static_cast<std::uint32_t>(info.parameters.size());
+  entry.parameter_bytes = static_cast<std::uint32_t>(info.parameters.size());
   if (!info.parameters.empty())
-    std::memcpy(made.parameters, info.parameters.data(), info.parameters.size());
+    std::memcpy(entry.parameters, info.parameters.data(), info.parameters.size());
   ++work_.dispatch_count;
   return {};
 }
@@ -166,18 +166,18 @@ const AlcoveWorkResource* WorkBuilder::find(ResourceHandle texture) const {
 }
 
 VkExtent2D WorkBuilder::size(ResourceHandle texture) const {
-  const AlcoveWorkResource* const found = find(texture);
-  return found == nullptr ? VkExtent2D{} : VkExtent2D{found->width, found->height};
+  const AlcoveWorkResource* const resource = find(texture);
+  return resource == nullptr ? VkExtent2D{} : VkExtent2D{resource->width, resource->height};
 }
 
 VkFormat WorkBuilder::format(ResourceHandle texture) const {
-  const AlcoveWorkResource* const found = find(texture);
-  return found == nullptr ? VK_FORMAT_UNDEFINED : static_cast<VkFormat>(found->format);
+  const AlcoveWorkResource* const resource = find(texture);
+  return resource == nullptr ? VK_FORMAT_UNDEFINED : static_cast<VkFormat>(resource->format);
 }
 
 std::uint32_t WorkBuilder::samples(ResourceHandle texture) const {
-  const AlcoveWorkResource* const found = find(texture);
-  return found == nullptr ? 0 : found->samples;
+  const AlcoveWorkResource* const resource = find(texture);
+  return resource == nullptr ? 0 : resource->samples;
 }
 
 }  // namespace alcove::passes
