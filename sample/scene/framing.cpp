@@ -12,8 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-using Parts = std::span<const MeshInstance>;
-
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr size_t kNearlyEmpty = 200;  // a view shows surfaces in less than one of so many pixels
 
@@ -67,68 +65,60 @@ bool is_sky(const RayScene& rays, const std::vector<uint32_t>& meshes, const Bou
                      std::ranges::find(meshes, hit->mesh) != meshes.end();
     missed += met ? 0 : 1;
     if (height > 0.4f) continue;  // 24 degrees
-    const auto back = rays.nearest(middle(rest) + outside * up, -up, kInfinity, true);
-    missed_or_seen_from_outside += met && !(back && is_drawn(rays, *back)) ? 0 : 1;
+    const bool seen{rays.nearest(middle(rest) + outside * up, -up, outside - far)};
+    missed_or_seen_from_outside += met && !seen ? 0 : 1;
   }
   return missed <= 3 || missed_or_seen_from_outside <= 1;
 }
 
-// The box of a triangle, and its area.
+// The box of a triangle, and its area. A narrow triangle counts as a square of its width.
 using Triangle = std::pair<Bounds, double>;
 
-std::vector<Triangle> triangles_of(const Scene& scene, const MeshInstance& part) {
+void add_triangles(const Scene& scene, const MeshInstance& part, std::vector<Triangle>& to) {
   const Mesh& mesh = scene.meshes[part.mesh];
   const glm::mat4x3 world = world_from_mesh(mesh, part.instance);
   const glm::dmat3 normal_from_mesh = cofactor(glm::mat3(world));
-  std::vector<Triangle> out;
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     Bounds bounds = empty_bounds();
     for (size_t c = 0; c < 3; ++c) {
       const glm::vec3 at = world * glm::vec4(mesh.positions[mesh.indices[i + c]], 1.0f);
       bounds = united(bounds, {at, at});
     }
-    out.emplace_back(bounds, glm::length(normal_from_mesh * area_of(mesh, i)));
+    const double area = glm::length(normal_from_mesh * area_of(mesh, i));
+    const double width = 2.0 * area / std::max(diagonal(bounds), 1e-300);
+    to.emplace_back(bounds, std::min(area, width * width));
   }
-  return out;
 }
 
-// Returns the value at a share of the sorted values of triangles, weighted by their areas. With
-// `by_width`, a narrow triangle counts as a square of its width.
+// Returns the value at a share of the sorted values of triangles, weighted by their areas.
 template <class Value>
-float quantile(std::span<const Triangle> triangles, double share, bool by_width,
-               const Value& value) {
+float quantile(std::span<const Triangle> triangles, double share, const Value& value) {
   constexpr double kSamples = 30000.0;
-  const auto weight = [&](const Triangle& triangle) {
-    const double width = 2.0 * triangle.second / std::max(diagonal(triangle.first), 1e-300);
-    return by_width ? std::min(triangle.second, width * width) : triangle.second;
-  };
   double sum = 0.0, sampled = 0.0, visited = 0.0;
-  for (const Triangle& triangle : triangles) sum += weight(triangle);
+  for (const Triangle& triangle : triangles) sum += triangle.second;
   std::vector<float> values;
   for (const Triangle& triangle : triangles)
-    for (visited += weight(triangle); sampled < visited; sampled += sum / kSamples)
+    for (visited += triangle.second; sampled < visited; sampled += sum / kSamples)
       values.push_back(value(triangle.first));
   return percentile(std::move(values), share);
 }
 
-// Returns the box of triangles without strays, and counts the strays. The median does not follow a
-// vertex that has flown off, whose triangles are large, but narrow.
+// Returns the box of triangles without strays, and counts the strays.
 Bounds bounds_without_strays(std::span<const Triangle> triangles, size_t& strays) {
   glm::vec3 median;
   for (int axis = 0; axis < 3; ++axis)
-    median[axis] =
-        quantile(triangles, 0.5, true, [axis](const Bounds& b) { return middle(b)[axis]; });
+    median[axis] = quantile(triangles, 0.5, [axis](const Bounds& b) { return middle(b)[axis]; });
   const auto reach = [&](const Bounds& bounds) {
     return glm::length(glm::max(bounds.high - median, median - bounds.low));
   };
-  const float most = std::min(30.0f * quantile(triangles, 0.5, true, reach),
-                              1.5f * quantile(triangles, 0.999, false, reach));
+  const float most =
+      std::min(30.0f * quantile(triangles, 0.5, reach), 1.5f * quantile(triangles, 0.999, reach));
   Bounds out = empty_bounds();
   strays = 0;
-  for (const Triangle& triangle : triangles) {
-    const bool stray = reach(triangle.first) > most;
+  for (const auto& [bounds, area] : triangles) {
+    const bool stray = reach(bounds) > most;
     strays += stray ? 1 : 0;
-    if (!stray) out = united(out, triangle.first);
+    if (!stray) out = united(out, bounds);
   }
   return out;
 }
@@ -181,7 +171,7 @@ ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bo
   std::vector<size_t> starts;  // of the parts
   for (const MeshInstance& part : parts) {
     starts.push_back(triangles.size());
-    std::ranges::move(triangles_of(scene, part), std::back_inserter(triangles));
+    add_triangles(scene, part, triangles);
   }
   size_t strays = 0, first = 0;
   bool has_ground = false;
@@ -190,20 +180,16 @@ ViewFinder::ViewFinder(const Scene& scene) : scene_(scene), subject_ws_(scene.bo
   for (size_t end = 1; end < std::min(parts.size(), kMostSurroundings + 1); ++end) {
     size_t rest_strays = 0;
     const auto rest = bounds_without_strays(std::span(triangles).subspan(starts[end]), rest_strays);
-    Bounds ground = empty_bounds(), sky = empty_bounds();
+    Bounds around = empty_bounds();
     std::vector<uint32_t> skies;
-    for (size_t i = first; i < end; ++i) {
-      const Bounds& bounds = parts[i].bounds_ws;
-      const bool low = is_low(bounds, rest);
-      (low ? ground : sky) = united(low ? ground : sky, bounds);
-      if (!low) skies.push_back(parts[i].mesh);
+    for (const MeshInstance& part : std::span(parts).subspan(first, end - first)) {
+      around = united(around, part.bounds_ws);
+      if (!is_low(part.bounds_ws, rest)) skies.push_back(part.mesh);
     }
-    const bool on_ground = first + skies.size() < end;
-    if ((on_ground && !is_wider(ground, rest)) ||
-        (!skies.empty() && !(rays_ && is_wider(sky, rest) && is_sky(*rays_, skies, rest))))
+    if (!is_wider(around, rest) || !(skies.empty() || (rays_ && is_sky(*rays_, skies, rest))))
       continue;
+    has_ground |= first + skies.size() < end;
     first = end;
-    has_ground |= on_ground;
     strays = rest_strays;
     subject_ws_ = rest;
     skies_.insert(skies_.end(), skies.begin(), skies.end());
@@ -254,15 +240,11 @@ Camera ViewFinder::framing_camera(double aspect) const {
   camera.far_plane = kInfinity;
   camera.fit_planes = true;
   float most = -1.0f;
-  size_t drawn = 0, backs = 0;
   for (const auto& [inside, from_above] : {std::pair(false, 1.0f), {true, 1.0f}, {false, -1.0f}}) {
-    // A container that is seen from outside, and is open above, is no room. The eye is only below
-    // if nothing is seen otherwise.
-    if (inside &&
-        (!rays_ || !skies_.empty() ||
-         (backs <= 2 * drawn && !rays_->nearest(camera.target_ws, camera.up_ws, kInfinity))))
-      continue;
-    if (from_above < 0.0f && most > 0.1f) break;
+    // A room has a ceiling. The eye is only below if nothing is seen otherwise.
+    const bool is_room =
+        rays_ && skies_.empty() && rays_->nearest(camera.target_ws, camera.up_ws, kInfinity);
+    if (inside ? !is_room : from_above < 0.0f && most > 0.1f) continue;
     for (glm::vec3 back : kSides) {
       back.y *= from_above;
       back = glm::normalize(inside ? back * size_of(subject_ws_) : back);
@@ -278,8 +260,6 @@ Camera ViewFinder::framing_camera(double aspect) const {
       camera.fov_y = kInside * free < whole ? 1.45f * kFovY : kFovY;
       camera.eye_ws = camera.target_ws + std::min(kInside * free, whole) * back;
       const Picture picture = look(camera, aspect);
-      drawn += picture.drawn;
-      backs += picture.backs;
       // A room surrounds the eye.
       if (inside && picture.surfaces * 4 < picture.pixels * 3) continue;
       if (picture.score() <= 1.25f * most) continue;
@@ -320,11 +300,15 @@ RadiusChoice ViewFinder::radius(const Camera& camera, double aspect) const {
     out.radius = 0.05f * height * static_cast<float>(aspect);
     out.reason = "a twentieth of the width of the view at the median distance of its surfaces";
   }
-  const bool below = camera.name == kFrame && camera.eye_ws.y < middle(subject_ws_).y;
+  const bool framed = camera.name == kFrame && skies_.empty();
+  const bool inside = framed && contains(subject_ws_, camera.eye_ws);
+  const bool below = framed && camera.eye_ws.y < subject_ws_.low.y;
   const bool backs = picture.backs > 2 * picture.surfaces;
-  if (!below && !backs && picture.surfaces * kNearlyEmpty >= picture.pixels) return out;
+  if (!inside && !below && !backs && picture.surfaces * kNearlyEmpty >= picture.pixels) return out;
   out.advice =
-      below   ? "The view is from below, because back faces are not drawn: draw them by "
+      inside  ? "The view is from inside, because that shows more: draw back faces by "
+                "--both-sides, or "
+      : below ? "The view is from below, because back faces are not drawn: draw them by "
                 "--both-sides, or "
       : backs ? "The view shows back faces, which are not drawn: draw them by --both-sides, or "
       : picture.surfaces == 0 ? "The view shows nothing but sky: widen --near and --far, or "
