@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
-#include <ostream>
+#include <cmath>
 
 #include "gltf_maker.h"
 #include "image_maker.h"
@@ -13,133 +11,84 @@
 namespace alcove::sample {
 namespace {
 
+using nlohmann::literals::operator""_json;
 using testing::HasSubstr;
 
-// A change to a valid file, and a part of the sentence that refuses the result.
+// A value that makes a file invalid if the member of its JSON at the pointer has it, and a part of
+// the sentence that refuses the file.
 struct Fault {
-  const char* name;
-  void (*spoil)(GltfMaker&);
-  const char* word;
+  const char *pointer, *value, *sentence;
 };
-// GoogleTest prints the fault in the names that ctest lists.
-std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
+const Fault kFaults[] = {
+    {"/accessors/0/count", "4000000000", "too many vertices"},
+    {"/accessors/0/count", "4", "past the end"},
+    {"/accessors/0/byteOffset", "4294967000", "past the end"},
+    {"/bufferViews/0/byteLength", "1000", "buffer view 0"},
+    {"/accessors/0/bufferView", "77", "buffer view"},
+    {"/bufferViews/0/buffer", "9", "buffer"},
+    {"/meshes/0/primitives/0/attributes/POSITION", "12", "accessor 12"},
+    {"/nodes/0/mesh", "3", "mesh 3"},
+    {"/meshes/0/primitives/0/material", "2", "material 2"},
+    {"/scenes/0/nodes", "[5]", "node 5"},
+    {"/nodes/0/children", "[7]", "it names node 7, which does not exist"},
+    {"/meshes/0/primitives/0/indices", "5", "index 3"},
+    {"/meshes/0/primitives/0/indices", "6", "unsigned"},
+    {"/meshes/0/primitives/0/attributes/POSITION", "7", "finite"},
+    {"/accessors/0/type", R"("SCALAR")", "components"},
+    {"/meshes/0/primitives/0/attributes/NORMAL", "3", "has 1 elements, and element 2 is used"},
+    {"/meshes/0/primitives/0/attributes/TEXCOORD_1", "4", "has 1 elements, and element 2 is used"},
+    {"/materials/0/normalTexture/scale", "1e300",
+     "material \"tiles\" has a normal map whose scale is not finite"},
+    {"/materials/0/pbrMetallicRoughness/baseColorTexture/extensions",
+     R"({"KHR_texture_transform": {"offset": [0, -1e39]}})",
+     "material \"tiles\" has a texture transform"},
+    {"/materials/0/normalTexture/index", "4", "material \"tiles\" has no texture 4"},
+    {"/textures/0/sampler", "3", "material \"tiles\" has a texture without its sampler 3"},
+    {"", R"({"asset": {"version": "2.0"}, "nodes": [{}, {"children": [2]}, {"children": [1]}]})",
+     "some of its nodes form a cycle"},
+    {"", R"({"asset": {"version": "1.0"}, "scene": "s", "nodes": {"n": 1}})",
+     "it is glTF 1.0 (asset.version), and version 2.0 is read here"},
+    {"/asset/minVersion", R"("2.1")", "it is glTF 2.1 (asset.minVersion)"},
+    {"/asset/version", R"("two")", "asset.version is \"two\""},
+    {"/meshes/0/primitives/0/mode", "0", "no triangles"},
+    {"/accessors/0/type", R"("VEC")",
+     "accessors[0].type is \"VEC\"; it must be one of SCALAR, VEC2"},
+    {"/materials/0/alphaMode", R"("VEC")", "materials[0].alphaMode is \"VEC\""},
+    {"/cameras/0/type", R"("VEC")", "cameras[0].type is \"VEC\""},
+    {"/bufferViews/0",
+     R"({"buffer": 7, "byteLength": 36, "extensions": {"EXT_meshopt_compression": {"buffer": 0,
+         "byteLength": 36, "byteStride": 12, "count": 3, "mode": "ATTRIBUTES"}}})",
+     "compressed buffer view 0 is damaged"},
+};
 
-class MalformedGltf : public testing::TestWithParam<Fault> {};
-
-TEST_P(MalformedGltf, FileWithOneFaultIsRefusedInOneSentence) {
-  GltfMaker maker = GltfMaker::triangle();
-  GetParam().spoil(maker);
-  EXPECT_THAT(refusal(maker.gltf()), HasSubstr(GetParam().word));
-  refusal(maker.glb());
+TEST(MalformedGltf, FileWithOneFaultIsRefusedInOneSentence) {
+  GltfMaker valid = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
+  // The accessors 3 to 7, which a fault may name.
+  valid.add<float>("VEC3", {1, 0, 0});
+  valid.add<float>("VEC2", {0, 0});
+  valid.add<uint16_t>("SCALAR", {0, 1, 3});
+  valid.add<float>("SCALAR", {0, 1, 2});
+  ASSERT_EQ(valid.add<float>("VEC3", std::vector<float>(9, NAN)), 7);
+  for (const auto& [pointer, value, sentence] : kFaults) {
+    SCOPED_TRACE(std::string(pointer) + " " + value);
+    GltfMaker maker = valid;
+    maker.json[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(value);
+    EXPECT_THAT(refusal(maker.gltf()), HasSubstr(sentence));
+    refusal(maker.glb());
+  }
 }
 
-const Fault kFaults[] = {
-    {"AccessorOfFourBillionElements",
-     [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4000000000u; }, "too many vertices"},
-    {"AccessorLongerThanItsBufferView", [](GltfMaker& m) { m.json["accessors"][0]["count"] = 4; },
-     "past the end"},
-    {"AccessorOffsetBeyondItsBufferView",
-     [](GltfMaker& m) { m.json["accessors"][0]["byteOffset"] = 4294967000u; }, "past the end"},
-    {"BufferViewLongerThanItsBuffer",
-     [](GltfMaker& m) { m.json["bufferViews"][0]["byteLength"] = 1000; }, "buffer view 0"},
-    {"NoSuchBufferView", [](GltfMaker& m) { m.json["accessors"][0]["bufferView"] = 7; },
-     "buffer view"},
-    {"NoSuchBuffer", [](GltfMaker& m) { m.json["bufferViews"][0]["buffer"] = 9; }, "buffer"},
-    {"NoSuchAccessor", [](GltfMaker& m) { m.primitive()["attributes"]["POSITION"] = 12; },
-     "accessor 12"},
-    {"NoSuchMesh", [](GltfMaker& m) { m.json["nodes"][0]["mesh"] = 3; }, "mesh 3"},
-    {"NoSuchMaterial", [](GltfMaker& m) { m.primitive()["material"] = 2; }, "material 2"},
-    {"NoSuchNode", [](GltfMaker& m) { m.json["scenes"][0]["nodes"] = {5}; }, "node 5"},
-    {"IndexBeyondTheLastVertex",
-     [](GltfMaker& m) {
-       m.primitive()["indices"] = m.add<uint16_t>("SCALAR", {0, 1, 3});
-     },
-     "index 3"},
-    {"FloatIndices",
-     [](GltfMaker& m) {
-       m.primitive()["indices"] = m.add<float>("SCALAR", {0, 1, 2});
-     },
-     "unsigned"},
-    {"PositionThatIsNaN",
-     [](GltfMaker& m) {
-       const float nan = std::numeric_limits<float>::quiet_NaN();
-       std::memcpy(m.bytes.data(), &nan, sizeof(nan));
-     },
-     "finite"},
-    {"ScalarPositions", [](GltfMaker& m) { m.json["accessors"][0]["type"] = "SCALAR"; },
-     "components"},
-    {"NormalScaleTooLargeForAFloat",
-     [](GltfMaker& m) {
-       m = textured({{"index", 0}}, {{"index", 0}, {"scale", 1e300}});
-     },
-     "material \"tiles\" has a normal map whose scale is not finite"},
-    {"TextureTransformTooLargeForAFloat",
-     [](GltfMaker& m) {
-       m = textured(transformed({{"offset", {0, -1e39}}}), {{"index", 0}});
-     },
-     "material \"tiles\" has a texture transform"},
-    {"NoSuchNormalMap",
-     [](GltfMaker& m) {
-       m = textured({{"index", 0}}, {{"index", 4}});
-     },
-     "material \"tiles\" has no texture 4"},
-    {"FewerNormalsThanVertices",
-     [](GltfMaker& m) {
-       m.primitive()["attributes"]["NORMAL"] = m.add<float>("VEC3", {1, 0, 0});
-     },
-     "has 1 elements, and element 2 is used"},
-    {"FewerSecondTextureCoordinatesThanVertices",
-     [](GltfMaker& m) {
-       m = painted({{"index", 0}}, {{"index", 0}, {"texCoord", 1}});
-       m.primitive()["attributes"]["TEXCOORD_1"] = m.add<float>("VEC2", {0, 0});
-     },
-     "has 1 elements, and element 2 is used"},
-    {"NoSuchSampler",
-     [](GltfMaker& m) {
-       m = painted({{"index", 0}}, {{"index", 0}});
-       m.json["textures"][0]["sampler"] = 3;
-     },
-     "material \"tiles\" has a texture without its sampler 3"},
-    {"NodeCycleWithoutScenes",
-     [](GltfMaker& m) {
-       m.json.erase("scene");
-       m.json.erase("scenes");
-       m.json["nodes"] = {
-           {{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"mesh", 0}, {"children", {1}}}};
-     },
-     "some of its nodes form a cycle"},
-    {"FirstVersion",
-     [](GltfMaker& m) {
-       m.json = {{"asset", {{"version", "1.0"}}}, {"scene", "s"}, {"nodes", {{"n", 1}}}};
-     },
-     "it is glTF 1.0 (asset.version), and version 2.0 is read here"},
-    {"CompressedViewWithoutAFallback",
-     [](GltfMaker& m) {
-       m.json["bufferViews"][0]["buffer"] = 7;
-       m.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {
-           {"buffer", 0},      {"byteOffset", 0}, {"byteLength", 36},
-           {"byteStride", 12}, {"count", 3},      {"mode", "ATTRIBUTES"}};
-     },
-     "compressed buffer view 0 is damaged"},
-    {"CompressedViewOfANewerCodec",
-     [](GltfMaker& m) {
-       m.bytes[0] = 0xa1;
-       m.json["bufferViews"][0]["buffer"] = 7;
-       m.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"] = {
-           {"buffer", 0},      {"byteOffset", 0}, {"byteLength", 36},    {"filter", "COLOR"},
-           {"byteStride", 12}, {"count", 3},      {"mode", "ATTRIBUTES"}};
-     },
-     "uses vertex codec 1 of meshoptimizer, which is not read here; pack it by gltfpack -ce ext"},
-    {"NoSuchChild", [](GltfMaker& m) { m.json["nodes"][0]["children"] = {7}; },
-     "it names node 7, which does not exist"},
-    {"NewerMinimumVersion", [](GltfMaker& m) { m.json["asset"]["minVersion"] = "2.1"; },
-     "it is glTF 2.1 (asset.minVersion)"},
-    {"VersionThatIsNotANumber", [](GltfMaker& m) { m.json["asset"]["version"] = "two"; },
-     "asset.version is \"two\""},
-    {"NoTriangles", [](GltfMaker& m) { m.primitive()["mode"] = 0; }, "no triangles"},
-};
-INSTANTIATE_TEST_SUITE_P(All, MalformedGltf, testing::ValuesIn(kFaults),
-                         [](const auto& param) { return std::string(param.param.name); });
+TEST(GltfCompression, CodecThatIsNotReadIsNamedWithARemedy) {
+  GltfMaker maker = GltfMaker::triangle();
+  maker.bytes[0] = 0xa1;
+  maker.json["bufferViews"][0]["buffer"] = 7;
+  maker.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"] =
+      R"({"buffer": 0, "byteLength": 36, "filter": "COLOR", "byteStride": 12, "count": 3,
+          "mode": "ATTRIBUTES"})"_json;
+  EXPECT_THAT(refusal(maker.gltf()),
+              HasSubstr("uses vertex codec 1 of meshoptimizer, which is not read here; pack it by "
+                        "gltfpack -ce ext"));
+}
 
 // A triangle with one image, given as an embedded PNG whatever the bytes are.
 GltfMaker with_image(const std::string& base64) {

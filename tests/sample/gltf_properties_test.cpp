@@ -211,18 +211,6 @@ TEST(GltfProperties, ErrorForAMissingRequiredPropertyNamesTheProperty) {
   }
 }
 
-TEST(GltfProperties, UnknownEnumerationValueIsRefusedWithTheNameOfTheProperty) {
-  const std::pair<const char*, const char*> wrong[] = {
-      {"/accessors/0/type", "accessors[0].type is \"VEC\"; it must be one of SCALAR, VEC2"},
-      {"/materials/0/alphaMode", "materials[0].alphaMode is \"VEC\""},
-      {"/cameras/0/type", "cameras[0].type is \"VEC\""}};
-  for (const auto& [pointer, sentence] : wrong) {
-    GltfMaker maker = complete();
-    maker.json[json::json_pointer(pointer)] = "VEC";
-    EXPECT_THAT(refusal(maker.gltf()), HasSubstr(sentence));
-  }
-}
-
 // Extras and unknown extensions may hold anything.
 TEST(GltfProperties, PropertiesThatTheLoaderDoesNotReadAreNotChecked) {
   GltfMaker maker = complete();
