@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "cli/option_value.h"
-
 namespace alcove::sample {
 namespace {
 
@@ -80,13 +78,14 @@ Result<Camera> choose_camera(const ViewOptions& view, const ViewFinder& finder) 
   camera.near_plane = view.near_plane.value_or(camera.near_plane);
   camera.far_plane = view.far_plane.value_or(camera.far_plane);
   if (!camera.orthographic && !(camera.near_plane > 0.0f)) {
-    return tl::unexpected("the near plane (" + number_text(camera.near_plane) +
-                          ") of a perspective view must lie before the eye: give --near");
+    return Failure(fmt::format(
+        "the near plane ({}) of a perspective view must lie before the eye: give --near",
+        camera.near_plane));
   }
   if (!(camera.near_plane < camera.far_plane)) {
-    return tl::unexpected(
+    return Failure(
         fmt::format("the near plane ({}) is not before the far plane ({}): give --near and --far",
-                    number_text(camera.near_plane), number_text(camera.far_plane)));
+                    camera.near_plane, camera.far_plane));
   }
   return camera;
 }

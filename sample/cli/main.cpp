@@ -4,6 +4,7 @@
 #include <cstring>
 #include <exception>
 #include <iostream>
+#include <iterator>
 #include <new>
 
 #include "cli/commands.h"
@@ -13,42 +14,19 @@
 
 namespace {
 
-using alcove::sample::Command;
-using alcove::sample::Options;
-using alcove::sample::Result;
-using alcove::sample::Stop;
+using namespace alcove::sample;
 
-Result<void> run(const Options& options) {
-  switch (options.command) {
-    case Command::render:
-      return alcove::sample::run_render(options);
-    case Command::view:
-      return alcove::sample::run_view(options);
-    case Command::compare:
-      return alcove::sample::run_compare(options);
-    case Command::recommend:
-      return alcove::sample::run_recommend(options);
-    case Command::graph:
-      return alcove::sample::run_graph(options);
-    case Command::doctor:
-      return alcove::sample::run_doctor(options);
-    case Command::motion:
-      return alcove::sample::run_motion(options);
-    case Command::cost:
-      return alcove::sample::run_cost(options);
-    case Command::measure:
-      return alcove::sample::run_measure(options);
-    case Command::report:
-      return alcove::sample::run_report(options);
-  }
-  return {};  // not reached: a missing command does not compile
-}
+// In the order of the enumerators of Command.
+constexpr Result<void> (*kRun[])(const Options&) = {
+    run_render, run_view,   run_compare, run_recommend, run_report,
+    run_graph,  run_doctor, run_motion,  run_cost,      run_measure};
+static_assert(std::size(kRun) == static_cast<std::size_t>(Command::measure) + 1);
 
 // Prints an error sentence. It is shortened, and bytes that are not printable are replaced, because
 // it may repeat arguments and file names, which may contain any bytes.
 int fail(const std::string& sentence) {
   constexpr std::size_t kLongest = 600;  // bytes
-  std::cerr << "alcove: " << alcove::sample::shortened(sentence, kLongest) << "\n";
+  std::cerr << "alcove: " << shortened(sentence, kLongest) << "\n";
   return 1;
 }
 
@@ -74,9 +52,9 @@ int stop(const Stop& stop) {
 
 int main(int argc, char** argv) {
   try {
-    const auto options = alcove::sample::parse_options(argc, argv);
+    const auto options = parse_options(argc, argv);
     if (!options) return stop(options.error());
-    const auto done = run(*options);
+    const auto done = kRun[static_cast<std::size_t>(options->command)](*options);
     return done ? flush_output() : fail(done.error());
   } catch (const std::bad_alloc&) {
     return fail("There is not enough memory; try a smaller image or scene.");

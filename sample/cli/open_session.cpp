@@ -8,15 +8,12 @@
 #include <utility>
 
 #include "cli/choose_camera.h"
-#include "cli/option_value.h"
 #include "cli/settings.h"
 #include "scene/framing.h"
 #include "scene/load_scene.h"
 #include "support/progress.h"
 
 namespace alcove::sample {
-
-using Failure = tl::unexpected<std::string>;
 
 namespace {
 
@@ -80,7 +77,7 @@ Result<Rendering> render(const Options& options) {
   ALCOVE_TRY(auto environment, load_environment(options.environment, print_note));
   ALCOVE_TRY(auto session, open_session(options));
   std::string origin =
-      "Radius " + number_text(session.settings.radius) + ": " + session.radius_reason + "\n";
+      fmt::format("Radius {}: {}\n", session.settings.radius, session.radius_reason);
   if (uses_default_camera(options.view) && session.camera.name != ViewFinder::kFrame)
     origin += fmt::format("Camera \"{}\" of the scene; --camera none frames everything\n",
                           session.camera.name);

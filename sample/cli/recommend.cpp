@@ -16,8 +16,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Times in milliseconds for which an unmet tolerance is answered with the smallest error.
 constexpr double kUsualTimes[] = {0.25, 0.5, 1.0, 2.0};
 

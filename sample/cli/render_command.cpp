@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "alcove/passes/setting_table.h"
-#include "cli/option_value.h"
 #include "cli/settings.h"
 
 namespace alcove::sample {
 namespace {
 
-std::string vector_text(const glm::vec3& v) {
-  return fmt::format("{},{},{}", number_text(v.x), number_text(v.y), number_text(v.z));
-}
+std::string vector_text(const glm::vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
 // The shortest text that is parsed as the same angle.
 std::string degrees_text(float radians) {
@@ -48,11 +45,11 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
   to.insert(to.end(), {"--eye", position(camera.eye_ws), "--target", position(camera.target_ws),
                        "--up", vector_text(camera.up_ws)});
   if (camera.orthographic)
-    to.insert(to.end(), {"--ortho-height", number_text(camera.ortho_height)});
+    to.insert(to.end(), {"--ortho-height", fmt::to_string(camera.ortho_height)});
   else
     to.insert(to.end(), {"--fov-y", degrees_text(camera.fov_y)});
-  to.insert(to.end(),
-            {"--near", number_text(camera.near_plane), "--far", number_text(camera.far_plane)});
+  to.insert(to.end(), {"--near", fmt::to_string(camera.near_plane), "--far",
+                       fmt::to_string(camera.far_plane)});
   if (camera.reversed_z == camera.orthographic)  // not the default
     to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
 }
@@ -83,19 +80,19 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", shot.width, shot.height)});
   const auto settings = setting_arguments(shot.settings);
   arguments.insert(arguments.end(), settings.begin(), settings.end());
-  arguments.insert(arguments.end(), {"--radius", number_text(shot.settings.radius)});
+  arguments.insert(arguments.end(), {"--radius", fmt::to_string(shot.settings.radius)});
   if (shot.guard_band > 0.0)
-    arguments.insert(arguments.end(), {"--guard-band", number_text(shot.guard_band)});
+    arguments.insert(arguments.end(), {"--guard-band", fmt::to_string(shot.guard_band)});
   if (options.occlusion.normals != NormalSource::shading) {
     arguments.insert(arguments.end(),
                      {"--normals", std::string(name_of(options.occlusion.normals))});
   }
   if (shot.roughness)
-    arguments.insert(arguments.end(), {"--roughness", number_text(*shot.roughness)});
+    arguments.insert(arguments.end(), {"--roughness", fmt::to_string(*shot.roughness)});
   if (!options.environment.empty())
     arguments.insert(arguments.end(), {"--environment", options.environment.string()});
   const std::uint32_t frames = shot.frames > 0 ? shot.frames : shot.settings.history_frames;
-  if (frames > 1) arguments.insert(arguments.end(), {"--frames", number_text(frames)});
+  if (frames > 1) arguments.insert(arguments.end(), {"--frames", fmt::to_string(frames)});
   if (options.device >= 0)
     arguments.insert(arguments.end(), {"--device", fmt::to_string(options.device)});
   return arguments;
@@ -104,6 +101,16 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
 std::string choice_text(const Choice& choice) {
   return shell_line(setting_arguments(choice.settings)) +
          (choice.guard_band > 0.0 ? fmt::format(" --guard-band {:g}", choice.guard_band) : "");
+}
+
+std::string coordinate_text(float value, double origin) {
+  if (origin == 0.0) return fmt::to_string(value);
+  std::string text;
+  for (int digits = 6; digits <= 17; ++digits) {
+    text = fmt::format("{:.{}g}", origin + static_cast<double>(value), digits);
+    if (static_cast<float>(std::strtod(text.c_str(), nullptr) - origin) == value) break;
+  }
+  return text;
 }
 
 std::string shell_line(const std::vector<std::string>& arguments) {

@@ -178,7 +178,7 @@ TEST(Options, HelpFitsAScreenAndHelpAllListsEveryOptionAndSetting) {
     std::istringstream help(parse(std::string(command) + " --help").error().text);
     int lines = 0;
     for (std::string line; std::getline(help, line); ++lines) EXPECT_LE(line.size(), 100u) << line;
-    EXPECT_LE(lines, 60) << command;
+    EXPECT_LE(lines, 50) << command;
     const std::string all = parse(std::string(command) + " --help-all").error().text;
     const bool has_settings = command != std::string_view("doctor");
     EXPECT_EQ(all.find("horizons or connected") != std::string::npos, has_settings) << command;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <tuple>
 
 #include "cli/choose_camera.h"
-#include "cli/option_value.h"
 #include "cli/settings.h"
 #include "scene/builtin_scene.h"
 #include "temporary_folder.h"
@@ -54,12 +54,11 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   const auto read = parse(arguments);
   ASSERT_TRUE(read) << read.error().text;
   EXPECT_EQ(read->command, Command::render);
-  EXPECT_EQ(read->scene, options.scene);
-  EXPECT_EQ(read->environment, options.environment);
-  EXPECT_EQ(read->occlusion.normals, options.occlusion.normals);
-  EXPECT_EQ(read->device, options.device);
-  EXPECT_EQ(read->materials.cut_blends, options.materials.cut_blends);
-  EXPECT_EQ(read->materials.both_sides, options.materials.both_sides);
+  const auto given = [](const Options& o) {
+    return std::tuple(o.scene, o.environment, o.occlusion.normals, o.device, o.materials.cut_blends,
+                      o.materials.both_sides);
+  };
+  EXPECT_EQ(given(*read), given(options));
   EXPECT_EQ(read->view.frames, shot.frames > 0 ? shot.frames : shot.settings.history_frames);
   EXPECT_EQ(read->occlusion.guard_band, shot.guard_band);
   EXPECT_EQ(read->view.width, shot.width);
@@ -70,17 +69,11 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   EXPECT_EQ(*settings, shot.settings);
   const auto camera = choose_camera(read->view, ViewFinder(scene));
   ASSERT_TRUE(camera) << camera.error();
-  EXPECT_EQ(camera->eye_ws, shot.camera.eye_ws);
-  EXPECT_EQ(camera->target_ws, shot.camera.target_ws);
-  EXPECT_EQ(camera->up_ws, shot.camera.up_ws);
-  EXPECT_EQ(camera->near_plane, shot.camera.near_plane);
-  EXPECT_EQ(camera->far_plane, shot.camera.far_plane);
-  EXPECT_EQ(camera->reversed_z, shot.camera.reversed_z);
-  EXPECT_EQ(camera->orthographic, shot.camera.orthographic);
-  if (shot.camera.orthographic)
-    EXPECT_EQ(camera->ortho_height, shot.camera.ortho_height);
-  else
-    EXPECT_EQ(camera->fov_y, shot.camera.fov_y);
+  const auto seen = [](const Camera& c) {
+    return std::tuple(c.eye_ws, c.target_ws, c.up_ws, c.near_plane, c.far_plane, c.reversed_z,
+                      c.orthographic, c.orthographic ? c.ortho_height : c.fov_y);
+  };
+  EXPECT_EQ(seen(*camera), seen(shot.camera));
   const std::vector<float> roughness =
       shot.roughness ? std::vector<float>{*shot.roughness} : std::vector<float>{};
   EXPECT_EQ(read->occlusion.roughness, roughness);

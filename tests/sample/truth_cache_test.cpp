@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <functional>
 
 #include "scene/builtin_scene.h"
 #include "temporary_folder.h"
@@ -94,28 +95,22 @@ TEST(TruthCache, WritingACacheEntryLeavesNoTemporaryFiles) {
 }
 
 TEST(TruthCache, CacheKeyChangesWithSceneAndCamera) {
-  const Scene scene = builtin_scene();
-  CacheKey key, moved, recoloured, laid, blocky, turned;
-  key.add(scene);
-  Scene other = scene;
-  other.meshes[0].positions[0].x += 1e-3f;
-  moved.add(other);
-  other = scene;
-  other.materials[0].base_color.g *= 0.5f;
-  recoloured.add(other);
-  other = scene;
-  other.materials[0].base_color_texture.uv_set = 1;
-  laid.add(other);
-  other = scene;
-  other.materials[0].base_color_texture.sampler.magnify = Filter::nearest;
-  blocky.add(other);
-  turned.add(scene);
-  turned.add(scene.cameras[0]);
-  EXPECT_NE(key.hex(), moved.hex());
-  EXPECT_NE(key.hex(), recoloured.hex());
-  EXPECT_NE(key.hex(), laid.hex());
-  EXPECT_NE(key.hex(), blocky.hex());
-  EXPECT_NE(key.hex(), turned.hex());
+  const std::function<void(Scene&)> changes[] = {
+      [](Scene& s) { s.meshes[0].positions[0].x += 1e-3f; },
+      [](Scene& s) { s.materials[0].base_color.g *= 0.5f; },
+      [](Scene& s) { s.materials[0].base_color_texture.uv_set = 1; },
+      [](Scene& s) { s.materials[0].base_color_texture.sampler.magnify = Filter::nearest; }};
+  CacheKey key, turned;
+  key.add(builtin_scene());
+  for (const auto& change : changes) {
+    Scene scene = builtin_scene();
+    change(scene);
+    CacheKey changed;
+    changed.add(scene);
+    EXPECT_NE(changed.hex(), key.hex()) << &change - changes;
+  }
+  turned.add(builtin_scene(), builtin_scene().cameras[0]);
+  EXPECT_NE(turned.hex(), key.hex());
 }
 
 TEST(TruthCache, NothingIsCachedIfNoCacheFolderIsGiven) {

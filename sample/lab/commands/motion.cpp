@@ -14,7 +14,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
 using Json = nlohmann::ordered_json;
 
 Result<void> write_pictures(const std::filesystem::path& folder, MotionKind kind,

@@ -14,8 +14,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 double mean_squared_error(const Image<float>& image, const Image<float>& truth, const Mask& mask) {
   const double rmse = compare_images(image, truth, mask).rmse;
   return rmse * rmse;

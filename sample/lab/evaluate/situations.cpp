@@ -14,8 +14,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 constexpr std::uint32_t kMovingFrames = 16;  // of the orbit
 
 // A hash of the running program, because the shaders that it contains determine the times; empty if

@@ -11,8 +11,6 @@
 namespace alcove::sample {
 namespace {
 
-using Failure = tl::unexpected<std::string>;
-
 // Where Debian and npm install Chart.js.
 constexpr const char* kChartFiles[] = {"/usr/share/nodejs/chart.js/dist/chart.min.js",
                                        "/usr/share/javascript/chart.js/chart.min.js",
