@@ -240,10 +240,13 @@ Camera ViewFinder::framing_camera(double aspect) const {
   camera.far_plane = kInfinity;
   camera.fit_planes = true;
   float most = -1.0f;
+  size_t drawn = 0, backs = 0;
   for (const auto& [inside, from_above] : {std::pair(false, 1.0f), {true, 1.0f}, {false, -1.0f}}) {
-    // A room has a ceiling. The eye is only below if nothing is seen otherwise.
+    // A room has a ceiling, or from outside mostly back faces. The eye is only below if nothing is
+    // seen otherwise.
     const bool is_room =
-        rays_ && skies_.empty() && rays_->nearest(camera.target_ws, camera.up_ws, kInfinity);
+        rays_ && skies_.empty() &&
+        (backs > 2 * drawn || rays_->nearest(camera.target_ws, camera.up_ws, kInfinity));
     if (inside ? !is_room : from_above < 0.0f && most > 0.1f) continue;
     for (glm::vec3 back : kSides) {
       back.y *= from_above;
@@ -260,6 +263,8 @@ Camera ViewFinder::framing_camera(double aspect) const {
       camera.fov_y = kInside * free < whole ? 1.45f * kFovY : kFovY;
       camera.eye_ws = camera.target_ws + std::min(kInside * free, whole) * back;
       const Picture picture = look(camera, aspect);
+      drawn += picture.drawn;
+      backs += picture.backs;
       // A room surrounds the eye.
       if (inside && picture.surfaces * 4 < picture.pixels * 3) continue;
       if (picture.score() <= 1.25f * most) continue;
