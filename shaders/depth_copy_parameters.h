@@ -5,7 +5,7 @@
 
 ALCOVE_MATHS_BEGIN
 
-// The parameters of resolve_depth.comp and mask_depth.comp. Only the latter reads the last three.
+// The parameters of copy_depth.comp and mask_depth.comp. Only the latter reads the last three.
 struct DepthCopyParameters {
   ivec2 first;         // the first pixel that is copied
   ivec2 size;          // the number of pixels that are copied

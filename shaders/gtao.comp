@@ -9,7 +9,7 @@
 //   main            the traced pixel of a tile                           section 4.4
 //   search_pixel    the outer integral, a mean over slices               section 4.1
 //     fetch_surface     position, normal, view direction                 gtao_surface.h
-//     weighted_slice    a slice, rotated by the noise                    section 4.4
+//     add_slice         a slice, rotated by the noise                    section 4.4
 //       search_slice    the inner integral, a sum of two half-slices     section 4.1
 //         make_half_slice   depth samples along the slice's line         gtao_search_line.h
 //         add_connected     occluders, and the closed form between them  gtao_connected.h
@@ -44,9 +44,8 @@ struct SliceResult {
   RawOcclusion lobe;
 };
 
-SliceResult no_result() {
-  return SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), RawOcclusion(0.0, 0.0));
-}
+const SliceResult kNoResult =
+    SliceResult(RawOcclusion(0.0, 0.0), vec3(0.0), vec3(0.0), RawOcclusion(0.0, 0.0));
 
 RawOcclusion not_negative(RawOcclusion sum) {
   return RawOcclusion(max(sum.visible, 0.0), sum.open);
@@ -73,9 +72,7 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   }
   while (i < 2u)
     ;
-  SliceResult result;
-  result.residual = vec3(0.0);
-  result.expected_residual = vec3(0.0);
+  SliceResult result = kNoResult;
   if (kBentNormal) {
     vec3 part = direction * sum.bent.x + surface.view * sum.bent.y;
     result.residual = residual_of(part, sum.visible, surface.normal);
@@ -83,16 +80,19 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
                                                  kUniform ? 1.0 : open_slice(slice));
   }
   result.raw_occlusion = not_negative(sum.raw_occlusion);
-  result.lobe = kLobe ? not_negative(sum.lobe) : RawOcclusion(0.0, 0.0);
+  if (kLobe) result.lobe = not_negative(sum.lobe);
   return result;
+}
+
+RawOcclusion scaled(RawOcclusion sum, float factor) {
+  return RawOcclusion(sum.visible * factor, sum.open * factor);
 }
 
 // Packs the sums of a lobe, scaled so that sums of narrow and of wide lobes have about the same
 // size. Neighbours of different roughness can then be averaged.
 uvec2 pack_scaled_lobe(Surface surface, RawOcclusion lobe) {
   float scale = max(surface.roughness * surface.roughness, kSmallestLobe);
-  lobe = RawOcclusion(lobe.visible * scale, lobe.open * scale);
-  return uvec2(pack_lobe(lobe), surface.lobe_surface);
+  return uvec2(pack_lobe(scaled(lobe, scale)), surface.lobe_surface);
 }
 
 // `to_open` is 0 for the sums as they are and 1 for those of an unoccluded surface.
@@ -121,34 +121,19 @@ SearchResult sky_result() {
                       uvec2(0u));
 }
 
-// The contribution of slice `i`, with the weight of its angle. Slices contain the view direction,
-// and the noise rotates them (section 4.4).
-SliceResult weighted_slice(Surface surface, SliceNoise noise, uint i) {
+// Adds slice `i` to the sums, with the weight of its angle. Slices contain the view direction, and
+// the noise rotates them (section 4.4).
+void add_slice(inout SliceResult sum, Surface surface, SliceNoise noise, uint i) {
   ViewBasis basis = make_view_basis(surface.view);
   WeightedAngle angle = WeightedAngle(slice_angle(i, kSliceCount, noise.direction), 1.0);
   if (kLobe) angle = lobe_angle(angle.phi, lobe_plane(surface.normal, basis), surface.roughness);
-  vec3 direction = slice_direction(basis, angle.phi);
-  SliceResult result = search_slice(surface, direction, noise.offset);
-  if (kLobe) {
-    float weight = angle.weight;
-    result.raw_occlusion.visible *= weight;
-    result.raw_occlusion.open *= weight;
-    result.residual *= weight;
-    result.expected_residual *= weight;
-    result.lobe.visible *= weight;
-    result.lobe.open *= weight;
-  }
-  return result;
-}
-
-SliceResult add_slices(SliceResult a, SliceResult b) {
-  a.raw_occlusion.visible += b.raw_occlusion.visible;
-  a.raw_occlusion.open += b.raw_occlusion.open;
-  a.residual += b.residual;
-  a.expected_residual += b.expected_residual;
-  a.lobe.visible += b.lobe.visible;
-  a.lobe.open += b.lobe.open;
-  return a;
+  SliceResult slice = search_slice(surface, slice_direction(basis, angle.phi), noise.offset);
+  sum.raw_occlusion.visible += slice.raw_occlusion.visible * angle.weight;
+  sum.raw_occlusion.open += slice.raw_occlusion.open * angle.weight;
+  sum.residual += slice.residual * angle.weight;
+  sum.expected_residual += slice.expected_residual * angle.weight;
+  sum.lobe.visible += slice.lobe.visible * angle.weight;
+  sum.lobe.open += slice.lobe.open * angle.weight;
 }
 
 // The step of the depth buffer at a surface, in scene units. The order of the operations differs
@@ -164,16 +149,15 @@ float depth_step_length(Surface surface) {
 // over the angles of the slices.
 SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   Surface surface = fetch_surface(pixel, inverse_depth);
-  SliceResult sum = no_result();
+  SliceResult sum = kNoResult;
   if (!kLobe && !reaches_samples(surface)) {
     // Without occluders, the mean of a slice over all directions is 1.
     sum.raw_occlusion = RawOcclusion(float(kSliceCount), float(kSliceCount));
-  } else if (kSliceCount == 1u) {
-    sum = weighted_slice(surface, noise, 0u);
   } else {
     uint i = 0u;
     [[dont_unroll]] do {
-      sum = add_slices(sum, weighted_slice(surface, noise, i));
+      add_slice(sum, surface, noise, i);
+      if (kSliceCount == 1u) break;  // compilers then remove the loop
       ++i;
     }
     while (i < kSliceCount)
@@ -181,17 +165,13 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
   }
   sum = fade_unresolved(sum, unresolved_occlusion(depth_step_length(surface), parameters.radius));
   float mean = 1.0 / float(kSliceCount);
-  uvec2 lobe =
-      kLobe ? pack_scaled_lobe(surface, RawOcclusion(sum.lobe.visible * mean, sum.lobe.open * mean))
-            : uvec2(0u);
-  RawOcclusion raw_occlusion =
-      RawOcclusion(sum.raw_occlusion.visible * mean, sum.raw_occlusion.open * mean);
+  uvec2 lobe = kLobe ? pack_scaled_lobe(surface, scaled(sum.lobe, mean)) : uvec2(0u);
   uint normal = quantise_normal(surface.normal);
-  return SearchResult(
-      uvec4(pack_raw_occlusion(raw_occlusion, normal), floatBitsToUint(inverse_depth), lobe),
-      kBentNormal
-          ? uvec2(pack_residual(sum.residual * mean), pack_residual(sum.expected_residual * mean))
-          : uvec2(0u));
+  return SearchResult(uvec4(pack_raw_occlusion(scaled(sum.raw_occlusion, mean), normal),
+                            floatBitsToUint(inverse_depth), lobe),
+                      kBentNormal ? uvec2(pack_residual(sum.residual * mean),
+                                          pack_residual(sum.expected_residual * mean))
+                                  : uvec2(0u));
 }
 
 // Groups run in the order of their numbers, x first. They advance by columns through strips of the

@@ -114,10 +114,6 @@ void store(Surface surface, Result result) {
 
 // --- The history of pixels: HistoryTexel (maths/history.h) ---
 
-// Returns the change of a stored depth for a change of depth: per relative change in perspective
-// views, and per change of 1 in orthographic views. `scale` is the x or z of history_depth_scale.
-float stored_per_depth(float scale) { return kPerspective ? 1.442695 * scale : scale; }
-
 // The logarithm of the inverse depth in perspective, the depth in orthographic views.
 float log_inverse_depth(Surface surface) {
   return kPerspective ? log2(surface.inverse_depth * parameters.history_unit)
@@ -126,9 +122,10 @@ float log_inverse_depth(Surface surface) {
 
 float history_slack(Surface surface) { return parameters.history_slack * surface.n_dot_v; }
 
+// In perspective the history holds the base-2 logarithms of depths, hence 1 / ln(2).
 float moved_distance(Surface surface) {
   return kDepthMotion * parameters.history_sharpness * surface.n_dot_v *
-         (kPerspective ? stored_per_depth(abs(parameters.history_depth_scale.z)) : 1.0);
+         (kPerspective ? 1.442695 * abs(parameters.history_depth_scale.z) : 1.0);
 }
 
 HistoryTexels gather_history(Surface surface, Previous previous, vec2 part, vec2 uv) {

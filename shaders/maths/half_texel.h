@@ -32,7 +32,7 @@ struct HalfTexel {
 // Returns the texel as it is stored in R16G16B16A16_SNORM, which clamps tilts that are too large.
 ALCOVE_INLINE vec4 pack_half_texel(HalfTexel texel) {
   return vec4(texel.occlusion, texel.weight * (1.0f / kHalfTexelWeightUnit),
-              texel.tilt.x * (1.0f / kLargestTilt), texel.tilt.y * (1.0f / kLargestTilt));
+              texel.tilt * (1.0f / kLargestTilt));
 }
 
 // Returns the value stored in R32_SFLOAT: the inverse depth of the plane at the texel's centre,
@@ -65,8 +65,7 @@ ALCOVE_INLINE float half_recent_of_code(float code, float otherwise) {
 ALCOVE_INLINE vec4 pack_half_residual(vec3 residual, float dither) {
   float scale = 511.0f / (1023.0f * kLargestResidual);
   float offset = (511.5f + dither) * (1.0f / 1023.0f);
-  return vec4(residual.x * scale + offset, residual.y * scale + offset, residual.z * scale + offset,
-              0.0f);
+  return vec4(residual * scale + offset, 0.0f);
 }
 
 // The stored value of a residual of 0, and the residual for a stored difference of 1.

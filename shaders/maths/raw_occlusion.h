@@ -75,9 +75,8 @@ ALCOVE_INLINE vec3 unpack_residual(uint bits) {
 // differs by orders of magnitude between slices. It is therefore stored with a relative error of
 // 2^-8. The error of the ratio is at most 2^-17.
 ALCOVE_INLINE uint pack_lobe(RawOcclusion lobe) {
-  float ratio = lobe.open > 0.0f ? clamp(lobe.visible / lobe.open, 0.0f, 1.0f) : 1.0f;
   uint open = (floatBitsToUint(lobe.open) + 0x8000u) & 0xffff0000u;
-  return uint(ratio * 65535.0f + 0.5f) | open;
+  return pack_unorm(mean_visibility(lobe), 16u) | open;
 }
 
 ALCOVE_INLINE RawOcclusion unpack_lobe(uint bits) {

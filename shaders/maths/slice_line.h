@@ -66,8 +66,10 @@ ALCOVE_INLINE float farther_inverse_depth(float a, float b, bool perspective) {
   return perspective ? min(a, b) : max(a, b);
 }
 
-// The coefficients that turn a distance on the image and a depth into a point of the slice's plane,
-// as slice_point() does.
+// The coefficients that turn a distance on the image and a depth into a point (x w, y w, w) of the
+// slice's plane: x w = px x_per_step and y w = px y_per_step + rise y_per_depth, where px is the
+// distance in pixels. With d the linear depth of the shaded point, and i the inverse depth of the
+// other point, rise is d i - 1 in perspective and d - i in orthographic views.
 struct SliceLine {
   vec2 direction_px;  // unit vector on the image, towards positive x of the slice's plane
   float x_per_step;   // change of x w per pixel along direction_px; positive
@@ -98,17 +100,6 @@ ALCOVE_INLINE SliceLine make_slice_line(vec2 per_px, vec3 direction, vec3 view) 
   slice_line.y_per_step = turned ? -y_per_step : y_per_step;
   slice_line.y_per_depth = 1.0f / max(view.z, 1e-6f);
   return slice_line;
-}
-
-// Returns (x w, y w, w) of the point that lies `offset_px` pixels along the line (negative: in the
-// opposite direction) and has the given inverse depth. `centre_depth` is the linear depth of the
-// shaded point. The comment at the top of this file explains x, y and w.
-ALCOVE_INLINE vec3 slice_point(SliceLine slice_line, float offset_px, float inverse_depth,
-                               float centre_depth, bool perspective) {
-  float rise = perspective ? centre_depth * inverse_depth - 1.0f : centre_depth - inverse_depth;
-  return vec3(offset_px * slice_line.x_per_step,
-              offset_px * slice_line.y_per_step + rise * slice_line.y_per_depth,
-              perspective ? inverse_depth : 1.0f);
 }
 
 // The tangent plane of the shaded point, as a linear function of the position on the image.

@@ -64,8 +64,10 @@ struct Setting {
 
   vec2 point(float offset_px, float sample_depth) const {
     const float sample_line = perspective() ? 1.0f / sample_depth : sample_depth;
-    const vec3 scaled = maths::slice_point(line, offset_px, sample_line, depth, perspective());
-    return vec2(scaled) / scaled.z;
+    const float rise = perspective() ? depth * sample_line - 1.0f : depth - sample_line;
+    return vec2(offset_px * line.x_per_step,
+                offset_px * line.y_per_step + rise * line.y_per_depth) /
+           (perspective() ? sample_line : 1.0f);
   }
 };
 

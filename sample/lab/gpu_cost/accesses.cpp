@@ -204,6 +204,15 @@ Accesses normals_accesses(const PassWork& work) {
   return accesses;
 }
 
+// The passes that copy or convert every pixel, or every second one along x and y.
+Accesses copy_accesses(const PassWork& work) {
+  const int read_scale = work.pass == "halve depth" ? 2 : 1;
+  Accesses accesses;
+  for (const PassImage& image : work.images)
+    accesses.push_back(at_invocation(image, image.direction == Direction::read ? read_scale : 1));
+  return accesses;
+}
+
 }  // namespace
 
 Texel along_slice(Texel from, float phi, float distance) {
@@ -239,20 +248,12 @@ ImageAccess at_invocation(const PassImage& image, std::int32_t scale, Texel offs
 
 DispatchAccesses accesses_of(const PassWork& work) {
   DispatchAccesses dispatch{work.groups.x, work.groups.y * work.groups.z, {}};
-  if (work.pass == "gtao") {
-    dispatch.strip_columns = work.groups.y;
-    dispatch.accesses = gtao_accesses(work);
-  } else if (work.pass == "reconstruct") {
-    dispatch.accesses = reconstruct_accesses(work);
-  } else if (work.pass == "upsample") {
-    dispatch.accesses = upsample_accesses(work);
-  } else if (work.pass == "normals") {
-    dispatch.accesses = normals_accesses(work);
-  } else if (work.pass == "halve depth") {
-    dispatch.accesses = {at_invocation(work.images[0], 2), at_invocation(work.images[1])};
-  } else {
-    for (const PassImage& image : work.images) dispatch.accesses.push_back(at_invocation(image));
-  }
+  if (work.pass == "gtao") dispatch.strip_columns = work.groups.y;
+  dispatch.accesses = work.pass == "gtao"          ? gtao_accesses(work)
+                      : work.pass == "reconstruct" ? reconstruct_accesses(work)
+                      : work.pass == "upsample"    ? upsample_accesses(work)
+                      : work.pass == "normals"     ? normals_accesses(work)
+                                                   : copy_accesses(work);
   return dispatch;
 }
 

@@ -148,7 +148,7 @@ double branch_share(const PassWork& work, const CompiledBranch& branch) {
   constexpr double kNormalFromDepth = 0.02;
   if (branch.stores > 0 || branch.shared > 0 || branch.loops > 0) return 1.0;
   // A half-slice of eight samples loads as much, but takes more instructions.
-  constexpr std::uint32_t kMostInstructions = 300;
+  constexpr double kMostInstructions = 300;
   const bool from_depth =
       (branch.loads == 8 || branch.loads == 9) && branch.instructions < kMostInstructions;
   const bool given =

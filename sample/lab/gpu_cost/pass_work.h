@@ -28,14 +28,12 @@ enum class FrameState : std::uint8_t {
 inline constexpr std::size_t kFrameStates = 4;
 [[nodiscard]] std::string_view name_of(FrameState state);
 
-// A loop of the compiled shader. Loops that the compiler unrolled do not appear.
+// A loop of the compiled shader. Loops that the compiler unrolled do not appear. Loops are in the
+// order of the code, an outer loop before its inner ones.
 struct CompiledLoop {
-  std::uint32_t index = 0;         // in the order of the code, an outer loop before its inner ones
   std::uint32_t depth = 1;         // 1 for an outermost loop
   std::uint32_t instructions = 0;  // in its body, including inner loops
   std::uint32_t loads = 0;         // image loads, samples and gathers among them
-  std::uint32_t stores = 0;        // image stores among them
-  std::uint32_t shared = 0;        // shared-memory operations among them
 };
 
 enum class Direction : std::uint8_t { read, write };
@@ -82,11 +80,11 @@ struct PassWork {
 
 // One side of a divergent branch of the compiled shader.
 struct CompiledBranch {
-  std::uint32_t instructions = 0;
-  std::uint32_t loads = 0;   // image loads, samples and gathers among them
-  std::uint32_t stores = 0;  // image stores among them
-  std::uint32_t shared = 0;  // shared-memory operations among them
-  std::uint32_t loops = 0;   // loops inside
+  double instructions = 0;
+  double loads = 0;         // image loads, samples and gathers among them
+  double stores = 0;        // image stores among them
+  double shared = 0;        // shared-memory operations among them
+  std::uint32_t loops = 0;  // loops inside
 };
 
 // The share of waves of reconstruct.comp with a pixel whose tangent plane does not come from depth:

@@ -21,11 +21,6 @@ bool starts_with_any(std::string_view text, std::initializer_list<std::string_vi
       beginnings, [text](std::string_view beginning) { return text.starts_with(beginning); });
 }
 
-bool ends_with_any(std::string_view text, std::initializer_list<std::string_view> endings) {
-  return std::ranges::any_of(endings,
-                             [text](std::string_view ending) { return text.ends_with(ending); });
-}
-
 // The encoding suffixes of the disassembly do not affect the cost.
 std::string_view without_encoding(std::string_view operation) {
   for (const std::string_view suffix : {"_e32", "_e64", "_sdwa", "_dpp"})
@@ -36,7 +31,7 @@ std::string_view without_encoding(std::string_view operation) {
 bool is_transcendental(std::string_view operation) {
   return starts_with_any(operation,
                          {"v_rcp", "v_rsq", "v_sqrt", "v_exp_", "v_log_", "v_sin_", "v_cos_"}) &&
-         ends_with_any(operation, {"_f32", "_f16"});
+         (operation.ends_with("_f32") || operation.ends_with("_f16"));
 }
 
 bool is_slow_multiply(std::string_view operation) {
@@ -300,16 +295,12 @@ std::vector<Loop> find_loops(const std::vector<BasicBlock>& blocks) {
     if (last != block.predecessors.end() && *last >= block.index)
       loops.push_back({{}, block.index, *last});
   }
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    Loop& loop = loops[i];
-    loop.summary.index = static_cast<std::uint32_t>(i);
+  for (Loop& loop : loops) {
     loop.summary.depth = static_cast<std::uint32_t>(std::ranges::count_if(
         loops, [&](const Loop& o) { return o.first <= loop.first && loop.last <= o.last; }));
     const WaveWork body = work_between(blocks, loop.first, loop.last);
     loop.summary.instructions = static_cast<std::uint32_t>(body.instructions);
     loop.summary.loads = static_cast<std::uint32_t>(body.loads);
-    loop.summary.stores = static_cast<std::uint32_t>(body.stores);
-    loop.summary.shared = static_cast<std::uint32_t>(body.shared_operations);
   }
   return loops;
 }
@@ -322,12 +313,9 @@ std::vector<Branch> find_branches(const std::vector<BasicBlock>& blocks) {
   const auto end_side = [&](std::uint32_t end) {
     if (end > open.back() + 1) {
       const WaveWork work = work_between(blocks, open.back() + 1, end - 1);
-      branches.push_back(
-          {{static_cast<std::uint32_t>(work.instructions), static_cast<std::uint32_t>(work.loads),
-            static_cast<std::uint32_t>(work.stores),
-            static_cast<std::uint32_t>(work.shared_operations)},
-           open.back() + 1,
-           end - 1});
+      branches.push_back({{work.instructions, work.loads, work.stores, work.shared_operations},
+                          open.back() + 1,
+                          end - 1});
     }
     open.back() = end;
   };
