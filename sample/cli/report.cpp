@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "render/settings_json.h"
-#include "support/mib.h"
 #include "support/process_memory.h"
 
 namespace alcove::sample {

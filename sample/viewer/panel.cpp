@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "alcove/passes/setting_table.h"
-#include "support/mib.h"
+#include "support/process_memory.h"
 #include "viewer/orbit_camera.h"
 
 namespace alcove::sample {

@@ -34,7 +34,7 @@ TEST(TruthCache, CachedTruthIsReadOnlyUnderItsOwnKeyAndSize) {
   EXPECT_FALSE(cache.read(key_of(1), 17));
 }
 
-TEST(TruthCache, DamagedCacheEntriesAreTreatedAsAbsent) {
+TEST(TruthCache, DamagedCacheEntriesAndThoseOfEarlierVersionsAreTreatedAsAbsent) {
   const TemporaryFolder folder;
   const TruthCache cache(folder.path);
   const std::vector<float> values(100, 0.5f);
@@ -53,15 +53,8 @@ TEST(TruthCache, DamagedCacheEntriesAreTreatedAsAbsent) {
   cache.write(key_of(1), values);
   std::filesystem::resize_file(file, size - 4);
   EXPECT_FALSE(cache.read(key_of(1), values.size()));
-}
-
-TEST(TruthCache, CacheEntryOfAnEarlierFormatVersionIsTreatedAsAbsent) {
-  const TemporaryFolder folder;
-  const TruthCache cache(folder.path);
-  const std::vector<float> values(100, 0.5f);
   cache.write(key_of(1), values);
-  std::fstream(only_file(folder.path), std::ios::in | std::ios::out | std::ios::binary)
-      << "alcovet1";
+  std::fstream(file, std::ios::in | std::ios::out | std::ios::binary) << "alcovet1";
   EXPECT_FALSE(cache.read(key_of(1), values.size()));
 }
 
