@@ -73,7 +73,6 @@ struct Limit {
   uint64_t enough;
   const char* word;
 };
-
 const Limit kLimits[] = {
     {"InstancesOnceForEachPrimitive", repeated_triangle(10, 4), &GltfLimits::instances, 40,
      "past the number of instances"},
