@@ -6,6 +6,8 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/packing.hpp>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,8 +19,6 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 
 constexpr VkFormat kVisibilityFormat = VK_FORMAT_R8_UNORM;
-constexpr AlcoveState kBetweenFrames{kSampledState.stages, kSampledState.access,
-                                     kSampledState.layout};
 constexpr VkImageUsageFlags kDepthUsage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
                                           VK_IMAGE_USAGE_SAMPLED_BIT |
                                           VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
@@ -39,61 +39,35 @@ AlcoveCamera to_camera(const CameraMatrices& matrices, const glm::vec3& origin) 
   return camera;
 }
 
+// Imports an image that the frame fills.
+Texture import(Graph& graph, const AlcoveImage& image) {
+  const framegraph::State resting{image.final_state.stages, image.final_state.access,
+                                  image.final_state.layout};
+  return graph.import_texture(
+      "image of the engine",
+      {.image = image.image,
+       .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
+       .usage = image.usage,
+       .initial_state = {resting.stages, 0, VK_IMAGE_LAYOUT_UNDEFINED},
+       .final_state = resting});
+}
+
 }  // namespace
 
-Result<AlcoveImage> EngineRun::create_image(VkFormat format, VkExtent2D size,
-                                            VkImageUsageFlags usage) {
-  ALCOVE_TRY(
-      auto texture,
-      GpuImage::create(gpu_.device(),
-                       {format, framegraph::Extent::absolute(size.width, size.height)}, usage));
-  images_.push_back(std::move(texture));
-  AlcoveImage image{};
-  image.image = images_.back()->image();
-  image.format = format;
-  image.width = size.width;
-  image.height = size.height;
-  image.usage = usage;
-  image.initial_state = image.final_state = kBetweenFrames;
+template <typename Texel>
+AlcoveImage EngineRun::create_filled(VkFormat format, VkExtent2D size,
+                                     const std::vector<Texel>& texels) {
+  const AlcoveImage image = device_.make_image(format, size.width, size.height, kFilledUsage);
+  device_.write(image, std::as_bytes(std::span(texels)));
   return image;
 }
 
-framegraph::Texture EngineRun::import(Graph& graph, const AlcoveImage& image, bool fill) const {
-  const auto& found = **std::ranges::find(images_, image.image, &GpuImage::image);
-  return graph.import_texture("image of the engine", fill ? found.import_to_fill(kSampledState)
-                                                          : found.import_to_read(kSampledState));
-}
-
 template <typename Texel>
-Result<AlcoveImage> EngineRun::create_filled(VkFormat format, VkExtent2D size,
-                                             const std::vector<Texel>& texels) {
-  const VkDeviceSize bytes = texels.size() * sizeof(Texel);
-  auto buffer = HostBuffer::create(gpu_.device(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  auto image = create_image(format, size, kFilledUsage);
-  if (!buffer || !image) return Failure(buffer ? image.error() : buffer.error());
-  std::memcpy((*buffer)->bytes().data(), texels.data(), bytes);
-  return gpu_
-      .run([&](Graph& graph) -> Result<void> {
-        (void)add_copy(graph, **buffer, import(graph, *image, true));
-        return {};
-      })
-      .map([&](const framegraph::FrameReport&) { return *image; });
-}
-
-template <typename Texel>
-Result<std::vector<Texel>> EngineRun::read(const AlcoveImage& image) {
-  std::vector<Texel> texels(std::size_t{image.width} * image.height);
-  ALCOVE_TRY(auto buffer, HostBuffer::create(gpu_.device(), texels.size() * sizeof(Texel),
-                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-  return gpu_
-      .run([&](Graph& graph) -> Result<void> {
-        add_read_back(graph, import(graph, image, false), *buffer);
-        return {};
-      })
-      .map([&](const framegraph::FrameReport&) {
-        std::memcpy(texels.data(), buffer->bytes().data(), texels.size() * sizeof(Texel));
-        return texels;
-      });
+std::vector<Texel> EngineRun::read(const AlcoveImage& image) {
+  const passes::Bytes bytes = device_.read(image, sizeof(Texel));
+  std::vector<Texel> texels(bytes.size() / sizeof(Texel));
+  std::memcpy(texels.data(), bytes.data(), bytes.size());
+  return texels;
 }
 
 Result<GbufferRenderer*> Engine::gbuffer(bool geometric) {
@@ -104,52 +78,23 @@ Result<GbufferRenderer*> Engine::gbuffer(bool geometric) {
   return gbuffer.get();
 }
 
-Result<AlcoveContext*> Engine::context() {
-  if (context_) return context_.get();
-  AlcoveContextInfo info{.struct_size = sizeof info};
-  info.queue_family = gpu_.device().queue_family();
-  info.instance = gpu_.device().instance();
-  info.physical_device = gpu_.device().physical_device();
-  info.device = gpu_.device().device();
-  info.get_instance_proc_addr = vkGetInstanceProcAddr;
-  info.frames_in_flight = kEngineSlots;
-  AlcoveContext* context = nullptr;
-  std::array<char, ALCOVE_MAX_MESSAGE> message{};
-  if (alcoveCreateContext(&info, &context, message.data()) != ALCOVE_SUCCESS)
-    return Failure(message.data());
-  context_.reset(context);
-  return context;
+AlcoveContext* Engine::context() {
+  if (!context_)
+    context_ = passes::create_context(passes::TestEngine(gpu_.device()).context_info());
+  return context_.get();
 }
 
 Result<std::unique_ptr<EngineRun>> EngineRun::create(Engine& engine, const Camera& camera,
                                                      const EngineCourse& course) {
   std::unique_ptr<EngineRun> run(new EngineRun(engine, camera, course));
-  ALCOVE_TRY_VOID(run->create_commands());
   for (std::uint32_t frame = 0; frame < course.frames; ++frame)
     ALCOVE_TRY_VOID(run->draw_frame(frame));
   return run;
 }
 
 EngineRun::~EngineRun() {
-  vkDeviceWaitIdle(gpu_.device().device());
-  if (const auto context = engine_.context())
-    for (const auto& image : images_) alcoveForgetImage(*context, image->image());
-  vkDestroyCommandPool(gpu_.device().device(), pool_, nullptr);
-}
-
-Result<void> EngineRun::create_commands() {
-  const VkDevice device = gpu_.device().device();
-  const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                          .queueFamilyIndex = gpu_.device().queue_family()};
-  ALCOVE_TRY_VOID(
-      check(vkCreateCommandPool(device, &pool_info, nullptr, &pool_), "create a command pool"));
-  const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                         .commandPool = pool_,
-                                         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                         .commandBufferCount = kEngineSlots};
-  return check(vkAllocateCommandBuffers(device, &info, commands_.data()),
-               "create a command buffer");
+  device_.wait();
+  if (AlcoveContext* const context = engine_.context()) device_.forget_images(*context);
 }
 
 VkExtent2D EngineRun::size_at(std::uint32_t frame) const {
@@ -212,26 +157,24 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
         Target{view.images[ALCOVE_IMAGE_MOTION], kMotionFormat, size, kColourUsage},
         Target{view.images[ALCOVE_IMAGE_VISIBILITY], kVisibilityFormat, size, kVisibilityUsage},
         Target{drawn.other[Other::albedo], kAlbedoFormat, size, kColourUsage},
-        Target{drawn.other.half_depth,
-               kDepthFormat,
-               {size.width / 2, size.height / 2},
-               kDepthUsage}}) {
-    ALCOVE_TRY(auto texture, create_image(target.format, target.size, target.usage));
-    target.image = texture;
-  }
-  drawn.other.half_depth.width = size.width;
-  drawn.other.half_depth.height = size.height;
+        Target{
+            drawn.other.half_depth, kDepthFormat, {size.width / 2, size.height / 2}, kDepthUsage}})
+    target.image =
+        device_.make_image(target.format, target.size.width, target.size.height, target.usage);
   const auto report = gpu_.run([&](Graph& graph) -> Result<void> {
     (void)gbuffer->add(graph, seen,
-                       {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH], true),
-                        .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS], true),
-                        .albedo = import(graph, drawn.other[Other::albedo], true),
-                        .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION], true)});
+                       {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH]),
+                        .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS]),
+                        .albedo = import(graph, drawn.other[Other::albedo]),
+                        .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION])});
     if (course_.other_inputs)
-      (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth, true)});
+      (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth)});
     return {};
   });
   if (!report) return Failure(report.error());
+  if (course_.other_inputs) create_other_inputs(drawn, frame);
+  drawn.other.half_depth.width = size.width;
+  drawn.other.half_depth.height = size.height;
   view.struct_size = sizeof view;
   const glm::vec3 origin = course_.relative ? glm::vec3(now.world_from_view[3]) : glm::vec3(0.0f);
   view.info.camera = to_camera(now, origin);
@@ -241,21 +184,19 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   view.info.reset_history = changes ? VK_TRUE : VK_FALSE;
   view.info.static_frames = course_.orbit != 0.0f || course_.jitter ? 0 : frame;
   drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false), origin);
-  auto done = course_.other_inputs ? create_other_inputs(drawn, frame) : Result<void>();
   frames_.push_back(drawn);
-  return done;
+  return {};
 }
 
-Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
+void EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
-  const auto depths = read<float>(drawn.view.images[ALCOVE_IMAGE_DEPTH]);
+  const std::vector<float> depths = read<float>(drawn.view.images[ALCOVE_IMAGE_DEPTH]);
   const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.images[ALCOVE_IMAGE_NORMALS]);
-  if (!depths || !halves) return Failure("The images could not be read back.");
   const int width = static_cast<int>(size.width), height = static_cast<int>(size.height);
   const auto at = [&](int x, int y) {
-    return (*depths)[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * size.width +
-                     static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
+    return depths[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * size.width +
+                  static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
   };
   // The distance along the view axis, at most 1e3.
   const auto distance = [&](float depth) {
@@ -300,10 +241,10 @@ Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t fra
   for (const auto& [which, depth_at] : kinds) {
     std::vector<float> texels;
     for (int i = 0; i < width * height; ++i) texels.push_back(depth_at(i % width, i / width));
-    ALCOVE_TRY(drawn.other[which], create_filled(VK_FORMAT_R32_SFLOAT, size, texels));
+    drawn.other[which] = create_filled(VK_FORMAT_R32_SFLOAT, size, texels);
   }
   std::array<std::vector<glm::vec4>, 3> normals;
-  for (const auto& half : *halves) {
+  for (const auto& half : halves) {
     const glm::vec3 normal(half_to_float(half[0]), half_to_float(half[1]), half_to_float(half[2]));
     const bool is_sky = glm::dot(normal, normal) < 0.25f;
     normals[0].emplace_back(is_sky ? glm::vec2(0.0f) : maths::octahedral_encode(normal), 0.0f,
@@ -312,10 +253,9 @@ Result<void> EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t fra
     normals[2].emplace_back(normal * glm::mat3(now.view_from_world), 0.0f);
   }
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    ALCOVE_TRY(drawn.other.images.at(static_cast<std::size_t>(Other::octahedral_normals) + i),
-               create_filled(VK_FORMAT_R32G32B32A32_SFLOAT, size, normals.at(i)));
+    drawn.other.images.at(static_cast<std::size_t>(Other::octahedral_normals) + i) =
+        create_filled(VK_FORMAT_R32G32B32A32_SFLOAT, size, normals.at(i));
   }
-  return {};
 }
 
 EngineFrame EngineRun::describe(std::uint32_t frame) const {
@@ -339,26 +279,17 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
   result.right_first = frames_.front().view;
   result.frame.struct_size = sizeof result.frame;
   result.frame.index = frame;
-  result.frame.slot = frame % kEngineSlots;
+  result.frame.slot = frame % passes::TestEngine::kSlots;
   result.frame.view_count = 1;
   result.frame.diagnose_pixels = VK_TRUE;
   return result;
 }
 
-VkResult EngineRun::submit(VkCommandBuffer recorded) const {
-  const VkSubmitInfo info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                          .commandBufferCount = 1,
-                          .pCommandBuffers = &recorded};
-  const VkResult result = vkQueueSubmit(gpu_.device().queue(), 1, &info, VK_NULL_HANDLE);
-  return result == VK_SUCCESS ? vkQueueWaitIdle(gpu_.device().queue()) : result;
-}
-
 Result<std::string> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
                                     bool submit_late) {
-  ALCOVE_TRY(AlcoveContext * context, engine_.context());
+  AlcoveContext* const context = engine_.context();
   std::string said;
-  VkCommandBuffer waiting = VK_NULL_HANDLE;  // recorded and not submitted
-  VkResult device = VK_SUCCESS;
+  std::optional<std::uint32_t> waiting;  // the slot that is recorded and not submitted
   std::vector<std::uint32_t> ids;
   for (std::uint32_t i = 0; said.empty() && i < course_.frames; ++i) {
     EngineFrame described = describe(i);
@@ -368,21 +299,19 @@ Result<std::string> EngineRun::draw(const ChangeFrame& change, std::uint32_t beg
     ids.push_back(described.view.info.id);
     described.view.info.settings = &described.settings;
     described.frame.views = &described.view;
-    const VkCommandBuffer commands = commands_.at(i % kEngineSlots);
-    const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    device = vkBeginCommandBuffer(commands, &info);
-    for (std::uint32_t record = 0; device == VK_SUCCESS && record < described.records; ++record) {
-      if (alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
-        said = std::string(alcoveGetMessage(context)) + "\n";
-    }
-    device = device == VK_SUCCESS ? vkEndCommandBuffer(commands) : device;
-    if (device == VK_SUCCESS && waiting != VK_NULL_HANDLE) device = submit(waiting);
-    waiting = late ? commands : VK_NULL_HANDLE;
-    if (device == VK_SUCCESS && !late) device = submit(commands);
-    if (device != VK_SUCCESS) return device_failure("run a frame", device);
+    const std::uint32_t slot = i % passes::TestEngine::kSlots;
+    device_.record(slot, [&](VkCommandBuffer commands) {
+      for (std::uint32_t record = 0; record < described.records; ++record)
+        if (alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
+          said = std::string(alcoveGetMessage(context)) + "\n";
+    });
+    if (waiting) device_.submit(*waiting);
+    waiting = slot;
+    if (!late) device_.submit(*std::exchange(waiting, std::nullopt));
+    device_.wait();
   }
-  if (waiting != VK_NULL_HANDLE && submit(waiting) != VK_SUCCESS)
-    return Failure("The last frame could not be run.");
+  if (waiting) device_.submit(*waiting);
+  device_.wait();
   if (said.empty()) {
     said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
     alcoveDiagnose(context, said.data(), said.size());

@@ -8,16 +8,14 @@
 #include <vector>
 
 #include "alcove/alcove.h"
+#include "engine.h"
 #include "gpu/gpu.h"
-#include "gpu/gpu_image.h"
 #include "render/gbuffer.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/result.h"
 
 namespace alcove::sample {
-
-inline constexpr std::uint32_t kEngineSlots = 2;  // frames in flight
 
 // The frames that an engine draws: how the camera moves, and what else changes.
 struct EngineCourse {
@@ -98,17 +96,15 @@ class Engine {
   [[nodiscard]] Gpu& gpu() const { return gpu_; }
   // Creates the renderer when it is first needed.
   [[nodiscard]] Result<GbufferRenderer*> gbuffer(bool geometric);
-  [[nodiscard]] Result<AlcoveContext*> context();
+  // Creates the context when it is first needed.
+  [[nodiscard]] AlcoveContext* context();
   void drop_context() { context_.reset(); }
 
  private:
-  struct DestroyContext {
-    void operator()(AlcoveContext* context) const { alcoveDestroyContext(context); }
-  };
   Gpu& gpu_;
   const Scene& scene_;
   std::array<std::unique_ptr<GbufferRenderer>, 2> gbuffers_;
-  std::unique_ptr<AlcoveContext, DestroyContext> context_;
+  passes::Context context_;
 };
 
 // Draws the g-buffers of a course once, and records their occlusion through the C interface as
@@ -139,32 +135,29 @@ class EngineRun {
   };
 
   EngineRun(Engine& engine, const Camera& camera, const EngineCourse& course)
-      : engine_(engine), gpu_(engine.gpu()), camera_(camera), course_(course) {}
-  Result<void> create_commands();
-  Result<AlcoveImage> create_image(VkFormat format, VkExtent2D size, VkImageUsageFlags usage);
+      : engine_(engine),
+        gpu_(engine.gpu()),
+        camera_(camera),
+        course_(course),
+        device_(gpu_.device()) {}
   template <typename Texel>
-  Result<AlcoveImage> create_filled(VkFormat format, VkExtent2D size,
-                                    const std::vector<Texel>& texels);
-  framegraph::Texture import(Graph& graph, const AlcoveImage& image, bool fill) const;
+  AlcoveImage create_filled(VkFormat format, VkExtent2D size, const std::vector<Texel>& texels);
   template <typename Texel>
-  Result<std::vector<Texel>> read(const AlcoveImage& image);
+  std::vector<Texel> read(const AlcoveImage& image);
   VkExtent2D size_at(std::uint32_t frame) const;
   CameraMatrices matrices_at(std::uint32_t frame, bool with_jitter) const;
   glm::mat4 world_from_moving_at(std::uint32_t frame) const;
   Result<void> draw_frame(std::uint32_t frame);
-  Result<void> create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
+  void create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
   EngineFrame describe(std::uint32_t frame) const;
-  VkResult submit(VkCommandBuffer recorded) const;  // and waits until it has finished
 
   Engine& engine_;
   Gpu& gpu_;
   Camera camera_;
   EngineCourse course_;
-  std::vector<std::unique_ptr<GpuImage>> images_;
+  passes::TestEngine device_;
   std::vector<DrawnFrame> frames_;
   std::uint32_t next_id_ = 0;
-  VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::array<VkCommandBuffer, kEngineSlots> commands_{};
 };
 
 }  // namespace alcove::sample
