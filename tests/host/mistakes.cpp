@@ -121,6 +121,18 @@ void change_size(F& frame) {
            frame.view.images[ALCOVE_IMAGE_DEPTH].height);
 }
 
+// The lower three quarters of the images are in use, and the engine says that the upper ones are.
+void crop_to_bottom(F& frame) {
+  change_cameras(frame, [](AlcoveCamera& camera) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      float& y = camera.clip_from_view[4 * column + 1];
+      y = (4.0f * y - camera.clip_from_view[4 * column + 3]) / 3.0f;
+    }
+  });
+  const AlcoveImage& depth = frame.view.images[ALCOVE_IMAGE_DEPTH];
+  set_size(frame, depth.width, depth.height * 3 / 4);
+}
+
 void set_normals(F& frame, Other image, AlcoveNormalEncoding encoding, bool in_view_space) {
   frame.view.images[ALCOVE_IMAGE_NORMALS] = frame.other[image];
   frame.view.info.normal_encoding = encoding;
@@ -309,6 +321,7 @@ const std::vector<PlantedMistake>& planted_mistakes() {
          set_size(f, f.view.images[ALCOVE_IMAGE_DEPTH].width * 3 / 4,
                   f.view.images[ALCOVE_IMAGE_DEPTH].height * 3 / 4);
        }},
+      {"dynamic resolution drawn at the bottom left", "at the bottom of the image", crop_to_bottom},
       {"a size that changes, without largest_width", "each change begins a new history",
        [](F& f) {
          change_size(f);

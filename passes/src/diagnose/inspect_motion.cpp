@@ -100,10 +100,7 @@ Displacements displacements(const Picture& now, const Picture& before, const Eye
     const dvec4 ndc(eye.ndc(s), s.depth, 1.0);
     const dvec4 clip = to_before * ndc;
     if (is_sky(s.depth) || !(clip.w > 0.0)) continue;
-    const auto to_pixel = [&](const dvec4& p) {
-      return (0.5 * dvec2(p) / p.w + 0.5) * eye_before.size;
-    };
-    const dvec2 cell = to_pixel(clip) * grid - 0.5;  // between four samples
+    const dvec2 cell = eye_before.pixel(clip) * grid - 0.5;  // between four samples
     if (!(cell.x >= 0.0 && cell.y >= 0.0 && cell.x < kInspectColumns - 1.0 &&
           cell.y < kInspectRows - 1.0))
       continue;
@@ -130,7 +127,7 @@ Displacements displacements(const Picture& now, const Picture& before, const Eye
     }
     if (!is_plane) continue;
     const auto distance = [&](const dvec4& p) {
-      return (p.z / p.w - depth_at(to_pixel(p))) / slope;
+      return (p.z / p.w - depth_at(eye_before.pixel(p))) / slope;
     };
     const double here = distance(clip);
     const double place_w = (from * ndc).w;

@@ -118,6 +118,9 @@ inline constexpr Mistake flipped = of<kByGeometry>(
 inline constexpr Mistake image_too_large = of<kByGeometry>(
     "the pixels fit the camera only if the whole image is in use, which is larger than "
     "AlcoveImage::width and height say; give the size of this frame.");
+inline constexpr Mistake image_at_bottom = of<kByGeometry>(
+    "the pixels fit the camera only if the part in use is at the bottom of the image; say where it "
+    "is with AlcoveViewInfo::read_area.");
 inline constexpr Mistake field_of_view = of<kByGeometry>(
     "the pixels fit another angle of view or aspect, or other near and far planes, than those of "
     "camera.clip_from_view; give the matrix that depth was drawn with.");

@@ -35,6 +35,7 @@ struct Reading {
   double far_shift = 0.0;            // added to all inverse distances, as by another far plane
   bool invert_view = false;          // view_from_world is world_from_view
   bool whole_image = false;          // the whole image is in use
+  bool at_bottom = false;            // the part of the image that is in use is the lowest
 };
 
 inline bool is_sky(float depth) { return !(depth > 0.0f && depth < 1.0f); }
@@ -71,8 +72,14 @@ struct Eye {
   dmat4 clip_from_view;
   dmat4 view_from_world;
   dvec2 size;
+  dvec2 origin = dvec2(0.0);  // of the picture in the image, in pixels
 
-  dvec2 ndc(const PixelSample& s) const { return 2.0 * dvec2(s.x + 0.5, s.y + 0.5) / size - 1.0; }
+  dvec2 ndc(const PixelSample& s) const {
+    return 2.0 * (dvec2(s.x + 0.5, s.y + 0.5) - origin) / size - 1.0;
+  }
+  dvec2 pixel(const dvec4& clip) const {
+    return (0.5 * dvec2(clip) / clip.w + 0.5) * size + origin;
+  }
 };
 
 // A frame with its matrices, and the gradients of depth at its samples.
@@ -95,6 +102,7 @@ class Picture {
       eye.clip_from_view[column][0] /= reading.tangent_scale.x;
       eye.clip_from_view[column][1] /= reading.tangent_scale.y;
     }
+    if (reading.at_bottom) eye.origin.y = to_vector(frame.depth_size).y - to_vector(frame.size).y;
     eye.clip_from_view[2][2] += reading.far_shift * clip_from_view[3][2];
     return eye;
   }
@@ -158,9 +166,13 @@ void for_cameras(const Picture& picture, const Reading& given, const Call& call)
   reading.invert_view = true;
   call(&mistakes::view_inverted, reading);
   reading = given;
-  reading.whole_image = true;
-  if (is_smaller(picture.frame.size, picture.frame.depth_size))
+  if (is_smaller(picture.frame.size, picture.frame.depth_size)) {
+    reading.whole_image = true;
     call(&mistakes::image_too_large, reading);
+    reading = given;
+    reading.at_bottom = true;
+    call(&mistakes::image_at_bottom, reading);
+  }
   reading = given;
   for (const dvec2& sign : {dvec2(1.0, -1.0), dvec2(-1.0, 1.0)}) {
     reading.tangent_scale = sign;
